@@ -1,1 +1,1 @@
-"""A machine fitted to measured runs."""
+"""Calibration of machine files and tool life to measurements."""

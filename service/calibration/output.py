@@ -1,4 +1,4 @@
-"""Result of ``calibrate`` as text and JSON. Keys of JSON carry their units and are fixed."""
+"""Results of ``calibrate`` as text and JSON; JSON keys carry their units and never change."""
 
 from collections.abc import Callable
 from math import isfinite
@@ -13,13 +13,13 @@ from simulator.calibration.measured_run import Component
 from simulator.calibration.skill import Skill
 
 CUTS = {Component.SPINDLE, Component.TOTAL}
-"""powers that hold that of the cut"""
+"""Power components that include the cutting power."""
 
 MOST_NET = 10.0
-"""share of error from which a net cutting energy is lost in the noise"""
+"""Relative error above which a net cutting energy is not shown, because noise dominates it."""
 
 HeldSkill = tuple[str, Component, Skill]
-"""run, power, and how well it is predicted"""
+"""Run, power component, and quality of its prediction."""
 
 
 def _of(value: Callable[[Skill], Cell]) -> Callable[[HeldSkill], Cell]:
@@ -27,11 +27,11 @@ def _of(value: Callable[[Skill], Cell]) -> Callable[[HeldSkill], Cell]:
 
 
 def _net(held: HeldSkill) -> str:
-    """Error of the net cutting energy, where the power holds it."""
+    """Relative error of the net cutting energy, for power components that include it."""
     _, part, skill = held
     if part not in CUTS:
         return ""
-    return f"{skill.net_error:+.1%}" if abs(skill.net_error) < MOST_NET else "none to tell"
+    return f"{skill.net_error:+.1%}" if abs(skill.net_error) < MOST_NET else "not measurable"
 
 
 PARAMETERS: tuple[Column[Estimate], ...] = (
@@ -117,29 +117,29 @@ def _held(result: CalibrationResult) -> list[HeldSkill]:
 
 
 def print_calibration(result: CalibrationResult) -> None:
-    """Parameters, cycle times, and errors on what was not fitted beside the baseline's."""
+    """Print parameters, cycle times, and prediction errors on data that were not fitted."""
     print_line(f"machine {result.machine.name} ({result.machine.title})")
     print_table(PARAMETERS, result.calibration.estimates, foot=_delay(result.delay))
     print_line("")
     print_table(TIMES, result.times)
     print_line("")
     print_line(
-        "error on what was not fitted: of each run when the others are fitted, of a single"
+        "prediction error on data that were not fitted: each run with the others fitted, or the"
     )
     print_line(
-        "run's end when its start is; baseline: mean power of what was fitted times the time"
+        "end of a single run with its start fitted; baseline: mean fitted power times the time"
     )
     print_table(SKILLS, _held(result))
     factor = result.kc_factor
     if factor is not None:
         print_line(
-            f"the factor on k_c is no part of a machine: simulate with --kc-factor {factor:.3g}"
+            f"the k_c factor is not part of the machine: simulate with --kc-factor {factor:.3g}"
         )
     print_findings(result.findings)
 
 
 def _delay(delay: Delay) -> dict[str, str]:
-    """Delay of the drive as a row of the parameters."""
+    """Return the delay of the main drive as a row of the parameter table."""
     return {
         "parameter": "delay of the main drive",
         "value": "" if delay.reason else f"{delay.value:.4g} s",
@@ -149,7 +149,7 @@ def _delay(delay: Delay) -> dict[str, str]:
 
 
 def calibration_json(result: CalibrationResult) -> str:
-    """Parameters, cycle times, and errors on what was not fitted beside the baseline's."""
+    """Return parameters, cycle times, and prediction errors on unfitted data as JSON."""
     return dump({
         "machine": result.machine.name,
         "parameters": records(PARAMETERS, result.calibration.estimates),

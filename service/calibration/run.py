@@ -1,4 +1,4 @@
-"""The verb ``calibrate``: a machine's parameters from measured runs of a program."""
+"""Calibration of a machine's parameters to measured runs, for the command ``calibrate``."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,13 +21,13 @@ from simulator.spec import Machine
 from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
 
 MOST_SAMPLES = 10_000
-"""of a run that are fitted: more say little more about so few parameters"""
+"""Most samples of a run that are fitted; more add little to the few parameters."""
 
 RATE = 100.0
-"""samples a second of the simulation that the runs are compared with"""
+"""Sampling rate of the simulation that the runs are compared with, in Hz."""
 
 MOST_TIME_ERROR = 0.05
-"""share of the measured time; what is further off may be another program"""
+"""Relative error of the cycle time above which a warning is given."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,9 +36,9 @@ class CalibrationRequest:
 
     runs: tuple[Path, ...]
     simulation: SimulationRequest
-    """the machine as far as it is known, and how it ran"""
+    """Machine as far as it is known, and options of its runs."""
     files: RunFiles
-    """what was run"""
+    """Program or NC code that was run."""
     output: Path | None = None
 
 
@@ -48,13 +48,13 @@ class CycleTime:
 
     name: str
     measured: float
-    """Measured, s"""
+    """Measured time, in s."""
     simulated: float
-    """Simulated, s"""
+    """Simulated time, in s."""
 
     @property
     def error(self) -> float:
-        """Share of the measured time, signed."""
+        """Relative error of the simulated time; positive if it is longer."""
         return self.simulated / self.measured - 1.0
 
 
@@ -63,17 +63,17 @@ class CalibrationResult:
     """Result of ``calibrate``."""
 
     machine: Machine
-    """as calibrated"""
+    """Calibrated machine."""
     calibration: Calibration
     delay: Delay
-    """Delay of the main drive"""
+    """Delay of the main drive."""
     held_out: tuple[HeldOut, ...]
     times: tuple[CycleTime, ...]
     findings: tuple[Finding, ...]
 
     @property
     def kc_factor(self) -> float | None:
-        """On the specific cutting force, where the runs tell it."""
+        """Factor on the specific cutting force; None if the runs do not determine it."""
         (found,) = (
             each for each in self.calibration.estimates if each.parameter is Parameter.CUTTING
         )
@@ -81,12 +81,12 @@ class CalibrationResult:
 
 
 def calibrate(request: CalibrationRequest, *, tell: Tell = silent) -> CalibrationResult:
-    """Fit a machine to measured runs, and write it as a machine file where one is named.
+    """Fit a machine to measured runs and, if an output is named, write its machine file.
 
     Raises
     ------
     StepNcError
-        For everything that is wrong with program, runs, names or output.
+        When the program, a run, a name or an output is invalid.
     """
     if not request.runs:
         raise StepNcError("name at least one measured run")
@@ -122,12 +122,12 @@ def calibrate(request: CalibrationRequest, *, tell: Tell = silent) -> Calibratio
 
 
 def _require_output(request: CalibrationRequest, output: Path) -> None:
-    """Refuse an output that could not be written, or is an input, before the long work."""
+    """Refuse an output that is not writable, or is an input, before the long calculation."""
     if output.suffix.lower() != ".toml":
-        raise WriteError("a machine is written as .toml", path=str(output))
+        raise WriteError("the name of a machine file must end with .toml", path=str(output))
     asked, files = request.simulation, request.files
     inputs: list[Path | None] = [*request.runs, files.file]
-    # A name is one of the library's; what ends in a suffix is a file.
+    # A plain name is a library entry; a name with a suffix is a file.
     inputs += [Path(name) for name in (asked.machine, asked.material) if Path(name).suffix]
     if files.code is not None:
         inputs += [files.code.code, files.code.tools]
@@ -135,11 +135,11 @@ def _require_output(request: CalibrationRequest, output: Path) -> None:
         if other is not None:
             require_place(output, apart_from=other)
     if output.exists() and not output.is_file():
-        raise WriteError("is no regular file", path=str(output))
+        raise WriteError("is not a regular file", path=str(output))
 
 
 def _simulated(request: CalibrationRequest, tell: Tell) -> tuple[Samples, Machine]:
-    """The program on the machine as it is."""
+    """Simulate the program on the uncalibrated machine."""
     prepared, virtual = waiting_machine(request.simulation, request.files, tell=tell)
     sampler = Sampler(virtual.machine, rate=RATE)
     episodes = virtual.run(interpret(prepared.blocks, virtual.machine))
@@ -156,12 +156,12 @@ def _time(run: MeasuredRun, samples: Samples) -> CycleTime:
 
 
 def _off(time: CycleTime) -> Finding:
-    """A run that took another time than the program."""
+    """Return a warning for a run whose measured time differs from the simulated one."""
     return Finding(
         severity=Severity.WARNING,
         message=(
-            f"measured {time.measured:.1f} s, simulated {time.simulated:.1f} s: more than"
-            f" {MOST_TIME_ERROR:.0%} apart; another program or unit of time, or not all of it?"
+            f"measured {time.measured:.1f} s, simulated {time.simulated:.1f} s: differ by more"
+            f" than {MOST_TIME_ERROR:.0%}; check program, unit of time and length of the run"
         ),
         entity=time.name,
         attribute=TIME,

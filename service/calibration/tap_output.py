@@ -1,4 +1,4 @@
-"""A tap test as text and JSON."""
+"""Result of a tap test as text and JSON."""
 
 from service.calibration.tap_test import TapTestResult
 from service.rendering.columns import Column
@@ -30,11 +30,11 @@ MODES: tuple[Column[VibrationMode], ...] = (
 
 
 def print_tap_test(result: TapTestResult) -> None:
-    """Modes as a table, then as the tables of a machine file."""
+    """Print the modes as a table, then as tables of a machine file."""
     print_table(MODES, result.modes)
     print_line(
         f"unexplained: {result.fit.unexplained:.1%} of the response, "
-        f"{result.fit.residual:.1%} with residues of modes outside its range"
+        f"{result.fit.residual:.1%} after adding residues of modes outside its range"
     )
     for line in modes_toml(result.modes).splitlines():
         print_line(line)
@@ -42,7 +42,7 @@ def print_tap_test(result: TapTestResult) -> None:
 
 
 def tap_test_json(result: TapTestResult) -> str:
-    """Modes in the units of a machine file, and what they leave."""
+    """Return the modes in units of a machine file, and the unexplained response, as JSON."""
     return dump({
         "modes": records(MODES, result.modes),
         "residual": result.fit.residual,

@@ -1,4 +1,4 @@
-"""The verb ``taptest``: modes of a tool or a workpiece from a measured frequency response."""
+"""Tap test: modes of a tool or workpiece fitted to a measured frequency response."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,7 +21,7 @@ from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.units import n_um_from_n_mm
 
 MOST_UNEXPLAINED = 0.2
-"""share of the response beyond which its modes are doubted"""
+"""Unexplained share of the response above which a warning is given."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,10 +31,10 @@ class TapTestRequest:
     response: Path
     direction: str
     tool: str = ""
-    """id of the tool as programs name it"""
+    """Id of the tool as used in programs."""
     tool_diameter_mm: float | None = None
     workpiece: bool = False
-    """the workpiece was tapped, and no tool"""
+    """Whether the workpiece was tapped instead of a tool."""
     modes: int | None = None
     source: str = ""
     machine: str = ""
@@ -51,14 +51,14 @@ class TapTestResult:
 
 
 def tap_test(request: TapTestRequest, *, tell: Tell = silent) -> TapTestResult:
-    """Fit modes to a frequency response; with an output, write the machine file with them.
+    """Fit modes to a frequency response and, if an output is named, write a machine file.
 
-    Modes of the same part in the same direction are replaced.
+    Existing modes of the same part in the same direction are replaced.
 
     Raises
     ------
     StepNcError
-        For everything that is wrong with response, words or output; nothing is written.
+        When the response, an option or the output is invalid; nothing is written.
     """
     direction = one_of(ModeDirection, request.direction.lower(), "direction")
     _require_part(request)
@@ -91,23 +91,23 @@ def tap_test(request: TapTestRequest, *, tell: Tell = silent) -> TapTestResult:
 
 
 def _require_part(request: TapTestRequest) -> None:
-    """A tool by its id or diameter, or the workpiece."""
+    """Require a tool, by its id or diameter, or the workpiece."""
     is_tool = bool(request.tool.strip()) or request.tool_diameter_mm is not None
     if is_tool is request.workpiece:
         raise StepNcError(
-            "say what was tapped: --tool ID or --tool-diameter-mm MM, or --workpiece"
+            "name what was tapped: --tool ID or --tool-diameter-mm MM, or --workpiece"
         )
     if refused := complaint(request.tool_diameter_mm, ModeDiameter | None):
         raise StepNcError(f"tool diameter: {refused}")
     if request.modes is not None and request.modes < 1:
-        raise StepNcError(f"{request.modes} modes: at least 1")
+        raise StepNcError(f"{request.modes} modes: at least 1 is needed")
 
 
 def _machine(request: TapTestRequest) -> Machine | None:
-    """The machine whose file is written."""
+    """Load the machine to be written; None without an output."""
     if request.output is None:
         if request.machine:
-            raise StepNcError("--machine is written with its modes: name a file with -o")
+            raise StepNcError("--machine is written with its new modes: name a file with -o")
         return None
     if not request.machine:
         raise StepNcError("-o writes a machine file: name the machine with --machine")
@@ -116,23 +116,23 @@ def _machine(request: TapTestRequest) -> Machine | None:
 
 
 def _rounded(value: float) -> float:
-    """As many digits as a tap test may tell."""
+    """Round to the digits that a tap test can resolve."""
     return float(f"{value:.4g}")
 
 
 def _require_usual(mode: VibrationMode, path: str) -> None:
-    """A mode that the machine file would take."""
+    """Refuse a mode outside the bounds of machine files."""
     for what, value, allowed in (
         ("natural frequency", mode.natural_frequency, Frequency),
         ("damping ratio", mode.damping_ratio, Damping),
         ("stiffness", n_um_from_n_mm(mode.stiffness), Stiffness),
     ):
         if refused := complaint(value, allowed):
-            raise CalibrationError(f"{what}: {refused}; another unit?", path=path)
+            raise CalibrationError(f"{what}: {refused}; check the unit", path=path)
 
 
 def _left_of(old: VibrationMode, new: VibrationMode) -> VibrationMode | None:
-    """Old mode without the directions that were measured anew."""
+    """Return the old mode without the newly measured directions; None if none is left."""
     same = (new.part, new.tool.casefold(), new.tool_diameter) == (
         old.part,
         old.tool.casefold(),
@@ -145,11 +145,11 @@ def _left_of(old: VibrationMode, new: VibrationMode) -> VibrationMode | None:
 
 
 def _doubts(fit: ModalFit) -> list[Finding]:
-    """Findings on a fit."""
+    """Return a warning if the fit leaves too much unexplained."""
     if fit.unexplained <= MOST_UNEXPLAINED:
         return []
     text = (
         f"the modes leave {fit.unexplained:.0%} of the response unexplained: "
-        "look at its coherence, or ask for another number of modes"
+        "check its coherence, or request another number of modes"
     )
     return [Finding(severity=Severity.WARNING, message=text)]

@@ -1,7 +1,7 @@
-"""``calibrate --life``: Taylor's constants from measured tool lives, as a table of a material.
+"""Fit of Taylor's tool life constants to measured lives, for ``calibrate --life``.
 
-Pairs are named on the command line or read from a CSV file with the columns ``speed_m_min`` and
-``life_min``.
+Pairs of speed and life come from the command line or from a CSV file with the columns
+``speed_m_min`` and ``life_min``. The result is a table for a material file.
 """
 
 import csv
@@ -25,7 +25,7 @@ SPEED, LIFE = "speed_m_min", "life_min"
 COLUMNS = (SPEED, LIFE)
 
 USUAL_LIFE = 15.0
-"""min, for which catalogues print cutting speeds"""
+"""Tool life for which catalogues state cutting speeds, in min."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,9 +33,9 @@ class ToolLifeRequest:
     """Request of ``calibrate --life``."""
 
     pairs: tuple[str, ...] = ()
-    """``120:25``, m/min and min"""
+    """Pairs such as ``120:25``, cutting speed in m/min and life in min."""
     file: Path | None = None
-    """CSV"""
+    """CSV file with further pairs."""
     cutting_material: str = CuttingMaterial.CARBIDE
     output: Path | None = None
 
@@ -49,28 +49,28 @@ class ToolLifeResult:
 
     @property
     def usual_speed(self) -> float:
-        """Cutting speed for a life of 15 min, m/min."""
+        """Cutting speed for a life of 15 min, in m/min."""
         life = USUAL_LIFE * SECONDS_PER_MINUTE
         return m_min_from_speed(speed_for_life(self.fitted.taylor, life))
 
 
 def calibrate_tool_life(request: ToolLifeRequest) -> ToolLifeResult:
-    """Fit Taylor's constants, and write their table where a file is named.
+    """Fit Taylor's constants and, if an output is named, write their table.
 
     Raises
     ------
     StepNcError
-        A pair cannot be read, or no law goes through the pairs.
+        When a pair is invalid, or no law can be fitted to the pairs.
     """
     try:
         material = CuttingMaterial(request.cutting_material)
     except ValueError:
         known = ", ".join(CuttingMaterial)
-        text = f"cutting material '{request.cutting_material}' is none of {known}"
+        text = f"unknown cutting material '{request.cutting_material}'; known: {known}"
         raise StepNcError(text) from None
     if request.output is not None:
         if request.output.suffix.lower() != ".toml":
-            raise WriteError("tool life is written as .toml", path=str(request.output))
+            raise WriteError("the output name must end with .toml", path=str(request.output))
         if request.file is not None:
             require_place(request.output, apart_from=request.file)
     pairs = [_pair(text) for text in request.pairs]
@@ -83,12 +83,12 @@ def calibrate_tool_life(request: ToolLifeRequest) -> ToolLifeResult:
 
 
 def tool_life_toml(result: ToolLifeResult) -> str:
-    """The ``[[tool_life]]`` table for the file of a material."""
+    """Return the ``[[tool_life]]`` table for a material file."""
     found = result.fitted
     slow, fast = m_min_from_speed(found.slowest), m_min_from_speed(found.fastest)
     source = f"least squares in logarithms of {found.pairs} pairs, {slow:g} to {fast:g} m/min"
     if found.has_interval:
-        high = f"{found.high:.3f}" if isfinite(found.high) else "no end"
+        high = f"{found.high:.3f}" if isfinite(found.high) else "infinity"
         source += f"; exponent {found.low:.3f} to {high} (95 %)"
     return (
         "[[tool_life]]\n"
@@ -100,18 +100,18 @@ def tool_life_toml(result: ToolLifeResult) -> str:
 
 
 def tool_life_text(result: ToolLifeResult) -> str:
-    """The table, and as comments what it stands on."""
+    """Return the table with comments on the quality of the fit."""
     found = result.fitted
     lines = [f"# {USUAL_LIFE:g} min of life at {result.usual_speed:.1f} m/min"]
     if found.has_interval:
-        lines.append(f"# a life scatters by {found.scatter:.0%} about the law")
+        lines.append(f"# lives scatter by {found.scatter:.0%} about the law")
     else:
-        lines.append("# two pairs: the law goes through both, its error is not known")
+        lines.append("# the law passes exactly through the two pairs; its error is unknown")
     return "\n".join((*lines, tool_life_toml(result)))
 
 
 def tool_life_json(result: ToolLifeResult) -> str:
-    """Constants, interval and range. Keys carry their units and are fixed."""
+    """Return constants, interval and range as JSON; keys carry their units and never change."""
     found = result.fitted
     has = found.has_interval
     return dump({
@@ -128,19 +128,19 @@ def tool_life_json(result: ToolLifeResult) -> str:
 
 
 def _pair(text: str) -> LifePair:
-    """``120:25`` as m/min and min."""
+    """Parse a pair such as ``120:25`` as m/min and min."""
     words = text.split(":")
     if len(words) != 2:
-        raise StepNcError(f"--life {text}: is no pair; write 120:25 for 25 min at 120 m/min")
+        raise StepNcError(f"--life {text}: is not a pair; write 120:25 for 25 min at 120 m/min")
     return _life(*words, place=f"--life {text}")
 
 
 def _read(path: Path) -> list[LifePair]:
-    """Pairs of a CSV file, whose other columns do not matter."""
+    """Read the pairs of a CSV file; other columns are ignored."""
     rows = csv.DictReader(open_lines(path))
     missing = [name for name in COLUMNS if name not in (rows.fieldnames or ())]
     if missing:
-        raise StepNcError(f"{path}: has no column {' and no '.join(missing)}")
+        raise StepNcError(f"{path}: missing column {' and '.join(missing)}")
     return [
         _life(row[SPEED] or "", row[LIFE] or "", place=f"{path}, line {rows.line_num}")
         for row in rows
@@ -148,7 +148,7 @@ def _read(path: Path) -> list[LifePair]:
 
 
 def _life(speed: str, life: str, *, place: str) -> LifePair:
-    """A pair of two numbers as they were written."""
+    """Convert the texts of a speed and a life to a pair."""
     try:
         return LifePair(
             cutting_speed=speed_from_m_min(float(speed)),

@@ -1,4 +1,4 @@
-"""The command ``stepnc control``: a program under the closed loop, on the virtual machine."""
+"""Command ``stepnc control``: run a program under force control on the virtual machine."""
 
 import argparse
 import re
@@ -24,23 +24,23 @@ EXAMPLES = """examples:
   stepnc control part.stpnc --machine vmc15 --law mpc --sensor power -o run.parquet \\
       --report run.html
 
-Run a program on the virtual machine while a control loop reads the cutting force and sets the
-feed override: TC as fast as force and chip load allow, QC at the programmed feed and slower
-where the force demands it.
+Run a program on the virtual machine while a control loop measures the cutting force and sets
+the feed override: TC as fast as force and chip load allow, QC at the programmed feed or slower
+if the force requires it.
 
-disturbances, which the loop is not told of:
+disturbances, unknown to the loop:
   from a time on        depth:+50%@12s hardness:+30%@12s material:NAME@12s tooth:1@12s
                         silence:2s@12s line:off@12s
   from the start        kc:1.3 wear:0.05mm/min runout:20um lag:60ms noise:3% drift:1N/s
                         missing:5%
-  what an operator does power:-50%@12s mode:QC@12s control:off@12s
+  orders of an operator power:-50%@12s mode:QC@12s control:off@12s
 
-Exit code 5: the loop stopped the program (a broken tooth, too many holds of the feed), the
-machine did not answer any more, or the force stayed above its set point."""
+Exit code 5: the loop stopped the program (a broken tooth, too many feed holds), the machine no
+longer answered, or the force stayed above its set point."""
 
 
 def add_control_command(commands: Commands) -> None:
-    """Add it to ``stepnc``."""
+    """Add the command ``control`` to ``stepnc``."""
     parser = commands.add_parser(
         "control",
         help="run a program under closed-loop control of the cutting force",
@@ -63,11 +63,11 @@ def _options(parser: argparse.ArgumentParser) -> None:
         "--band",
         default="20,120",
         metavar="LOW,HIGH",
-        help="override band, %% (default 20,120); the guard goes lower to save the tool",
+        help="override band, %% (default 20,120); the guard may go lower to protect the tool",
     )
     add("-o", "--output", type=Path, metavar="FILE", help="write the run, .parquet or .csv")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
-    add_knowledge(parser, "keep the outcomes there, take accepted corrections from it")
+    add_knowledge(parser, "records the outcomes and supplies accepted corrections")
     add(
         "--by",
         type=text,
@@ -80,7 +80,7 @@ def _options(parser: argparse.ArgumentParser) -> None:
 
 
 def _control(options: argparse.Namespace) -> int:
-    """``stepnc control``."""
+    """Run the command ``stepnc control``."""
     from service.control.facts import exceeded, rows
     from service.control.record import control_recorded
     from service.terminal import tell

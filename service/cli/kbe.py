@@ -38,18 +38,18 @@ EXAMPLES = """examples:
   stepnc kbe accept 3 --by "A. Smith"
   stepnc kbe export outcomes --format parquet -o outcomes.parquet
 
-What runs have shown, and what plans take from it. The knowledge base is named by --kb, else by
-$STEPNC_KB, else it is ~/.local/share/stepnc/knowledge.db."""
+The knowledge base holds outcomes of runs and corrections for plans. It is named by --kb, else
+by $STEPNC_KB, else it is ~/.local/share/stepnc/knowledge.db."""
 
 ONLY = ("all", "violated", "wasted", "with-remarks", "with-trend", "factor-pending")
 SORT = ("name", "grade", "runs", "latest", "force", "time", "feed", "roughness", "time-to-win")
-"""words of :mod:`kbe.evaluation`, which the shell must not split"""
+"""Option values from :mod:`kbe.evaluation`, with hyphens so that they need no quotes."""
 
 Run = Callable[[argparse.Namespace], int]
 
 
 def add_knowledge_commands(commands: Commands) -> None:
-    """Add them to ``stepnc``."""
+    """Add the commands of the knowledge base to ``stepnc``."""
     parser = commands.add_parser(
         "kbe",
         help="the knowledge base: outcomes of runs, their evaluation, corrections",
@@ -76,7 +76,7 @@ def _show_help(parser: argparse.ArgumentParser) -> int:
 
 
 def _verb(verbs: Commands, name: str, run: Run, what: str) -> argparse.ArgumentParser:
-    """A verb, which has a place."""
+    """Add a verb with its option for the knowledge base."""
     parser = verbs.add_parser(name, help=what, description=what)
     add_place(parser)
     parser.set_defaults(run=run)
@@ -86,34 +86,34 @@ def _verb(verbs: Commands, name: str, run: Run, what: str) -> argparse.ArgumentP
 def _add_list(verbs: Commands) -> None:
     parser = _verb(verbs, "list", list_outcomes_command, "list outcomes, newest first")
     parser.add_argument(
-        "--limit", type=count, default=50, metavar="N", help="most to show (default 50)"
+        "--limit", type=count, default=50, metavar="N", help="most rows to show (default 50)"
     )
     add_filters(parser)
     add_json(parser)
 
 
 def _add_show(verbs: Commands) -> None:
-    what = "show one run in full, by its id or its beginning; or a correction, by its number"
+    what = "show one run in full, by its id or the start of it; or a correction, by its number"
     parser = _verb(verbs, "show", show_command, what)
     parser.add_argument("id", type=text, metavar="RUN|ID", help="see `list` and `corrections`")
     add_json(parser)
 
 
 def _add_table(verbs: Commands) -> None:
-    what = "evaluate outcomes: planned, measured, deviations, grades, what to do"
+    what = "evaluate outcomes: planned, measured, deviations, grades, recommended actions"
     parser = _verb(verbs, "table", table_command, what)
     _add_table_options(parser)
     form = parser.add_mutually_exclusive_group()
     form.add_argument(
         "--format",
         choices=tuple(SUFFIXES.values()),
-        help="default: by the ending of the file; on stdout text",
+        help="default: by the file extension; on stdout text",
     )
     form.add_argument(
         "--json", action="store_const", const="json", dest="format", help="--format json"
     )
     parser.add_argument(
-        "-o", "--output", type=Path, metavar="FILE", help="write it there (default: stdout)"
+        "-o", "--output", type=Path, metavar="FILE", help="output file (default: stdout)"
     )
 
 
@@ -126,25 +126,25 @@ def _add_table_options(parser: argparse.ArgumentParser) -> None:
         default="feature",
         help="a row for each feature of each program (default), or for each kind of feature",
     )
-    add("--only", choices=ONLY, default="all", help="rows with at least one such side")
+    add("--only", choices=ONLY, default="all", help="keep only rows with such a result")
     add("--sort", choices=SORT, default="name", help="order of the rows (default: name)")
     add(
         "--summary",
         action="store_true",
-        help="counts, means and spreads by machine, material, tool and kind of feature only: "
+        help="only counts, means and spreads by machine, material, tool and kind of feature: "
         "a million outcomes in about a second",
     )
     add_filters(parser)
 
 
 def _add_review(verbs: Commands) -> None:
-    what = "learn factors on k_c from outcomes and propose what is new or changed"
+    what = "learn factors on k_c from outcomes and propose new or changed corrections"
     parser = _verb(verbs, "review", review_command, what)
     add = parser.add_argument
     add(
         "--auto-accept",
         action="store_true",
-        help="accept proposals that keep the three bounds; the others wait for a person",
+        help="accept proposals within the three bounds below; others wait for a person",
     )
     add("--least-confidence", type=share, default=0.8, metavar="P", help="0 to 1 (default 0.8)")
     add(
@@ -152,14 +152,14 @@ def _add_review(verbs: Commands) -> None:
         type=count,
         default=3,
         metavar="N",
-        help="behind a proposal (default 3)",
+        help="outcomes that support a proposal (default 3)",
     )
     add(
         "--greatest-change",
         type=share,
         default=0.25,
         metavar="SHARE",
-        help="from the factor in force, 0.25 or 25%% (default)",
+        help="change of the accepted factor, 0.25 or 25%% (default)",
     )
     _add_by(parser)
     add_filters(parser)
@@ -168,13 +168,13 @@ def _add_review(verbs: Commands) -> None:
 
 def _add_decisions(verbs: Commands) -> None:
     accept = _verb(
-        verbs, "accept", accept_command, "put corrections in force for the next plans"
+        verbs, "accept", accept_command, "accept corrections, which the next plans apply"
     )
     withdraw = _verb(
         verbs,
         "withdraw",
         withdraw_command,
-        "take corrections out of force, or refuse proposals",
+        "withdraw accepted corrections, or reject proposals",
     )
     for parser in (accept, withdraw):
         parser.add_argument(
@@ -187,7 +187,7 @@ def _add_decisions(verbs: Commands) -> None:
             verbs,
             "corrections",
             list_corrections_command,
-            "list corrections and their standing",
+            "list corrections and their status",
         )
     )
 
@@ -204,37 +204,37 @@ def _add_export(verbs: Commands) -> None:
         "export",
         export_command,
         "write outcomes, corrections or the table to a file; JSON and Parquet keep every "
-        "value, CSV puts an apostrophe before a text that a spreadsheet would calculate",
+        "value, CSV puts an apostrophe before text that a spreadsheet would calculate",
     )
     add = parser.add_argument
     add("what", choices=("outcomes", "corrections", "table"))
-    add("--format", choices=tuple(SUFFIXES.values()), help="default: by the ending")
+    add("--format", choices=tuple(SUFFIXES.values()), help="default: by the file extension")
     add("-o", "--output", type=Path, required=True, metavar="FILE")
     _add_table_options(parser)
 
 
 def _add_write(verbs: Commands) -> None:
     what = (
-        "write a run's outcomes, and the corrections in force for its tools, into the program "
+        "write a run's outcomes, and the accepted corrections for its tools, into the program "
         "as STEP-NC entities"
     )
     parser = _verb(verbs, "write", write_command, what)
     add = parser.add_argument
     add("file", type=Path, metavar="FILE", help="the program that was run")
-    add("--run", type=text, default="", dest="of_run", metavar="ID", help="default: its newest")
+    add("--run", type=text, default="", dest="of_run", metavar="ID", help="default: newest run")
     add("-o", "--output", type=Path, metavar="FILE", help="default: FILE.recorded.stpnc")
 
 
 def _add_read(verbs: Commands) -> None:
-    what = "list the outcomes and corrections that a program itself holds"
+    what = "list the outcomes and corrections stored in a program file"
     parser = verbs.add_parser("read", help=what, description=what)
     parser.set_defaults(run=read_command)
-    parser.add_argument("file", type=Path, metavar="FILE", help="as `write` wrote it")
+    parser.add_argument("file", type=Path, metavar="FILE", help="as written by `write`")
     add_json(parser)
 
 
 def _add_add(verbs: Commands) -> None:
-    what = "keep outcomes of real runs from a file: JSON as `export outcomes` writes it"
+    what = "add outcomes of real runs from a JSON file, as `export outcomes` writes it"
     parser = _verb(verbs, "add", add_command, what)
     parser.add_argument("file", type=Path, metavar="FILE.json")
 
@@ -247,4 +247,4 @@ def _add_copies(verbs: Commands) -> None:
     for parser in (back_up, restore):
         parser.add_argument("file", type=Path, metavar="FILE")
         add_json(parser)
-    add_json(_verb(verbs, "check", check_command, "read all that is stored, to the last page"))
+    add_json(_verb(verbs, "check", check_command, "check the integrity of all stored data"))

@@ -1,4 +1,4 @@
-"""Commands ``stepnc kbe …``, run with their parsed options."""
+"""Functions that run the commands ``stepnc kbe …`` with their parsed options."""
 
 import argparse
 import getpass
@@ -25,11 +25,11 @@ SUFFIXES = {
     ".parquet": "parquet",
     ".txt": "text",
 }
-"""formats by the ending of a file"""
+"""Output formats by file extension."""
 
 
 def list_outcomes_command(options: argparse.Namespace) -> int:
-    """``stepnc kbe list``."""
+    """Run the command ``stepnc kbe list``."""
     from service.knowledge import output
     from service.knowledge.verbs import newest
     from service.terminal import write_out
@@ -46,7 +46,7 @@ def list_outcomes_command(options: argparse.Namespace) -> int:
 
 
 def show_command(options: argparse.Namespace) -> int:
-    """``stepnc kbe show``."""
+    """Run the command ``stepnc kbe show``."""
     from service.knowledge import output
     from service.knowledge import verbs as knowledge
     from service.terminal import write_out
@@ -62,15 +62,15 @@ def show_command(options: argparse.Namespace) -> int:
     entries = [each for each in knowledge.corrections(place) if str(each.id) == options.id]
     if not entries:
         raise StepNcError(
-            f"{knowledge.shown(place)}: no run or correction '{options.id}'; list them: "
-            "stepnc kbe list, stepnc kbe corrections"
+            f"{knowledge.shown(place)}: no run or correction '{options.id}'; list them with "
+            "`stepnc kbe list` or `stepnc kbe corrections`"
         )
     _show_corrections(entries, is_json=options.json)
     return OK
 
 
 def table_command(options: argparse.Namespace) -> int:
-    """``stepnc kbe table``."""
+    """Run the command ``stepnc kbe table``."""
     from service.knowledge.evaluation_output import put_summary, put_table
 
     place, form = usual_place(options.kb), _format(options)
@@ -101,7 +101,7 @@ def _request(options: argparse.Namespace) -> "EvaluationRequest":
 
 
 def _format(options: argparse.Namespace) -> str:
-    """As asked, else by the ending of the file, else text."""
+    """Return the format as requested, else by the file extension, else text."""
     if options.format or options.output is None:
         return options.format or "text"
     suffix = options.output.suffix.lower()
@@ -112,7 +112,7 @@ def _format(options: argparse.Namespace) -> str:
 
 
 def review_command(options: argparse.Namespace) -> int:
-    """``stepnc kbe review``."""
+    """Run the command ``stepnc kbe review``."""
     from kbe.acceptance import AcceptanceBounds
     from service.knowledge.review import Acceptance, review
     from service.knowledge.review_output import print_review, review_json
@@ -139,7 +139,7 @@ def review_command(options: argparse.Namespace) -> int:
 
 
 def accept_command(options: argparse.Namespace) -> int:
-    """``stepnc kbe accept``."""
+    """Run the command ``stepnc kbe accept``."""
     from service.knowledge.verbs import accept
 
     entries = accept(usual_place(options.kb), options.ids, by=_decider(options))
@@ -148,7 +148,7 @@ def accept_command(options: argparse.Namespace) -> int:
 
 
 def withdraw_command(options: argparse.Namespace) -> int:
-    """``stepnc kbe withdraw``."""
+    """Run the command ``stepnc kbe withdraw``."""
     from service.knowledge.verbs import withdraw
 
     entries = withdraw(usual_place(options.kb), options.ids, by=_decider(options))
@@ -157,7 +157,7 @@ def withdraw_command(options: argparse.Namespace) -> int:
 
 
 def list_corrections_command(options: argparse.Namespace) -> int:
-    """``stepnc kbe corrections``."""
+    """Run the command ``stepnc kbe corrections``."""
     from service.knowledge.verbs import corrections, shown
     from service.terminal import tell
 
@@ -181,7 +181,7 @@ def _show_corrections(entries: "Sequence[StoredCorrection]", *, is_json: bool) -
 
 
 def _decider(options: argparse.Namespace) -> str:
-    """Person who decides; the user's name, with a message, when none is given."""
+    """Return the name of the person who decides; the login name if none is given."""
     from service.terminal import tell
 
     if options.by.strip():
@@ -190,14 +190,14 @@ def _decider(options: argparse.Namespace) -> str:
         name = getpass.getuser()
     except (KeyError, OSError) as error:
         raise StepNcError(
-            "no login name found: name the person who decides with --by NAME"
+            "no login name found; give the name of the person who decides with --by NAME"
         ) from error
-    tell(f"decided by {name}, the login; another: --by NAME")
+    tell(f"decision recorded for login '{name}'; use --by NAME for another person")
     return name
 
 
 def export_command(options: argparse.Namespace) -> int:
-    """``stepnc kbe export``."""
+    """Run the command ``stepnc kbe export``."""
     from service.flat_file import Format
     from service.knowledge.export import export_corrections, export_outcomes
     from service.terminal import tell
@@ -206,7 +206,7 @@ def export_command(options: argparse.Namespace) -> int:
         return table_command(options)
     place, name = usual_place(options.kb), _format(options)
     if name not in set(Format):
-        raise StepNcError(f"only the table is written as {name}")
+        raise StepNcError(f"outcomes and corrections cannot be written as {name}")
     form, file = Format(name), options.output
     with interruptible():
         if options.what == "outcomes":
@@ -218,7 +218,7 @@ def export_command(options: argparse.Namespace) -> int:
 
 
 def write_command(options: argparse.Namespace) -> int:
-    """``stepnc kbe write``."""
+    """Run the command ``stepnc kbe write``."""
     from service.knowledge.written import write_back
     from service.terminal import tell
 
@@ -232,7 +232,7 @@ def write_command(options: argparse.Namespace) -> int:
 
 
 def read_command(options: argparse.Namespace) -> int:
-    """``stepnc kbe read``."""
+    """Run the command ``stepnc kbe read``."""
     from service.knowledge.recorded import print_recorded, recorded_in, recorded_json
     from service.terminal import write_out
 
@@ -245,7 +245,7 @@ def read_command(options: argparse.Namespace) -> int:
 
 
 def add_command(options: argparse.Namespace) -> int:
-    """``stepnc kbe add``."""
+    """Run the command ``stepnc kbe add``."""
     from service.knowledge.added import add_outcomes
     from service.terminal import tell
 
@@ -255,7 +255,7 @@ def add_command(options: argparse.Namespace) -> int:
 
 
 def back_up_command(options: argparse.Namespace) -> int:
-    """``stepnc kbe backup``."""
+    """Run the command ``stepnc kbe backup``."""
     from service.knowledge.verbs import back_up
 
     content = back_up(usual_place(options.kb), options.file)
@@ -264,7 +264,7 @@ def back_up_command(options: argparse.Namespace) -> int:
 
 
 def restore_command(options: argparse.Namespace) -> int:
-    """``stepnc kbe restore``."""
+    """Run the command ``stepnc kbe restore``."""
     from service.knowledge.verbs import restore, shown
 
     place = usual_place(options.kb)
@@ -274,14 +274,14 @@ def restore_command(options: argparse.Namespace) -> int:
 
 
 def check_command(options: argparse.Namespace) -> int:
-    """``stepnc kbe check``."""
+    """Run the command ``stepnc kbe check``."""
     from service.knowledge.verbs import check, shown
     from service.terminal import tell
 
     place = usual_place(options.kb)
     content = check(place)
     _show_content(content, place=shown(place), is_json=options.json)
-    tell("whole: every page was read")
+    tell("no damage found: every page was read")
     return OK
 
 
@@ -304,7 +304,7 @@ def _written(output: Path | None) -> int:
 
 
 def _tell_why_empty(place: str, options: argparse.Namespace) -> None:
-    """Nothing is kept yet, or nothing of what is kept was meant."""
+    """Explain why no outcomes were found: none are stored, or none are selected."""
     from service.knowledge.verbs import contexts, shown
     from service.terminal import tell
 
@@ -318,10 +318,10 @@ def _tell_why_empty(place: str, options: argparse.Namespace) -> None:
         "tools": sorted({each.tool for each in known}),
     }
     told = "; ".join(f"{what} {_some(them)}" for what, them in names.items())
-    tell(f"{shown(place)}: no outcome is meant; it knows {told}")
+    tell(f"{shown(place)}: no outcome matches the selection; stored are {told}")
 
 
 def _some(names: Sequence[str]) -> str:
-    """The first of many."""
+    """Return the first names of a list, and the number of others."""
     shown = ", ".join(names[:8])
     return f"{shown} and {len(names) - 8} more" if len(names) > 8 else shown

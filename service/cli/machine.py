@@ -15,18 +15,18 @@ if TYPE_CHECKING:
 
 
 USUAL_RATE = 10.0
-"""samples a second of a file"""
+"""Default number of samples per second in a file."""
 
 
 def add_machine_commands(commands: Commands) -> None:
-    """Add them to ``stepnc``."""
+    """Add the commands of the virtual machine to ``stepnc``."""
     _add_simulate(commands)
     _add_calibrate(commands)
     _add_tap_test(commands)
 
 
 def add_code(parser: argparse.ArgumentParser) -> None:
-    """NC code, and what it does not say."""
+    """Add the options for NC code, and for the data that it lacks."""
     add = parser.add_argument
     add("--nc", type=Path, metavar="CODE", help="run this NC code instead of the program's own")
     add("--dialect", default="", metavar="NAME", help=f"dialect of the NC code: {CONTROLS}")
@@ -58,20 +58,20 @@ def _calibrate_options(parser: argparse.ArgumentParser) -> None:
         type=Path,
         nargs="*",
         metavar="RUN.csv",
-        help="measured runs: time_s and powers in W, named as `simulate` writes them",
+        help="measured runs: time_s and powers in W, columns named as `simulate` writes them",
     )
     add(
         "--life",
         action="append",
         default=[],
         metavar="V:T",
-        help="an edge was worn after T min at V m/min, as 120:25; two or more: Taylor's law",
+        help="tool life of T min at V m/min, as 120:25; two or more fit Taylor's law",
     )
     add(
         "--tool-life",
         type=Path,
         metavar="CSV",
-        help="such pairs in a file with the columns speed_m_min and life_min",
+        help="file with such pairs, columns speed_m_min and life_min",
     )
     add("--edge", default="carbide", help="edge material: hss, carbide (default), ceramic")
     add("--program", type=Path, metavar="FILE", help="the STEP-NC program that was run")
@@ -82,7 +82,7 @@ def _calibrate_options(parser: argparse.ArgumentParser) -> None:
         "--output",
         type=Path,
         metavar="TOML",
-        help="write the machine as calibrated, or the [[tool_life]] table of a material",
+        help="write the calibrated machine, or the [[tool_life]] table of a material",
     )
     add_json(parser)
     parser.set_defaults(run=_calibrate, refuse=parser.error)
@@ -90,15 +90,15 @@ def _calibrate_options(parser: argparse.ArgumentParser) -> None:
 
 def _add_tap_test(commands: Commands) -> None:
     parser = commands.add_parser(
-        "taptest", help="modes for the stability of cuts from a measured frequency response"
+        "taptest", help="fit modes, for chatter stability, to a measured frequency response"
     )
     add = parser.add_argument
     add(
         "response",
         type=Path,
         metavar="FRF.csv",
-        help="frequency_hz and real and imaginary part: real_um_n, imag_um_n "
-        "(m_n, mm_n, um_n, or m_s2_n of an accelerometer)",
+        help="columns frequency_hz, and real and imaginary part: real_um_n, imag_um_n "
+        "(or m_n, mm_n; m_s2_n for an accelerometer)",
     )
     add(
         "--direction",
@@ -106,10 +106,10 @@ def _add_tap_test(commands: Commands) -> None:
         help="direction of the tap: x, y, z, or xy for a round tool",
     )
     add("--tool", default="", metavar="ID", help="tool that was tapped, as programs name it")
-    add("--tool-diameter-mm", type=float, metavar="MM", help="its diameter, for round tools")
+    add("--tool-diameter-mm", type=float, metavar="MM", help="tool diameter, for round tools")
     add("--workpiece", action="store_true", help="the workpiece was tapped")
     add("--modes", type=int, metavar="N", help="number of modes (default: by peaks)")
-    add("--source", default="", help="who measured it, with which holder and overhang")
+    add("--source", default="", help="who measured, with which holder and overhang")
     add("--machine", default="", help="one of `stepnc machines`, or your own file")
     add("-o", "--output", type=Path, metavar="TOML", help="write the machine with its modes")
     add_json(parser)
@@ -128,7 +128,7 @@ def _simulate_options(parser: argparse.ArgumentParser) -> None:
     from service.requests.fields import add_options
     from service.requests.runs import SimulationRequest
 
-    # Coordinates may be negative: "-3,-3,-40,153,93,2" is no option.
+    # Coordinates may be negative: "-3,-3,-40,153,93,2" is not an option.
     parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
     add("file", type=Path, nargs="?", metavar="FILE", help="a STEP-NC program (Part 21)")
@@ -145,12 +145,12 @@ def _simulate_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
-    """Files of a run, as typed.
+    """Return the files of a run from the parsed options.
 
     Raises
     ------
     StepNcError
-        When something is said of NC code that is not named.
+        When options for NC code are given without --nc.
     """
     from service.simulation.run import RunFiles
     from service.simulation.setup import CodeRequest
@@ -158,7 +158,7 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
 
     code = None
     if options.nc is None and (options.dialect or options.tools or options.stock):
-        raise StepNcError("--dialect, --tools and --stock are for NC code: name it with --nc")
+        raise StepNcError("--dialect, --tools and --stock need NC code: name it with --nc")
     if options.nc is not None:
         code = CodeRequest(
             code=options.nc,
@@ -175,7 +175,7 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
 
 
 def _simulate(options: argparse.Namespace) -> int:
-    """``stepnc simulate``."""
+    """Run the command ``stepnc simulate``."""
     from service.requests.fields import from_options, member_of
     from service.requests.runs import SimulationRequest
     from service.simulation.carbon import WORLD, stated
@@ -223,7 +223,7 @@ def _simulate(options: argparse.Namespace) -> int:
 
 
 def _calibrate(options: argparse.Namespace) -> int:
-    """``stepnc calibrate``."""
+    """Run the command ``stepnc calibrate``."""
     if options.life or options.tool_life is not None:
         return _calibrate_tool_life(options)
     if not options.runs:
@@ -257,7 +257,7 @@ def _calibrate(options: argparse.Namespace) -> int:
 
 
 def _calibrate_tool_life(options: argparse.Namespace) -> int:
-    """``stepnc calibrate --life``."""
+    """Run the command ``stepnc calibrate --life``."""
     from service.calibration.tool_life import (
         ToolLifeRequest,
         calibrate_tool_life,
@@ -268,7 +268,7 @@ def _calibrate_tool_life(options: argparse.Namespace) -> int:
     from stepnc_model.errors import StepNcError
 
     if options.runs or options.program is not None:
-        raise StepNcError("measured runs and tool lives are calibrated one at a time")
+        raise StepNcError("calibrate measured runs and tool lives in separate calls")
     result = calibrate_tool_life(
         ToolLifeRequest(
             pairs=tuple(options.life),
@@ -284,7 +284,7 @@ def _calibrate_tool_life(options: argparse.Namespace) -> int:
 
 
 def _tap_test(options: argparse.Namespace) -> int:
-    """``stepnc taptest``."""
+    """Run the command ``stepnc taptest``."""
     from service.calibration.tap_output import print_tap_test, tap_test_json
     from service.calibration.tap_test import TapTestRequest, tap_test
     from service.terminal import tell, write_out
@@ -312,9 +312,9 @@ def _tap_test(options: argparse.Namespace) -> int:
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """A long run ends at SIGINT and SIGTERM alike as one that was interrupted.
+    """End a long run in the same way at SIGINT and SIGTERM, as an interrupted one.
 
-    The compiler of the kernels may lose the exception and fail with one of its own.
+    The compiler of the kernels may replace the exception by one of its own.
     """
     asked: list[int] = []
 

@@ -1,8 +1,8 @@
-"""The command line: ``optimise`` and ``stepnc``. A thin skin over :mod:`service.usecases`.
+"""Command line: ``optimise`` and ``stepnc``, a thin layer above :mod:`service.usecases`.
 
 Data goes to stdout, messages and progress to stderr. Exit codes: 0 ok, 2 usage, 3 bad input,
-4 infeasible, 5 limit exceeded, 130 interrupted. Imports of what is slow stay inside the
-commands, so that ``--help`` answers at once.
+4 infeasible, 5 limit exceeded, 130 interrupted. Slow imports stay inside the commands, so that
+``--help`` answers at once.
 """
 
 import argparse
@@ -43,7 +43,7 @@ Optimise the feeds of a STEP-NC program and write them back as STEP-NC."""
 
 
 def parser() -> argparse.ArgumentParser:
-    """All words that ``stepnc`` takes."""
+    """Return the complete parser of ``stepnc``, with the options of all commands."""
     top, commands = _commands()
     for each in commands.choices.values():
         each.complete()
@@ -51,7 +51,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _commands() -> tuple[argparse.ArgumentParser, Commands]:
-    """The parser, whose commands have no options before they are used."""
+    """Return the parser, whose commands get their options on first use."""
     top = argparse.ArgumentParser(
         prog="stepnc",
         description=EXAMPLES,
@@ -81,14 +81,14 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     add_service_commands(commands)
     for kind in ("machines", "materials"):
         listing = commands.add_parser(kind, help=f"list the {kind}, or show one")
-        listing.add_argument("name", nargs="?", default="", help="show this one in full")
+        listing.add_argument("name", nargs="?", default="", help="show only this one, in full")
         add_json(listing)
         listing.set_defaults(run=_show_library)
     return top, commands
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run ``stepnc``."""
+    """Run the command line ``stepnc``."""
     top, _ = _commands()
     options = top.parse_args(arguments)
     if options.print_completion:
@@ -105,7 +105,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def optimise_main(arguments: Sequence[str] | None = None) -> None:
-    """Run ``optimise``: the same as ``stepnc optimise``."""
+    """Run the command ``optimise``, an alias of ``stepnc optimise``."""
     parser = argparse.ArgumentParser(
         prog="optimise",
         description=EXAMPLES,
@@ -116,7 +116,7 @@ def optimise_main(arguments: Sequence[str] | None = None) -> None:
 
 
 def add_optimise_options(parser: argparse.ArgumentParser) -> None:
-    """Options of ``optimise``: those of its request, and its files."""
+    """Add the options of ``optimise``: those of its request, and its files."""
     from service.requests.advice import AdviceRequest
     from service.requests.fields import add_options
 
@@ -129,7 +129,7 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         "--holding",
         type=Path,
         metavar="TOML",
-        help="how the workpiece is held: [[holding]] tables of chuck, vice or clamps, by setup",
+        help="work-holding: [[holding]] tables of chuck, vice or clamps, by setup",
     )
     add(
         "--tools",
@@ -137,7 +137,7 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         metavar="TOML",
         help="tool table that says which of the program's tools cut over centre or have wipers",
     )
-    add_knowledge(parser, "take accepted corrections of k_c from it")
+    add_knowledge(parser, "supplies accepted corrections of k_c")
     add("--dry-run", action="store_true", help="write no STEP-NC file")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
     add_json(parser)
@@ -145,9 +145,9 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_check(commands: Commands) -> None:
-    """``stepnc check``."""
+    """Add the command ``stepnc check``."""
     parser = commands.add_parser(
-        "check", help="show what is in a program and what is wrong; exit 3: cannot be used"
+        "check", help="show the contents of a program and its errors; exit 3 if it is unusable"
     )
     add_file(parser)
     add_json(parser)
@@ -155,9 +155,9 @@ def _add_check(commands: Commands) -> None:
 
 
 def _add_convert(commands: Commands) -> None:
-    """``stepnc convert``."""
+    """Add the command ``stepnc convert``."""
     parser = commands.add_parser(
-        "convert", help="move optimisation records into the other profile, losing nothing"
+        "convert", help="convert optimisation records to the other profile without loss"
     )
     parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
     parser.add_argument("--profile", required=True, help="optimisation or standard")
@@ -182,7 +182,7 @@ def _run(options: argparse.Namespace) -> None:
         tell("interrupted")
         code = INTERRUPTED
     except OSError as error:
-        # What is still buffered has nobody to go to; a reader that left (``| head``) is fine.
+        # Buffered output has no reader any more; a reader that left (``| head``) is fine.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if not isinstance(error, BrokenPipeError):
             tell(f"error: stdout: {error.strerror}")
@@ -191,14 +191,14 @@ def _run(options: argparse.Namespace) -> None:
 
 
 def _exit_code(error: Exception) -> int:
-    """4 for limits that conflict, 3 for everything that is wrong with the input."""
+    """Return 4 for conflicting limits, 3 for all errors of the input."""
     from optimiser.errors import OptimisationError
 
     return INFEASIBLE if isinstance(error, OptimisationError) else BAD_INPUT
 
 
 def _optimise(options: argparse.Namespace) -> int:
-    """``optimise``."""
+    """Run the command ``optimise``."""
     from service import usecases
     from service.requests.advice import AdviceRequest
     from service.requests.fields import from_options
@@ -234,7 +234,7 @@ def _optimise(options: argparse.Namespace) -> int:
 
 
 def _check(options: argparse.Namespace) -> int:
-    """``stepnc check``."""
+    """Run the command ``stepnc check``."""
     from service.contents import check
     from service.terminal import write_out
 
@@ -251,7 +251,7 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _convert(options: argparse.Namespace) -> int:
-    """``stepnc convert``."""
+    """Run the command ``stepnc convert``."""
     from service import usecases
     from service.requests.fields import member_of
     from service.terminal import tell
@@ -259,12 +259,12 @@ def _convert(options: argparse.Namespace) -> int:
 
     profile = member_of(FileProfile, options.profile, "profile")
     usecases.convert(options.file, profile=profile, output=options.output)
-    tell(f"{options.output}: records in profile '{profile.value}'")
+    tell(f"{options.output}: records converted to profile '{profile.value}'")
     return OK
 
 
 def _show_library(options: argparse.Namespace) -> int:
-    """``stepnc machines`` and ``stepnc materials``."""
+    """Run the commands ``stepnc machines`` and ``stepnc materials``."""
     from service import library_output
     from service.chosen import library_entries, library_entry
     from service.terminal import write_out

@@ -16,25 +16,25 @@ else:
 
 
 class CommandParser(argparse.ArgumentParser):
-    """Parser of one command; its options are added at its first use, so that others start."""
+    """Parser of one command; its options are added on first use, to keep start-up fast."""
 
     fill: Callable[["CommandParser"], None] | None = None
-    """adds the options"""
+    """Function that adds the options."""
 
     def complete(self) -> None:
-        """Add the options, once."""
+        """Add the options, unless they were added before."""
         fill, self.fill = self.fill, None
         if fill is not None:
             fill(self)
 
     def parse_known_args(self, *args: Any, **words: Any) -> Any:
-        """See the base class."""
+        """Parse known arguments after adding the options."""
         self.complete()
         return super().parse_known_args(*args, **words)
 
 
 def add_file(parser: argparse.ArgumentParser) -> None:
-    """The program, and the units it is written in."""
+    """Add the program file and the option for its units."""
     parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
     parser.add_argument(
         "--units",
@@ -45,27 +45,27 @@ def add_file(parser: argparse.ArgumentParser) -> None:
 
 
 def add_json(parser: argparse.ArgumentParser) -> None:
-    """JSON instead of a table."""
+    """Add the option for JSON output."""
     parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
 
 
 def text(word: str) -> str:
-    """A word of the command line; bytes that are no text are none.
+    """Return a command-line argument unchanged if it is valid text.
 
     Raises
     ------
     ArgumentTypeError
-        When no file and no database could hold it.
+        When the argument cannot be encoded as UTF-8.
     """
     try:
         word.encode()
     except UnicodeEncodeError as error:
-        raise argparse.ArgumentTypeError(f"{word!r} is no text") from error
+        raise argparse.ArgumentTypeError(f"{word!r} is not valid text") from error
     return word
 
 
 def add_knowledge(parser: argparse.ArgumentParser, why: str) -> None:
-    """The knowledge base."""
+    """Add the option that names the knowledge base."""
     parser.add_argument(
         "--kb",
         type=text,

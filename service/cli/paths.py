@@ -1,4 +1,4 @@
-"""Commands that make tool paths and NC code: ``toolpath``, ``post`` and ``canonical``."""
+"""Commands for tool paths and NC code: ``toolpath``, ``post`` and ``canonical``."""
 
 import argparse
 from pathlib import Path
@@ -7,26 +7,26 @@ from service.cli.options import BAD_INPUT, CONTROLS, OK, Commands, add_file, add
 
 
 def add_path_commands(commands: Commands) -> None:
-    """Add them to ``stepnc``."""
+    """Add the commands for tool paths and NC code to ``stepnc``."""
     _add_toolpath(commands)
     _add_post(commands)
     _add_canonical(commands)
 
 
 def _add_toolpath(commands: Commands) -> None:
-    """``stepnc toolpath``."""
+    """Add the command ``stepnc toolpath``."""
     parser = commands.add_parser(
-        "toolpath", help="make the tool paths of a program, or take those it gives"
+        "toolpath", help="generate the tool paths of a program, or use those that it contains"
     )
     add_file(parser)
     _add_keep_going(parser)
-    parser.add_argument("--plot", type=Path, metavar="PNG", help="draw them, coloured by type")
+    parser.add_argument("--plot", type=Path, metavar="PNG", help="draw paths, coloured by type")
     add_json(parser)
     parser.set_defaults(run=_toolpath)
 
 
 def _add_post(commands: Commands) -> None:
-    """``stepnc post``."""
+    """Add the command ``stepnc post``."""
     parser = commands.add_parser("post", help="write NC code for a control")
     add_file(parser)
     parser.add_argument("--control", required=True, metavar="NAME", help=CONTROLS)
@@ -35,17 +35,17 @@ def _add_post(commands: Commands) -> None:
         "--output",
         type=Path,
         metavar="FILE",
-        help="default: beside the program, with the ending of the control",
+        help="default: next to the program, with the control's file extension",
     )
     parser.add_argument(
-        "--cycles", action="store_true", help="drill with the control's own cycles"
+        "--cycles", action="store_true", help="use the control's own drilling cycles"
     )
     _add_keep_going(parser)
     parser.set_defaults(run=_post)
 
 
 def _add_canonical(commands: Commands) -> None:
-    """``stepnc canonical``."""
+    """Add the command ``stepnc canonical``."""
     parser = commands.add_parser(
         "canonical", help="show NC code as canonical commands, to compare programs"
     )
@@ -59,12 +59,12 @@ def _add_keep_going(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--keep-going",
         action="store_true",
-        help="leave out workingsteps for which no path can be made; exit 3 all the same",
+        help="skip workingsteps for which no path can be generated; exit code 3 remains",
     )
 
 
 def _toolpath(options: argparse.Namespace) -> int:
-    """``stepnc toolpath``."""
+    """Run the command ``stepnc toolpath``."""
     from service.paths import toolpaths
     from service.terminal import tell, write_out
 
@@ -86,7 +86,7 @@ def _toolpath(options: argparse.Namespace) -> int:
 
 
 def _post(options: argparse.Namespace) -> int:
-    """``stepnc post``."""
+    """Run the command ``stepnc post``."""
     from service.paths import toolpaths
     from service.terminal import tell
 
@@ -105,7 +105,7 @@ def _post(options: argparse.Namespace) -> int:
 
 
 def _canonical(options: argparse.Namespace) -> int:
-    """``stepnc canonical``."""
+    """Run the command ``stepnc canonical``."""
     from service.paths import toolpaths
     from service.terminal import write_out
 

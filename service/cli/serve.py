@@ -1,4 +1,4 @@
-"""``stepnc serve`` and ``stepnc keys``: the service, and who may use it."""
+"""Commands ``stepnc serve`` and ``stepnc keys``: the service and its API keys."""
 
 import argparse
 import os
@@ -11,10 +11,10 @@ if TYPE_CHECKING:
     from service.storage.folder import DataFolder
 
 VARIABLE = "STEPNC_DATA"
-"""environment variable that names the data folder"""
+"""Environment variable that names the data folder."""
 
 USUAL_RATE = 50.0
-"""requests a second of one client, from other computers"""
+"""Default rate limit for clients on other computers, in requests per second."""
 
 LEVELS = ("debug", "info", "warning", "error")
 ROLES = ("viewer", "planner", "operator")
@@ -25,12 +25,12 @@ SERVE = """examples:
   stepnc serve --data /srv/stepnc --workers 2
   stepnc serve --host 0.0.0.0 --name planner.shop --tls-cert shop.crt --tls-key shop.key
 
-Serve REST and the dashboard. On a host that is not this computer's own loopback, keys are
-needed: see `stepnc keys create`."""
+Serve the REST API and the dashboard. API keys are required unless the service listens on this
+computer's loopback address only: see `stepnc keys create`."""
 
 
 def add_service_commands(commands: Commands) -> None:
-    """``serve`` and ``keys``."""
+    """Add the commands ``serve`` and ``keys`` to ``stepnc``."""
     parser = commands.add_parser(
         "serve",
         help="serve advised feeds over REST, and the dashboard",
@@ -39,33 +39,33 @@ def add_service_commands(commands: Commands) -> None:
     )
     add = parser.add_argument
     add("--host", default="127.0.0.1", help="address to listen on (default: 127.0.0.1)")
-    add("--port", type=int, default=8000, help="default: 8000")
+    add("--port", type=int, default=8000, help="port to listen on (default: 8000)")
     _add_data(parser)
     add(
         "--kb",
         type=text,
         default="",
         metavar="PLACE",
-        help="knowledge base, a file or postgresql://… (default: $STEPNC_KB, else there)",
+        help="knowledge base, a file or postgresql://… (default: $STEPNC_KB, else in --data)",
     )
     add("--workers", type=int, default=1, metavar="N", help="web processes (default: 1)")
-    add("--jobs", type=int, default=1, metavar="N", help="long jobs at once (default: 1)")
+    add("--jobs", type=int, default=1, metavar="N", help="jobs that run at once (default: 1)")
     add(
         "--name",
         action="append",
         default=[],
         metavar="HOST",
-        help="a name under which clients know this computer; repeatable",
+        help="a host name by which clients reach this computer; repeatable",
     )
-    add("--keys", action="store_true", help="require keys on loopback too")
-    add("--tls-cert", type=Path, metavar="FILE", help="certificate: serve https")
+    add("--keys", action="store_true", help="require API keys on loopback too")
+    add("--tls-cert", type=Path, metavar="FILE", help="TLS certificate: serve https")
     add("--tls-key", type=Path, metavar="FILE", help="private key of the certificate")
     add(
         "--upload-mb",
         type=int,
         default=32,
         metavar="MB",
-        help="greatest program, unpacked (default: 32)",
+        help="largest program that may be uploaded, unpacked (default: 32)",
     )
     add(
         "--rate",
@@ -79,9 +79,7 @@ def add_service_commands(commands: Commands) -> None:
 
 
 def _add_keys(commands: Commands) -> None:
-    parser = commands.add_parser(
-        "keys", help="keys that open the service: create, list, revoke"
-    )
+    parser = commands.add_parser("keys", help="API keys of the service: create, list, revoke")
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
     create = verbs.add_parser("create", help="create a key; it is shown only once")
     create.add_argument("--for", dest="who", type=text, required=True, metavar="NAME")
@@ -90,11 +88,11 @@ def _add_keys(commands: Commands) -> None:
         action="append",
         choices=ROLES,
         default=[],
-        help="viewer looks, planner plans, operator runs; repeatable (default: viewer)",
+        help="viewer reads, planner plans, operator runs; repeatable (default: viewer)",
     )
     listing = verbs.add_parser("list", help="list the keys, without their secrets")
     revoke = verbs.add_parser("revoke", help="revoke a key")
-    revoke.add_argument("id", help="as listed")
+    revoke.add_argument("id", help="id of the key, as listed")
     for verb, run in ((create, _create), (listing, _list), (revoke, _revoke)):
         _add_data(verb)
         verb.set_defaults(run=run)
@@ -141,7 +139,7 @@ def _serve(options: argparse.Namespace) -> int:
 
 
 def _require(options: argparse.Namespace) -> None:
-    """Refuse numbers that cannot be."""
+    """Refuse option values that are out of range."""
     from stepnc_model.errors import StepNcError
 
     for name, value, low, high in (
@@ -154,11 +152,11 @@ def _require(options: argparse.Namespace) -> None:
         if not low <= value <= high:
             raise StepNcError(f"--{name} {value:g}: it must be {low:g} to {high:g}")
     if (options.tls_cert is None) != (options.tls_key is None):
-        raise StepNcError("--tls-cert and --tls-key go together")
+        raise StepNcError("--tls-cert and --tls-key must be given together")
 
 
 def _data(options: argparse.Namespace) -> Path:
-    """The data folder: as named, that of the environment, or the usual one."""
+    """Return the data folder: as named, from the environment, or the default one."""
     from service.knowledge.place import usual_file
 
     named = options.data or os.environ.get(VARIABLE)
@@ -166,13 +164,13 @@ def _data(options: argparse.Namespace) -> Path:
 
 
 def _data_folder(options: argparse.Namespace, *, is_made: bool = False) -> "DataFolder":
-    """The data folder; but for the first key it is there already."""
+    """Open the data folder, which must exist unless the first key is created."""
     from service.storage.folder import DATABASE, open_data_folder
     from stepnc_model.errors import StepNcError
 
     folder = _data(options)
     if not is_made and not (folder / DATABASE).is_file():
-        raise StepNcError(f"{folder}: no data folder of a service; --data names another")
+        raise StepNcError(f"{folder}: not a data folder of the service; name it with --data")
     return open_data_folder(folder)
 
 
@@ -183,10 +181,10 @@ def _create(options: argparse.Namespace) -> int:
     from stepnc_model.errors import StepNcError
 
     if not options.who.strip():
-        raise StepNcError("--for is empty: say whose key it is")
+        raise StepNcError("--for is empty: name the owner of the key")
     roles = frozenset(Role(word) for word in options.role)
     write_out(keys.create(_data_folder(options, is_made=True), name=options.who, roles=roles))
-    tell("keep it: it is not shown again. Send it as  Authorization: Bearer …")
+    tell("store this key, it is not shown again; send it as  Authorization: Bearer …")
     return OK
 
 

@@ -1,1 +1,1 @@
-"""A program under the force control loop."""
+"""Runs of a program under force control, on the virtual machine."""

@@ -1,22 +1,22 @@
-"""Parser of ``--disturb``: ``depth:+50%@12s``, one disturbance a word.
+"""Parser of ``--disturb`` words such as ``depth:+50%@12s``, one disturbance each.
 
 =================  =====================================================================
 word               meaning
 =================  =====================================================================
-depth:+50%@12s     axial depth, against the program's, from a time on
-hardness:+30%@12s  k_c, against the start, from a time on
+depth:+50%@12s     axial depth, relative to the program, from a time on
+hardness:+30%@12s  k_c, relative to the start, from a time on
 material:NAME@12s  another material of the library, from a time on
-tooth:1@12s        that tooth breaks
-silence:2s@12s     no sample arrives for so long
-line:off@12s       the line to the machine breaks
+tooth:1@12s        the tooth with this number breaks
+silence:2s@12s     no samples arrive for this duration
+line:off@12s       the connection to the machine breaks
 kc:1.3             factor on k_c from the start
-wear:0.05mm/min    flank wear in a minute of cutting
+wear:0.05mm/min    flank wear per minute of cutting
 runout:20um        eccentricity of the cutter
 lag:60ms           time constant with which the feed follows the override
-noise:3%           of the dynamometer
-drift:1N/s         of its zero
-missing:5%         share of its samples that is lost
-power:-50%@12s     motor power that the operator allows, against the machine's
+noise:3%           noise of the dynamometer
+drift:1N/s         zero drift of the dynamometer
+missing:5%         share of the dynamometer's samples that is lost
+power:-50%@12s     motor power that the operator allows, relative to the machine's
 mode:QC@12s        the operator switches to TC or QC
 control:off@12s    the operator switches the loop on or off
 =================  =====================================================================
@@ -39,23 +39,23 @@ NUMBER = re.compile(
 )
 
 MOST_FACTOR = 10.0
-"""on depth, k_c or power; more is a slip"""
+"""Largest factor on depth, k_c or power; a larger one is taken for a typing error."""
 
 MOST_TEETH = 100.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TimedOrder:
-    """Order of the operator at a time."""
+    """Order that the operator gives at a set time."""
 
     time: float
-    """s of the run"""
+    """Time in the run, in s."""
     order: Order
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Disturbances:
-    """All that the plan does not know."""
+    """Hidden changes, sensor errors and operator orders that the plan does not know."""
 
     hidden: HiddenTruth = field(default_factory=HiddenTruth)
     bench: Instrumentation = field(default_factory=Instrumentation)
@@ -70,18 +70,18 @@ class _Word:
 
 
 def disturbances(words: Iterable[str], *, hardness: Callable[[str], float]) -> Disturbances:
-    """Disturbances and orders of all words.
+    """Parse disturbance words into disturbances and operator orders.
 
     Parameters
     ----------
     words : iterable of str
     hardness : callable
-        k_c of a material by its name, over that of the one that is cut.
+        Function that returns a material's k_c relative to that of the workpiece.
 
     Raises
     ------
     StepNcError
-        When a word is not one of those above, with its bounds.
+        When a word is not in the table above, or exceeds its bounds.
     """
     found = Disturbances()
     for word in words:
@@ -91,12 +91,12 @@ def disturbances(words: Iterable[str], *, hardness: Callable[[str], float]) -> D
 
 
 def time_of(word: str) -> float | None:
-    """Time of a word's disturbance, s; None: it holds from the start.
+    """Time at which a disturbance begins, in s; None: it holds from the start.
 
     Raises
     ------
     StepNcError
-        When it is no word of the grammar.
+        When the word cannot be parsed.
     """
     return _split(word)[1].time
 
@@ -105,7 +105,7 @@ def _with(found: Disturbances, text: str, hardness: Callable[[str], float]) -> D
     what, word = _split(text)
     if what in _FROM_START:
         if word.time is not None:
-            raise StepNcError(f"disturbance '{text}': it holds from the start, without '@'")
+            raise StepNcError(f"disturbance '{text}': it holds from the start; remove '@…'")
         return _FROM_START[what](found, word)
     if what in _ORDERS:
         order = TimedOrder(time=_time(word), order=_ORDERS[what](word))
@@ -119,7 +119,7 @@ def _with(found: Disturbances, text: str, hardness: Callable[[str], float]) -> D
         change = HiddenChange(time=_time(word), what=kind, value=value(word))
     else:
         known = ", ".join(sorted({*_FROM_START, *_ORDERS, *_CHANGES, "material"}))
-        raise StepNcError(f"disturbance '{text}': '{what}' is not one of {known}")
+        raise StepNcError(f"disturbance '{text}': unknown kind '{what}'; known: {known}")
     hidden = replace(found.hidden, changes=(*found.hidden.changes, change))
     return replace(found, hidden=hidden)
 
@@ -127,7 +127,7 @@ def _with(found: Disturbances, text: str, hardness: Callable[[str], float]) -> D
 def _split(text: str) -> tuple[str, _Word]:
     match = WORD.fullmatch(text.strip())
     if match is None:
-        raise StepNcError(f"disturbance '{text}': write it as depth:+50%@12s or kc:1.3")
+        raise StepNcError(f"disturbance '{text}': write it like depth:+50%@12s or kc:1.3")
     time = match["time"]
     at = None if time is None else _number(text, time, {"s": 1.0, "": 1.0, "min": 60.0})
     if at is not None and at < 0.0:
@@ -137,23 +137,23 @@ def _split(text: str) -> tuple[str, _Word]:
 
 def _time(word: _Word) -> float:
     if word.time is None:
-        raise StepNcError(f"disturbance '{word.text}': say when, as in {word.text}@12s")
+        raise StepNcError(f"disturbance '{word.text}': add a time, as in {word.text}@12s")
     return word.time
 
 
 def _number(text: str, value: str, units: dict[str, float]) -> float:
-    """A number in one of some units, in the first's."""
+    """Parse a number with one of several units; return it in the first unit."""
     match = NUMBER.fullmatch("".join(value.split()))
     if match is None or match["unit"] not in units:
         known = " or ".join(unit for unit in units if unit)
         unit = f" in {known}" if known else ""
-        raise StepNcError(f"disturbance '{text}': '{value}' is no number{unit}")
+        raise StepNcError(f"disturbance '{text}': '{value}' is not a number{unit}")
     try:
         number = float(match["number"]) * units[match["unit"]]
     except ValueError:
         number = float("nan")
     if not isfinite(number):
-        raise StepNcError(f"disturbance '{text}': '{value}' is no number")
+        raise StepNcError(f"disturbance '{text}': '{value}' is not a number")
     return number
 
 
@@ -167,16 +167,16 @@ def _within(word: _Word, units: dict[str, float], low: float, high: float) -> fl
 
 
 def _factor(word: _Word) -> float:
-    """``+50%`` or a plain factor."""
+    """Parse ``+50%`` or a plain factor into a factor."""
     if word.value.endswith("%"):
         if not word.value.startswith(("+", "-")):
-            way = "say which way, as in +50% or -50%"
+            way = "add a sign, as in +50% or -50%"
             raise StepNcError(f"disturbance '{word.text}': {way}")
         factor = 1.0 + 0.01 * _number(word.text, word.value, {"%": 1.0})
     else:
         factor = _number(word.text, word.value, {"": 1.0})
     if not 0.0 < factor <= MOST_FACTOR:
-        bound = f"above -100 % and {100.0 * (MOST_FACTOR - 1.0):+g} % at most"
+        bound = f"above -100 % and at most {100.0 * (MOST_FACTOR - 1.0):+g} %"
         raise StepNcError(f"disturbance '{word.text}': it must be {bound}")
     return factor
 
@@ -188,13 +188,13 @@ def _share(word: _Word) -> float:
 def _tooth(word: _Word) -> float:
     number = _within(word, {"": 1.0}, 1.0, MOST_TEETH)
     if not number.is_integer():
-        raise StepNcError(f"disturbance '{word.text}': teeth are counted 1, 2, 3")
+        raise StepNcError(f"disturbance '{word.text}': tooth numbers are 1, 2, 3 …")
     return number - 1.0
 
 
 def _line(word: _Word) -> float:
     if word.value != "off":
-        raise StepNcError(f"disturbance '{word.text}': the line can only go off")
+        raise StepNcError(f"disturbance '{word.text}': the value must be 'off'")
     return 0.0
 
 
@@ -206,12 +206,12 @@ def _mode(word: _Word) -> Order:
     try:
         return CriterionTo(criterion=Criterion(word.value.upper()))
     except ValueError:
-        raise StepNcError(f"disturbance '{word.text}': the mode is TC or QC") from None
+        raise StepNcError(f"disturbance '{word.text}': the mode must be TC or QC") from None
 
 
 def _switch(word: _Word) -> Order:
     if word.value not in {"on", "off"}:
-        raise StepNcError(f"disturbance '{word.text}': control is on or off")
+        raise StepNcError(f"disturbance '{word.text}': control must be 'on' or 'off'")
     return SwitchTo(is_on=word.value == "on")
 
 

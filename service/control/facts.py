@@ -1,4 +1,4 @@
-"""Figures of a run under control for table, page and JSON. Units mm, s, N."""
+"""Figures of a controlled run for table, page and JSON. Units mm, s, N."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -13,39 +13,39 @@ from service.control.holding import ends_of
 from service.control.run import ControlRun
 
 STAYED = 0.1
-"""share of the time with chips above the set point from which the force stayed above it; less
-are entries and steps of depth, which no feedback can avoid"""
+"""Share of the cutting time above the set point from which the force counts as staying above;
+less is due to entries and steps of depth, which no feedback can avoid."""
 
 BLIND = 0.1
-"""share of the time of a workingstep that may go by without a force"""
+"""Largest acceptable share of a workingstep's time without a measured force."""
 
 ALL = 0.995
-"""share of the time from which a reason is told alone"""
+"""Share of the time from which a reason is stated alone."""
 
 MOST_REASONS = 3
-"""that are told of one workingstep"""
+"""Most reasons that are stated for a workingstep."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ControlRow:
-    """One workingstep, what stands before them all, or the whole run."""
+    """Figures of a workingstep, of the run outside workingsteps, or of the whole run."""
 
     id: str | None
-    """None: no workingstep"""
+    """Id of the workingstep; None outside workingsteps."""
     begin: float
-    """s of the run"""
+    """Start time in the run, in s."""
     planned: float
-    """s at an override of 1, of what was run of it"""
+    """Planned time of the executed part at an override of 1, in s."""
     record: RunRecord
     holds: int = 0
     blind: float = 0.0
-    """s at feed without a force"""
+    """Time at feed without a measured force, in s."""
     bound: str = ""
-    """what the set point follows from; empty: there is none"""
+    """Limit that sets the force set point; empty if there is none."""
     inhibition: str = ""
-    """why the feed was locked"""
+    """Reason why the feed override was locked; empty if it was not."""
     shares: tuple[tuple[str, float], ...] = ()
-    """what held the override, and for which share of the time with chips"""
+    """Reasons that limited the override, with their shares of the cutting time."""
 
     @property
     def name(self) -> str:
@@ -54,12 +54,12 @@ class ControlRow:
 
     @property
     def set_point(self) -> float | None:
-        """N; None: nothing bounds the force, or nothing was cut."""
+        """Set point, in N; None if the force is not bounded or nothing was cut."""
         return self.record.set_point if isfinite(self.record.set_point) else None
 
     @property
     def override_range(self) -> tuple[float, float]:
-        """Least and greatest with chips; 1 without."""
+        """Smallest and largest override while cutting; 1 if nothing was cut."""
         record = self.record
         return (record.least, record.greatest) if isfinite(record.least) else (1.0, 1.0)
 
@@ -71,7 +71,7 @@ class ControlRow:
 
     @property
     def factor(self) -> tuple[float, float] | None:
-        """Factor on k_c as measured, and the deviation of one revolution; None: too few."""
+        """Measured factor on k_c with its deviation per revolution; None with too few data."""
         ratio = self.record.ratio
         if ratio.readings < 2:
             return None
@@ -80,22 +80,22 @@ class ControlRow:
 
     @property
     def why(self) -> str:
-        """Reasons that held the override, in a sentence."""
+        """Reasons that limited the override, in a sentence."""
         if self.inhibition:
-            return f"feed left as it is: {self.inhibition}"
+            return f"feed not controlled: {self.inhibition}"
         if not self.shares:
             return "no chips: nothing to control"
         override = f"override {100.0 * self.record.override:.0f} %"
         first, share = self.shares[0]
         if share > ALL:
-            return f"{override}, held by {first}"
+            return f"{override}, limited by {first}"
         told = self.shares[:MOST_REASONS]
         words = ", ".join(f"{words} {_percent(share)}" for words, share in told)
-        return f"{override}, held by {words} of the cut"
+        return f"{override}, limited by {words} of the cut"
 
 
 def rows(run: ControlRun) -> tuple[ControlRow, ...]:
-    """The run's workingsteps in their order; what is around them if it takes time."""
+    """Return the rows of the workingsteps in order, and of the time outside if there is any."""
     found, left = [], run.progress
     for advice, record in run.steps:
         planned = min(run.planned[record.workingstep].time, left)
@@ -130,7 +130,7 @@ def _id(advice: Advice | None, record: RunRecord) -> str | None:
 
 
 def whole(run: ControlRun) -> ControlRow:
-    """All of it, without a factor on k_c: each tool has its own."""
+    """Return the totals of the run, without a k_c factor, which differs between tools."""
     total = RunRecord(workingstep=0)
     for _, record in run.steps:
         for name in _ADDED:
@@ -155,7 +155,7 @@ _ADDED = (
 
 
 def exceeded(run: ControlRun, found: Sequence[ControlRow]) -> tuple[str, ...]:
-    """A sentence for each thing that makes the run a failure; none: it is good."""
+    """Return a sentence for each fault of the run; none for a good run."""
     ends = {EventKind.STOP: "stopped", EventKind.LOST: "lost"}
     stops = [event for event in run.events if event.kind in ends]
     return (
@@ -176,7 +176,7 @@ def exceeded(run: ControlRun, found: Sequence[ControlRow]) -> tuple[str, ...]:
 
 
 def event_counts(run: ControlRun) -> str:
-    """Number of events by kind, without the beginnings of workingsteps."""
+    """Return the number of events by kind, without starts of workingsteps."""
     counts: Counter[EventKind] = Counter(
         event.kind for event in run.events if event.kind is not EventKind.WORKINGSTEP
     )
@@ -185,12 +185,12 @@ def event_counts(run: ControlRun) -> str:
 
 
 def disturbed(run: ControlRun) -> tuple[tuple[str, bool], ...]:
-    """Each disturbance as it was asked for, and whether the run has come to it."""
+    """Return each disturbance as requested, and whether the run reached its time."""
     return tuple((word, (time_of(word) or 0.0) <= run.time) for word in run.disturbances)
 
 
 def disturbed_words(run: ControlRun) -> str:
-    """The disturbances as a list; those that never came are told as such."""
+    """Return the disturbances as text; those that the run never reached are marked."""
     told = (
         word if has_come else f"{word} (the run ended before)"
         for word, has_come in disturbed(run)
@@ -199,20 +199,20 @@ def disturbed_words(run: ControlRun) -> str:
 
 
 def law_words(run: ControlRun) -> str:
-    """The law and what it knew."""
+    """Return the name of the control law and its preview."""
     if not run.has_preview:
         return run.law.value
     return f"{run.law.value} with preview of {run.settings.look_ahead} revolutions"
 
 
 def mode_words(run: ControlRun) -> str:
-    """The mode, and whether the operator has chosen it on the way."""
+    """Return the mode, and whether the operator changed it during the run."""
     was_switched = any(event.kind is EventKind.ORDER for event in run.events)
     return f"{run.criterion.value} at the end" if was_switched else run.criterion.value
 
 
 def saved(run: ControlRun) -> str:
-    """Time against that of the same part of the program at its own feed."""
+    """Return the time saved or lost against the programmed feed, as text."""
     if not run.progress:
         return "nothing was run"
     less = run.progress - run.time

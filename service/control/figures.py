@@ -1,8 +1,8 @@
-"""One plotly figure of a run under control, after Fig. 9 of the 2010 paper.
+"""Plotly figure of a controlled run, after Fig. 9 of the 2010 paper [1]_.
 
-Feed rate, cutting force with its set point, and removal rate against time as there; below them
-the override, the force against what is expected, what the teeth show, and the drive's power.
-What the operator and the virtual machine did to the run is marked through all panels.
+Feed rate, cutting force with its set point, and removal rate over time as in the paper; below
+them override, ratio of measured to expected force, tooth pattern, and spindle power. Changes by
+the operator and disturbances are marked across all panels.
 
 References
 ----------
@@ -45,36 +45,36 @@ GRAVE = frozenset({
     EventKind.OVER,
     EventKind.LOST,
 })
-"""events that no good run has"""
+"""Serious events, which no good run has."""
 
 PLAIN = frozenset({EventKind.WORKINGSTEP, EventKind.SAFE, EventKind.RESUME, EventKind.ORDER})
-"""events that are no trouble"""
+"""Events of a normal run."""
 
 MOST_MARKS = 1000
-"""events that are drawn, grave ones first"""
+"""Most events that are drawn, serious ones first."""
 
 ROOM = 1.15
-"""times the greatest value: what a panel shows"""
+"""Ratio of the upper end of a panel to its largest value."""
 
 USUAL = 0.98
-"""quantile of the factor on k_c above which it is one of a tool that enters or leaves"""
+"""Quantile of the k_c factor above which values are spikes of tool entry or exit."""
 
 FAR = 1.5
-"""times the greatest force from which on a set point leaves the panel"""
+"""Multiple of the largest force above which a set point is drawn outside the panel."""
 
 
 def control_figure(
     run: ControlRun, found: Sequence[ControlRow], trace: BucketedRun
 ) -> go.Figure:
-    """Workingsteps, events, feed, force, removal rate, override and more against time.
+    """Figure of workingsteps, events, feed, force, removal rate, override and more over time.
 
     Parameters
     ----------
     run : ControlRun
     found : sequence of ControlRow
-        The run's workingsteps.
+        Rows of the workingsteps of the run.
     trace : BucketedRun
-        Of the same run.
+        Signals of the same run.
 
     Returns
     -------
@@ -109,7 +109,7 @@ def control_figure(
 
 
 def chosen_events(run: ControlRun, most: int) -> tuple[LoopEvent, ...]:
-    """At most so many events in the order of time, grave ones first, beginnings last."""
+    """Choose up to a number of events, serious ones first; return them in order of time."""
     if len(run.events) <= most:
         return run.events
 
@@ -122,14 +122,14 @@ def chosen_events(run: ControlRun, most: int) -> tuple[LoopEvent, ...]:
 
 
 def colour_of(kind: EventKind) -> str:
-    """By how bad an event is."""
+    """Return the colour of an event kind by its severity."""
     if kind in GRAVE:
         return RED
     return DIM if kind in PLAIN else ORANGE
 
 
 def _interventions(run: ControlRun) -> list[tuple[float, str]]:
-    """Time and word of what was done to the run while it ran."""
+    """Times and words of the disturbances and orders that came while the program ran."""
     return [
         (time, word)
         for word, has_come in disturbed(run)
@@ -138,11 +138,11 @@ def _interventions(run: ControlRun) -> list[tuple[float, str]]:
 
 
 def _events(panels: Panels, run: ControlRun) -> None:
-    """Marks of events and disturbances, with their words."""
+    """Add the panel with marks of events and disturbances."""
     keys = " ".join((
-        key("grave", RED, "●"),
-        key("to be looked at", ORANGE, "●"),
-        key("plain", DIM, "●"),
+        key("serious", RED, "●"),
+        key("to be checked", ORANGE, "●"),
+        key("normal", DIM, "●"),
         key("disturbance or order", ORANGE, "┆"),
     ))
     hidden = {"showticklabels": False, "showgrid": False, "zeroline": False}
@@ -179,7 +179,7 @@ def _marks(times: Sequence[float], words: Sequence[str], colours: Sequence[str])
 
 
 def _feed(panels: Panels, trace: BucketedRun) -> None:
-    """Feed as programmed and as it is; rapids are far above and leave the panel."""
+    """Add the panel of programmed and actual feed; rapids leave its frame."""
     keys = f"{key('programmed', GREY)} {key('actual', BLUE)}"
     most = 60.0 * _greatest(trace.curve(ControlSignal.FEED_PROGRAMMED).high)
     title = f"<b>Feed rate</b>, mm/min<br>{keys} (rapids leave the frame)"
@@ -191,7 +191,7 @@ def _feed(panels: Panels, trace: BucketedRun) -> None:
 
 
 def _force(panels: Panels, trace: BucketedRun) -> None:
-    """Force of each revolution, what is expected at the feed that was run, and the bound."""
+    """Add the panel of measured force, force expected at the actual feed, and set point."""
     keys = " ".join((
         key("measured", RED), key("expected", SKY), key("set point", DIM, "━"),
     ))  # fmt: skip
@@ -213,7 +213,7 @@ def _force(panels: Panels, trace: BucketedRun) -> None:
 
 
 def _override(panels: Panels, run: ControlRun) -> None:
-    """Override as commanded and as the axes ran it."""
+    """Add the panel of commanded and actual override."""
     band = run.settings.band
     keys = f"{key('commanded', GREY)} {key('actual', BLUE)}"
     panels.begin(
@@ -227,24 +227,24 @@ def _override(panels: Panels, run: ControlRun) -> None:
 
 
 def _ratio(panels: Panels, trace: BucketedRun) -> None:
-    """Ratio for the knowledge base: measured force over that of the catalogue's k_c."""
+    """Add the panel of the k_c factor: measured force over force by the catalogue's k_c."""
     middle = 0.5 * (trace.begin + trace.end) * panels.second
     mean = trace.curve(ControlSignal.FORCE_RATIO).mean
     known = mean[~np.isnan(mean)]
     usual = float(np.quantile(known, USUAL)) if len(known) else 1.0
-    title = "<b>Measured over expected force</b>: the factor on k_c (spikes leave the frame)"
+    title = "<b>Measured over expected force</b>: factor on k_c (spikes leave the frame)"
     panels.begin(title, height=110, range=[0.0, ROOM * max(usual, 1.0)])
     panels.add(line("factor", PINK, middle, mean))
 
 
 def _teeth(panels: Panels) -> None:
-    """Amplitudes at the teeth's frequency and at the spindle's: runout, a broken tooth."""
+    """Add the panel of tooth-passing and once-per-revolution amplitudes (runout, breakage)."""
     keys = f"{key('tooth passing', GREEN)} {key('once per revolution', ORANGE)}"
-    panels.begin(f"<b>Pattern of the teeth</b>, amplitudes, N<br>{keys}", height=130)
+    panels.begin(f"<b>Tooth pattern</b>, amplitudes, N<br>{keys}", height=130)
     panels.peaks("tooth passing", GREEN, ControlSignal.TOOTH_PASSING)
     panels.peaks("once per revolution", ORANGE, ControlSignal.ONCE_PER_REVOLUTION)
 
 
 def _greatest(values: Floats) -> float:
-    """Passing over what is missing; 0 of nothing."""
+    """Return the largest value, ignoring NaN; 0 if there is none."""
     return float(np.fmax.reduce(values, initial=0.0))

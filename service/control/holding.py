@@ -1,7 +1,7 @@
-"""Reasons that held the override, in words, and for how long in each workingstep.
+"""Reasons that limited the override in each workingstep, in words, with their durations.
 
-The guard says why a law did not have its way (:class:`controller.guard.OverrideReason`); at an
-end of the band it is the plan that says whose end it is. Running state. Units s.
+The guard says why it overrode the law (:class:`controller.guard.OverrideReason`); at an end of
+the override band, the plan says which limit sets that end. Running state. Units s.
 """
 
 from collections.abc import Iterator, Sequence
@@ -30,10 +30,10 @@ STRENGTH = "strength of the tool"
 RUBBING = "no feed keeps the roughness"
 
 CLOSE = 1e-6
-"""relative distance within which the override counts as being at an end"""
+"""Relative distance within which the override counts as being at an end of its band."""
 
 NEAR = 1e-3
-"""relative distance below which two bounds of the force are told as the first"""
+"""Relative distance below which two force bounds count as equal."""
 
 _LEVELS = {
     EventKind.SAFE: AlarmLevel.SAFE,
@@ -44,14 +44,14 @@ _LEVELS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OverrideLimits:
-    """Between which overrides a workingstep may run, and what says so."""
+    """Override range of a workingstep, with the limits that set its ends."""
 
     reference: Reference
     ceiling: tuple[float, str] = (inf, "")
     floor: tuple[float, str] = (0.0, "")
 
     def force_bound(self, settings: LoopSettings) -> str:
-        """Limit that the set point of the force follows from; empty: there is none."""
+        """Name of the limit that sets the force set point; empty if there is none."""
         force = wanted(settings, self.reference)
         if aimed(force, self.reference) < force * (1.0 - NEAR):
             return STRENGTH
@@ -62,49 +62,49 @@ class OverrideLimits:
 
 
 AROUND = OverrideLimits(reference=Reference(workingstep=""))
-"""of what stands before the first workingstep"""
+"""Override limits outside all workingsteps."""
 
 
 @dataclass(kw_only=True)
 class HoldTally:
-    """One workingstep. Running state."""
+    """Durations of the reasons that limited the override in one workingstep. Running state."""
 
     begin: float
-    """s of the run"""
+    """Start time in the run, in s."""
     holds: int = 0
-    """of the feed"""
+    """Number of feed holds."""
     seconds: dict[str, float] = field(default_factory=dict)
-    """with chips, by what held the override"""
+    """Cutting time by the reason that limited the override, in s."""
     blind: float = 0.0
-    """s without a force at feed"""
+    """Time at feed without a measured force, in s."""
 
     @property
     def shares(self) -> tuple[tuple[str, float], ...]:
-        """Reasons that held the override, with shares of the cutting time, longest first."""
+        """Reasons that limited the override, with shares of the cutting time, longest first."""
         whole = sum(self.seconds.values())
         ordered = sorted(self.seconds.items(), key=lambda item: -item[1])
         return tuple((words, seconds / whole) for words, seconds in ordered)
 
 
 class HoldTallies:
-    """Looks at each cycle. Running state.
+    """Tallies of all workingsteps, updated in each control cycle. Running state.
 
     Parameters
     ----------
     advices : sequence of Advice
-        Of the workingsteps in the order of their beginning; None: nothing is known of it.
+        Advices of the workingsteps in order of execution; None where no advice exists.
     """
 
     def __init__(self, advices: Sequence[Advice | None]) -> None:
         self.steps: dict[int, HoldTally] = {}
-        """by the workingstep's number"""
+        """Tallies by workingstep number."""
         self.level = AlarmLevel.SAFE
         self.words = ""
-        """what holds the override now"""
+        """Reason that limits the override now."""
         self._ends = [AROUND if advice is None else ends_of(advice) for advice in advices]
 
     def add(self, cycle: LoopCycle, settings: LoopSettings) -> None:
-        """One more cycle."""
+        """Add a control cycle."""
         reading = cycle.reading
         held = self.steps.get(reading.workingstep)
         if held is None:
@@ -126,12 +126,12 @@ class HoldTallies:
                 held.seconds[self.words] = held.seconds.get(self.words, 0.0) + period
 
     def ends(self, workingstep: int) -> OverrideLimits:
-        """Of a workingstep by its number."""
+        """Return the override limits of a workingstep, by its number."""
         return self._ends[workingstep - 1] if 0 < workingstep <= len(self._ends) else AROUND
 
 
 def reason(cycle: LoopCycle, ends: OverrideLimits, settings: LoopSettings) -> str:
-    """Reason that holds the override in a revolution with chips."""
+    """Return the reason that limits the override in a revolution with chips."""
     holding, override = cycle.allowed.holding, cycle.allowed.override
     if holding is OverrideReason.OFF:
         return OFF
@@ -150,7 +150,7 @@ def reason(cycle: LoopCycle, ends: OverrideLimits, settings: LoopSettings) -> st
 
 
 def ends_of(advice: Advice) -> OverrideLimits:
-    """Override limits around the feed as programmed."""
+    """Return the override limits around the programmed feed."""
     reference, state = reference_of(advice), advice.before
     if state is None:
         return OverrideLimits(reference=reference)
@@ -166,7 +166,7 @@ def ends_of(advice: Advice) -> OverrideLimits:
 def _overrides(
     state: EvaluatedSetting, names: frozenset[LimitName], sense: BoundSide
 ) -> Iterator[tuple[float, str]]:
-    """Overrides at which limits on the feed are reached, with their words."""
+    """Yield the overrides at which feed limits are reached, with the names of the limits."""
     at = state.setting
     for load in state.loads:
         limit = load.limit

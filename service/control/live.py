@@ -1,6 +1,6 @@
-"""A program under control while it runs: it goes on when it is told to, and may be changed.
+"""Live controlled run: it is advanced step by step and can be changed while it runs.
 
-Running state; no wall time. Units s at the inside, the user's units in the status.
+Running state; independent of wall-clock time. Units inside: s; the status uses the user's.
 """
 
 from collections.abc import Mapping
@@ -22,7 +22,7 @@ from stepnc_model.errors import StepNcError
 from stepnc_model.units import kw_from_watts, mm_min_from_speed
 
 UNCHANGED = {"motor_power_percent": 100.0, "depth_percent": 100.0, "hardness_percent": 100.0}
-"""of a run of which nothing was asked yet"""
+"""Inputs of a run to which no changes were made yet."""
 
 
 def require_changes(changes: ControlChanges) -> None:
@@ -31,7 +31,7 @@ def require_changes(changes: ControlChanges) -> None:
     Raises
     ------
     StepNcError
-        When they are not.
+        When a change is out of bounds or the material is unknown.
     """
     require_bounds(changes)
     if changes.material is not None and changes.material not in material_names():
@@ -44,24 +44,24 @@ class ControlStatus(SessionStatus):
     """Status snapshot of a controlled run."""
 
     progress: float
-    """share of the program that is behind, 0 to 1"""
+    """Completed share of the program, 0 to 1."""
     workingstep: str
-    """its id; empty: none"""
+    """Id of the current workingstep; empty: none."""
     force_expected: float | None
-    """N, with the catalogue's k_c; None: as the measured one"""
+    """Force expected with the catalogue's k_c, in N; otherwise as the measured force."""
     axial_depth_mm: float
-    """that really is cut"""
+    """Actual axial depth of cut, in mm."""
     is_done: bool
-    """the program is through, or stopped"""
+    """Whether the program has ended or was stopped."""
 
 
 class LiveControl:
-    """A program under control, piece by piece. Running state.
+    """Controlled run that is advanced in small pieces. Running state.
 
     Parameters
     ----------
     session : Session
-        As :func:`service.control.run.prepare` makes it, before its first cycle.
+        Session made by :func:`service.control.run.prepare`, before its first cycle.
     """
 
     def __init__(self, session: Session) -> None:
@@ -70,11 +70,11 @@ class LiveControl:
         self._trace = session.trace(self._live_rows)
         self._cycles = session.cycles([self._trace])
         self._told = 0
-        """events of the session that are among the live rows"""
+        """Number of the session's events already added to the live rows."""
         self._asked: dict[str, Any] = {}
-        """changes that the run has taken"""
+        """Changes that the run has accepted."""
         self._hardness = self._material = 1.0
-        """factors on k_c"""
+        """Factors on k_c, of hardness and of material."""
         self._is_done = False
 
     @property
@@ -83,13 +83,13 @@ class LiveControl:
         return self.session.machine.time
 
     def advance(self, until: float) -> bool:
-        """Run until a time, s; False: the program is through, or stopped."""
+        """Run until a time, in s; return False when the program has ended or was stopped."""
         while not self._is_done and self.time < until:
             self._is_done = next(self._cycles, None) is None
         return not self._is_done
 
     def taken(self) -> RunUpdate:
-        """Rows and events since it was asked last."""
+        """Return rows and events since the last call."""
         events = self.session.events
         for event in events[self._told :]:
             self._live_rows.note(event)
@@ -102,7 +102,7 @@ class LiveControl:
         Raises
         ------
         StepNcError
-            When one of them cannot be; nothing has changed then.
+            When a change is not possible; nothing has changed then.
         """
         require_changes(changes)
         mode = changes.mode
@@ -117,18 +117,18 @@ class LiveControl:
             loop.order(MotorPowerTo(factor=0.01 * changes.motor_power_percent))
         if changes.depth_percent is not None:
             self._hide(HiddenQuantity.DEPTH, 0.01 * changes.depth_percent)
-            self._say(f"depth {changes.depth_percent:g} % of the program's")
+            self._say(f"depth {changes.depth_percent:g} % of the programmed depth")
         if changes.hardness_percent is not None:
             self._hardness = 0.01 * changes.hardness_percent
             self._say(f"hardness {changes.hardness_percent:g} %")
         if material is not None:
             self._material = material
-            self._say(f"workpiece {changes.material}: k_c {100.0 * material:.3g} %")
+            self._say(f"workpiece material {changes.material}: k_c {100.0 * material:.3g} %")
         if material is not None or changes.hardness_percent is not None:
             self._hide(HiddenQuantity.HARDNESS, self._hardness * self._material)
 
     def status(self) -> ControlStatus:
-        """Status snapshot of the run."""
+        """Return the status snapshot of the run."""
         session, row = self.session, self._live_rows.last
         loop, machine, settings = session.loop, session.machine, session.loop.state.settings
         power = self._motor_power()
@@ -159,17 +159,17 @@ class LiveControl:
 
     @property
     def is_waiting(self) -> bool:
-        """See :class:`service.session.runner.LiveSession`; what was stopped is over."""
+        """Always False, because a stopped run ends (see ``session.runner.LiveSession``)."""
         return False
 
     def obey(self, order: Mapping[str, Any]) -> None:
-        """See :class:`service.session.runner.LiveSession`: the changes of an order."""
+        """Apply the changes of an order (:class:`service.session.runner.LiveSession`)."""
         if order:
             self.change(loaded(ControlChanges, order))
             self._asked |= order
 
     def snapshot(self) -> dict[str, Any]:
-        """Status with the requested settings; the machine's truth may be another."""
+        """Return the status with the requested inputs; the machine's true state may differ."""
         status, session = self.status(), self.session
         held = {"mode": status.criterion.value, "is_on": status.is_on}
         usual = {**UNCHANGED, "material": session.plan.material.material.name}
@@ -181,9 +181,9 @@ class LiveControl:
         }
 
     def finish(self) -> ControlRun:
-        """Close what is written, and tell what was found, as ``control`` does; once.
+        """Close the output files and return the result, as ``control`` does; call it once.
 
-        What was written of a run that is not done is left as partial.
+        The file of an unfinished run is left as a partial file.
 
         Raises
         ------
@@ -194,7 +194,7 @@ class LiveControl:
         return self.session.result(self._trace)
 
     def _hide(self, what: HiddenQuantity, factor: float) -> None:
-        """Change the machine, and tell the loop nothing."""
+        """Change the machine without telling the loop."""
         machine = self.session.machine
         machine.change(HiddenChange(time=machine.time, what=what, value=factor))
 
@@ -204,7 +204,7 @@ class LiveControl:
         self._trace.note(event)
 
     def _motor_power(self) -> float:
-        """W that the motor gives now, as far as the operator allows; infinite: it stands."""
+        """Power available from the motor at this speed, in W; infinite at standstill."""
         session = self.session
         machine = session.machine
         speed = float(machine.course.spindle_speed[machine.truth.cell])

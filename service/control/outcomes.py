@@ -1,4 +1,4 @@
-"""From a run under control to what the knowledge base keeps: one outcome a workingstep."""
+"""Conversion of a controlled run into outcomes for the knowledge base, one per workingstep."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -23,7 +23,7 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, ResolvedWorkingstep
 
 INSPECTION = 0.05
-"""standard deviation of an inspected roughness, as a share: a stylus instrument"""
+"""Standard deviation of an inspected roughness, as a share; typical of a stylus instrument."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,18 +32,18 @@ class RecordingContext:
 
     run: str
     at: datetime
-    """with zone"""
+    """Time of recording, with zone."""
     by: str
     trace: str = ""
     seed: int = 0
-    """of the inspection of surfaces"""
+    """Seed of the simulated inspection of surfaces."""
 
 
 def outcomes_of(run: ControlRun, recording: RecordingContext) -> tuple[ProcessOutcome, ...]:
-    """Outcomes of the workingsteps in which something was cut.
+    """Return the outcomes of all workingsteps in which material was cut.
 
-    The roughness is what the feed that was run leaves by the model, with the error of an
-    inspection: a virtual machine leaves no surface to measure.
+    The roughness follows from the actual feed by the model, with the error of an inspection,
+    since a virtual machine leaves no surface to measure.
     """
     random = np.random.default_rng(recording.seed)
     errors = 1.0 + INSPECTION * random.standard_normal(len(run.steps))
@@ -56,7 +56,7 @@ def outcomes_of(run: ControlRun, recording: RecordingContext) -> tuple[ProcessOu
 
 @dataclass(frozen=True, slots=True)
 class _CutStep:
-    """A workingstep that was cut, with everything known of it."""
+    """Workingstep that was cut, with its advice, cut, setting and record."""
 
     advice: Advice
     cut: Cut
@@ -66,7 +66,7 @@ class _CutStep:
 
 
 def _cut_step(run: ControlRun, advice: Advice | None, record: RunRecord) -> _CutStep | None:
-    """None where nothing was cut, or nothing is known of the plan."""
+    """Collect the data of a workingstep; None if nothing was cut or no plan is known."""
     if advice is None or advice.cut is None or advice.before is None or not record.revolutions:
         return None
     planned = run.planned[record.workingstep]
@@ -76,7 +76,7 @@ def _cut_step(run: ControlRun, advice: Advice | None, record: RunRecord) -> _Cut
 def _outcome(
     run: ControlRun, step: _CutStep, recording: RecordingContext, error: float
 ) -> ProcessOutcome:
-    """One outcome; the error is that of the inspected surface, as a factor."""
+    """Build the outcome of a workingstep; the error is a factor on the inspected roughness."""
     cut, setting, record = step.cut, step.state.setting, step.record
     material, tool = run.material.material, step.advice.tool.id
     per_tooth = record.feed / (cut.tool.teeth * setting.speed)
@@ -113,7 +113,7 @@ def _outcome(
 
 
 def _roughness(cut: Cut, feed_per_tooth: float) -> float | None:
-    """Ra in mm that a feed per tooth leaves; None where the feed does not describe it."""
+    """Roughness Ra left by a feed per tooth, in mm; None if the feed does not set it."""
     load = roughness_load(cut)
     if load is None or not cut.is_finishing:
         return None
@@ -127,7 +127,7 @@ def _immersion(cut: Cut) -> FaceMillingImmersion | None:
 
 
 def _feature(program: Program, step: ResolvedWorkingstep, cut: Cut) -> FeatureFacts:
-    """Id, kind and sizes; the length is that of a rectangle of the same area."""
+    """Id, kind and size of the feature; the length is that of a rectangle of equal area."""
     if not step.features:
         return FeatureFacts(id="", kind="", total_depth=cut.total_depth)
     ref = step.features[0]
@@ -136,7 +136,7 @@ def _feature(program: Program, step: ResolvedWorkingstep, cut: Cut) -> FeatureFa
     try:
         region = region_of(program, ref)
     except SchemaError:
-        # A feature that is no region: turned, or free in form.
+        # The feature is not a region: it is turned or has a free form.
         region = None
     if region is not None and region.area > 0.0:
         length, width = region.area / region.width, region.width
@@ -154,6 +154,6 @@ def _id(entity: Entity, ref: Ref[Entity]) -> str:
 
 
 def _strategy(program: Program, step: ResolvedWorkingstep) -> str:
-    """EXPRESS name of the machining strategy, if the operation has one."""
+    """EXPRESS name of the machining strategy; empty if the operation has none."""
     ref = getattr(step.operation, "its_machining_strategy", None)
     return "" if ref is None else program.get(ref).express_name()

@@ -1,6 +1,6 @@
-"""A run under control as text, JSON and one self-contained HTML page: same run, same bytes.
+"""A controlled run as text, JSON and one self-contained HTML page; equal runs give equal bytes.
 
-Keys of JSON carry their units and are fixed: others parse them.
+JSON keys carry their units and never change, because other programs read them.
 """
 
 from collections.abc import Callable
@@ -27,16 +27,16 @@ from service.rendering.text import RED, print_findings, print_line, print_table
 from stepnc_model.units import mm_min_from_speed
 
 MOST_EVENTS = 300
-"""in the list of the page, grave ones first; the file of the run has all"""
+"""Most events listed on the page, serious ones first; the JSON output lists all."""
 
 
 def _cut(value: Callable[[RunRecord], Cell]) -> Callable[[ControlRow], Cell]:
-    """A value that only a row with chips shows."""
+    """Return a column value that is shown only for rows in which chips were cut."""
     return lambda row: value(row.record) if row.record.revolutions else None
 
 
 def _override(row: ControlRow) -> str | None:
-    """Mean override with its range."""
+    """Mean override with its range, in per cent."""
     if not row.record.revolutions:
         return None
     least, greatest = row.override_range
@@ -44,7 +44,7 @@ def _override(row: ControlRow) -> str | None:
 
 
 def _bound(row: ControlRow) -> str | None:
-    """Set point at the hardest revolution, and the limit it follows from."""
+    """Set point at the most critical revolution, in N, and the limit that it follows from."""
     return None if row.set_point is None else f"{row.set_point:.1f} {row.bound}".rstrip()
 
 
@@ -60,15 +60,15 @@ SHOWN: tuple[Column[ControlRow], ...] = (
     ),
     Column(heading="cutting s", form=".1f", value=lambda row: row.record.cutting_time),
     Column(
-        heading="feed mm/min", form=".1f", help="mean with chips, v_f",
+        heading="feed mm/min", form=".1f", help="mean while cutting, v_f",
         value=_cut(lambda record: mm_min_from_speed(record.feed)),
     ),
-    Column(heading="override %", help="mean, least and greatest, u", value=_override),
+    Column(heading="override %", help="mean, minimum and maximum, u", value=_override),
     Column(
-        heading="force N", help="mean, and at the revolution that came nearest to its bound",
+        heading="force N", help="mean, and at the revolution closest to its bound",
         value=_cut(lambda record: f"{record.force:.0f}, hardest {record.peak:.0f}"),
     ),
-    Column(heading="bound there N", help="F_ref, and what it follows from", value=_bound),
+    Column(heading="bound there N", help="F_ref, and the limit it follows from", value=_bound),
     Column(
         heading="over s", form=".2f", help=f"above {EXCESS_RATIO:g} times the bound",
         value=_cut(lambda record: record.over_time),
@@ -78,12 +78,12 @@ SHOWN: tuple[Column[ControlRow], ...] = (
         value=_cut(lambda record: record.excess),
     ),
     Column(
-        heading="holds", help="of the feed",
+        heading="holds", help="number of feed holds",
         value=lambda row: row.holds if row.record.revolutions else None,
     ),
-    Column(heading="k_c factor", help="measured over the catalogue's", value=_factor),
+    Column(heading="k_c factor", help="measured over catalogue value", value=_factor),
 )  # fmt: skip
-"""columns of table and page"""
+"""Columns of the table on a terminal and on the page."""
 
 NUMBERS: tuple[Column[ControlRow], ...] = (
     Column(key="time_s.programmed", value=lambda row: row.planned),
@@ -101,11 +101,11 @@ NUMBERS: tuple[Column[ControlRow], ...] = (
     Column(key="excess_impulse_n_s", value=lambda row: row.record.excess),
     Column(key="holds", value=lambda row: row.holds),
 )
-"""columns of JSON, of a workingstep and of the whole run"""
+"""JSON columns of a workingstep and of the whole run."""
 
 
 def print_control(run: ControlRun) -> None:
-    """A row for each workingstep, totals, reasons, events, disturbances, findings."""
+    """Print a row per workingstep, then totals, reasons, events, disturbances, findings."""
     machine, material, found = run.machine, run.material.material, rows(run)
     print_line(
         f"{run.plan.program}: law {law_words(run)}, mode {mode_words(run)}, "
@@ -117,8 +117,8 @@ def print_control(run: ControlRun) -> None:
             print_line(f"  {row.name}: {row.why}")
     print_line(f"{saved(run)} at the programmed feed")
     print_line(
-        "hardest: the revolution that came nearest to what bounds it there; over: above "
-        f"{EXCESS_RATIO:g} times its bound; excess: all above it, noise too"
+        "hardest: the revolution closest to its bound; over: time above "
+        f"{EXCESS_RATIO:g} times the bound; excess: impulse above the bound, including noise"
     )
     print_line(f"events: {event_counts(run)}")
     print_line(f"disturbed: {disturbed_words(run)}; seed {run.seed}")
@@ -128,7 +128,7 @@ def print_control(run: ControlRun) -> None:
 
 
 def control_json(run: ControlRun) -> str:
-    """The run, each workingstep, and all that happened."""
+    """Return the run as JSON: totals, workingsteps, events and findings."""
     found = rows(run)
     columns: tuple[Column[ControlRow], ...] = (
         Column(key="id", value=lambda row: row.id),
@@ -171,7 +171,7 @@ def control_json(run: ControlRun) -> str:
 
 
 def _factor_json(row: ControlRow) -> dict[str, Any] | None:
-    """Measured over catalogue k_c."""
+    """Return measured over catalogue k_c as a JSON object; None with too few readings."""
     if row.factor is None:
         return None
     value, deviation = row.factor
@@ -180,13 +180,13 @@ def _factor_json(row: ControlRow) -> dict[str, Any] | None:
 
 
 def control_page(run: ControlRun, trace: BucketedRun) -> str:
-    """The page as HTML.
+    """Return the HTML report of a controlled run.
 
     Parameters
     ----------
     run : ControlRun
     trace : BucketedRun
-        Of the same run.
+        Signals of the same run.
     """
     from service.control.figures import (  # noqa: PLC0415 (plotly)
         GRAVE,

@@ -10,26 +10,26 @@ from simulator.plant.course import NominalCourse
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlannedWorkingstep:
-    """One workingstep as planned."""
+    """Expected time, feed and force of a workingstep."""
 
     time: float = 0.0
-    """s"""
+    """Duration, in s."""
     cutting_time: float = 0.0
-    """s with chips"""
+    """Time with chips, in s."""
     feed: float = 0.0
-    """mm/s, mean with chips"""
+    """Mean feed while cutting, in mm/s."""
     force: float = 0.0
-    """N, mean of the revolution that comes nearest to its bound, with the catalogue's k_c"""
+    """Mean force, with the catalogue's k_c, of the revolution closest to its bound, in N."""
     exponent: float = 0.8
-    """p of force over feed"""
+    """Exponent p of the force as a function of the feed."""
     diameter: float = 0.0
-    """mm at which the cutting speed drives the force; 0: nothing is cut"""
+    """Diameter at which the cutting speed drives the force, in mm; 0: nothing is cut."""
 
 
 def planned_steps(course: NominalCourse) -> dict[int, PlannedWorkingstep]:
-    """By the workingstep's number, in the order of their beginning; 0: around them.
+    """Return expected results by workingstep number, in order of execution; 0: outside them.
 
-    What bounds the force is not known yet: the greatest counts as the nearest to its bound.
+    Force bounds are not known yet, so the largest force counts as the closest to its bound.
     """
     widths = np.diff(course.until, prepend=0.0)
     cuts = course.can_override & (course.force > 0.0)
@@ -56,14 +56,14 @@ def planned_steps(course: NominalCourse) -> dict[int, PlannedWorkingstep]:
 def with_hardest(
     planned: dict[int, PlannedWorkingstep], course: NominalCourse, weight: Floats | None
 ) -> dict[int, PlannedWorkingstep]:
-    """The same with the force where it comes nearest to its bound.
+    """Return the expected results with the force at the point closest to its bound.
 
     Parameters
     ----------
     planned : dict of PlannedWorkingstep
     course : NominalCourse
     weight : (N,) array, optional
-        What a force counts in each cell; None: all alike.
+        Weight of the force in each cell; None: equal weights.
     """
     if weight is None:
         return planned

@@ -1,4 +1,4 @@
-"""A run under control, and its outcomes in the knowledge base."""
+"""Recording of a controlled run's outcomes in the knowledge base."""
 
 import getpass
 from collections.abc import Sequence
@@ -26,16 +26,16 @@ def control_recorded(
     tell: Tell = silent,
     watchers: Sequence[Watcher] = (),
 ) -> ControlRun:
-    """Run a program under the loop, and keep what came out where a knowledge base is named.
+    """Run a program under force control and record its outcomes if a knowledge base is named.
 
-    What a run that was stopped or broken off has cut is not kept: its times are not those of
-    whole workingsteps. Who reads the outcomes is told that they are of a virtual machine, and
-    what was disturbed: nothing else tells a depth that nobody knew of from a harder material.
+    Runs that were stopped are not recorded, because their times are not those of whole
+    workingsteps. The author entry says that the outcomes are from a virtual machine and lists
+    the disturbances: otherwise an unknown depth could not be told from a harder material.
 
     Raises
     ------
     StepNcError
-        As :func:`service.control.run.control`, and when the knowledge base cannot take it.
+        As :func:`service.control.run.control`, and when the knowledge base cannot be written.
     """
     place = named_place(knowledge)
     if place is not None:
@@ -50,23 +50,23 @@ def control_recorded(
 
 
 def keep(run: ControlRun, place: str, *, by: str, trace: str, tell: Tell = silent) -> None:
-    """Keep what came out of a run, unless it was stopped.
+    """Record the outcomes of a run, unless it was stopped.
 
     Parameters
     ----------
     run : ControlRun
     place : str
-        Of the knowledge base.
+        Location of the knowledge base.
     by : str
-        Who records.
+        Author of the record.
     trace : str
-        Where the samples are.
+        Location of the samples.
     tell : callable
 
     Raises
     ------
     StepNcError
-        When the knowledge base cannot take it.
+        When the knowledge base cannot be written.
     """
     if run.is_stopped:
         return
@@ -87,6 +87,6 @@ def keep(run: ControlRun, place: str, *, by: str, trace: str, tell: Tell = silen
     try:
         record(place, outcomes)
     except ValueError as error:
-        # A name of a file or of the user that is no text.
-        raise StepNcError(f"the outcomes cannot be kept: {error}") from error
+        # A file name or user name that cannot be stored as text.
+        raise StepNcError(f"the outcomes cannot be recorded: {error}") from error
     tell(f"recorded: {len(outcomes)} outcomes, run {recording.run}")

@@ -1,4 +1,4 @@
-"""The verb ``control``: a program under the loop, on the virtual machine."""
+"""Run of a program under force control on the virtual machine, for the command ``control``."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -43,12 +43,12 @@ from stepnc_model.errors import Finding, StepNcError
 from stepnc_model.program import Program
 
 CHIP_FORCES = {SensorChoice.DYNAMOMETER: 10.0, SensorChoice.POWER: 60.0}
-"""N above which there are chips: several times the noise of either"""
+"""Force above which a sensor counts as cutting, in N: several times its noise."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ControlRun:
-    """Result of ``control``."""
+    """Result of a run under force control."""
 
     program: Program
     machine: Machine
@@ -57,36 +57,36 @@ class ControlRun:
     has_preview: bool
     criterion: Criterion
     plan: Plan
-    """the program as it is, without any change"""
+    """Plan of the unchanged program."""
     steps: tuple[tuple[Advice | None, RunRecord], ...]
-    """in the order of their beginning; None: what belongs to no workingstep"""
+    """Advice (None outside workingsteps) and record of each workingstep, in order."""
     planned: Mapping[int, PlannedWorkingstep]
-    """by the number of the workingstep"""
+    """Planned values by workingstep number."""
     events: tuple[LoopEvent, ...]
     findings: tuple[Finding, ...]
     time: float
-    """s"""
+    """Duration of the run, in s."""
     time_planned: float
-    """s at an override of 1"""
+    """Duration at an override of 1, in s."""
     is_stopped: bool
-    """whether the loop stopped the program, or lost the machine"""
+    """Whether the loop stopped the program, or lost the machine."""
     progress: float
-    """s of the program at an override of 1 that are behind"""
+    """Completed part of the program, as time at an override of 1, in s."""
     settings: LoopSettings
-    """at the end"""
+    """Settings of the loop at the end of the run."""
     held: Mapping[int, HoldTally]
-    """what held the override, by the number of the workingstep"""
+    """Reasons that limited the override, by workingstep number."""
     disturbances: tuple[str, ...] = ()
-    """as asked for"""
+    """Disturbance words as requested."""
     seed: int = 0
     samples: int = 0
-    """that were written"""
+    """Number of samples written."""
     trace: BucketedRun | None = None
-    """for a report, when one was asked for"""
+    """Signals for a report, if one was requested."""
 
 
 Watcher = Callable[[LoopCycle, TrueState], None]
-"""who looks at the cycles besides the loop: a trace, a dashboard"""
+"""Callback that receives every cycle in addition to the loop: a trace or a dashboard."""
 
 
 def control(
@@ -97,12 +97,12 @@ def control(
     tell: Tell = silent,
     watchers: Sequence[Watcher] = (),
 ) -> ControlRun:
-    """Run a program under the loop.
+    """Run a program under force control and return the result.
 
     Raises
     ------
     StepNcError
-        For everything that is wrong with file, names, numbers or output.
+        When a file, a name, a number or an output is invalid.
     """
     session = prepare(request, files, knowledge=knowledge, tell=tell)
     trace = session.trace()
@@ -125,7 +125,7 @@ def control(
 def prepare(
     request: ControlRequest, files: RunFiles, *, knowledge: str = "", tell: Tell = silent
 ) -> "Session":
-    """Machine, loop and plan of a run, before the first cycle.
+    """Prepare machine, loop and plan of a run, before its first cycle.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def prepare(
     law, settings = request.law, _settings(request)
     prepared, virtual = waiting_machine(_plain_run(request), files, tell=tell)
     if prepared.material is None or prepared.program is None:
-        raise StepNcError("control needs a STEP-NC program: it says what may be forced")
+        raise StepNcError("control needs a STEP-NC program: NC code states no cutting limits")
     found = disturbances(request.disturbances, hardness=hardness_against(prepared.material))
     plan = plan_as_it_is(
         prepared.program,
@@ -185,13 +185,13 @@ def prepare(
 
 
 class VirtualSensor:
-    """The virtual machine as a sensor of the loop: its silence is the loop's loss."""
+    """Virtual machine as a sensor of the loop; a silent machine counts as lost."""
 
     def __init__(self, machine: ControlledMachine) -> None:
         self._machine = machine
 
     def read(self) -> Reading | None:
-        """See :class:`controller.ports.Sensor`."""
+        """Return the next reading (:class:`controller.ports.Sensor`)."""
         try:
             return self._machine.read()
         except MachineSilent as silent_:
@@ -200,14 +200,14 @@ class VirtualSensor:
 
 @dataclass(kw_only=True)
 class Session:
-    """A program under control. Running state."""
+    """Controlled run in progress: loop, machine, plan and records. Running state."""
 
     loop: Loop
     machine: ControlledMachine
     recorder: Recorder
     holdings: HoldTallies
     workingsteps: tuple[str, ...]
-    """ids by their number, from 1"""
+    """Workingstep ids; the first has number 1."""
     orders: list[TimedOrder]
     request: ControlRequest
     files: RunFiles
@@ -220,10 +220,10 @@ class Session:
     virtual: Machine
     events: list[LoopEvent] = field(default_factory=list)
     is_lost: bool = False
-    """whether the machine does not answer any more"""
+    """Whether the machine no longer answers."""
 
     def cycles(self, watchers: Sequence[Watcher] = ()) -> Iterator[LoopCycle]:
-        """Run on, cycle by cycle, to the end or until the loop stops the program."""
+        """Run cycle by cycle, to the end or until the loop stops the program."""
         while True:
             while self.orders and self.orders[0].time <= self.machine.time:
                 self.loop.order(self.orders.pop(0).order)
@@ -244,19 +244,19 @@ class Session:
                 return
 
     def _lose(self, lost: MachineLost) -> None:
-        """Nothing more can be done: what was commanded last is the safe override."""
+        """Record that the machine is lost; the last commanded override is the safe one."""
         override = 100.0 * self.machine.commanded
-        text = f"{lost}; override {override:.4g} % was commanded"
+        text = f"{lost}; the last commanded override is {override:.4g} %"
         self.events.append(LoopEvent(time=self.machine.time, kind=EventKind.LOST, text=text))
         self.is_lost = True
 
     def trace(self, sink: Callable[[Moment], None] | None = None) -> ControlTrace:
-        """Sink that writes the run to a file and keeps it for plots, as requested.
+        """Create the sink that writes the run to a file and keeps it for plots, as requested.
 
         Parameters
         ----------
         sink : callable, optional
-            Is given each row as well.
+            Callback that also receives each row.
         """
         output = self.files.output
         return ControlTrace(
@@ -269,7 +269,7 @@ class Session:
         )
 
     def result(self, trace: ControlTrace | None = None) -> ControlRun:
-        """Result so far, with what a trace has kept of it."""
+        """Return the result so far, including what a trace has kept."""
         records = self.recorder.records
         return ControlRun(
             program=self.program,
@@ -304,7 +304,7 @@ def _told(event: LoopEvent) -> str:
 
 
 def _plain_run(request: ControlRequest) -> SimulationRequest:
-    """The same program on the same machine, without the loop."""
+    """Return a simulation request for the same program on the same machine."""
     return SimulationRequest(
         machine=request.machine,
         material=request.material,
@@ -318,8 +318,8 @@ def _plain_run(request: ControlRequest) -> SimulationRequest:
 def _settings(request: ControlRequest) -> LoopSettings:
     least, set_point = CHIP_FORCES[request.sensor], request.force_set_point_n
     if set_point is not None and not set_point > least:
-        bound = f"above {least:g} N, which is noise of the {request.sensor}"
-        raise StepNcError(f"force {set_point:g} N: it must be {bound}")
+        bound = f"above {least:g} N, the noise of the {request.sensor}"
+        raise StepNcError(f"force set point {set_point:g} N: it must be {bound}")
     return LoopSettings(
         criterion=request.mode,
         is_on=request.law is not LawName.NONE,

@@ -1,4 +1,4 @@
-"""Setup of ``control``: the course of the program, its plan, its workingsteps."""
+"""Setup of a controlled run: nominal course of the program, its plan and its workingsteps."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
@@ -33,23 +33,23 @@ from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program
 
 MOST_SECONDS = 86_400.0
-"""of a program under control: its course is held in memory, 10 MB for 1000 s"""
+"""Longest program under control, in s; its course takes 10 MB of memory per 1000 s."""
 
 CHIP = 0.1
-"""mm, thickness of the chip for which materials are compared"""
+"""Chip thickness at which materials are compared, in mm."""
 
 
 def planned_course(prepared: PreparedRun, virtual: VirtualMachine, tell: Tell) -> NominalCourse:
-    """Course of the program at an override of 1."""
+    """Compute the course of the program at an override of 1."""
     ticker = Ticker(tell)
 
     def episodes() -> Iterator[Episode]:
         for episode in virtual.run(interpret(prepared.blocks, virtual.machine)):
             require_sense(episode)
             if episode.end > MOST_SECONDS:
-                text = f"{episode.end:.3g} s of machining: {MOST_SECONDS:g} s under control"
-                raise ProgramFault(f"{text} at most", episode.state.line)
-            ticker(lambda: f"{bar(prepared.done())}  the run is planned")
+                text = f"{episode.end:.3g} s of machining exceeds {MOST_SECONDS:g} s,"
+                raise ProgramFault(f"{text} the limit under control", episode.state.line)
+            ticker(lambda: f"{bar(prepared.done())}  planning the run")
             yield episode
 
     try:
@@ -59,22 +59,22 @@ def planned_course(prepared: PreparedRun, virtual: VirtualMachine, tell: Tell) -
 
 
 def require_teeth(hidden: HiddenTruth, course: NominalCourse) -> None:
-    """Refuse a tooth that no cutter of the program has.
+    """Refuse a tooth number that no cutter of the program has.
 
     Raises
     ------
     StepNcError
-        With the most that there are.
+        With the largest number of teeth in the program.
     """
     most = int(course.teeth.max())
     for change in hidden.changes:
         if change.what is HiddenQuantity.TOOTH and change.value >= most:
-            text = f"tooth {change.value + 1.0:g}: the cutters have {most} teeth at most"
+            text = f"tooth {change.value + 1.0:g}: the cutters have at most {most} teeth"
             raise StepNcError(f"disturbance: {text}")
 
 
 def preview_of(course: NominalCourse) -> Preview:
-    """Preview of the program: the expected force where the override acts."""
+    """Preview of the program: expected forces where the override acts, zero elsewhere."""
     force = np.where(course.can_override, course.force, np.float32(0.0))
     return Preview(
         until=course.until,
@@ -88,7 +88,7 @@ def preview_of(course: NominalCourse) -> Preview:
 
 
 def hardness_against(match: MaterialMatch) -> Callable[[str], float]:
-    """k_c of another material over that of the one that is cut, at a chip of 0.1 mm."""
+    """Return the ratio of another material's k_c to that of the workpiece, at a 0.1 mm chip."""
     cut = match.material.kienzle
 
     def ratio(name: str) -> float:
@@ -106,7 +106,7 @@ def plan_as_it_is(
     mode: Mode,
     knowledge: str | None,
 ) -> Plan:
-    """Advice for the program as it is, with the corrections of a knowledge base; None: none."""
+    """Plan of the unchanged program, corrected by a knowledge base unless that is None."""
     factors = (
         ()
         if knowledge is None
@@ -133,7 +133,7 @@ def plan_as_it_is(
 def steps_of(
     planned: Mapping[int, PlannedWorkingstep], advices: Sequence[Advice | None]
 ) -> list[LoopStep]:
-    """Workingsteps with what is planned of their cuts."""
+    """Return the loop's steps, with what is planned of their cuts."""
     return [
         _step(planned.get(number, PlannedWorkingstep()), advice)
         for number, advice in enumerate(advices, 1)
@@ -142,7 +142,7 @@ def steps_of(
 
 def _step(planned: PlannedWorkingstep, advice: Advice | None) -> LoopStep:
     if advice is None:
-        inhibition = "the program says nothing of its limits"
+        inhibition = "the program states no limits"
         return LoopStep(reference=Reference(workingstep="", inhibition=inhibition))
     return LoopStep(
         reference=_reference(planned, advice),
@@ -153,10 +153,10 @@ def _step(planned: PlannedWorkingstep, advice: Advice | None) -> LoopStep:
 
 
 def _reference(planned: PlannedWorkingstep, advice: Advice) -> Reference:
-    """Reference of a workingstep, in forces as they are measured.
+    """Force reference of a workingstep, scaled to the force that is measured.
 
-    The plan tells the force of one lip of a drill at its rim; torque over the radius in the
-    middle of the lips is that of all of them.
+    The plan states the force of one lip of a drill at its rim; the measured force is the torque
+    of all lips over the radius at the middle of the lips.
     """
     reference, cut = reference_of(advice), advice.cut
     if cut is None or cut.kind is not CutKind.DRILLING or not planned.diameter:

@@ -1,18 +1,18 @@
-// What all pages share: the frame, requests, streams, words for numbers.
+// Shared by all pages: frame, requests, event streams, formatting of numbers.
 
 const PAGES = [
   ["plan", "Plan"], ["control", "Control"], ["machine", "Machine"],
   ["knowledge", "Knowledge"], ["jobs", "Jobs"],
 ];
 const KEY = "stepnc.key", THEME = "stepnc.theme";
-/** HTTP states of a service that starts or ends */
+/** HTTP status codes of a service that is starting or stopping */
 const AWAY = [502, 503, 504];
-/** what to say while it is away */
-export const AWAY_WORDS = "The connection is lost; it is tried again each second.";
+/** message while the service does not answer */
+export const AWAY_WORDS = "Connection lost; trying again every second.";
 
 // -- elements ---------------------------------------------------------------------------------
 
-/** An element: attributes, `on…` listeners, children (texts are texts, never HTML). */
+/** Create an element with attributes, `on…` listeners and children (strings become text, never HTML). */
 export function el(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -28,20 +28,20 @@ export function el(tag, attributes = {}, ...children) {
 
 export const byId = (id) => document.getElementById(id);
 
-/** Replace what is in an element. */
+/** Replace the children of an element. */
 export function fill(place, ...children) {
   place.replaceChildren(...children.flat().filter((child) => child !== null && child !== undefined));
 }
 
-/** A named figure; `value` may be set later by its class. */
+/** Create a labelled figure; its value can be updated through the class `value`. */
 export function figure(name, value, unit = "", kind = "") {
   return el("div", { class: `figure ${kind}` }, el("div", { class: "name" }, name),
     el("div", {}, el("span", { class: "value" }, value), el("span", { class: "unit" }, unit)));
 }
 
-// -- words for numbers ------------------------------------------------------------------------
+// -- formatting of numbers ----------------------------------------------------------------------
 
-/** A number with so many significant digits, as people write it; a dash for none. */
+/** Format a number with significant digits; a dash if there is none. */
 export function number(value, digits = 3) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   const size = Math.abs(value);
@@ -52,7 +52,7 @@ export function number(value, digits = 3) {
 
 export function fixed(value, places) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
-  // A zero has no sign.
+  // Avoid a minus sign before zero.
   const told = Math.abs(value) < 0.5 * 10 ** -places ? 0 : value;
   return told.toLocaleString("en-GB",
     { minimumFractionDigits: places, maximumFractionDigits: places, useGrouping: Math.abs(value) >= 1e4 });
@@ -60,7 +60,7 @@ export function fixed(value, places) {
 
 const two = (count) => String(count).padStart(2, "0");
 
-/** Seconds as people say them; in the form that `like` s take, so that two can be compared. */
+/** Format a duration in s, in the units suited to `like` s, so that two can be compared. */
 export function duration(seconds, like = seconds) {
   if (seconds === null || seconds === undefined) return "–";
   if (like < 120) return `${fixed(seconds, 1)} s`;
@@ -72,11 +72,11 @@ export function duration(seconds, like = seconds) {
 export const percent = (share, places = 0) =>
   share === null || share === undefined ? "–" : `${fixed(100 * share, places)} %`;
 
-/** Day and time, the same on all pages. */
+/** Format a date and time, alike on all pages. */
 export const moment = (text) => (text ? new Date(text).toLocaleString("en-GB", { day: "numeric",
   month: "short", year: "numeric", hour: "2-digit", minute: "2-digit", second: "2-digit" }) : "–");
 
-/** EXPRESS and limit names as words. */
+/** Return an EXPRESS or limit name with spaces. */
 export const words = (name) => (name ?? "").replaceAll("_", " ");
 
 // -- requests ---------------------------------------------------------------------------------
@@ -99,7 +99,7 @@ async function ask(path, options = {}) {
   const answer = await fetch(path, { ...rest, body,
     headers: key ? { ...sent, authorization: `Bearer ${key}` } : sent });
   if (answer.status === 401) {
-    // Another request may have brought a key meanwhile.
+    // Another request may have obtained a key meanwhile.
     if (key === keptKey()) await askForKey(key ? "This key was refused" : "A key is needed");
     return ask(path, options);
   }
@@ -109,13 +109,13 @@ async function ask(path, options = {}) {
   throw new Problem(problem, answer.status);
 }
 
-/** JSON of an answer; null when it has no body. `json` is sent as the body. */
+/** Send a request, with `json` as the body if given; return the JSON answer, or null without one. */
 export async function api(path, options = {}) {
   const answer = await ask(path, options);
   return answer.status === 204 ? null : answer.json();
 }
 
-/** Save what an address holds as a file: with the key, which a plain link would not send. */
+/** Download a resource as a file, with the key, which a plain link would not send. */
 export async function save(path) {
   const answer = await ask(path);
   const named = /filename="([^"]+)"/.exec(answer.headers.get("content-disposition") ?? "");
@@ -125,7 +125,7 @@ export async function save(path) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** Show a report in a window of its own. */
+/** Open a report in a new window. */
 export async function show(path) {
   const opened = window.open("about:blank", "_blank");
   if (!keptKey() && opened) { opened.location = path; return; }
@@ -136,16 +136,16 @@ export async function show(path) {
 // -- the key ----------------------------------------------------------------------------------
 
 let asking = null;
-/** A dialog for the key; all requests that need one wait for the same. `others`: more buttons. */
+/** Ask for the API key in a dialog shared by all waiting requests. `others`: further buttons. */
 function askForKey(title, others = []) {
   asking ??= new Promise((done) => {
     const field = el("input", { type: "password", autocomplete: "off", required: true, id: "key-field" });
     const dialog = el("dialog", { id: "key-dialog", "aria-labelledby": "key-title" },
       el("h2", { id: "key-title" }, title),
-      el("p", { class: "soft" }, "Keys are made with “stepnc keys create”. It is kept until this window is closed."),
+      el("p", { class: "soft" }, "Create a key with “stepnc keys create”. The key is kept until this window is closed."),
       el("form", { method: "dialog", onsubmit: () => sessionStorage.setItem(KEY, field.value.trim()) },
         el("label", {}, "Key", field),
-        el("p", { class: "row" }, el("button", { class: "main", id: "key-use" }, "Use it"), others)));
+        el("p", { class: "row" }, el("button", { class: "main", id: "key-use" }, "Use key"), others)));
     dialog.addEventListener("close", () => {
       dialog.remove();
       asking = null;
@@ -158,20 +158,20 @@ function askForKey(title, others = []) {
   return asking;
 }
 
-/** Another key, or none, because the user wants it. */
+/** Let the user change or forget the API key. */
 function changeKey() {
   const forget = () => { sessionStorage.removeItem(KEY); location.reload(); };
   return askForKey("The key of this window", [
-    el("button", { type: "button", id: "key-forget", onclick: forget }, "Forget it"),
+    el("button", { type: "button", id: "key-forget", onclick: forget }, "Forget key"),
     el("button", { type: "button", id: "key-leave",
-      onclick: (event) => event.target.closest("dialog").close() }, "Leave it")]);
+      onclick: (event) => event.target.closest("dialog").close() }, "Cancel")]);
 }
 
 // -- streams ----------------------------------------------------------------------------------
 
 /**
- * Watch a job: `handlers` by event (`job`, `status`, `rows`, `event`, `gap`), `lost` when the line
- * breaks, `back` when it holds again, `end` when the job is over. Returns a function that ends it.
+ * Watch a job: `handlers` by event (`job`, `status`, `rows`, `event`, `gap`), `lost` when the
+ * connection breaks, `back` when it is restored, `end` when the job has ended. Returns a function that stops watching.
  */
 export function watch(id, handlers) {
   const stop = new AbortController();
@@ -215,7 +215,7 @@ async function* messages(body) {
   }
 }
 
-/** JSON of a path, once the service answers again if it is away; `lost` and `back` hear of it. */
+/** Get JSON, retrying while the service does not answer; `lost` and `back` are called meanwhile. */
 export async function patiently(path, { lost, back }) {
   for (let isLost = false; ; isLost = true) {
     try {
@@ -230,7 +230,7 @@ export async function patiently(path, { lost, back }) {
   }
 }
 
-/** Ask for a job and wait for its end; `tell` hears how far it is. Throws its problem. */
+/** Queue a job and wait for its end; `tell` receives its progress. Throws the problem of a failed job. */
 export async function done(path, json, tell = () => {}) {
   const asked = await api(path, { method: "POST", json,
     headers: { "idempotency-key": crypto.randomUUID?.() ?? String(Math.random()) } });
@@ -238,7 +238,7 @@ export async function done(path, json, tell = () => {}) {
   return followed(asked, tell);
 }
 
-/** Wait for the end of a job; `lost` and `back` hear when the service is away. */
+/** Wait for the end of a job; `lost` and `back` are called when the connection breaks and returns. */
 export function followed(asked, tell = () => {}, { lost, back } = {}) {
   return new Promise((resolve, reject) => {
     let last = asked;
@@ -256,13 +256,13 @@ export function followed(asked, tell = () => {}, { lost, back } = {}) {
 
 // -- the frame --------------------------------------------------------------------------------
 
-/** Say something to everybody, also to those who do not see it. */
+/** Announce a text to screen readers. */
 export function announce(text) {
   const place = byId("said");
   if (place) place.textContent = text;
 }
 
-/** Tell of a problem in a place of the page; empty it with null. */
+/** Show a problem in an element of the page; clear it with null. */
 export function tell(place, error) {
   if (!error) { fill(place); return; }
   const detail = error instanceof Problem ? error.message : `the service does not answer (${error.message})`;
@@ -283,7 +283,7 @@ function frame() {
   const at = location.pathname.split("/").pop().replace(".html", "");
   const links = PAGES.map(([name, text]) => el("a", { href: `/dashboard/${name}.html`,
     "aria-current": name === at ? "page" : undefined }, text));
-  const toggle = el("button", { class: "plain", "aria-label": "light or dark", title: "light or dark",
+  const toggle = el("button", { class: "plain", "aria-label": "switch between light and dark", title: "switch between light and dark",
     onclick: () => {
       localStorage.setItem(THEME, theme() ? "light" : "dark");
       theme();
@@ -296,7 +296,7 @@ function frame() {
     el("div", { class: "right" },
       el("button", { class: "plain small", id: "key", hidden: !keptKey(), onclick: changeKey }, "Key"),
       el("a", { class: "small", href: "/v1/openapi.json" }, "API"), toggle));
-  document.body.prepend(el("a", { class: "skip", href: "#main" }, "to the content"), bar);
+  document.body.prepend(el("a", { class: "skip", href: "#main" }, "skip to content"), bar);
   document.body.append(el("div", { id: "said", class: "unseen", role: "status", "aria-live": "polite" }));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     theme();

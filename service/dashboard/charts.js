@@ -1,28 +1,28 @@
-// Plots: plotly.js of the installed package, in the colours of the page; series by range.
+// Plots with plotly.js of the installed package, in the colours of the page; series by range.
 
 import { api } from "/dashboard/app.js";
 
 let loading = null;
-/** plotly.js, loaded when the first plot is wanted. */
+/** Load plotly.js when the first plot is needed. */
 export function plotly() {
   loading ??= new Promise((resolve, reject) => {
     const script = document.createElement("script");
     script.src = "/dashboard/plotly.min.js";
     script.onload = () => resolve(window.Plotly);
-    script.onerror = () => reject(new Error("plotly.js was not found"));
+    script.onerror = () => reject(new Error("plotly.js could not be loaded"));
     document.head.append(script);
   });
   return loading;
 }
 
-/** A colour of the page, by its name in app.css. */
+/** Return a colour of the page, by its name in app.css. */
 export const colour = (name) =>
   getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
 const CONFIG = { displaylogo: false, responsive: true, showSendToCloud: false,
   modeBarButtonsToRemove: ["select2d", "lasso2d", "sendDataToCloud", "autoScale2d"] };
 
-/** Layout in the page's colours. */
+/** Return a plot layout in the colours of the page. */
 export function layout(more = {}) {
   const ink = colour("ink"), rule = colour("rule");
   const axis = { gridcolor: rule, zerolinecolor: rule, linecolor: rule, automargin: true };
@@ -39,14 +39,14 @@ export function layout(more = {}) {
 }
 
 /**
- * A plot that is drawn anew in the page's colours when these change.
+ * Draw a plot, and redraw it when the colours of the page change.
  * `make()` returns {data, layout}, colours by `colour(…)`.
  */
 export async function plot(place, make) {
   const Plotly = await plotly();
   const draw = () => {
     const { data, layout: laid } = make();
-    // When the window changes its size, plotly takes the height of the place.
+    // When the window is resized, plotly uses the height of the element.
     if (laid.height) place.style.height = `${laid.height}px`;
     return Plotly.react(place, data, laid, CONFIG);
   };
@@ -56,7 +56,7 @@ export async function plot(place, make) {
   return Plotly;
 }
 
-/** Least and greatest of each point as one line, so that peaks stay. */
+/** Return one line through minimum and maximum of each point, so that peaks are kept. */
 export function envelope(series, name, scale = 1) {
   const { low, high } = series.signals[name], x = [], y = [];
   for (let at = 0; at < low.length; at += 1) {
@@ -70,14 +70,14 @@ export function envelope(series, name, scale = 1) {
   return { x, y };
 }
 
-/** Mean of each point: means of parts sum up to the mean of the whole. */
+/** Return the mean of each point; means of parts add up to the mean of the whole. */
 function means(series, name, scale = 1) {
   return { x: series.begin_s,
     y: series.signals[name].mean.map((value) => (value === null ? null : value * scale)) };
 }
 
 /**
- * Panels of signals against one time axis, read from the server by range: zooming reads again.
+ * Draw panels of signals over a common time axis, read from the server by range: zooming reads again.
  * `source(begin, end, points)` → the path of a series; `panels` = [{title, unit, isStacked,
  * top(greatest) → where its axis ends by the greatest of signals, signals: [{name, label, colour, dash, scale}]}]; `shapes()`
  * are plotly's, drawn over it. Returns {reload, redraw, add(columns), Plotly}.
@@ -153,7 +153,7 @@ export async function timePanels(place, source, panels,
     wanted = setTimeout(() => reload(...(range ?? [null, null])), 120);
   });
 
-  /** Rows that have just come; `window` keeps the last so many seconds in sight. */
+  /** Add new rows; `window` is the number of latest seconds kept visible. */
   function add(columns, window = null) {
     const times = columns.time_s, from = series?.end_s.at(-1) ?? -Infinity;
     const xs = [], ys = [];

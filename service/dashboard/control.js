@@ -1,4 +1,4 @@
-// The control page: the simulator of a force loop as a panel of the shop floor.
+// The control page: operator panel of the force control simulator.
 
 import { announce, api, byId, duration, el, fill, fixed, moment, tell } from "/dashboard/app.js";
 import { boundsOf } from "/dashboard/control_fields.js";
@@ -17,18 +17,18 @@ const output = new Output(ask), fresh = new Freshness(), plots = new Plots(), pa
 const log = new Log((events) => plots.mark(events));
 let book = null, machines = [], materials = [];
 
-// -- what is asked ------------------------------------------------------------------------------
+// -- requests -----------------------------------------------------------------------------------
 
 const fields = () => [...(state.panes?.fields ?? []), output.isOn, output.mode, pace];
 
-/** Another value: of the run, or of the one that will be started. */
+/** Change an input of the run, or of the run to be started. */
 function ask(name, value) {
   const { run } = state;
   if (run && !run.isOver) { run.ask(name, value); return; }
   const field = fields().find((each) => each.spec.name === name);
   const { low, high } = field.spec;
   if (typeof value === "number" && low !== undefined && !(low <= value && value <= high)) {
-    field.refuse(`${value} is beyond ${boundsOf(field.spec)}`);
+    field.refuse(`${value} is outside ${boundsOf(field.spec)}`);
   } else state.draft[name] = value;
   showFields();
 }
@@ -55,7 +55,7 @@ async function start() {
     const job = await api(PLACES[state.kind], { method: "POST", json,
       headers: { "idempotency-key": crypto.randomUUID?.() ?? String(Math.random()) } });
     await join(job);
-    announce("the run is started");
+    announce("run started");
   } catch (error) {
     for (const [name, text] of Object.entries(refusals(error, Object.keys(inputs)))) {
       if (error.body?.errors && name) refused(name, text);
@@ -77,7 +77,7 @@ async function end() {
   await api(`${run.place}/cancel`, { method: "POST" }).catch((error) => tell(byId("trouble"), error));
 }
 
-// -- what is shown ------------------------------------------------------------------------------
+// -- display ------------------------------------------------------------------------------------
 
 function showFields() {
   const { run, draft } = state, isLive = run && !run.isOver;
@@ -99,20 +99,20 @@ function showFields() {
   if (held) state.panes?.fit(held);
 }
 
-/** Word, tone and what is more to say of the run. */
+/** State of the run as a word, with its tone and details. */
 function condition() {
   const { run } = state;
   if (!run) return ["No run", "soft", ""];
   const { job, status } = run;
   if (job.state === "failed") return ["Failed", "bad", job.problem?.detail ?? ""];
-  if (job.state === "cancelled") return ["Ended by hand", "soft", ""];
-  if (job.state === "queued") return ["Waiting for a free place", "warn", ""];
+  if (job.state === "cancelled") return ["Cancelled", "soft", ""];
+  if (job.state === "queued") return ["Queued", "warn", ""];
   if (!run.isOver && state.fresh !== null) return ["No data", "bad", ""];
   if (status?.is_stopped) return ["Stopped by the loop", "bad", status.stopped_by || state.stop];
-  if (run.isOver) return [run.kind === "trial" ? "Ended" : "Program through", "soft", ""];
-  if (!status) return ["Being prepared", "warn", job.message];
+  if (run.isOver) return [run.kind === "trial" ? "Ended" : "Program finished", "soft", ""];
+  if (!status) return ["Preparing", "warn", job.message];
   if (job.is_cancelling) return ["Ending", "warn", ""];
-  return status.is_done ? ["Writing what came out", "warn", ""] : ["Running", "good", ""];
+  return status.is_done ? ["Writing results", "warn", ""] : ["Running", "good", ""];
 }
 
 function showState() {
@@ -170,9 +170,9 @@ function noteStop(event) {
   if (["stop", "breakage", "lost"].includes(event.kind)) state.stop = event.text;
 }
 
-// -- which run ----------------------------------------------------------------------------------
+// -- choice of run ------------------------------------------------------------------------------
 
-/** The panes that suit; values of the last run stay for the next. */
+/** Build the panes for a kind of run; values of the last run are kept for the next. */
 async function shape() {
   const { kind, run } = state, isLive = run && !run.isOver;
   output.shape(kind);
@@ -202,7 +202,7 @@ function usual(kind) {
     : { is_on: true, mode: book.usualRun.mode, pace: book.usualRun.pace };
 }
 
-/** After the end: what was set is where the next begins. */
+/** After the end, keep the inputs for the next run. */
 async function again() {
   const { run } = state;
   if (run.held) {
@@ -238,7 +238,7 @@ async function nameProgram(job) {
   state.program = (program?.name ?? "deleted program") + (job.advice_id ? ", advised feeds" : "");
 }
 
-/** No run: what is set is for the next. */
+/** Without a run, edit the inputs of the next one. */
 async function idle(kind) {
   state.run?.leave();
   Object.assign(state, { kind, run: null, stop: "", draft: usual(kind), fresh: null });
@@ -250,7 +250,7 @@ async function idle(kind) {
   showStatus();
 }
 
-/** A source was chosen: its newest run that goes on, or none. */
+/** Show the newest running run of the chosen source, or none. */
 async function choose(kind) {
   if (kind === state.kind) return;
   const going = await newest([kind]).catch(() => null);
@@ -296,6 +296,6 @@ async function open() {
   await (going ? join(going) : idle(isProgram ? "control-run" : "trial"));
 }
 
-// Who starts before it is known what runs would lose sight of it.
+// Enable starting only now, because a run started earlier would not be shown.
 open().then(() => { state.isReady = true; showState(); })
   .catch((error) => tell(byId("trouble"), error));

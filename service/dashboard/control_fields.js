@@ -1,11 +1,11 @@
-// Fields of the panel: numbers with steppers, choices, switches. Each shows what holds, what was
-// asked for and is not confirmed yet, and why a value was refused.
+// Fields of the panel: numbers with steppers, choices, switches. Each shows the confirmed value,
+// a requested value that is still pending, and why a value was refused.
 
 import { announce, el, fill } from "/dashboard/app.js";
 
 const HOLD_MS = 450, REPEAT_MS = 90, TOLD_MS = 12_000;
 
-/** Words, unit and bounds of a number as the OpenAPI document tells them. */
+/** Read label, unit and bounds of a number from the OpenAPI document. */
 export function described(schema, name) {
   const property = schema.properties[name];
   const bounds = property.anyOf?.find((each) => each.type !== "null") ?? property;
@@ -22,7 +22,7 @@ const plain = (value) => String(Number(Number(value).toPrecision(6)));
 export const same = (one, other) => (typeof one === "number" && typeof other === "number"
   ? Math.abs(one - other) <= 1e-9 * Math.max(1, Math.abs(one)) : one === other);
 
-/** The frame of a field: its name, whether it is pending, what was refused. */
+/** Create the frame of a field: its label, pending state and refusal message. */
 function framed(spec, id, ...inside) {
   const state = el("span", { class: "state", id: `${id}-state` }, spec.unit ?? "");
   const note = el("span", { class: "note", id: `${id}-note`, hidden: true,
@@ -38,7 +38,7 @@ function framed(spec, id, ...inside) {
       node.classList.toggle("pending", Boolean(isPending));
       state.textContent = isPending ? "pending" : (spec.unit ?? "");
     },
-    /** `isAlso`: another field shows the same already; here it is for who reads by ear. */
+    /** `isAlso`: another field shows the message already; this one is for screen readers only. */
     refuse(text, isAlso = false) {
       clearTimeout(timer);
       note.textContent = text ?? "";
@@ -53,7 +53,7 @@ function framed(spec, id, ...inside) {
   };
 }
 
-/** A number with − and +; `ask(name, value)` hears what is wanted. */
+/** Create a number field with − and + buttons; `ask(name, value)` receives changes. */
 export function numberField(spec, ask) {
   const id = `in-${spec.name}`;
   let shown = null, isHeld = false, timer = null;
@@ -111,7 +111,7 @@ export function numberField(spec, ask) {
     enable(isEnabled) { for (const each of [input, less, more]) each.disabled = !isEnabled; } };
 }
 
-/** A choice; `options` = [[value, text]]. */
+/** Create a select field; `options` = [[value, text]]. */
 export function choiceField(spec, options, ask) {
   const id = `in-${spec.name}`;
   const select = el("select", { id, "aria-describedby": `${id}-state ${id}-note`,
@@ -131,7 +131,7 @@ export function choiceField(spec, options, ask) {
     enable(isEnabled) { select.disabled = !isEnabled; } };
 }
 
-/** Words of which one holds; `options` = [[value, text, title]]. */
+/** Create a switch of buttons; `options` = [[value, text, title]]. */
 export function switchField(spec, options, ask) {
   const buttons = options.map(([value, text, title]) => el("button", { type: "button", title,
     id: `switch-${text.toLowerCase()}`, "aria-label": `${text}: ${title}`, "aria-pressed": "false",
@@ -152,7 +152,7 @@ export function switchField(spec, options, ask) {
     enable(isEnabled) { for (const each of buttons) each.disabled = !isEnabled; } };
 }
 
-/** Yes or no. */
+/** Create a checkbox. */
 export function checkField(spec, ask) {
   const box = el("input", { type: "checkbox", id: `in-${spec.name}`,
     onchange: () => ask(spec.name, box.checked) });
@@ -162,7 +162,7 @@ export function checkField(spec, ask) {
     enable(isEnabled) { box.disabled = !isEnabled; } };
 }
 
-/** Something that the run tells and nobody sets here. */
+/** Create a read-only value reported by the run. */
 export function told(name, words, unit = "") {
   const value = el("output", { id: `told-${name}`, class: "value" }, "–");
   return { node: el("div", { class: "field told" }, el("div", { class: "head" },

@@ -1,4 +1,4 @@
-// What happened in a run, newest first; told in words, not each row.
+// Event log of a run, newest first.
 
 import { announce, api, el, fixed } from "/dashboard/app.js";
 import { TONES } from "/dashboard/control_pen.js";
@@ -7,14 +7,14 @@ const MOST = 300, APART_MS = 4000;
 const nameOf = (event) => `${event.time_s}|${event.kind}|${event.text}`;
 
 export class Log {
-  /** `changed(events)` hears all events, oldest first. */
+  /** `changed(events)` receives all events, oldest first. */
   constructor(changed) {
     this.changed = changed;
     this.events = [];
     this.known = new Set();
     this.fresh = [];
     this.list = el("ol", { id: "log", class: "log", reversed: true });
-    this.empty = el("p", { class: "empty", id: "log-empty" }, "Nothing has happened yet.");
+    this.empty = el("p", { class: "empty", id: "log-empty" }, "No events yet.");
     this.count = el("span", { class: "soft small", id: "log-count" });
     this.node = el("section", { class: "card", id: "log-card", "aria-labelledby": "log-title" },
       el("div", { class: "row spread" }, el("h2", { id: "log-title" }, "Events"), this.count),
@@ -22,7 +22,7 @@ export class Log {
         this.empty, this.list));
   }
 
-  /** Another run, or none. */
+  /** Switch to another run, or to none. */
   async show(place) {
     this.place = place;
     this.events = [];
@@ -32,7 +32,7 @@ export class Log {
     await this.reload();
   }
 
-  /** All that is known of the run; again after some was missed. */
+  /** Load all events of the run; repeated after some were missed. */
   async reload() {
     const { place } = this;
     if (!place) return;
@@ -70,7 +70,7 @@ export class Log {
     this.changed(this.events);
   }
 
-  /** Once for all that came meanwhile. */
+  /** Announce all new events at once. */
   say() {
     const last = this.fresh.at(-1), count = this.fresh.length;
     this.fresh = [];

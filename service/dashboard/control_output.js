@@ -1,4 +1,4 @@
-// The output pane: feeds, override, force against its set point, the lamp of the power limit.
+// The output pane: feeds, override, force and its set point, lamp of the power limit.
 
 import { announce, byId, el, figure, fixed, number } from "/dashboard/app.js";
 import { switchField } from "/dashboard/control_fields.js";
@@ -10,7 +10,7 @@ const FEEDS = [
   ["override_percent", "Override", "%"],
 ];
 
-/** Small figures by kind of run: [name in the status, words, unit, decimals or undefined]. */
+/** Small figures by kind of run: [name in the status, label, unit, decimals or undefined]. */
 const SMALL = {
   "trial": [
     ["power_predicted_kw", "Predicted power", "kW", 2],
@@ -23,18 +23,18 @@ const SMALL = {
   ],
   "control-run": [
     ["power_kw", "Drive power", "kW", 2],
-    ["motor_power_kw", "Motor gives", "kW", 2],
-    ["force_expected_n", "Force by the plan", "N", 0],
+    ["motor_power_kw", "Motor power available", "kW", 2],
+    ["force_expected_n", "Expected force", "N", 0],
     ["force_measured_n", "Measured force", "N", 0],
     ["removal_rate_cm3_min", "Removal rate", "cm³/min", 1],
-    ["axial_depth_mm", "Depth cut now", "mm", 2],
+    ["axial_depth_mm", "Actual depth", "mm", 2],
   ],
 };
 const BAR_TOP = 1.5;
-/** of a machine at rest, whatever its last sample says */
+/** values of a machine at rest, regardless of its last sample */
 const AT_REST = { feed_actual_mm_min: 0, feed_per_tooth_mm: 0, removal_rate_cm3_min: 0, force_measured_n: 0,
   force_predicted_n: 0, power_kw: 0, power_predicted_kw: 0 };
-/** while the loop is off there is no advice */
+/** values that are blank while the loop is off */
 const OFF = { feed_advised_mm_min: null };
 
 function named(name, words, unit, kind) {
@@ -45,11 +45,11 @@ function named(name, words, unit, kind) {
   return { node, put: (text) => { if (value.textContent !== text) value.textContent = text; } };
 }
 
-/** The pane; `ask(name, value)` hears the switches. */
+/** Create the pane; `ask(name, value)` receives changes of the switches. */
 export class Output {
   constructor(ask) {
     this.isOn = switchField({ name: "is_on", words: "loop on or off" },
-      [[true, "ON", "the loop sets the feed"], [false, "OFF", "the programmed feed, whatever the force"]], ask);
+      [[true, "ON", "the loop sets the feed"], [false, "OFF", "programmed feed, regardless of the force"]], ask);
     this.mode = switchField({ name: "mode", words: "mode" },
       [["TC", "TC", "time-critical: as fast as the limits allow"],
         ["QC", "QC", "quality-critical: the programmed chip load"]], ask);
@@ -61,7 +61,7 @@ export class Output {
     this.holding = el("b", { id: "out-holding" }, "–");
     this.forceText = el("span", { id: "out-force" }, "–");
     this.fillBar = el("div", { class: "fill" });
-    this.bar = el("div", { class: "meter", role: "meter", id: "force-bar", "aria-label": "force against set point",
+    this.bar = el("div", { class: "meter", role: "meter", id: "force-bar", "aria-label": "force relative to set point",
       "aria-valuemin": "0", "aria-valuemax": "150" }, this.fillBar, el("div", { class: "aim" }));
     this.small = el("div", { class: "figures small-figures", id: "out-small" });
     this.glance = el("div", { class: "glance", id: "glance", "aria-hidden": "true" });
@@ -73,12 +73,12 @@ export class Output {
       el("div", { class: "middle" },
         el("div", { class: "force" },
           el("div", { class: "soft" }, "Cutting force ", this.forceText), this.bar,
-          el("div", { class: "soft" }, "Feed held by ", this.holding), this.depth),
+          el("div", { class: "soft" }, "Feed limited by ", this.holding), this.depth),
         el("div", { class: "switches" }, this.isOn.node, this.mode.node)),
       this.small);
   }
 
-  /** Figures of another kind of run. */
+  /** Show the figures of another kind of run. */
   shape(kind) {
     if (kind === this.kind) return;
     this.kind = kind;
@@ -86,7 +86,7 @@ export class Output {
     this.small.replaceChildren(...this.smalls.map((each) => each.node));
   }
 
-  /** How the run is; null: there is none. `isOver`: these are its last figures. */
+  /** Show the status of the run; null: no run. `isOver`: the status is final. */
   show(last, isOver) {
     const isAtRest = isOver || Boolean(last?.is_stopped);
     const status = last && { ...last, ...(isAtRest ? AT_REST : {}), ...(last.is_on === false ? OFF : {}) };
@@ -133,7 +133,7 @@ export class Output {
   }
 }
 
-/** Tells that data are old, and greys what they say. */
+/** Banner that warns of old data; the data are greyed out. */
 export class Freshness {
   constructor() {
     this.age = el("span", { id: "stale-age" });
@@ -149,11 +149,11 @@ export class Freshness {
     this.isLost = isLost;
     byId("main").classList.toggle("is-stale", isStale);
     this.node.hidden = !isStale;
-    // The age is set apart: an alert is read out once, not each second.
+    // The age is hidden from screen readers, so that the alert is read only once.
     this.age.setAttribute("aria-hidden", "true");
-    this.node.replaceChildren(...(isStale ? [el("strong", {}, isLost ? "LINE LOST" : "NO DATA"),
-      el("span", {}, isLost ? "the service does not answer; the run may go on" : "the figures are old"),
+    this.node.replaceChildren(...(isStale ? [el("strong", {}, isLost ? "CONNECTION LOST" : "NO DATA"),
+      el("span", {}, isLost ? "the service does not answer; the run may still be running" : "the values are out of date"),
       this.age] : []));
-    if (!isStale) announce("data come again");
+    if (!isStale) announce("receiving data again");
   }
 }

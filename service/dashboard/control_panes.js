@@ -1,4 +1,4 @@
-// The panes of what is set: Input and Machine, for a trial cut and for a program.
+// The panes Input and Machine, for a trial cut and for a program.
 
 import { el, fill } from "/dashboard/app.js";
 import { checkField, choiceField, described, numberField, told } from "/dashboard/control_fields.js";
@@ -7,16 +7,16 @@ const STEPS = { tool_diameter_mm: 1, teeth: 1, cutting_edge_angle_deg: 5, radial
   cutting_speed_m_min: 10, efficiency: 0.05, feed_per_tooth_mm: 0.01, axial_depth_mm: 0.5,
   motor_power_kw: 0.5, axial_depth_max_mm: 0.5,
   motor_power_percent: 5, depth_percent: 5, hardness_percent: 5 };
-const WORDS = { efficiency: "efficiency", motor_power_percent: "motor allowed",
+const WORDS = { efficiency: "efficiency", motor_power_percent: "allowed motor power",
   depth_percent: "depth", hardness_percent: "hardness" };
 const UNITS = { depth_percent: "%", hardness_percent: "%" };
 const MILLING = { full: "full: a slot", up: "up: conventional", down: "down: climb",
   symmetric: "symmetric: the middle" };
 const LAWS = { "log-pi": "log PI", "pi": "PI", "fuzzy": "fuzzy", "self-tuning": "self-tuning",
-  "mrac": "model reference (MRAC)", "mpc": "predictive (MPC)", "none": "none: only watch" };
+  "mrac": "model reference (MRAC)", "mpc": "predictive (MPC)", "none": "none: only monitoring" };
 const PACES = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
 
-/** What the service says of inputs and laws, from its OpenAPI document. */
+/** Read inputs and control laws from the OpenAPI document of the service. */
 export function bookOf(document) {
   const { schemas } = document.components;
   const example = document.paths["/v1/trials"].post.requestBody.content["application/json"].example;
@@ -33,7 +33,7 @@ function number(schema, name, ask) {
     step: STEPS[name] }, ask);
 }
 
-/** Materials as people know them; those of the shop can be had at the start of a program only. */
+/** Options of materials; those of the shop can be chosen only when a program is started. */
 export const materialOptions = (materials, hasOwn = false) => materials
   .filter((each) => hasOwn || !each.is_own).map(({ name, title }) => [name, `${name} · ${title}`]);
 
@@ -44,7 +44,7 @@ const pane = (id, title, fields, ...more) => el("section", { class: "card pane",
   "aria-labelledby": `${id}-title` }, el("h2", { id: `${id}-title` }, title), more,
 el("div", { class: "grid" }, fields.map((field) => field.node)));
 
-/** Panes of the trial cut. */
+/** Create the panes of the trial cut. */
 export function trialPanes(book, materials, ask) {
   const milling = choiceField({ name: "milling_type", words: "milling type" },
     book.milling.map((each) => [each, MILLING[each] ?? each]), ask);
@@ -60,12 +60,12 @@ export function trialPanes(book, materials, ask) {
   return {
     fields: [milling, material, ...inputs, ...machine],
     nodes: [pane("input", "Input", [milling, material, ...inputs]), pane("machine", "Machine", machine)],
-    /** In a slot the width is the cutter's. */
+    /** In a slot the width equals the cutter diameter. */
     fit(values) {
       const isFull = values.milling_type === "full";
       width.enable(!isFull && width.isFree);
       if (isFull) width.show(values.tool_diameter_mm, false);
-      width.node.title = isFull ? "in full milling the width is the tool's diameter" : "";
+      width.node.title = isFull ? "in full milling the width equals the tool diameter" : "";
     },
     enable(isFree) {
       for (const field of this.fields) { field.isFree = isFree; field.enable(isFree); }
@@ -73,7 +73,7 @@ export function trialPanes(book, materials, ask) {
   };
 }
 
-/** Panes of a program under control while it runs. */
+/** Create the panes of a running program under control. */
 export function programPanes(book, materials, ask) {
   const material = choiceField({ name: "material", words: "workpiece material" },
     materialOptions(materials), ask);
@@ -81,16 +81,16 @@ export function programPanes(book, materials, ask) {
   const hidden = ["depth_percent", "hardness_percent"].map((name) => number(book.run, name, ask));
   const power = number(book.run, "motor_power_percent", ask);
   const shown = { program: told("program", "program"), workingstep: told("workingstep", "workingstep"),
-    tool: told("tool", "tool"), depth: told("depth", "depth cut now", "mm"),
-    motor: told("motor", "motor gives", "kW"), done: told("progress", "program behind", "%") };
+    tool: told("tool", "tool"), depth: told("depth", "actual depth", "mm"),
+    motor: told("motor", "motor power available", "kW"), done: told("progress", "program done", "%") };
   for (const each of [shown.program, shown.workingstep, shown.tool]) each.node.classList.add("wide");
   return {
     fields: [material, ...hidden, power], told: shown,
     nodes: [
       pane("input", "Input", [shown.program, shown.workingstep, shown.tool, shown.depth, shown.done,
         material, ...hidden], el("p", { class: "soft small" },
-        "The program fixes tool, width and speed. Material, depth and hardness, in % of what is planned, "
-        + "are changed behind the loop’s back: it finds out by the force.")),
+        "The program fixes tool, width and speed. Material, depth and hardness, in % of the plan, "
+        + "are changed without telling the loop, which notices them by the force.")),
       pane("machine", "Machine", [power, shown.motor]),
     ],
     fit() {},
@@ -98,22 +98,22 @@ export function programPanes(book, materials, ask) {
   };
 }
 
-/** What is asked before a program starts. */
+/** Create the form that starts a program. */
 export function startPanes(book, { programs, advices, machines, materials }) {
   const choice = (name, words, options) => choiceField({ name, words }, options, () => {});
   const program = choice("program", "program", []);
   fill(program.select,
-    programs.length ? el("optgroup", { label: "as they came" }, programs.map((each) =>
+    programs.length ? el("optgroup", { label: "as uploaded" }, programs.map((each) =>
       el("option", { value: `program:${each.id}` }, each.title))) : null,
     advices.length ? el("optgroup", { label: "with advised feeds" }, advices.map((each) =>
       el("option", { value: `advice:${each.id}` }, each.title))) : null);
-  const machine = choice("machine", "machine", [["", "one that suits"],
+  const machine = choice("machine", "machine", [["", "automatic"],
     ...machines.map(({ name, title }) => [name, `${name} · ${title}`])]);
   const material = choice("material", "workpiece material",
-    [["", "the one the program names"], ...materialOptions(materials, true)]);
+    [["", "as in the program"], ...materialOptions(materials, true)]);
   const law = choice("law", "control law", book.laws.map((each) => [each, LAWS[each] ?? each]));
-  const preview = checkField({ name: "has_preview", words: "the law knows what is ahead (preview)" }, () => {});
-  const recorded = checkField({ name: "is_recorded", words: "keep the outcome in the knowledge base" }, () => {});
+  const preview = checkField({ name: "has_preview", words: "use a preview of the cut ahead" }, () => {});
+  const recorded = checkField({ name: "is_recorded", words: "record the outcome in the knowledge base" }, () => {});
   const fields = [program, machine, material, law, preview, recorded];
   for (const field of fields) field.node.classList.add("wide");
   for (const field of [law, preview, recorded]) field.show(book.usualRun[field.spec.name]);
@@ -122,15 +122,15 @@ export function startPanes(book, { programs, advices, machines, materials }) {
   return {
     fields,
     nodes: [pane("input", "Input", fields, isEmpty ? el("p", { class: "banner warn", id: "no-programs" },
-      "There is no program yet: ", el("a", { href: "/dashboard/plan.html" }, "upload one"), ".") : null)],
+      "No programs yet: ", el("a", { href: "/dashboard/plan.html" }, "upload one"), ".") : null)],
     isEmpty,
-    /** As POST /v1/control-runs takes it. */
+    /** Return the body for POST /v1/control-runs. */
     body() {
       const [kind, id] = program.read().split(":");
       return { [`${kind}_id`]: id, machine: machine.read(), material: material.read(), law: law.read(),
         has_preview: preview.node.firstChild.checked, is_recorded: recorded.node.firstChild.checked };
     },
-    /** As another run was asked for. */
+    /** Fill the form from the request of another run. */
     preset(request) {
       const source = request.advice_id ? `advice:${request.advice_id}` : `program:${request.program_id}`;
       if ([...program.select.options].some((option) => option.value === source)) program.show(source);

@@ -1,22 +1,22 @@
-// What the plots are drawn with: grids, lines and marks on a canvas.
+// Drawing of plots on a canvas: grids, lines and marks.
 
 import { number } from "/dashboard/app.js";
 
-/** px beside the plots */
+/** margins beside the plots, in px */
 export const LEFT = 52, RIGHT = 10;
 
-/** colours in app.css of kinds of events */
+/** colours of event kinds, by their names in app.css */
 export const TONES = { over: "bad", stop: "bad", breakage: "bad", lost: "bad", refused: "bad", hold: "warn",
   warning: "warn", wear: "warn", hardness: "warn", unreachable: "warn", silence: "warn",
   safe: "good", resume: "good" };
 
-/** A round step so that `top` has about so many. */
+/** Return a round step that divides `top` into about a number of parts. */
 export function stepOf(top, count) {
   const rough = top / count, power = 10 ** Math.floor(Math.log10(rough));
   return power * [1, 2, 2.5, 5, 10].find((each) => each * power >= rough * 0.999);
 }
 
-/** A line of runs of columns. */
+/** Draw a line through runs of columns. */
 export function drawLine(pen, ink, runs, y, line) {
   pen.strokeStyle = ink;
   pen.lineWidth = line.width ?? 1.4;
@@ -33,7 +33,7 @@ export function drawLine(pen, ink, runs, y, line) {
   pen.setLineDash([]);
 }
 
-/** Axes with their numbers. */
+/** Draw axes with their numbers. */
 export function drawGrid(pen, ink, { x, y, begin, end, step, high, width, height, foot, top, isLast, hasData }) {
   pen.strokeStyle = ink("rule");
   pen.fillStyle = ink("soft");
@@ -62,7 +62,7 @@ export function drawGrid(pen, ink, { x, y, begin, end, step, high, width, height
   pen.fillText("s", width - RIGHT, height - foot + 11);
 }
 
-/** Events as lines over the plots, with their kind where there is room. */
+/** Draw events as lines over the plots, with their kind where there is room. */
 export function drawMarkers(pen, ink, events, { x, begin, end, height, foot, hasWords }) {
   let free = LEFT;
   pen.textAlign = "left";

@@ -1,7 +1,7 @@
-// The plots of a run that goes on: feed rate, cutting force, removal rate against time.
+// Live plots of a run: feed rate, cutting force and removal rate over time.
 //
-// Drawn on canvases by hand: plotly.js, which draws the other pages, takes 80 ms for three panels
-// that grow ten times a second (measured: four frames in ten above 50 ms), this a few.
+// They are drawn directly on canvases: plotly.js, used by the other pages, takes 80 ms for three
+// panels that grow ten times a second (measured: four frames in ten above 50 ms), this a few ms.
 
 import { el, fixed, number } from "/dashboard/app.js";
 import { colour } from "/dashboard/charts.js";
@@ -11,14 +11,14 @@ import { Rows } from "/dashboard/control_series.js";
 const FOOT = 20, RELOAD_MS = 4000;
 
 const PANELS = [
-  // Rapids leave the top: beside them no feed could be read.
+  // Rapids are cut off, because cutting feeds would not be readable beside them.
   { id: "feed", title: "Feed rate", unit: "mm/min", scale: ["programmed", "advised"], lines: [
     { name: "programmed", label: "programmed", colour: "curve-7", dash: [6, 4] },
     { name: "advised", label: "advised", colour: "curve-2" },
     { name: "actual", label: "actual", colour: "curve-1", width: 2.2 }] },
   { id: "force", title: "Cutting force", unit: "N", lines: [
     { name: "set_point", label: "set point", colour: "curve-2", dash: [6, 4] },
-    { name: "expected", label: "expected by the plan", colour: "curve-3" },
+    { name: "expected", label: "expected", colour: "curve-3" },
     { name: "measured", label: "measured", colour: "curve-1", width: 2.2 }] },
   { id: "removal", title: "Removal rate", unit: "cm³/min", lines: [
     { name: "removal", label: "removed", colour: "curve-1", width: 2.2 }] },
@@ -53,17 +53,17 @@ export class Plots {
     this.under = el("span", { class: "soft small", id: "plots-at" }, "");
     this.panels = PANELS.map((panel, row) => this.panel(panel, row === PANELS.length - 1));
     const frame = el("div", { class: "strips", tabindex: "0", role: "group", id: "plots-frame",
-      "aria-label": "Plots against time: arrow keys move, plus and minus zoom, Home goes back to live",
+      "aria-label": "Plots over time: arrow keys move, plus and minus zoom, Home returns to live",
       onkeydown: (event) => this.key(event) }, this.panels.map((panel) => panel.node));
     return el("section", { class: "card plots", id: "plots", "aria-labelledby": "plots-title" },
       el("div", { class: "row spread" }, el("h2", { id: "plots-title" }, "Plots"), this.under,
         el("div", { class: "row" }, this.back, el("div", { class: "switch small", role: "group",
-          "aria-label": "time that is shown" }, this.windows))), frame);
+          "aria-label": "time range shown" }, this.windows))), frame);
   }
 
   panel(panel, isLast) {
     const canvas = el("canvas", { id: `plot-${panel.id}`, role: "img", class: isLast ? "last" : "",
-      "aria-label": `${panel.title}, ${panel.unit}, against time in s` });
+      "aria-label": `${panel.title}, ${panel.unit}, over time in s` });
     const keys = panel.lines.map((line) => {
       const value = el("b", {}, "–");
       const swatch = el("i", { class: line.dash ? "dashed" : "", style: `color: var(--${line.colour})` });
@@ -81,9 +81,9 @@ export class Plots {
     return { ...panel, canvas, keys, node, isLast };
   }
 
-  // -- what is shown ----------------------------------------------------------------------------
+  // -- display ----------------------------------------------------------------------------------
 
-  /** Another run, or none; `hasRows`: it has begun. */
+  /** Switch to another run, or to none; `hasRows`: the run has begun. */
   async show(place, hasRows) {
     this.rows = place ? new Rows(place, () => this.dirty()) : null;
     this.events = [];
@@ -94,7 +94,7 @@ export class Plots {
     if (hasRows) await this.reload();
   }
 
-  /** Slide along with the last rows again; `seconds` null: all of them. */
+  /** Follow the latest rows again; `seconds` null: show all of them. */
   slide(seconds) {
     this.window = seconds;
     this.windows.forEach((button, at) =>
@@ -115,7 +115,7 @@ export class Plots {
     this.soon = setTimeout(() => this.reload(), 120);
   }
 
-  /** Read what is shown from the service. */
+  /** Read the displayed range from the service. */
   async reload() {
     if (!this.rows) return;
     this.reloaded = performance.now();
@@ -145,7 +145,7 @@ export class Plots {
     return [Math.max(0, last - this.window), Math.max(last, this.window)];
   }
 
-  // -- hands ------------------------------------------------------------------------------------
+  // -- interaction ------------------------------------------------------------------------------
 
   timeAt(event, canvas) {
     const box = canvas.getBoundingClientRect(), [begin, end] = this.shown;
@@ -245,7 +245,7 @@ export class Plots {
     pen.restore();
   }
 
-  /** A line as one low and one high for each column of pixels, so that no peak is lost. */
+  /** Draw a line as minimum and maximum of each pixel column, so that no peak is lost. */
   columns(name, begin, end, x) {
     const runs = [];
     let run = null, most = 0;
@@ -254,7 +254,7 @@ export class Plots {
       const at = x(time), column = Math.round(at);
       if (time >= begin && time <= end) most = Math.max(most, high);
       const last = run?.at(-1), before = run?.at(-2);
-      // Level pieces are one stroke: dashes along many points are slow. Their ends stay level.
+      // Level pieces are drawn as one stroke, because dashes along many points are slow.
       if (before && low === high && isLevel(before, low) && isLevel(last, low)) {
         Object.assign(last, { column, x: at, isEnd: true });
         return;

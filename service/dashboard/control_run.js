@@ -1,4 +1,4 @@
-// A run from the panel's side: what it confirms, what was asked of it, how old its data are.
+// A run as seen by the panel: confirmed inputs, pending requests, age of the data.
 
 import { Problem, api, watch } from "/dashboard/app.js";
 import { same } from "/dashboard/control_fields.js";
@@ -9,7 +9,7 @@ const DEBOUNCE_MS = 250, PATIENT_MS = 5000, STALE_MS = 2000, LOOK_MS = 250;
 
 export const isOver = (job) => !["queued", "running"].includes(job.state);
 
-/** The newest run that goes on, of one kind or of both; null: none does. */
+/** Return the newest unfinished run of one kind or of both; null if there is none. */
 export async function newest(kinds = Object.keys(PLACES)) {
   const pages = await Promise.all(kinds.map((kind) => api(`${PLACES[kind]}?limit=20`)));
   const going = pages.flatMap((page) => page.items).filter((job) => !isOver(job));
@@ -17,7 +17,7 @@ export async function newest(kinds = Object.keys(PLACES)) {
   return going[0] ?? null;
 }
 
-/** What a problem says of each input that was sent; `""`: of none in particular. */
+/** Return the messages of a problem by input name; `""` for those of no particular input. */
 export function refusals(error, names) {
   const found = {};
   for (const one of error.body?.errors ?? []) {
@@ -30,9 +30,9 @@ export function refusals(error, names) {
 }
 
 /**
- * One run that is watched. `hear`: {status, rows, event, job, again, refused(name, text),
- * forbidden(error), fresh(age)}: `again` when something was missed, `forbidden` when the key does not
- * do, `fresh` with the age of the data in s, null while they are new.
+ * A watched run. `hear`: {status, rows, event, job, again, refused(name, text),
+ * forbidden(error), fresh(age)}: `again` when messages were missed, `forbidden` when the key is not
+ * sufficient, `fresh` with the age of the data in s, null while they are new.
  */
 export class Run {
   constructor(job, hear) {
@@ -60,28 +60,28 @@ export class Run {
 
   get isOver() { return isOver(this.job); }
 
-  /** Whether new data should come all the time. */
+  /** Whether new data are expected continuously. */
   get goesOn() { return this.job.state === "running" && this.status !== null && !this.status.is_done; }
 
-  /** What the run confirms, by the name of the input. */
+  /** Confirmed values, by the name of the input. */
   get held() { return this.status ? { ...this.status.inputs, pace: this.status.pace } : null; }
 
-  /** What was asked for and is not confirmed yet; undefined: nothing. */
+  /** Requested value that is not confirmed yet; undefined if none. */
   wanted(name) { return this.asked.get(name)?.value; }
 
   take(status) {
-    // A result tells the last status without what only a run that goes on has.
+    // The status in a result lacks the fields of a running run.
     this.status = { ...this.status, ...status };
     const held = this.held;
     for (const [name, order] of this.asked) {
       if (!order.sentAt) continue;
       if (same(held[name], order.value)) this.asked.delete(name);
-      else if (performance.now() - order.sentAt > PATIENT_MS) this.refuse(name, "the run has not taken it");
+      else if (performance.now() - order.sentAt > PATIENT_MS) this.refuse(name, "the run has not confirmed the change");
     }
     this.hear.status(this.status);
   }
 
-  /** Ask for another value, soon; several go together. */
+  /** Request another value shortly; several requests are sent together. */
   ask(name, value) {
     this.asked.set(name, { value, sentAt: null });
     clearTimeout(this.soon);
@@ -103,7 +103,7 @@ export class Run {
     } catch (error) {
       if (error.status === 403) this.hear.forbidden(error);
       const told = refusals(error, Object.keys(values));
-      // The body is refused as a whole: what is right in it goes again without what is not.
+      // The body is refused as a whole: send the valid inputs again without the invalid ones.
       for (const [name, order] of orders) {
         if (this.asked.get(name) !== order) continue;
         if (name in told) this.refuse(name, told[name]);
@@ -121,7 +121,7 @@ export class Run {
     this.hear.refused(name, text);
   }
 
-  /** An order that the run itself could not carry out. */
+  /** Report an order that the run could not carry out. */
   blame(event) {
     if (event.kind !== "refused") return;
     for (const name of [...this.asked.keys()]) this.refuse(name, event.text);
@@ -145,7 +145,7 @@ export class Run {
     this.hear.again();
   }
 
-  /** Watch it no more; it goes on. */
+  /** Stop watching; the run continues. */
   leave() {
     this.stop();
     clearTimeout(this.soon);

@@ -1,10 +1,10 @@
-// Rows of a run as the plots read them: history by range from the service, then rows as they come.
+// Rows of a run for the plots: history by range from the service, then live rows.
 
 import { api } from "/dashboard/app.js";
 
 const POINTS = 1500, MOST_LIVE = 6000;
 
-/** A line: of which signals it is made, and how. */
+/** Lines of the plots: their signals, and how a value is computed from them. */
 export const LINES = {
   programmed: { of: ["feed_programmed_mm_min"], make: (feed) => feed },
   advised: { of: ["feed_programmed_mm_min", "override_commanded_percent"],
@@ -17,13 +17,13 @@ export const LINES = {
 };
 const SIGNALS = [...new Set(Object.values(LINES).flatMap((line) => line.of))];
 
-/** What a line is made of, at one place of some columns; null: not known. */
+/** Return the value of a line at an index of the columns; null if unknown. */
 function made(line, read) {
   const values = line.of.map(read);
   return values.some((value) => value === null || value === undefined) ? null : line.make(...values);
 }
 
-/** Rows of one run. `place` is its path; `changed()` is told when there is something to draw. */
+/** Rows of one run. `place` is its path; `changed()` is called when there is something to draw. */
 export class Rows {
   constructor(place, changed) {
     this.place = place;
@@ -39,10 +39,10 @@ export class Rows {
     this.live = { time: [], values: Object.fromEntries(Object.keys(LINES).map((name) => [name, []])) };
   }
 
-  /** Time of the last row that is known; null: there are none. */
+  /** Time of the last known row; null if there is none. */
   get last() { return this.live.time.at(-1) ?? this.history.end.at(-1) ?? null; }
 
-  /** Read a range from the service; null: from the beginning, to the end. */
+  /** Read a range from the service; null: from the start, to the end. */
   async load(begin = null, end = null) {
     const turn = ++this.asked;
     const range = (begin === null ? "" : `&begin_s=${Math.max(begin, 0)}`) + (end === null ? "" : `&end_s=${end}`);
@@ -64,7 +64,7 @@ export class Rows {
     this.changed();
   }
 
-  /** Rows that have just come. True: so many that the range should be read again. */
+  /** Add new rows; true if there are so many that the range should be read again. */
   add({ columns, is_reduced: isReduced }) {
     const from = this.live.time.at(-1) ?? -Infinity;
     columns.time_s.forEach((time, at) => {
@@ -85,7 +85,7 @@ export class Rows {
     for (const values of Object.values(this.live.values)) values.splice(0, count);
   }
 
-  /** Call `take(time, low, high)` for each point of a line from a time to another, and one beyond. */
+  /** Call `take(time, low, high)` for each point of a line in a time range, and for one beyond. */
   points(name, begin, end, take) {
     const { begin: times, end: ends, [name]: sides } = this.history;
     if (sides) {
@@ -102,7 +102,7 @@ export class Rows {
     }
   }
 
-  /** What a line is at a time, as the last row before it tells; null: not known. */
+  /** Return the value of a line at a time, from the last row before it; null if unknown. */
   at(name, moment) {
     let found = null;
     this.points(name, moment, moment, (time, low, high) => {
@@ -112,7 +112,7 @@ export class Rows {
   }
 }
 
-/** Number of the first entry above a value in ascending numbers. */
+/** Return the index of the first entry above a value in ascending numbers. */
 function after(ascending, value) {
   let low = 0, high = ascending.length;
   while (low < high) {

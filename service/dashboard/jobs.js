@@ -1,4 +1,4 @@
-// Jobs: all of them with how far they are; looked at again while the page is seen.
+// The jobs page: all jobs with their progress, refreshed while the page is visible.
 
 import { announce, api, byId, duration, el, fill, moment, tell } from "/dashboard/app.js";
 import { allPrograms, bar, confirmed, framed, hasShare, isOver, KINDS, programOf, saying, stateBadge, STATES }
@@ -21,16 +21,16 @@ const older = el("button", { id: "jobs-older", hidden: true, onclick: () => { cu
 const trouble = el("div", { id: "problem" }), body = el("tbody", {}), when = el("span", { class: "soft small", id: "jobs-seen" });
 const none = el("p", { class: "empty", id: "no-jobs", hidden: true });
 const frame = framed("jobs", el("table", { id: "jobs" }, el("caption", { class: "unseen" }, "Jobs, newest first"),
-  el("thead", {}, el("tr", {}, ["Kind", "State", "Program", "Progress", "Who", "When", "Duration"].map((text, at) =>
-    el("th", { scope: "col", class: at === 6 ? "n" : "" }, text)), el("th", { scope: "col" }, el("span", { class: "unseen" }, "what to do")))), body));
+  el("thead", {}, el("tr", {}, ["Kind", "State", "Program", "Progress", "Owner", "Created", "Duration"].map((text, at) =>
+    el("th", { scope: "col", class: at === 6 ? "n" : "" }, text)), el("th", { scope: "col" }, el("span", { class: "unseen" }, "actions")))), body));
 
-fill(byId("main"), el("div", { class: "title" }, el("h1", {}, "Jobs"), el("span", { class: "soft" }, "long work: asked for, running, done")),
+fill(byId("main"), el("div", { class: "title" }, el("h1", {}, "Jobs"), el("span", { class: "soft" }, "long work: queued, running, finished")),
   trouble, el("section", { class: "card", "aria-label": "jobs" },
     el("div", { class: "row spread" },
       el("div", { class: "row" }, el("label", { class: "inline" }, "Kind", kind), el("label", { class: "inline" }, "State", state)), when),
     frame, none, el("div", { class: "row end" }, newer, older)));
 
-// -- looking ----------------------------------------------------------------------------------
+// -- refreshing -------------------------------------------------------------------------------
 
 function afresh() {
   cursors = [null];
@@ -39,7 +39,7 @@ function afresh() {
   look();
 }
 
-/** Read the page that is shown, and look again later; not while nobody sees it. */
+/** Read the displayed page, and refresh it later; not while the page is hidden. */
 async function look() {
   clearTimeout(timer);
   const mine = reading += 1;
@@ -73,7 +73,7 @@ function draw(page) {
   newer.hidden = cursors.length < 2;
   none.hidden = page.items.length > 0;
   frame.hidden = !page.items.length;
-  none.textContent = kind.value || state.value ? "No job is like that." : "No job yet: ask for advice on the page Plan, or start a run on the page Machine.";
+  none.textContent = kind.value || state.value ? "No job matches the filter." : "No jobs yet: request advice on the page Plan, or start a run on the page Machine.";
   const ids = page.items.map(({ id }) => id).join();
   for (const job of page.items) {
     tellChange(job);
@@ -88,16 +88,16 @@ function draw(page) {
   }
 }
 
-/** Say how a job has ended that was seen to run. */
+/** Announce the end of a job that was running before. */
 function tellChange(job) {
   const before = states.get(job.id);
   if (before && before !== job.state && isOver(job)) announce(`${KINDS[job.kind][0]} ${programOf(job, programs)} ${job.state}`);
   states.set(job.id, job.state);
 }
 
-// -- lines ------------------------------------------------------------------------------------
+// -- rows -------------------------------------------------------------------------------------
 
-/** A line that stays while what it tells changes: focus is not lost. */
+/** Create a row that is updated in place, so that it keeps the focus. */
 function made(first) {
   const cells = { state: el("td", {}), how: el("td", { class: "jobs-how" }), took: el("td", { class: "n" }), acts: el("td", { class: "jobs-acts" }) };
   const row = el("tr", { id: `job-${first.id}`, "data-kind": first.kind },
@@ -127,16 +127,16 @@ function how(job) {
   if (job.state === "queued") return el("span", { class: "soft small" }, saying(job));
   if (job.state === "cancelled") return el("span", { class: "soft small" }, ended(job));
   if (job.state === "succeeded") return el("span", { class: "soft small" }, gist(job));
-  if (!hasShare(job)) return el("span", { class: "soft small" }, saying(job) || "runs at its pace");
-  return [bar(job), el("div", { class: "soft small" }, saying(job) || "begins")];
+  if (!hasShare(job)) return el("span", { class: "soft small" }, saying(job) || "paced run");
+  return [bar(job), el("div", { class: "soft small" }, saying(job) || "starting")];
 }
 
 function ended(job) {
-  if (!job.started_at) return "ended before it began";
-  return job.share && !job.request.pace ? `ended at ${Math.round(100 * job.share)} %` : "ended before its time";
+  if (!job.started_at) return "cancelled before it started";
+  return job.share && !job.request.pace ? `cancelled at ${Math.round(100 * job.share)} %` : "cancelled";
 }
 
-/** What was asked for, in some words. */
+/** Summarise the request of a job. */
 function gist({ request, kind }) {
   const { mode, machine, material, tool, program, pace, law, grouping, only } = request;
   const of = [machine, material, tool, program].filter(Boolean);
@@ -161,9 +161,9 @@ function acts(job) {
 
 async function remove(job, label) {
   const texts = [`${label}, ${moment(job.created_at)}: its results, samples and reports are deleted.`,
-    ["control-run", "evaluation", "review"].includes(job.kind) ? "What the knowledge base holds stays." : "This cannot be undone."];
+    ["control-run", "evaluation", "review"].includes(job.kind) ? "Entries of the knowledge base are kept." : "This cannot be undone."];
   if (await confirmed("Delete a job", texts, "Delete")) {
-    await doing(() => api(`/v1/jobs/${job.id}`, { method: "DELETE" }), `${label} is deleted`);
+    await doing(() => api(`/v1/jobs/${job.id}`, { method: "DELETE" }), `${label} was deleted`);
     lines.delete(job.id);
   }
 }

@@ -1,4 +1,4 @@
-// Knowledge: what was planned against what it was, and the factors on k_c that were learned.
+// The knowledge page: planned against measured values, and learned factors on k_c.
 
 import { api, byId, done, el, figure, fill, moment, number, save, show, tell, words } from "/dashboard/app.js";
 import { factors } from "/dashboard/knowledge_factors.js";
@@ -18,10 +18,10 @@ const select = (id, label, options, all) => el("label", {}, label, el("select", 
 const main = byId("main"), trouble = el("div", { id: "problem" });
 fill(main,
   el("div", { class: "title" }, el("h1", {}, "Knowledge"),
-    el("span", { class: "soft" }, "what was planned against what it was, and what to plan with next")),
+    el("span", { class: "soft" }, "planned and measured values, and corrections for the next plans")),
   trouble, el("div", { id: "content", class: "pieces" }));
 
-/** What the fields ask for, as a request's body. */
+/** Return the request body from the fields of the form. */
 function selection() {
   const day = (id, days) => {
     if (!byId(id).value) return null;
@@ -69,19 +69,19 @@ function build(known, all) {
       select("filter-tool", "Tool", distinct("tool", known), "any"),
       select("filter-feature_kind", "Kind of feature", distinct("feature_kind", all.outcomes), "any"),
       select("filter-program", "Program", distinct("program", all.outcomes), "any"),
-      el("label", {}, "From day", el("input", { type: "date", id: "filter-since" })),
-      el("label", {}, "To day, included", el("input", { type: "date", id: "filter-until" })),
-      select("table-grouping", "A row for each", GROUPINGS), select("table-only", "Rows", FILTERS),
-      select("table-sort", "What comes first", SORTS)),
-    el("div", { class: "row actions" }, el("button", { class: "main", id: "make-table" }, "Make the table"),
+      el("label", {}, "From (date)", el("input", { type: "date", id: "filter-since" })),
+      el("label", {}, "To (inclusive)", el("input", { type: "date", id: "filter-until" })),
+      select("table-grouping", "Group rows by", GROUPINGS), select("table-only", "Rows", FILTERS),
+      select("table-sort", "Sort by", SORTS)),
+    el("div", { class: "row actions" }, el("button", { class: "main", id: "make-table" }, "Compute table"),
       el("button", { type: "reset", id: "reset-filters", onclick: () => setTimeout(make) }, "All outcomes"),
       el("span", { class: "soft small", id: "table-progress", role: "status" })));
   fill(byId("content"),
-    el("section", { class: "card", "aria-label": "what is known" }, el("div", { class: "figures", id: "known" },
+    el("section", { class: "card", "aria-label": "summary" }, el("div", { class: "figures", id: "known" },
       figure("Outcomes", number(all.total, 7)),
       figure("Runs", number(distinct("run", all.outcomes).length, 7), all.total > all.outcomes.length ? `of the last ${all.outcomes.length} outcomes` : ""),
       figure("Contexts", String(known.length), "machine, material, tool"),
-      el("div", { class: "figure" }, el("div", { class: "name" }, "k_c proposals to decide"),
+      el("div", { class: "figure" }, el("div", { class: "name" }, "open k_c proposals"),
         el("div", {}, el("a", { href: "#factors", class: "value", id: "known-proposals" }, "–"))))),
     el("section", { class: "card", "aria-labelledby": "evaluation-title" },
       el("div", { class: "row spread" }, el("h2", { id: "evaluation-title" }, "Evaluation"),
@@ -99,7 +99,7 @@ async function make() {
   const rest = { grouping: byId("table-grouping").value, only: byId("table-only").value, sort: byId("table-sort").value };
   try {
     const job = await done("/v1/evaluations", { ...selection(), ...rest },
-      (now) => { place.textContent = now.state === "queued" ? "waits for its turn" : now.message || now.state; });
+      (now) => { place.textContent = now.state === "queued" ? "queued" : now.message || now.state; });
     await open(job);
     place.textContent = "";
   } catch (error) {
@@ -110,7 +110,7 @@ async function make() {
   }
 }
 
-/** Show the table of an evaluation, and the outcomes that it is of. */
+/** Show the table of an evaluation, and its outcomes. */
 async function open(job) {
   const path = `/v1/evaluations/${job.id}`;
   restore(job.request);
@@ -124,24 +124,24 @@ async function open(job) {
   const isOld = newest && new Date(newest) > new Date(table.made_at);
   fill(byId("table-place"),
     el("p", { class: "soft small", id: "table-facts" },
-      `Made ${moment(table.made_at)} of ${table.outcomes} outcomes: rows ${table.rows.length}` +
+      `Computed ${moment(table.made_at)} from ${table.outcomes} outcomes: rows ${table.rows.length}` +
       `${table.rows_left_out ? ` and ${table.rows_left_out} not shown` : ""}.`,
-      isOld ? el("span", { class: "warn" }, " Outcomes have come since: make it anew.") : null),
+      isOld ? el("span", { class: "warn" }, " There are newer outcomes: compute it again.") : null),
     evaluationTable(table));
   await outcomePlots(byId("plots"), found);
 }
 
 function empty() {
   fill(byId("content"), el("section", { class: "card", id: "nothing-known" },
-    el("h2", {}, "Nothing is known yet"),
-    el("p", {}, "An outcome tells of one workingstep of one run: force, feed, time and roughness as planned and as they were. " +
-      "The table, the plots and the factors on k_c are made of them. They get here in two ways:"),
+    el("h2", {}, "No outcomes yet"),
+    el("p", {}, "An outcome describes one workingstep of one run: force, feed, time and roughness, planned and measured. " +
+      "The table, the plots and the factors on k_c are based on outcomes. They are recorded in two ways:"),
     el("ul", {},
-      el("li", {}, "A run under the force loop on the page ", el("a", { href: "/dashboard/control.html" }, "Control"), " is recorded when it ends."),
+      el("li", {}, "A controlled run on the page ", el("a", { href: "/dashboard/control.html" }, "Control"), " is recorded when it ends."),
       el("li", {}, "On the command line, into the knowledge base of this service: ",
         el("code", {}, "stepnc control part.stpnc --machine vmc15 --material c45 --preview --kb DATA/knowledge.db"),
-        ", where DATA is the service's data folder; measured values of a real machine by ", el("code", {}, "stepnc kbe add"), ".")),
-    el("p", {}, "After a few runs “Review” proposes a factor on k_c; once a person has accepted it, the next plan takes it.")));
+        ", where DATA is the service's data folder; measured values of a real machine with ", el("code", {}, "stepnc kbe add"), ".")),
+    el("p", {}, "After a few runs, “Review” proposes a factor on k_c; once a person has accepted it, the next plans apply it.")));
 }
 
 async function begin() {

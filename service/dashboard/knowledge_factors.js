@@ -1,11 +1,11 @@
-// Factors on k_c: proposed and in force with their uncertainty; a person accepts or withdraws.
+// Factors on k_c, proposed and accepted, with their uncertainty; a person accepts or withdraws them.
 
 import { announce, api, done, el, fill, fixed, moment, percent, tell } from "/dashboard/app.js";
 import { colour, layout, plot } from "/dashboard/charts.js";
 import { confirmed, framed } from "/dashboard/records.js";
 
 const PERSON = "stepnc.person";
-const HEAD = ["For", "Proposed last", "Within ±10 %", "In force", "Speaks against it"];
+const HEAD = ["Context", "Latest proposal", "Within ±10 %", "In force", "Objections"];
 
 const contextOf = (each) => [each.machine, each.material, each.tool].join("\u0000");
 const half = (each) => 0.5 * (each.factor_high - each.factor_low);
@@ -14,7 +14,7 @@ const contextWords = (each) => `${each.tool} in ${each.material} on ${each.machi
 
 const act = (kind, word, label, work) => el("button", { class: "small", "data-act": kind, "aria-label": label, onclick: work }, word);
 
-/** What was decided last; nothing of one that another has replaced. */
+/** Badge with the latest decision; none for a factor that another has replaced. */
 const standing = (each, inForce) => (each.standing === "accepted" && each !== inForce ? null
   : el("span", { class: `badge ${{ proposed: "accent", accepted: "good", withdrawn: "warn" }[each.standing]}` },
     each.standing === "accepted" ? "in force" : each.standing));
@@ -22,14 +22,14 @@ const standing = (each, inForce) => (each.standing === "accepted" && each !== in
 const before = (entry) => (entry.inForce ? `Until now: ${factorWords(entry.inForce)}, accepted by ${entry.inForce.decided_by}.`
   : "Until now: the catalogue's k_c.");
 
-/** The section in a place; `told(count)` hears how many proposals wait. */
+/** Show the section; `told(count)` receives the number of open proposals. */
 export async function factors(place, { review, told }) {
   let found = review ? await api(`/v1/reviews/${review}`) : null;
   const trouble = el("div", { id: "factors-problem" }), inside = el("div", {});
   const progress = el("span", { class: "soft small", id: "review-progress", role: "status" });
   const button = el("button", { class: "main", id: "review", onclick: look }, "Review");
   fill(place, el("div", { class: "row" }, button,
-    el("span", { class: "soft small" }, "learns from all outcomes and proposes; nothing changes until a person accepts"), progress),
+    el("span", { class: "soft small" }, "learns from all outcomes and proposes factors; nothing changes until a person accepts"), progress),
   trouble, inside);
   if (!found) {
     const last = (await api("/v1/jobs?kind=review&state=succeeded&limit=1")).items[0];
@@ -88,12 +88,12 @@ export async function factors(place, { review, told }) {
       return;
     }
     const chart = el("div", { class: "chart", id: "factor-plot", role: "img",
-      "aria-label": "factor on k_c of each machine, material and tool, with where the next run lies 9 times of 10; the table below holds the numbers" });
+      "aria-label": "factor on k_c of each machine, material and tool, with the interval of 9 in 10 next runs; the table below lists the numbers" });
     fill(inside,
       el("ul", { class: "keys", "aria-label": "marks" },
-        el("li", {}, el("span", { "aria-hidden": "true", style: "color: var(--curve-2)" }, "◇ "), "proposed last"),
+        el("li", {}, el("span", { "aria-hidden": "true", style: "color: var(--curve-2)" }, "◇ "), "latest proposal"),
         el("li", {}, el("span", { "aria-hidden": "true", style: "color: var(--curve-1)" }, "● "), "in force"),
-        el("li", {}, "bars: where the next run lies 9 times of 10; 1 is the catalogue's k_c")),
+        el("li", {}, "bars: interval of 9 in 10 next runs; 1 is the catalogue's k_c")),
       chart, framed("factors on k_c", table(list)), left, history(corrections));
     await plot(chart, () => picture(list));
   }
@@ -109,8 +109,8 @@ export async function factors(place, { review, told }) {
     const { latest, inForce, isOpen } = entry, name = contextWords(latest);
     const decide = [];
     if (latest.standing !== "accepted") decide.push(act("accept", "Accept", `accept for ${name}`, () => accept(entry)));
-    if (isOpen) decide.push(act("refuse", "Refuse", `refuse for ${name}`, () => withdraw(entry, latest)));
-    if (inForce) decide.push(act("withdraw", "Withdraw", `withdraw what is in force for ${name}`, () => withdraw(entry, inForce)));
+    if (isOpen) decide.push(act("refuse", "Reject", `reject for ${name}`, () => withdraw(entry, latest)));
+    if (inForce) decide.push(act("withdraw", "Withdraw", `withdraw the factor in force for ${name}`, () => withdraw(entry, inForce)));
     return el("tr", { id: `factor-${latest.id}` },
       el("th", { scope: "row" }, latest.tool, el("div", { class: "soft small thin" }, `${latest.material} on ${latest.machine}`)),
       el("td", { class: "proposal", "data-label": HEAD[1] }, `× ${fixed(latest.factor, 2)} ± ${fixed(half(latest), 2)} `, standing(latest, inForce),
@@ -141,26 +141,26 @@ export async function factors(place, { review, told }) {
 
   function accept(entry) {
     const { latest } = entry;
-    return decided("Put a factor in force", [
+    return decided("Accept a factor", [
       el("strong", {}, `${factorWords(latest)} for ${contextWords(latest)}: the next plan uses it.`),
-      `Learned from ${latest.outcomes} outcomes; the next run lies between ${fixed(latest.factor_low, 2)} and ${fixed(latest.factor_high, 2)} 9 times of 10. A plan takes its upper side, so that one run in ten needs more force than planned.`,
+      `Learned from ${latest.outcomes} outcomes; the next run lies between ${fixed(latest.factor_low, 2)} and ${fixed(latest.factor_high, 2)} in 9 of 10 cases. Plans use the upper end, so that one run in ten needs more force than planned.`,
       before(entry),
-      ...entry.objections.map(({ message }) => el("span", { class: "warn" }, `Speaks against it: ${message}`)),
+      ...entry.objections.map(({ message }) => el("span", { class: "warn" }, `Objection: ${message}`)),
     ], "Accept", `/v1/corrections/${latest.id}/accept`, `${factorWords(latest)} for ${contextWords(latest)} is in force`);
   }
 
   function withdraw(entry, which) {
     const isInForce = which === entry.inForce;
-    const after = entry.next ? `After that ${factorWords(entry.next)} is in force again, accepted by ${entry.next.decided_by} before.`
-      : "After that the next plan takes the catalogue's k_c.";
-    return decided(isInForce ? "Take a factor out of force" : "Refuse a proposal", [
-      el("strong", {}, `${factorWords(which)} for ${contextWords(which)}${isInForce ? " is not used any more." : " is not proposed any more."}`),
+    const after = entry.next ? `Then ${factorWords(entry.next)}, accepted earlier by ${entry.next.decided_by}, is in force again.`
+      : "Then the next plans use the catalogue's k_c.";
+    return decided(isInForce ? "Withdraw a factor" : "Reject a proposal", [
+      el("strong", {}, `${factorWords(which)} for ${contextWords(which)}${isInForce ? " will no longer be used." : " will no longer be proposed."}`),
       isInForce ? after : before(entry),
-    ], isInForce ? "Withdraw" : "Refuse", `/v1/corrections/${which.id}/withdraw`, `${factorWords(which)} for ${contextWords(which)} is withdrawn`);
+    ], isInForce ? "Withdraw" : "Reject", `/v1/corrections/${which.id}/withdraw`, `${factorWords(which)} for ${contextWords(which)} is withdrawn`);
   }
 }
 
-/** Factors with their intervals, a line for each context. */
+/** Plot the factors with their intervals, a line for each context. */
 function picture(list) {
   const places = list.map((_, at) => list.length - 1 - at);
   const isOne = new Set(list.map(({ latest }) => latest.machine + latest.material)).size === 1;
@@ -186,7 +186,7 @@ function picture(list) {
 function history(corrections) {
   return el("details", { id: "history" }, el("summary", {}, `All corrections: ${corrections.length}`),
     framed("all corrections", el("table", {}, el("caption", { class: "unseen" }, "All corrections, newest first"),
-      el("thead", {}, el("tr", {}, ["No.", "Context", "Factor", "Proposed", "Standing", "By", "When"].map((text) => el("th", { scope: "col" }, text)))),
+      el("thead", {}, el("tr", {}, ["No.", "Context", "Factor", "Proposed", "Status", "By", "Decided"].map((text) => el("th", { scope: "col" }, text)))),
       el("tbody", {}, [...corrections].reverse().map((each) => el("tr", {}, el("th", { scope: "row" }, String(each.id)),
         el("td", {}, contextWords(each)), el("td", { class: "nowrap" }, `× ${fixed(each.factor, 2)} ± ${fixed(half(each), 2)}`),
         el("td", {}, moment(each.proposed_at)), el("td", {}, each.standing), el("td", {}, each.decided_by || "–"),

@@ -1,9 +1,9 @@
-// Outcomes as plots: predicted against evaluated, and how far off each run was.
+// Plots of outcomes: evaluated against predicted values, and deviations over the runs.
 
 import { el, fill, fixed, moment } from "/dashboard/app.js";
 import { colour, layout, plot } from "/dashboard/charts.js";
 
-/** Columns of an outcome, and how many of the user's unit are in one of its own. */
+/** Columns of an outcome, with the factor from their unit to the user's. */
 const QUANTITIES = {
   force: ["cutting force", "N", "force_predicted_n", "force_measured_n", 1],
   feed: ["feed", "mm/min", "feed_predicted_mm_s", "feed_measured_mm_s", 60],
@@ -29,7 +29,7 @@ export async function outcomePlots(place, found) {
   const over = el("div", { class: "chart", id: "over-runs", role: "img" });
   const summed = el("p", { class: "soft small", id: "plots-words" });
   fill(place, el("section", { class: "card", "aria-labelledby": "plots-title" },
-    el("div", { class: "row spread" }, el("h2", { id: "plots-title" }, "Predicted and evaluated"),
+    el("div", { class: "row spread" }, el("h2", { id: "plots-title" }, "Predicted and measured values"),
       el("label", { class: "inline" }, "Quantity", choice)),
     el("ul", { class: "keys", "aria-label": "tools" }, tools.map((tool, at) => el("li", {},
       el("span", { "aria-hidden": "true", style: `color: var(--${curve(at)})` }, `${symbol(at)[1]} `), tool))),
@@ -85,12 +85,12 @@ export async function outcomePlots(place, found) {
         shapes: [{ type: "rect", xref: "paper", x0: 0, x1: 1, y0: -10, y1: 10, fillcolor: faint(), line: { width: 0 }, layer: "below" }],
         xaxis: { title: { text: "run, oldest first", standoff: 6 }, tickformat: "d",
           dtick: runs.length <= 20 ? 1 : undefined, range: [0.4, runs.length + 0.6] },
-        yaxis: { title: { text: "measured less planned, %", standoff: 4 }, zeroline: true, zerolinewidth: 2 } }),
+        yaxis: { title: { text: "measured minus planned, %", standoff: 4 }, zeroline: true, zerolinewidth: 2 } }),
     }));
   }
   await draw();
 }
 
 const signed = (off) => `${off >= 0 ? "+" : "−"}${fixed(Math.abs(off), 1)} %`;
-/** The band of ±10 %, under all else. */
+/** Colour of the ±10 % band behind the points. */
 const faint = () => `${colour("curve-7")}2b`;

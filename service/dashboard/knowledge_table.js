@@ -14,7 +14,7 @@ const change = (before, after) => {
   return before === null ? was : `${planned} → ${was}`;
 };
 
-/** Mean, scatter, and where it goes from run to run. */
+/** Format mean, scatter and trend of a deviation. */
 function deviation(seen) {
   if (seen.mean_percent === null) return "–";
   const mean = Math.round(seen.mean_percent) + 0;
@@ -34,8 +34,8 @@ const ofRow = (label, text, more = {}) => ({ label, isOfRow: true, text: (side, 
 const figures = (label, text, order) => ({ label, isFigure: true, text, order });
 
 /**
- * Columns by the upper level of the header: what came out first, then what it was made with; `order` is by what a
- * column sorts, of a side.
+ * Columns by the upper level of the header: results first, then conditions; `order` returns the sort key of a
+ * side.
  */
 function columns(rows) {
   const programs = new Set(rows.map((row) => row.program));
@@ -74,17 +74,17 @@ function columns(rows) {
 
 const depth = (side) => change(side.step_depth_predicted_mm, side.step_depth_evaluated_mm);
 
-/** The table as an element, with what to do below each row. */
+/** Create the table, with recommended actions below each row. */
 export function evaluationTable(found) {
-  if (!found.rows.length) return el("p", { class: "empty", id: "no-rows" }, "No row: no outcome is meant, or the filter keeps none.");
+  if (!found.rows.length) return el("p", { class: "empty", id: "no-rows" }, "No rows: no outcome matches the selection, or the filter removes all.");
   const rows = found.rows.map((row, at) => ({ ...row, at: at + 1 }));
   const groups = columns(rows), flat = groups.flatMap(([, list]) => list);
   let sorted = null;
   const body = el("table", { class: "sides", id: "evaluation" });
   const legend = el("p", { class: "soft small" },
-    "Deviation: measured over planned, less one; mean ± standard deviation; ↑ ↓ changes from run to run, by more than chance. " +
-    "Grade: A within 5 %, B 10 %, C 20 %, D beyond; violated: the force passed its bound; wasted: it stayed far below. " +
-    "k_c factor: measured over the catalogue's, with where the next run lies 9 times of 10; * is not what plans take.");
+    "Deviation: measured over planned, minus one; mean ± standard deviation; ↑ ↓ significant trend from run to run. " +
+    "Grade: A within 5 %, B 10 %, C 20 %, D more; violated: the force exceeded its bound; wasted: it stayed far below. " +
+    "k_c factor: measured over catalogue value, with the interval of 9 in 10 next runs; * differs from the factor that plans apply.");
 
   function sort(column) {
     const isFalling = sorted?.column === column ? !sorted.isFalling : Boolean(column.order) && column.label !== "#";
@@ -100,7 +100,7 @@ export function evaluationTable(found) {
     };
     draw([...rows].sort(compare));
     body.querySelectorAll("thead button")[flat.indexOf(column)].focus();
-    announce(`sorted by ${column.label}, ${isFalling ? "greatest" : "least"} first`);
+    announce(`sorted by ${column.label}, ${isFalling ? "largest" : "smallest"} first`);
   }
 
   function draw(shown) {
@@ -134,7 +134,7 @@ export function evaluationTable(found) {
     const all = remarked(row);
     if (!all.length) return null;
     return el("tr", {}, el("td", { class: "remarks", colspan: String(flat.length) }, el("div", {},
-      el("ul", { class: "plain small", "aria-label": `what to do about ${row.feature}` }, all.map(([side, each]) =>
+      el("ul", { class: "plain small", "aria-label": `recommended actions for ${row.feature}` }, all.map(([side, each]) =>
         el("li", {}, el("span", { class: "soft" }, `${isFinishing(side) ? "finish" : "rough"}: `), `${each.observed}: `, el("strong", {}, each.advice)))))));
   }
 

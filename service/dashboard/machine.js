@@ -1,4 +1,4 @@
-// Machine: a run of the virtual machine, live or recorded.
+// The machine page: a run of the virtual machine, live or recorded.
 
 import { api, byId, el, fill, moment, tell } from "/dashboard/app.js";
 import { allPrograms, isOver, programOf, stateBadge } from "/dashboard/records.js";
@@ -19,13 +19,13 @@ const trouble = el("div", { id: "problem" }), place = el("div", { id: "run-place
 
 fill(byId("main"),
   el("div", { class: "title" }, el("h1", {}, "Machine"),
-    el("span", { class: "soft" }, "a run of the virtual machine, while it runs and afterwards")),
+    el("span", { class: "soft" }, "runs of the virtual machine, live and recorded")),
   trouble,
-  el("section", { class: "card", "aria-label": "which run" },
+  el("section", { class: "card", "aria-label": "choice of run" },
     el("div", { class: "row" }, el("label", { class: "grow" }, "Run", choice), older, badge), starting),
   place);
 
-const label = (job) => [programOf(job, programs), job.request.machine || "a machine that suits",
+const label = (job) => [programOf(job, programs), job.request.machine || "automatic machine",
   paceWord(job.request.pace), moment(job.created_at), isOver(job) ? "" : job.state,
   ["failed", "cancelled"].includes(job.state) ? job.state : ""].filter(Boolean).join(" · ");
 
@@ -37,7 +37,7 @@ function know(job, isFirst = false) {
   known.set(job.id, job);
 }
 
-/** The next page of runs. */
+/** Read the next page of runs. */
 async function list() {
   const page = await api(`/v1/simulations?limit=50${cursor ? `&cursor=${cursor}` : ""}`);
   page.items.forEach((job) => know(job));
@@ -75,7 +75,7 @@ async function begin() {
   const isStart = Boolean(wish.program || wish.advice);
   const first = known.get(wanted) ?? (isStart ? null : [...known.values()][0]);
   if (first) open(first);
-  else if (!isStart || !known.size) fill(place, el("p", { class: "card empty", id: "no-runs" }, "No run yet: start one above."));
+  else if (!isStart || !known.size) fill(place, el("p", { class: "card empty", id: "no-runs" }, "No runs yet: start one above."));
   if (!first) {
     starting.open = true;
     choice.prepend(el("option", { value: "", disabled: true }, known.size ? "choose a run" : "none yet"));

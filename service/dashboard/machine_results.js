@@ -1,4 +1,4 @@
-// What a simulated run came to: totals, workingsteps, peaks, energy by component, files.
+// Results of a simulated run: totals, workingsteps, peaks, energy by component, files.
 
 import { api, duration, el, fill, figure, fixed, number, percent, save, show } from "/dashboard/app.js";
 import { framed } from "/dashboard/records.js";
@@ -19,12 +19,12 @@ export async function results(place, job, goTo) {
         figure("Time", duration(total.time_s)), figure("Cutting", percent(cutting), "of the time"),
         figure("Energy", number(total.energy_j.total / 1000, 4), "kJ"),
         figure("Removed", number(total.volume_mm3 / 1000, 3), "cm³"),
-        figure("Peak spindle power, from the mains", fixed(total.peak_spindle_power.value_w / 1000, 2), "kW"),
+        figure("Peak spindle power (mains)", fixed(total.peak_spindle_power.value_w / 1000, 2), "kW"),
         figure("Peak cutting force", number(total.peak_cutting_force.value_n, 3), "N"),
         figure("CO₂ equivalent", number(found.carbon.total_g, 3), "g")),
       total.overload_time_s > 0 ? el("div", { class: "banner warn", id: "overload" },
-        `${duration(total.overload_time_s)} above the continuous power of the spindle drive, or the permitted force.`) : null,
-      found.findings.length ? el("details", {}, el("summary", {}, `Remarks on the run: ${found.findings.length}`),
+        `${duration(total.overload_time_s)} above the continuous power of the spindle drive, or above the permitted force.`) : null,
+      found.findings.length ? el("details", {}, el("summary", {}, `Findings of the run: ${found.findings.length}`),
         el("ul", {}, found.findings.map((each) => el("li", { class: each.severity === "error" ? "bad" : "" }, each.message)))) : null),
     el("section", { class: "card", style: "grid-column: span 5" }, el("h2", { id: "energy-title" }, "Energy by component"),
       framed("energy by component", energy(total.energy_j)),
@@ -38,7 +38,7 @@ function steps(rows, goTo) {
   const head = ["Workingstep", "Time s", "Cutting s", "Air s", "Rapid s", "Waiting s", "Energy kJ",
     "Spindle kW", "Force N", "Removed cm³"];
   return el("table", { id: "steps", "aria-labelledby": "steps-title" },
-    el("caption", {}, "Greatest spindle power (from the mains) and force; a name shows the state where the workingstep begins."),
+    el("caption", {}, "Peak spindle power (mains) and force; click a name to show the state at the start of the workingstep."),
     el("thead", {}, el("tr", {}, head.map((text, at) => el("th", { scope: "col", class: at ? "n" : "" }, text)))),
     el("tbody", {}, rows.map((row) => el("tr", {},
       el("th", { scope: "row", class: "nowrap" }, el("button", { class: "link", onclick: () => goTo(row.begin_s),
@@ -61,6 +61,6 @@ function energy(joules) {
       el("td", {}, el("div", { class: "share" },
         el("i", { style: `width: ${(100 * value) / most}%; background: var(--${colour})` }),
         el("span", { class: "n" }, percent(joules.total ? value / joules.total : null, 1))))))),
-    el("tfoot", {}, el("tr", {}, el("th", { scope: "row" }, "all"),
+    el("tfoot", {}, el("tr", {}, el("th", { scope: "row" }, "total"),
       el("td", { class: "n" }, number(joules.total / 1000, 4)), el("td", {}, ""))));
 }

@@ -1,4 +1,4 @@
-// One run of the virtual machine, live or recorded: how it is now, its signals against time.
+// One run of the virtual machine, live or recorded: its current state, and signals over time.
 
 import { AWAY_WORDS, announce, api, byId, duration, el, fill, fixed, number, tell, watch }
   from "/dashboard/app.js";
@@ -10,17 +10,17 @@ import { results } from "/dashboard/machine_results.js";
 
 const FLUSH = 250, STALE = 5000;
 
-/** of a machine whose program is over, whatever its last sample says */
+/** values of a machine whose program has ended, regardless of its last sample */
 const AT_REST = { feed_actual_mm_min: 0, spindle_speed_rpm: 0, cutting_force_n: 0, path_mode: 0 };
 const END_WORDS = { succeeded: "State at the end of the run", failed: "State when the run failed",
-  cancelled: "State when the run was ended" };
+  cancelled: "State when the run was cancelled" };
 
-/** Readings: id, name, unit, how the value of a row is told; large ones first. */
+/** Readings: id, label, unit, formatting of a row's value; large ones first. */
 const READINGS = [
   ["now-feed-commanded", "Feed commanded", "mm/min", (row) => number(row.feed_programmed_mm_min, 4), "big"],
   ["now-feed-actual", "Feed actual", "mm/min", (row) => number(row.feed_actual_mm_min, 4), "big"],
   ["now-power", "Power from the mains", "kW", (row) => fixed(row.total_power_w / 1000, 2), "big"],
-  ["now-time", "Time of the machine", "", (row) => duration(row.time_s)],
+  ["now-time", "Machine time", "", (row) => duration(row.time_s)],
   ["now-x", "X", "mm", (row) => fixed(row.x_mm, 2)],
   ["now-y", "Y", "mm", (row) => fixed(row.y_mm, 2)],
   ["now-z", "Z", "mm", (row) => fixed(row.z_mm, 2)],
@@ -32,8 +32,8 @@ const READINGS = [
 ];
 
 /**
- * Show the run of a job in a place; `told(job, isAgain)` hears how the job is, and whether it has
- * begun anew: then nothing of what is shown holds. Returns a function that lets go of it.
+ * Show the run of a job; `told(job, isAgain)` receives the job, and whether it has been restarted,
+ * which makes the displayed data invalid. Returns a function that stops showing it.
  */
 export function showRun(place, first, told = () => {}) {
   let job = first, status = null, row = null, chart = null, energy = 0, energyAt = 0;
@@ -46,12 +46,12 @@ export function showRun(place, first, told = () => {}) {
   const step = el("span", { id: "now-workingstep" }, "–");
   const stale = el("div", { id: "stale" }), trouble = el("div", { id: "run-problem" });
   const full = el("div", { class: "banner warn", id: "run-full", hidden: true },
-    "There are more rows than are kept to look at: the plots end here, the run goes on.");
+    "The run has more rows than can be plotted: the plots end here, the run continues.");
   const line = hasShare(job) ? bar(job, { id: "run-progress" }) : null;
   const message = el("span", { class: "soft small", id: "run-message" });
   const cancel = el("button", { id: "run-cancel", onclick: () =>
     api(`/v1/jobs/${job.id}/cancel`, { method: "POST" }).then(hear, (error) => tell(trouble, error)) },
-  "End the run");
+  "Cancel the run");
   const progress = el("div", { class: "row", id: "run-line" }, line, message, cancel);
   const values = new Map();
   const readings = READINGS.map(([id, name, unit, , kind = ""]) => {
@@ -65,7 +65,7 @@ export function showRun(place, first, told = () => {}) {
   const atLine = el("label", { class: "at no-print", hidden: true, id: "at-line" },
     el("span", { id: "at-words" }, "State at the end of the run"), slider);
   const drawn = el("div", { class: "chart", id: "run-chart", role: "img",
-    "aria-label": "power by component, feed commanded and actual, cutting force against time" });
+    "aria-label": "power by component, feed commanded and actual, cutting force over time" });
   const outcome = el("div", { id: "results" });
   const hold = () => { isHeld = true; }, release = () => { isHeld = false; };
   drawn.addEventListener("pointerdown", hold, true);
@@ -82,7 +82,7 @@ export function showRun(place, first, told = () => {}) {
       el("div", { class: "readings" }, readings.filter((each) => !each.classList.contains("big"))), atLine),
     el("section", { class: "card", "aria-labelledby": "chart-title" },
       el("h2", { id: "chart-title" }, "Signals"), keys(), drawn,
-      el("p", { class: "soft small" }, "Drag across a range to read it again in full detail; a double click shows the whole run. A click shows the state at that time.")),
+      el("p", { class: "soft small" }, "Drag across a range to zoom in; double-click to show the whole run. Click to show the state at that time.")),
     outcome);
 
   // -- now --------------------------------------------------------------------------------------
@@ -102,7 +102,7 @@ export function showRun(place, first, told = () => {}) {
     lamp.className = `lamp ${LAMPS[execution] ?? "idle"}`;
   }
 
-  /** The last sample is of the moment before the end. */
+  /** Show the final state; the last sample is from just before the end. */
   function showEnd() {
     byId("at-words").textContent = `${END_WORDS[job.state]}; move the slider to look back`;
     if (job.state === "succeeded") {
@@ -117,7 +117,7 @@ export function showRun(place, first, told = () => {}) {
   const stepName = (count) => (count ? status?.workingsteps?.[count - 1] ?? `workingstep ${count}` : "outside workingsteps");
   const tellEnergy = (joules) => { values.get("now-energy").textContent = number(joules / 1000, 4); };
 
-  /** The energy up to a time: the mean power of all rows until then, from the server. */
+  /** Read the energy up to a time, from the mean power of all rows until then. */
   async function energyUntil(time) {
     const query = new URLSearchParams({ signals: "total_power_w", points: "1" });
     if (time !== null) query.set("end_s", String(time));
@@ -131,7 +131,7 @@ export function showRun(place, first, told = () => {}) {
     tellEnergy(energy);
   }
 
-  /** The state of a recorded run at a time. */
+  /** Show the state of a recorded run at a time. */
   async function goTo(time) {
     const mine = asked += 1;
     at = time;
@@ -159,7 +159,7 @@ export function showRun(place, first, told = () => {}) {
   // -- the stream -------------------------------------------------------------------------------
 
   function flush() {
-    // A range that is being drawn would be lost.
+    // Redrawing would cancel a range selection in progress.
     if (!waiting.length || !chart || isHeld) return;
     const parts = waiting;
     waiting = [];
@@ -185,11 +185,11 @@ export function showRun(place, first, told = () => {}) {
         el("span", { id: "stale-age", "aria-live": "off" })));
     }
     isLost = true;
-    byId("stale-age").textContent = `What is shown is ${Math.round((Date.now() - heard) / 1000)} s old.`;
+    byId("stale-age").textContent = `The displayed data are ${Math.round((Date.now() - heard) / 1000)} s old.`;
   }
 
   function back() {
-    if (isLost) announce("the connection holds again");
+    if (isLost) announce("connection restored");
     isLost = false;
     fill(stale);
     chart?.reload().then(recount);
@@ -202,7 +202,7 @@ export function showRun(place, first, told = () => {}) {
     if (isShut) return;
     progress.hidden = isOver(job);
     if (line && job.state === "running") line.value = job.share;
-    message.textContent = row ? "" : saying(job) || "begins";
+    message.textContent = row ? "" : saying(job) || "starting";
     cancel.disabled = job.is_cancelling;
     if (!row) lamp.textContent = job.state.toUpperCase();
   }
@@ -220,7 +220,7 @@ export function showRun(place, first, told = () => {}) {
     fill(stale);
     if (job.state === "failed") tell(trouble, Object.assign(new Error(), failure(job)));
     if (job.state === "cancelled") {
-      fill(trouble, el("div", { class: "banner warn" }, "The run was ended before its time; what was recorded until then is shown."));
+      fill(trouble, el("div", { class: "banner warn" }, "The run was cancelled; the data recorded until then are shown."));
     }
     await chart?.reload();
     await recount();
@@ -259,7 +259,7 @@ export function showRun(place, first, told = () => {}) {
     return `${path}/series?${query}`;
   };
   let ready = null;
-  /** Draw the chart, once there is something to draw. */
+  /** Draw the chart as soon as there are data. */
   const begin = () => (ready ??= timePanels(drawn, source, PANELS, { points: 800, height: 170, shapes })
     .then(async (made) => {
       if (isShut) return;
@@ -283,19 +283,19 @@ export function showRun(place, first, told = () => {}) {
   };
 }
 
-/** What a run was asked for, in a line. */
-function facts(job, known = "a machine that suits") {
+/** Summarise the request of a run in a line. */
+function facts(job, known = "automatic machine") {
   const { machine, material, pace, kc_factor: factor, noise, has_lag: lag, has_wear: wear } = job.request;
-  return [machine || known, material || "the program's material",
+  return [machine || known, material || "material of the program",
     paceWord(pace), factor !== 1 ? `k_c × ${factor}` : "", noise !== "none" ? `noise ${noise}` : "",
-    lag ? "lag of the drive" : "", wear ? "tools wear" : ""].filter(Boolean).join(" · ");
+    lag ? "drive lag" : "", wear ? "tool wear" : ""].filter(Boolean).join(" · ");
 }
 
 function failure(job) {
   return { message: job.problem?.detail ?? "the run has failed" };
 }
 
-/** What the colours mean. */
+/** Create the legend of the colours. */
 function keys() {
   const row = (title, signals) => el("ul", { class: "keys", "aria-label": title },
     el("li", {}, el("b", {}, title)), signals.map(({ label, colour, dash, isArea }) => el("li", {},

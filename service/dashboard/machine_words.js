@@ -1,15 +1,15 @@
-// Words for the numbers of a run's rows: the enums of simulator/machine/samples.py, in one place.
+// Names of the enumerations in a run's rows, as in simulator/machine/samples.py.
 
 export const EXECUTION = ["READY", "ACTIVE", "WAIT", "PROGRAM STOPPED", "PROGRAM COMPLETED"];
-/** classes of lamps, in the same order */
+/** CSS classes of lamps, in the same order */
 export const LAMPS = ["idle", "safe", "wait", "over", "idle"];
 
 export const PATH_MODE = ["at rest", "RAPID", "FEED"];
 
-/** of the spindle drive */
+/** conditions of the spindle drive */
 export const CONDITION = ["NORMAL", "WARNING", "FAULT"];
 
-/** Name of the signal, of the energy in a result, what people call it, its colour in app.css. */
+/** Signal, key of the energy in a result, label, and colour in app.css of each component. */
 export const COMPONENTS = [
   { signal: "base_power_w", energy: "base", label: "base load", colour: "curve-7" },
   { signal: "coolant_power_w", energy: "coolant", label: "coolant", colour: "curve-6" },
@@ -23,7 +23,7 @@ export const COMPONENTS = [
 export const PANELS = [
   { title: "Power from the mains by component, W", unit: "W", isStacked: true,
     signals: COMPONENTS.map(({ signal, label, colour }) => ({ name: signal, label, colour })) },
-  { title: "Feed, mm/min (rapids leave the top)", unit: "mm/min",
+  { title: "Feed, mm/min (rapids leave the frame)", unit: "mm/min",
     top: (greatest) => 1.35 * greatest("feed_programmed_mm_min"),
     signals: [
       { name: "feed_actual_mm_min", label: "actual", colour: "curve-1" },
@@ -34,7 +34,7 @@ export const PANELS = [
 ];
 
 export const PACES = [
-  ["0", "as fast as can be"], ["1", "real time"], ["10", "10 ×"], ["100", "100 ×"],
+  ["0", "as fast as possible"], ["1", "real time"], ["10", "10 ×"], ["100", "100 ×"],
 ];
 
 export const paceWord = (pace) =>

@@ -1,4 +1,4 @@
-// The plan page: choose a program, say what is wanted, see what is advised and why.
+// The plan page: choose a program, set options, see the advice and its reasons.
 
 import { AWAY_WORDS, Problem, announce, api, byId, duration, el, fill, followed, patiently, tell } from "/dashboard/app.js";
 import { programChoice } from "/dashboard/plan_program.js";
@@ -28,7 +28,7 @@ function ready() {
   hint.textContent = working ? "" : program ? "" : "Choose a program first.";
 }
 
-// -- what is wanted ---------------------------------------------------------------------------
+// -- options ---------------------------------------------------------------------------------
 
 async function library(path, select) {
   const entries = await api(path);
@@ -40,12 +40,12 @@ const checked = (name) =>
   [...form.querySelectorAll(`input[name="${name}"]:checked`)].map((each) => each.value);
 const numeric = (id) => (byId(id).value === "" ? null : byId(id).valueAsNumber);
 
-/** The body of the request. Throws in words what is missing. */
+/** Return the request body. Throws a problem if an input is missing. */
 function wish() {
   const free = checked("free"), only = checked("only");
   const all = form.querySelectorAll('input[name="only"]').length;
-  if (!free.length) throw new Problem({ detail: "Tick what may change: feed, depth or speed." }, 0);
-  if (all && !only.length) throw new Problem({ detail: "Tick a workingstep at least." }, 0);
+  if (!free.length) throw new Problem({ detail: "Select at least one quantity that may change: feed, depth or speed." }, 0);
+  if (all && !only.length) throw new Problem({ detail: "Select at least one workingstep." }, 0);
   const safety = numeric("safety");
   return {
     mode: form.elements.mode.value, machine: byId("machine").value, material: byId("material").value,
@@ -58,7 +58,7 @@ function wish() {
   };
 }
 
-/** The form as a request had it. */
+/** Fill the form from a request. */
 function recall(request) {
   const put = (id, value) => { byId(id).value = value ?? ""; };
   for (const each of form.querySelectorAll('input[name="mode"]')) each.checked = each.value === request.mode;
@@ -96,7 +96,7 @@ async function optimise() {
   }
 }
 
-/** Wait for an advice, and show it. */
+/** Wait for the result of an advice job, and show it. */
 async function follow(asked) {
   const place = byId("advice-work"), bar = el("progress", { max: 1, "aria-label": "progress" });
   const words = el("span", { class: "soft small" }, "waiting …");
@@ -112,7 +112,7 @@ async function follow(asked) {
   const begun = performance.now();
   const news = (job) => {
     if (job.share) bar.value = job.share;
-    if (!cancel.disabled) words.textContent = job.state === "queued" ? "waiting for its turn …"
+    if (!cancel.disabled) words.textContent = job.state === "queued" ? "queued …"
       : job.message || "optimising …";
   };
   const line = { lost: () => { words.textContent = AWAY_WORDS; }, back: () => { words.textContent = "…"; } };
@@ -126,7 +126,7 @@ async function follow(asked) {
     performance.measure("optimise to table", { start: begun });
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches && begun)
     {
-      place.hidden = true;  // before it is measured how far
+      place.hidden = true;  // before the scroll distance is measured
       byId("result").scrollIntoView({ behavior: "smooth", block: "start" });
     }
     beginRuns(job, result, { rate: byId("rate").valueAsNumber || 20,
@@ -138,7 +138,7 @@ async function follow(asked) {
   }
 }
 
-// -- an advice that was made before -------------------------------------------------------------
+// -- advice of an earlier request ---------------------------------------------------------------
 
 async function reopen(id) {
   const job = await api(`/v1/jobs/${id}`);

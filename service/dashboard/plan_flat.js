@@ -1,6 +1,6 @@
-// Lines in a plane on a canvas: thousands of strands in their colours, without WebGL.
-// (plotly's scattergl needs functions made from texts, which the page's policy forbids, and its
-// SVG lines need an element for each strand.) Wheel, drag, buttons and keys zoom and move.
+// Plane view of lines on a canvas: thousands of coloured strands, without WebGL.
+// (plotly's scattergl needs functions compiled from strings, which the page's policy forbids, and
+// its SVG lines need an element for each strand.) Wheel, drag, buttons and keys zoom and move.
 
 import { el, fill, number } from "/dashboard/app.js";
 import { colour } from "/dashboard/charts.js";
@@ -8,23 +8,23 @@ import { colour } from "/dashboard/charts.js";
 const EDGE = { left: 52, right: 12, top: 10, bottom: 40 };
 const BAR = 74;
 
-/** A plane view in a place of the page. Running state. */
+/** Plane view in an element of the page. Running state. */
 export class FlatView {
   constructor(place) {
     this.canvas = el("canvas", { tabindex: "0", role: "img" });
     this.told = el("div", { class: "told-at small", hidden: true });
     const button = (name, label, action) => el("button", { type: "button", "aria-label": label, title: label,
       onclick: action }, name);
-    fill(place, this.canvas, this.told, el("div", { class: "zoom no-print" }, button("+", "closer", () => this.zoom(1.5)),
-      button("−", "farther", () => this.zoom(1 / 1.5)), button("⤢", "whole path", () => this.whole())));
+    fill(place, this.canvas, this.told, el("div", { class: "zoom no-print" }, button("+", "zoom in", () => this.zoom(1.5)),
+      button("−", "zoom out", () => this.zoom(1 / 1.5)), button("⤢", "whole path", () => this.whole())));
     this.place = place;
     this.scene = null;
     this.bind();
   }
 
   /**
-   * Show strands: `lines` = [{at, colour, width, dash}] with `at` as numbers of points, -1 a gap; `x`, `y`
-   * in mm; `titles` of the axes; `bar` = {title, high, colours} or null; `tell(at)` what a point is.
+   * Show strands: `lines` = [{at, colour, width, dash}] with `at` as indices of points, -1 for a gap; `x`, `y`
+   * in mm; `titles` of the axes; `bar` = {title, high, colours} or null; `tell(at)` describes a point.
    */
   show(scene) {
     const isOther = this.scene?.key !== scene.key;
@@ -48,7 +48,7 @@ export class FlatView {
     this.tall = Math.max(clientHeight - EDGE.top - EDGE.bottom, 40);
   }
 
-  /** Pixels of a point. */
+  /** Return the pixel coordinates of a point. */
   at(x, y) {
     return [EDGE.left + this.wide / 2 + (x - this.middle[0]) * this.scale,
       EDGE.top + this.tall / 2 - (y - this.middle[1]) * this.scale];
@@ -136,7 +136,7 @@ export class FlatView {
     upright(pen, title, this.width - 8, EDGE.top + tall / 2);
   }
 
-  /** The point of a coloured line that is nearest to a place, if near enough. */
+  /** Return the point of a coloured line nearest to a position, if near enough. */
   nearest(across, down) {
     let found = -1, least = 14 ** 2;
     for (const line of this.scene.lines) {
@@ -154,7 +154,7 @@ export class FlatView {
     let from = null;
     const { canvas } = this;
     canvas.addEventListener("wheel", (event) => {
-      // Without Ctrl the wheel moves the page, unless the view has the focus.
+      // Without Ctrl the wheel scrolls the page, unless the view has the focus.
       if (!event.ctrlKey && document.activeElement !== canvas) return;
       event.preventDefault();
       this.zoom(event.deltaY < 0 ? 1.2 : 1 / 1.2, event.offsetX, event.offsetY);
@@ -205,7 +205,7 @@ function extent(values) {
   return [low, high];
 }
 
-/** 1, 2 or 5 times a power of ten, not less than so much. */
+/** Return the next 1, 2 or 5 times a power of ten that is not below a value. */
 function roundStep(least) {
   const power = 10 ** Math.floor(Math.log10(least));
   return [1, 2, 5, 10].find((factor) => factor * power >= least * 0.999) * power;

@@ -1,4 +1,4 @@
-// Power and force of both runs against one time axis; zooming reads the range again.
+// Power and force of both runs over a common time axis; zooming reads the range again.
 
 import { api, byId } from "/dashboard/app.js";
 import { colour, envelope, layout, plot } from "/dashboard/charts.js";
@@ -40,7 +40,7 @@ async function read() {
   await plot(byId("load-plot"), figureOf);
   const all = Object.values(state.series), rows = all.reduce((sum, each) => sum + each.rows, 0);
   byId("load-note").textContent = all.some((each) => each.is_reduced)
-    ? `${rows.toLocaleString("en-GB")} samples; least and greatest of each stretch are drawn, a zoom reads finer.`
+    ? `${rows.toLocaleString("en-GB")} samples; minimum and maximum of each stretch are drawn; zoom in for more detail.`
     : `All ${rows.toLocaleString("en-GB")} samples of the range are drawn.`;
 }
 

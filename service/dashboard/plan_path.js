@@ -11,7 +11,7 @@ const VALUES = {
   feed: { name: "feed_actual_mm_min", title: "feed, mm/min" },
   force: { name: "cutting_force_n", title: "cutting force, N" },
 };
-/** From little to much, ever farther from the background. */
+/** Colour scale from low to high, with increasing contrast to the background. */
 const SCALES = {
   light: ["#b9d3e6", "#6fa8d6", "#3a6fc4", "#6a3fb0", "#a01f7a", "#7d0022"],
   dark: ["#38506a", "#3f7fc0", "#2fb0c8", "#58cf8a", "#f0c040", "#fff3c8"],
@@ -51,7 +51,7 @@ export async function showPath(runs, result) {
 
 const spread = (values) => values.reduce((most, each) => Math.max(most, Math.abs(each - values[0])), 0);
 
-/** The greatest value outside of rapid moves. */
+/** Return the largest value outside of rapid moves. */
 function greatest(path, name) {
   return path[name].reduce((most, value, at) => (path.is_rapid[at] || value <= most ? most : value), 0);
 }
@@ -76,7 +76,7 @@ function bind() {
   });
 }
 
-/** The number of a workingstep in a run: ids may repeat, the order is the program's. */
+/** Return the number of a workingstep in a run; ids may repeat, the order is that of the program. */
 function numberOf(step) {
   const ids = Object.values(state.runs)[0].path.workingsteps, at = state.steps.indexOf(step);
   return ids[at] === step.id ? at + 1 : ids.indexOf(step.id) + 1;
@@ -104,9 +104,9 @@ async function draw() {
   performance.measure("path drawn", { start: begun, detail: { points: path.time_s.length, view: state.view } });
   const count = path.time_s.length, last = path.time_s.at(-1);
   byId("path-note").textContent = `${count.toLocaleString("en-GB")} of ${path.rows.toLocaleString("en-GB")} samples are drawn; `
-    + `those left out lie within ${number(Math.max(path.deviation_mm, 1e-3), 2)} mm, `
+    + `omitted ones lie within ${number(Math.max(path.deviation_mm, 1e-3), 2)} mm, `
     + `${number(path.deviation_mm_min, 2)} mm/min and ${number(path.deviation_n, 2)} N of the line. `
-    + `${duration(last)} in all.${state.colour === "limit" ? " Limits are those of the advice, also before." : ""}`;
+    + `${duration(last)} in all.${state.colour === "limit" ? " Limits are those of the advice, also in the view before." : ""}`;
 }
 
 function press(id, value) {
@@ -116,11 +116,11 @@ function press(id, value) {
 
 // -- strands ----------------------------------------------------------------------------------
 
-/** Points of a curve; a gap between strands. */
+/** Points of curves, with gaps between strands. */
 class Strand {
   constructor() { this.at = []; this.last = -1; }
 
-  /** The move from one point to the next; `at` holds points, -1 for a gap. */
+  /** Add the move from one point to the next; `at` holds points, -1 for a gap. */
   add(from, to) {
     if (this.last !== from) {
       if (this.at.length) this.at.push(-1);
@@ -131,7 +131,7 @@ class Strand {
   }
 }
 
-/** Moves sorted into rapids, those of other workingsteps, and those shown, by key. */
+/** Sort moves into rapids, those of other workingsteps, and those shown, by key. */
 function sorted(path, keyOf) {
   const chosen = Number(state.step), rapids = new Strand(), others = new Strand(), shown = new Map();
   for (let to = 1; to < path.time_s.length; to += 1) {
@@ -145,14 +145,14 @@ function sorted(path, keyOf) {
   return { rapids: state.hasRapids ? rapids : new Strand(), others, shown };
 }
 
-/** The limit that holds a move. */
+/** Return a function that names the active limit of a move. */
 function limitOf(path) {
   const names = new Map(state.steps.map((step) => [numberOf(step),
     step.active_limit ? limitWords(step.active_limit, step) : "not advised"]));
   return (to) => names.get(path.workingstep[to]) ?? "not advised";
 }
 
-/** A colour for each limit of the advice, the same in all views. */
+/** Choose a colour for each limit of the advice, the same in all views. */
 function limitColours() {
   const names = [...new Set(state.steps.filter((step) => step.active_limit)
     .map((step) => limitWords(step.active_limit, step)))].sort();
@@ -160,7 +160,7 @@ function limitColours() {
     ["not advised", colour("soft")]]);
 }
 
-/** The level of a move's colour. */
+/** Return the level of a move's colour. */
 function levelOf(path) {
   const values = path[VALUES[state.colour].name], [, most] = state.range[state.colour];
   return (to) => {
@@ -224,14 +224,14 @@ const bar = () => ({ title: { text: VALUES[state.colour].title, side: "right" },
 
 function coloured(path, strand) {
   const values = path[VALUES[state.colour].name], [low, high] = state.range[state.colour];
-  // A strand begins in the end of a rapid move: with the feed of its cut, not with that one.
+  // A strand begins at the end of a rapid move, but gets the feed of its cut.
   const colours = strand.at.map((at, place) => (at < 0 ? low
     : values[path.is_rapid[at] && strand.at[place + 1] > 0 ? strand.at[place + 1] : at]));
   return line(path, strand, { color: colours, colorscale: scalePoints(), cmin: low, cmax: high, width: 4,
     showscale: true, colorbar: bar() }, hover(path, strand));
 }
 
-/** A colour of the scale, 0 to 1. */
+/** Return the colour of the scale at a value of 0 to 1. */
 function between(share) {
   const all = scale(), at = Math.min(share, 0.9999) * (all.length - 1), first = Math.floor(at);
   const [a, b] = [all[first], all[first + 1]].map((hex) => [1, 3, 5].map((place) => parseInt(hex.slice(place, place + 2), 16)));
@@ -243,7 +243,7 @@ function between(share) {
 const isNarrow = () => matchMedia("(max-width: 700px)").matches;
 const legend = () => ({ orientation: "h", y: -0.12, x: 0, font: { size: 12 } });
 
-/** Sides of the scene as the path has them; one that has none gets a little. */
+/** Return the proportions of the scene from the extent of the path, with a minimum for each side. */
 function sides() {
   const found = Object.values(state.runs).map((run) => run.path);
   const all = ["x_mm", "y_mm", "z_mm"].map((name) => {
@@ -259,7 +259,7 @@ function sides() {
   return { ranges, ratio: ranges.map(([low, high]) => 1.5 * (high - low) / most) };
 }
 
-/** From the front and above; a lathe with its axis across. */
+/** Camera from the front and above; a lathe's axis is horizontal. */
 function camera() {
   if (state.plane === "zx")
     return { eye: isNarrow() ? { x: 0.6, y: 2.9, z: 0.4 } : { x: 0.35, y: 1.5, z: 0.25 }, up: { x: 1, y: 0, z: 0 }, center: { x: 0, y: 0, z: 0 } };

@@ -1,4 +1,4 @@
-// The program of the plan page: upload, example or one uploaded before; what was found in it.
+// The program of the plan page: upload, example or earlier upload, and its findings.
 
 import { announce, api, byId, el, fill, tell } from "/dashboard/app.js";
 import { programTitle } from "/dashboard/records.js";
@@ -6,7 +6,7 @@ import { programTitle } from "/dashboard/records.js";
 const RANK = ["error", "warning", "note"];
 const KIND = { error: "bad", warning: "warn", note: "soft" };
 
-/** Findings as counts by severity, which open to the list. */
+/** Create counts of findings by severity, which expand to the list. */
 export function findingsList(findings, what) {
   if (!findings.length) return el("p", { class: "soft small" }, `No findings ${what}.`);
   const counts = RANK.map((name) => [name, findings.filter((each) => each.severity === name).length])
@@ -26,19 +26,19 @@ function place({ entity, attribute, line }) {
   return told ? ` (${told})` : "";
 }
 
-/** An example: the copy that was made of it before, as long as the service remembers the request. */
+/** Upload an example, or reuse its earlier copy while the service remembers the request. */
 async function sample(name) {
   const path = `/v1/programs?example=${encodeURIComponent(name)}`;
   try {
     return await api(path, { method: "POST", headers: { "idempotency-key": `example ${name}` } });
   } catch (error) {
-    // The copy was deleted, or the example is another since.
+    // The copy was deleted, or the example has changed since.
     if (error.status === 404 || error.status === 409) return api(path, { method: "POST" });
     throw error;
   }
 }
 
-/** Ways to a program; `chosen(program, contents)` hears of it, `chosen(null)` when there is none. */
+/** Set up the choice of a program; calls `chosen(program, contents)`, or `chosen(null)` for none. */
 export function programChoice(chosen) {
   const drop = byId("drop"), problem = byId("program-problem");
   const examples = byId("program-example"), known = byId("program-known");
@@ -85,7 +85,7 @@ export function programChoice(chosen) {
     examples.value = "";
     use(api(`/v1/programs/${known.value}`), "reading …");
   });
-  // A file that misses its place must not take the page away.
+  // A file dropped beside the target must not replace the page.
   for (const name of ["dragover", "drop"])
     document.addEventListener(name, (event) => event.preventDefault());
   for (const name of ["dragenter", "dragover"])

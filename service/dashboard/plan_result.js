@@ -8,20 +8,20 @@ import { stepsCsv, stepsTable } from "/dashboard/plan_table.js";
 const MODES = { TC: "least time", QC: "roughness kept", EC: "least energy" };
 let job = null, result = null;
 
-/** `before → after` as a figure. */
+/** Create a figure `before → after`. */
 function pair(name, before, after, unit, kind = "") {
   return el("div", { class: `figure ${kind}` }, el("div", { class: "name" }, name),
     el("div", {}, el("span", { class: "was" }, before), el("span", { class: "was arrow", "aria-label": "becomes" }, "→"),
       el("span", { class: "value" }, after), unit ? el("span", { class: "unit" }, unit) : null));
 }
 
-/** Two times in the same form. */
+/** Create a figure of two times in the same unit. */
 function times(name, before, after, kind = "") {
   const longer = Math.max(before, after);
   return pair(name, duration(before, longer), duration(after, longer), "", kind);
 }
 
-/** A saving as a figure; a rise says so, and one of a part of the program does not boast. */
+/** Create a figure of a saving or an increase; a saving of only a part of the program is not highlighted. */
 function saving(name, before, after, isPart) {
   const share = before ? (before - after) / before : null;
   const [word, colour] = share === null || Math.abs(share) < 5e-4 ? ["no change", "soft"]
@@ -54,7 +54,7 @@ export function showResult(asked, found) {
       : "")),
   infeasible ? el("div", { class: "banner bad", role: "alert" },
     `${infeasible} workingstep${infeasible > 1 ? "s have" : " has"} no feasible feed: the table says why. They stay as programmed, also in the NC code; times compare the others.`) : null,
-  found.is_written ? null : el("div", { class: "banner warn" }, "No optimised program was written: nothing was changed in it."),
+  found.is_written ? null : el("div", { class: "banner warn" }, "No optimised program was written, because nothing would change."),
   findingsList(found.findings, "of the plan"));
   byId("download-program").disabled = !found.is_written;
   byId("download-nc").disabled = !found.nc_control;
@@ -65,7 +65,7 @@ export function showResult(asked, found) {
   bars(steps);
 }
 
-/** What the simulations add: time with all moves, energy. */
+/** Add the figures from the simulations: time with all moves, energy. */
 export function showSimulated(before, after) {
   const place = byId("figures-simulated");
   if (!before || !after || !place) return;
@@ -74,7 +74,7 @@ export function showSimulated(before, after) {
     times("Time, simulated with all moves", before.total.time_s, after.total.time_s));
 }
 
-/** Time of each workingstep as bars. */
+/** Draw the time of each workingstep as bars. */
 function bars(steps) {
   const known = steps.filter((step) => step.time_s.before || step.time_s.after);
   const most = Math.max(...known.flatMap((step) => [step.time_s.before ?? 0, step.time_s.after ?? 0]), 1e-9);
@@ -84,7 +84,7 @@ function bars(steps) {
     return el("div", { class: "time" }, el("span", { class: "name", title: step.id }, step.id),
       el("div", { class: "pair-bars", "aria-hidden": "true" }, bar("was", before), bar("is", after)),
       el("span", { class: "told" }, `${fixed(before, 1)} → ${fixed(after, 1)}`));
-  })) : el("p", { class: "empty" }, "No time is known."));
+  })) : el("p", { class: "empty" }, "No times available."));
 }
 
 // -- downloads --------------------------------------------------------------------------------

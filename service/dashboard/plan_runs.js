@@ -1,4 +1,4 @@
-// Simulations of the program as it came and as advised: found, or made, then shown.
+// Simulations of the program before and after optimisation: reused or started, then shown.
 
 import { AWAY_WORDS, Problem, announce, api, byId, el, fill, patiently, save, show, tell } from "/dashboard/app.js";
 import { showLoad } from "/dashboard/plan_load.js";
@@ -6,12 +6,12 @@ import { showPath } from "/dashboard/plan_path.js";
 import { showSimulated } from "/dashboard/plan_result.js";
 
 const NAMES = { before: "as programmed", after: "as advised" };
-/** What a simulation of this page never asks for: others with it are not taken. */
+/** Options of simulations started by this page; runs with other options are not reused. */
 const PLAIN = { control: "fir", noise: "none", has_lag: false, has_wear: false, kc_factor: 1, pace: 0 };
 
 let turn = 0;
 
-/** Take away what belongs to the advice before. */
+/** Hide everything that belongs to the previous advice. */
 export function endRuns() {
   turn += 1;
   for (const id of ["runs", "path-card", "load-card"]) byId(id).hidden = true;
@@ -82,7 +82,7 @@ async function simulate(job, result, rate, mine) {
   } catch (error) { tell(problem, error); byId("runs").hidden = false; }
 }
 
-/** Wait for the end of a job by looking at it: its stream would bring rows that are not needed. */
+/** Wait for the end of a job by polling, because its stream would send rows that are not needed. */
 async function ended(run, ask, heard) {
   let job = run;
   while (["queued", "running"].includes(job.state)) {
@@ -94,7 +94,7 @@ async function ended(run, ask, heard) {
   if (job.state !== "succeeded") throw new Problem(job.problem ?? { detail: `The simulation was ${job.state}.` }, 0);
 }
 
-/** Whether a simulation that is there, or comes, is the one that is wanted. */
+/** Whether an existing or queued simulation matches the wanted one. */
 function isSame(run, body, job) {
   if (!["queued", "running", "succeeded"].includes(run.state) || run.is_cancelling) return false;
   if ((run.advice_id ?? null) !== (body.advice_id ?? null) || run.program_id !== job.program_id) return false;

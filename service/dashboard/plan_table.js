@@ -1,11 +1,11 @@
-// The table of workingsteps: sorted by its headings, each opens to its limits.
+// The table of workingsteps, sortable by its headings; each row expands to its limits.
 
 import { announce, el, fill, fixed, number, percent, words } from "/dashboard/app.js";
 
 const TURNING = /^(facing|contouring|grooving|cutting_in|threading|knurling)/;
 export const isTurning = (step) => TURNING.test(step.operation);
 
-/** A limit's name in words; tools without teeth have a feed per revolution. */
+/** Return a limit's name in words; tools without teeth have a feed per revolution. */
 export function limitWords(name, step) {
   const isWhole = isTurning(step) || / per revolution /.test(step.reason);
   return words(name === "feed_per_tooth" && isWhole ? "feed_per_revolution" : name);
@@ -35,14 +35,14 @@ export function stepsTable(table, steps) {
   });
 
   function sort(column) {
-    // By number the greatest first, by name the first; then the other way; then as programmed.
+    // Numbers sort largest first, names from A; then reversed; then in program order.
     const first = column.n ? "descending" : "ascending";
     const turn = sorting?.column !== column ? first
       : sorting.turn === first ? (column.n ? "ascending" : "descending") : null;
     sorting = turn ? { column, turn } : null;
     heads.forEach((head, at) => head.setAttribute("aria-sort",
       COLUMNS[at] === column && turn ? turn : "none"));
-    announce(turn ? `sorted by ${column.title}, ${turn}` : "in the order of the program");
+    announce(turn ? `sorted by ${column.title}, ${turn}` : "in program order");
     draw();
   }
 
@@ -97,7 +97,7 @@ export function stepsTable(table, steps) {
 
 const four = (value) => number(value, 4);
 
-/** `before → after`; one number where nothing changes. */
+/** Create `before → after`, or one number where nothing changes. */
 function change(before, after, form = four) {
   const was = form(before), is = form(after);
   if (after === undefined || after === null || was === is) return el("span", { class: "change" }, was);
@@ -106,7 +106,7 @@ function change(before, after, form = four) {
     el("span", { class: "arrow", "aria-label": "becomes" }, "→"), el("b", {}, is));
 }
 
-/** Depth and passes; where those of the program are not known, the same depth is no change. */
+/** Format depth and passes; unknown passes of the program do not count as a change. */
 function depths({ programmed, advised }) {
   const cuts = (setting) => (!setting?.axial_depth_mm ? null
     : number(setting.axial_depth_mm, 3) + (setting.passes ? ` × ${setting.passes}` : ""));
@@ -114,14 +114,14 @@ function depths({ programmed, advised }) {
   return change(cuts(isSame ? advised : programmed), cuts(advised), (text) => text ?? "–");
 }
 
-/** The active limit, or why there is none. */
+/** Create a badge with the active limit, or the reason why there is none. */
 function mark(step) {
   if (step.status === "infeasible") return el("span", { class: "badge bad" }, "infeasible");
   if (step.status === "untouched") return el("span", { class: "badge soft" }, "untouched");
   return step.active_limit ? limitWords(step.active_limit, step) : "–";
 }
 
-// -- what a row opens to ------------------------------------------------------------------------
+// -- details of a row ---------------------------------------------------------------------------
 
 function detail(step, at) {
   return el("tr", { class: "detail", id: `detail-${at}` }, el("td", { colspan: String(COLUMNS.length) },
@@ -173,20 +173,20 @@ function facts(step) {
     el("dl", {}, lines.filter(Boolean).flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]))];
 }
 
-/** What one more of a limit would bring. */
+/** State the savings from raising a limit by one step. */
 function sentences(step) {
   const found = [];
   const { sensitivity, prices } = step, deepest = step.deepest_pass_first_time_s;
   if (sensitivity) {
     const { one_more: more, unit, saves_s: saves } = sensitivity, name = limitWords(sensitivity.limit, step);
     found.push(saves > 0.005 ? `${number(more)} ${unit} more of ${name} saves ${number(saves)} s.`
-      : `More ${name} alone saves nothing: another limit is as near.`);
+      : `More ${name} alone saves nothing: another limit is just as close.`);
   }
   for (const [name, price] of Object.entries(prices ?? {}))
     found.push(`1 % more ${limitWords(name, step)} lowers the cost by ${number(price, 2)} %.`);
   if (deepest && step.time_s.after && deepest - step.time_s.after > 0.05)
     found.push(`Fewest passes would take ${fixed(deepest, 1)} s instead of ${fixed(step.time_s.after, 1)} s.`);
-  return found.length ? [el("h3", {}, "What more would bring"), ...found.map((text) => el("p", {}, text))] : null;
+  return found.length ? [el("h3", {}, "Effect of higher limits"), ...found.map((text) => el("p", {}, text))] : null;
 }
 
 function front(step) {
@@ -199,9 +199,9 @@ function front(step) {
       String(point.passes ?? "–")].map((text) => el("td", { class: "n" }, text))))));
 }
 
-// -- as a file ----------------------------------------------------------------------------------
+// -- CSV file -----------------------------------------------------------------------------------
 
-/** The table as comma-separated values. */
+/** Return the table as comma-separated values. */
 export function stepsCsv(steps) {
   const columns = {
     workingstep: (step) => step.id, instance: (step) => step.instance, operation: (step) => step.operation,
@@ -216,7 +216,7 @@ export function stepsCsv(steps) {
     time_before_s: (step) => step.time_s.before, time_after_s: (step) => step.time_s.after,
     active_limit: (step) => step.active_limit, reason: (step) => step.reason,
   };
-  // A text that a spreadsheet would take for a formula is kept a text.
+  // An apostrophe keeps a spreadsheet from taking a text for a formula.
   const cell = (value) => {
     const text = typeof value === "string" ? value.replace(/^[=+\-@\t\r]/, "'$&") : String(value ?? "");
     return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;

@@ -1,8 +1,8 @@
-// What the pages of runs, knowledge and jobs share: names of programs, states of jobs, tables.
+// Shared by the pages of runs, knowledge and jobs: names of programs, states of jobs, tables.
 
 import { api, el, moment } from "/dashboard/app.js";
 
-/** Kinds of jobs as people call them, and the page that shows what came out. */
+/** Names of job kinds, and the page that shows their result. */
 export const KINDS = {
   "advice": ["advice", (id) => `/dashboard/plan.html?advice=${id}`],
   "simulation": ["simulation", (id) => `/dashboard/machine.html?id=${id}`],
@@ -18,25 +18,25 @@ export const isOver = (job) => !["queued", "running"].includes(job.state);
 
 const TONES = { queued: "soft", running: "accent", succeeded: "good", failed: "bad", cancelled: "warn" };
 
-/** How far a job is, as a word. */
+/** Create a badge with the state of a job. */
 export function stateBadge(job) {
   const word = job.is_cancelling && !isOver(job) ? "cancelling" : job.state;
   return el("span", { class: `badge ${TONES[job.state]}` }, word);
 }
 
-/** Whether the share of a job tells how far it is: that of a run with a pace tells of its plan. */
+/** Whether the share of a job is its progress; that of a paced run is the progress of its planning. */
 export const hasShare = (job) => !(job.request.pace > 0);
 
-/** How far a job is, as a bar. */
+/** Create a progress bar of a job. */
 export function bar(job, more = {}) {
   const value = job.state === "queued" ? undefined : String(job.share);
-  return el("progress", { max: "1", value, "aria-label": "how far it is", ...more });
+  return el("progress", { max: "1", value, "aria-label": "progress", ...more });
 }
 
-/** What a job says of itself; the bar tells the share. */
-export const saying = (job) => (job.state === "queued" ? "waits for its turn" : job.message.replace(/^\d+ ?%\s*/, ""));
+/** Return the message of a job without the percentage, which the bar shows. */
+export const saying = (job) => (job.state === "queued" ? "queued" : job.message.replace(/^\d+ ?%\s*/, ""));
 
-/** All programs by id, newest first. */
+/** Read all programs, newest first, into a map by id. */
 export async function allPrograms() {
   const programs = new Map();
   for (let cursor = null, pages = 0; pages < 4; pages += 1) {
@@ -48,22 +48,22 @@ export async function allPrograms() {
   return programs;
 }
 
-/** A program among others of its name. */
+/** Return a title that distinguishes programs of the same name. */
 export const programTitle = ({ name, created_at: at }) => `${name}, ${moment(at)}`;
 
-/** What a job works on. */
+/** Return the name of the program of a job. */
 export function programOf(job, programs) {
   if (!job.program_id) return "";
   const name = programs.get(job.program_id)?.name ?? "deleted program";
   return job.advice_id ? `${name}, optimised` : name;
 }
 
-/** A table in a frame that scrolls by itself, also with the keyboard. */
+/** Wrap a table in a frame that scrolls, also with the keyboard. */
 export function framed(caption, table) {
   return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": caption }, table);
 }
 
-/** Ask before something is changed: true when it was confirmed. `more` are fields of the form. */
+/** Ask for confirmation of a change; true when confirmed. `more` are fields of the form. */
 export function confirmed(title, texts, word, more = []) {
   return new Promise((resolve) => {
     let isSure = false;
@@ -71,7 +71,7 @@ export function confirmed(title, texts, word, more = []) {
       el("h2", { id: "confirm-title" }, title), texts.map((text) => el("p", {}, text)),
       el("form", { method: "dialog", onsubmit: () => { isSure = true; } }, more,
         el("p", { class: "row end" },
-          el("button", { type: "button", id: "confirm-no", onclick: () => dialog.close() }, "Leave it"),
+          el("button", { type: "button", id: "confirm-no", onclick: () => dialog.close() }, "Cancel"),
           el("button", { class: "main", id: "confirm-yes" }, word))));
     dialog.addEventListener("close", () => { dialog.remove(); resolve(isSure); });
     document.body.append(dialog);

@@ -1,1 +1,1 @@
-"""Long work in processes of its own: claimed, watched, cancelled, told about."""
+"""Background jobs, each in its own process: queue, progress, cancellation, result."""

@@ -1,4 +1,4 @@
-"""The job ``advice``: optimise a program, and keep all that may be asked about it."""
+"""Job ``advice``: optimise a program and store the result, the report and the NC code."""
 
 import json
 
@@ -9,7 +9,7 @@ from service.usecases import AdviceFiles, optimise
 
 
 def run(task: RunningJob) -> None:
-    """Advise feeds.
+    """Run an advice job: optimise the feeds of a program and store the results.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def run(task: RunningJob) -> None:
 
 
 def _name_code(task: RunningJob) -> None:
-    """NC code gets the name under which it is looked for."""
+    """Rename the NC code file to the name under which it is served."""
     stem = OPTIMISED.removesuffix(".stpnc")
     for file in task.folder.glob(f"{stem}.*"):
         if file.name != OPTIMISED:

@@ -1,4 +1,4 @@
-"""Process of one job. It ends with the runner that started it."""
+"""Process of a single job, which ends with the runner that started it."""
 
 import logging
 import signal
@@ -21,37 +21,37 @@ from stepnc_model.errors import StepNcError, WriteError
 T = TypeVar("T")
 
 WITHOUT_ROOM = (StorageFull, StoreFull, WriteError)
-"""errors of a job that found no room on the disk"""
+"""Errors after which large files of the job are removed, because the disk is full."""
 
 PATIENCE = 60.0
-"""s for which a database that does not answer is asked again"""
+"""Time for which a failed database call is repeated, in s."""
 
 AGAIN = 1.0
-"""s between two such questions"""
+"""Delay between two attempts of a database call, in s."""
 
 
 COMPILERS = "simulator.kernels"
-"""logger that says why a first run waits"""
+"""Logger of the compilers, which explains why a first run is slow to start."""
 
 
 class ProgressHandler(logging.Handler):
-    """Log handler that shows a library's messages as progress: the server's log is JSON."""
+    """Log handler that reports a library's messages as progress of the job."""
 
     def __init__(self, task: RunningJob) -> None:
         super().__init__()
         self._task = task
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Show a message as progress of the job."""
+        """Report a log message as progress of the job."""
         self._task.progress(0.0, record.getMessage())
 
 
 class Cancelled(BaseException):
-    """The runner has asked for the end; what is half done is cleaned away on the way out."""
+    """The runner has asked the job to end; unfinished files are removed on the way out."""
 
 
 def main(root: str, knowledge: str, id: str) -> None:
-    """Run a job that was claimed, and say how it ended."""
+    """Run a claimed job and record how it ended."""
     end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     data_folder = _insisting(lambda: known_data_folder(Path(root), knowledge=knowledge))
@@ -70,11 +70,11 @@ def main(root: str, knowledge: str, id: str) -> None:
         if isinstance(error, WITHOUT_ROOM):
             clear(task.folder, LARGE)
     except MemoryError:
-        detail = "the job needed more memory than there is"
+        detail = "the job needed more memory than is available"
         state, problem = JobState.FAILED, plain_problem(507, "Out of memory", detail)
     except BaseException:
-        # Told to the log of the server; a client hears that it is not its fault.
-        detail = f"job '{id}' met a fault of the program; the server's log says more"
+        # The server's log has the traceback; the client learns that it is not at fault.
+        detail = f"internal error in job '{id}'; see the log of the server"
         _finish(task, JobState.FAILED, plain_problem(500, "Fault", detail))
         raise
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
@@ -82,21 +82,21 @@ def main(root: str, knowledge: str, id: str) -> None:
 
 
 def _say_as_progress(task: RunningJob) -> None:
-    """Show the compilers' messages as progress of the job."""
+    """Report the compilers' messages as progress of the job."""
     compilers = logging.getLogger(COMPILERS)
     compilers.addHandler(ProgressHandler(task))
     compilers.propagate = False
 
 
 def _finish(task: RunningJob, state: JobState, problem: Mapping[str, Any] | None) -> None:
-    """Say how it ended."""
+    """Record the final state of a job."""
     if state is not JobState.SUCCEEDED:
         clear(task.folder, UNFINISHED)
     _insisting(lambda: jobs.finish(task.data_folder, task.job, state, problem=problem))
 
 
 def _insisting(ask: Callable[[], T]) -> T:
-    """Result of a database call, which is repeated for a while when it fails."""
+    """Return the result of a database call, repeated for a while when it fails."""
     begin = monotonic()
     while True:
         try:
@@ -108,7 +108,7 @@ def _insisting(ask: Callable[[], T]) -> T:
 
 
 def _work(job: Job) -> Callable[[RunningJob], None]:
-    """Function of a kind of job; its modules are loaded when it runs."""
+    """Return the function that runs a kind of job; its modules are loaded on demand."""
     match job.kind:
         case JobKind.ADVICE:
             from service.jobs import advise  # noqa: PLC0415
@@ -130,6 +130,6 @@ def _work(job: Job) -> Callable[[RunningJob], None]:
 
 
 def _cancel(_signal: int, _frame: FrameType | None) -> None:
-    # Libraries that are left in the middle of something say so as if it were a fault.
+    # Libraries that are interrupted would log misleading errors.
     logging.disable(logging.CRITICAL)
     raise Cancelled

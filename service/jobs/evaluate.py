@@ -1,4 +1,4 @@
-"""The jobs ``evaluation`` and ``review``: tables of the knowledge base, and proposals."""
+"""Jobs ``evaluation`` and ``review``: tables of the knowledge base and proposed corrections."""
 
 import json
 from dataclasses import replace
@@ -15,13 +15,13 @@ from service.rendering.records import file_columns, file_rows
 from service.requests.knowledge import EvaluationRequest, ReviewRequest
 
 TABLE = "table"
-"""stem of the files for other programs"""
+"""File name stem of the tables for other programs."""
 
 PLACE = "knowledge base of this service"
 
 
 def run_evaluation(task: RunningJob) -> None:
-    """Make the evaluation table in all its forms.
+    """Compute the evaluation table and write it in all formats.
 
     Raises
     ------
@@ -29,7 +29,7 @@ def run_evaluation(task: RunningJob) -> None:
         When the knowledge base cannot be read, or the disk refuses.
     """
     request = task.request(EvaluationRequest)
-    # Where it lies is nobody's business.
+    # Clients must not learn the location of the knowledge base.
     found = replace(table(task.data_folder.knowledge, request, tell=task.tell), place=PLACE)
     for form in (Format.CSV, Format.PARQUET):
         file = task.folder / f"{TABLE}.{form.value}"
@@ -40,7 +40,7 @@ def run_evaluation(task: RunningJob) -> None:
 
 
 def run_review(task: RunningJob) -> None:
-    """Learn from outcomes, and propose corrections.
+    """Review recorded outcomes and propose corrections.
 
     Raises
     ------

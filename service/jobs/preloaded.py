@@ -1,4 +1,4 @@
-"""Modules of all job processes: loaded once, in the process that they are forked from."""
+"""Modules loaded once in the fork server, so that job processes start quickly."""
 
 from importlib import import_module
 

@@ -1,10 +1,10 @@
-"""Takes jobs from the queue and runs each in a process of its own.
+"""Runner that takes jobs from the queue and runs each in its own process.
 
-One runner works for a data folder: a lock on a file of it says so. Processes are forked from
-one that has loaded everything, so that a job starts in some hundredths of a second; a job that
-crashes, or takes all memory, takes nothing else with it. A database that does not answer for a
-while (it is locked, the disk is full, the folder was moved away) ends nobody: what is to be
-said is said later. Running state.
+Only one runner works on a data folder, which a lock file ensures. Job processes are forked from
+a process that has loaded everything, so that a job starts within some hundredths of a second; a
+job that crashes or takes all memory affects nothing else. When the database does not answer for
+a while (it is locked, the disk is full, the folder was moved away), no job is ended: results
+are recorded later. Running state.
 """
 
 import fcntl
@@ -33,35 +33,35 @@ from service.storage.folder import DataFolder, known_data_folder
 from service.storage.jobs import Job, JobState
 
 LOOK = 0.05
-"""s between two looks at the queue"""
+"""Interval between two looks at the queue, in s."""
 
 BEAT = 2.0
-"""s between two signs of life"""
+"""Interval between two heartbeats, in s."""
 
 GRACE = 5.0
-"""s that a cancelled job has to end by itself"""
+"""Time that a cancelled job has to end by itself, in s."""
 
 LONGEST = 2 * 3600.0
-"""time limit of a job without user input, s: a longer one is a mistake, or an attack"""
+"""Time limit of a job without user input, in s; a longer job is a mistake or an attack."""
 
 LONGEST_PACED = 12 * 3600.0
-"""s of a job that waits for people or the clock: longer than a shift it was forgotten"""
+"""Time limit of a paced job, in s; one that lasts longer than a shift was forgotten."""
 
 MOST_PACED = 16
-"""runs that wait for people or the clock, at once"""
+"""Largest number of paced jobs that run at once."""
 
 LOG = structlog.get_logger("runner")
 
 
 @dataclass(kw_only=True)
 class Running:
-    """A job and its process."""
+    """Job with its running process."""
 
     job: Job
     process: ForkServerProcess
     began_at: float = field(default_factory=time.monotonic)
     asked_at: float | None = None
-    """when it was asked to end"""
+    """Time when the job was asked to end, in s; None if it was not."""
     is_overdue: bool = False
 
 
@@ -80,17 +80,17 @@ class Runner:
 
     data_folder: DataFolder
     workers: int
-    """jobs at once, paced ones aside"""
+    """Largest number of jobs that run at once, without paced ones."""
     is_stopping: bool = False
     running: dict[str, Running] = field(default_factory=dict)
     _ends: list[SilentEnd] = field(default_factory=list)
-    """that are not in the database yet"""
+    """Ends of jobs that are not recorded in the database yet."""
     _has_recovered: bool = False
     _is_answered: bool = True
     _beaten_at: float = -BEAT
 
     def run(self, *, is_wanted: Callable[[], bool] = lambda: True) -> None:
-        """Work until the end; jobs that run then are queued again by the next runner."""
+        """Run jobs until told to stop; the next runner queues unfinished jobs again."""
         context = multiprocessing.get_context("forkserver")
         context.set_forkserver_preload(["service.jobs.preloaded"])
         forkserver.ensure_running()
@@ -107,13 +107,13 @@ class Runner:
             self._end_all()
 
     def _tell(self, error: Unavailable) -> None:
-        """Once, until it answers again."""
+        """Log that the database does not answer; once, until it answers again."""
         if self._is_answered:
             LOG.warning("the database does not answer", reason=str(error))
         self._is_answered = False
 
     def _turn(self, context: multiprocessing.context.ForkServerContext) -> None:
-        """All that needs the database: what could not be done now is done in the next turn."""
+        """Do all work that needs the database; what fails is repeated in the next turn."""
         if not self._has_recovered:
             jobs.recover(self.data_folder)
             self._has_recovered = True
@@ -135,7 +135,7 @@ class Runner:
                     self._start(context, claimed)
 
     def _has_room(self, *, is_paced: bool) -> bool:
-        """For one more job that is paced, or is not."""
+        """Whether one more paced, or one more other job may start."""
         count = sum(each.job.is_paced == is_paced for each in self.running.values())
         return count < (MOST_PACED if is_paced else self.workers)
 
@@ -152,7 +152,7 @@ class Runner:
         self.running[job.id] = Running(job=job, process=process)
 
     def _look(self) -> None:
-        """See who has ended, and who should."""
+        """Detect ended processes, and kill jobs that exceed their time limit."""
         for id, each in list(self.running.items()):
             if not each.process.is_alive():
                 del self.running[id]
@@ -162,7 +162,7 @@ class Runner:
                 each.process.kill()
 
     def _ended(self, each: Running) -> None:
-        """A process has ended; one that said nothing of its job was lost."""
+        """Record the end of a process; a job whose process reported no end counts as lost."""
         job, code = each.job, each.process.exitcode
         each.process.close()
         clear(self.data_folder.job_folder(job.id), UNFINISHED)
@@ -176,9 +176,9 @@ class Runner:
         LOG.info("job ended", job=job.id, kind=job.kind.value, exit_code=code)
 
     def _end_all(self) -> None:
-        """Nothing goes on without a runner."""
+        """Kill all job processes, because none may go on without a runner."""
         for each in self.running.values():
-            # Whatever is wrong with one, the others end.
+            # An error with one process must not keep the others alive.
             with suppress(OSError, ValueError):
                 each.process.kill()
         for each in self.running.values():
@@ -187,15 +187,13 @@ class Runner:
 
 
 def _longest(job: Job) -> float:
-    """S that a job may take."""
+    """Time limit of a job, in s."""
     return LONGEST_PACED if job.is_paced else LONGEST
 
 
 def _too_long(job: Job) -> dict[str, Any]:
-    """The problem of a job that did not come to an end."""
-    detail = (
-        f"it was not over after {_longest(job) / 3600.0:g} h, which is the most for such a job"
-    )
+    """Return the problem of a job that exceeded its time limit."""
+    detail = f"not finished after {_longest(job) / 3600.0:g} h, the time limit of such a job"
     return plain_problem(422, "Too long", detail)
 
 
@@ -215,7 +213,7 @@ def _why(code: int | None) -> str:
 
 
 def beat(data_folder: DataFolder) -> None:
-    """A sign of life."""
+    """Record a heartbeat of the runner."""
     with data_folder.database.writing() as connection:
         connection.execute(
             "INSERT INTO runner VALUES (1, ?, ?) "
@@ -225,26 +223,26 @@ def beat(data_folder: DataFolder) -> None:
 
 
 def is_alive(data_folder: DataFolder) -> bool:
-    """Whether a runner has shown a heartbeat lately."""
+    """Whether a runner has recorded a heartbeat recently."""
     with data_folder.database.reading() as connection:
         row = connection.execute("SELECT seen FROM runner").fetchone()
     return row is not None and time.time() - float(row["seen"]) < 5.0 * BEAT
 
 
 def locked(root: Path, name: str = "runner") -> IO[bytes]:
-    """The lock of the folder's only runner, or server; free again when the process ends.
+    """Lock the folder for a single runner or server; released when the process ends.
 
     Raises
     ------
     Conflict
-        When another has it.
+        When another process holds the lock.
     """
     file = (root / f"{name}.lock").open("wb")
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError as error:
         file.close()
-        raise Conflict(f"{root}: another server works with this folder") from error
+        raise Conflict(f"{root}: another server is using this folder") from error
     return file
 
 
@@ -254,12 +252,12 @@ def main(root: str, knowledge: str, workers: int, parent: int) -> None:
     Raises
     ------
     ServiceError
-        When the folder cannot be used.
+        When the data folder cannot be used.
     """
     data_folder = known_data_folder(Path(root), knowledge=knowledge)
     with locked(data_folder.root):
         with open_store(data_folder.knowledge):
-            """made when it is new"""
+            """The store is created if it is new."""
         runner = Runner(data_folder=data_folder, workers=workers)
 
         def stop(_signal: int, _frame: FrameType | None) -> None:

@@ -1,4 +1,4 @@
-"""The job ``simulation``: a program on the virtual machine, watched while it runs."""
+"""Job ``simulation``: run a program on the virtual machine, watched while it runs."""
 
 import json
 from math import inf
@@ -12,11 +12,11 @@ from service.simulation.output import simulation_json, simulation_page
 from service.simulation.run import RunFiles, simulate
 
 SHOWN = 0.1
-"""wall-clock seconds between two updates of a paced run"""
+"""Wall-clock time between two updates of a paced run, in s."""
 
 
 def run(task: RunningJob) -> None:
-    """Simulate.
+    """Simulate a program and store samples, report and result.
 
     Raises
     ------
@@ -35,5 +35,5 @@ def run(task: RunningJob) -> None:
     if simulation.trace is not None:
         page = simulation_page(simulation, simulation.trace, material=simulation.material)
         write_atomically(task.folder / REPORT, page.encode(errors="replace"))
-    # What is written and shown is kept under the program's name, not under that of its file.
+    # The result names the program as its owner does, not its stored file.
     task.keep(json.loads(simulation_json(simulation)))

@@ -1,4 +1,4 @@
-"""The jobs ``trial`` and ``control-run``: people watch and change them while they go on."""
+"""Jobs ``trial`` and ``control-run``: runs that people watch and change as they go on."""
 
 import json
 from collections.abc import Mapping
@@ -19,12 +19,12 @@ from service.trial.run import TrialRun
 
 
 def run_trial(task: RunningJob) -> None:
-    """Run a trial until it is ended.
+    """Run a trial cut until it is ended.
 
     Raises
     ------
     StepNcError
-        When an input is beyond its bounds.
+        When an input exceeds its bounds.
     """
     request = task.request(TrialRequest)
     trial = TrialRun(request.inputs, seed=request.seed)
@@ -33,7 +33,7 @@ def run_trial(task: RunningJob) -> None:
 
 
 def run_control(task: RunningJob) -> None:
-    """Run a program under the loop.
+    """Run a program under force control.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Running job: its request, its folder, and its progress."""
+"""A running job: its request, its result folder, and its progress."""
 
 import time
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ from service.storage.jobs import Job, JobKind
 from service.storage.library import machine_word, material_word
 
 N = TypeVar("N", bound=AdviceRequest | RunRequest)
-"""names machine and material"""
+"""Type of requests that name a machine and a material."""
 
 RESULT = "result.json"
 OPTIMISED = "optimised.stpnc"
@@ -32,29 +32,29 @@ SAMPLES = "samples.parquet"
 NC_CODE = "program.nc"
 
 UNFINISHED = (".*", "*.partial.*")
-"""names of files that were being written, and that nobody can ask for"""
+"""File name patterns of incomplete files, which no client can request."""
 
 LARGE = (*UNFINISHED, "series.bin", SAMPLES)
-"""names of files that grow with a run: a full disk recovers without them"""
+"""File name patterns of large files, removed to recover from a full disk."""
 
 APART = 0.5
-"""s between two words about how far it is"""
+"""Shortest time between two progress reports, in s."""
 
 
 @dataclass(kw_only=True)
 class RunningJob:
-    """A job that runs. Running state."""
+    """Job in progress. Running state."""
 
     data_folder: DataFolder
     job: Job
     _said: float = field(default=0.0)
 
     def request(self, kind: type[R]) -> R:
-        """Request of the job."""
+        """Return the request of the job."""
         return loaded(kind, self.job.request)
 
     def named(self, request: N) -> N:
-        """The request with machine and material of the shop by their files."""
+        """Return the request with machine and material names of the shop replaced by paths."""
         return replace(
             request,
             machine=machine_word(self.data_folder, request.machine),
@@ -68,17 +68,17 @@ class RunningJob:
 
     @property
     def live(self) -> LiveFolder:
-        """Folder of the live run."""
+        """Folder of the live data of the run."""
         return LiveFolder(path=self.folder)
 
     def tell(self, message: str) -> None:
-        """A word of progress, not too often; warnings come in results."""
+        """Report progress found in a message; other messages are ignored."""
         share = share_in(message)
         if share is not None:
             self.progress(share, message.split("]", 1)[-1].strip())
 
     def progress(self, share: float, message: str) -> None:
-        """Report the progress; a report that fails is made up for by the next."""
+        """Record the progress of the job; a failed report is not repeated."""
         now = time.monotonic()
         if now - self._said >= APART:
             self._said = now
@@ -86,29 +86,29 @@ class RunningJob:
                 jobs.tell(self.data_folder, self.job, share=min(share, 1.0), message=message)
 
     def keep(self, result: Any) -> None:
-        """Write the result; numpy's arrays become lists, NaN becomes null."""
+        """Write the result; NumPy arrays become lists, NaN becomes null."""
         option = orjson.OPT_SERIALIZE_NUMPY | orjson.OPT_NON_STR_KEYS
         write_atomically(self.folder / RESULT, orjson.dumps(result, option=option))
 
     def make_folder(self) -> None:
-        """Make the folder of the results, and clear what another attempt left half done."""
+        """Create the result folder and remove unfinished files of an earlier attempt."""
         with storing("folder of the job"):
             self.folder.mkdir(mode=0o700, exist_ok=True)
             clear(self.folder, UNFINISHED)
 
     def program_file(self) -> tuple[Path, str]:
-        """The program that is worked on, and what it is called: an upload, or an advice's.
+        """Return file and name of the program to run: an upload or an optimised program.
 
         Raises
         ------
         NotFound
-            When it was deleted.
+            When the program was deleted.
         """
         return program_file(self.data_folder, program=self.job.program, source=self.job.source)
 
 
 def clear(folder: Path, patterns: Sequence[str]) -> None:
-    """Remove files of a job; one that cannot be removed stays."""
+    """Remove files of a job that match patterns; failures are ignored."""
     for pattern in patterns:
         for file in folder.glob(pattern):
             with suppress(OSError):
@@ -116,12 +116,12 @@ def clear(folder: Path, patterns: Sequence[str]) -> None:
 
 
 def program_file(data_folder: DataFolder, *, program: str, source: str) -> tuple[Path, str]:
-    """The bytes of a program, or of what an advice made of it, and what it is called.
+    """Return file and name of an uploaded program or of the program optimised by an advice.
 
     Raises
     ------
     NotFound
-        When there is none.
+        When the program does not exist.
     """
     from service.storage import programs  # noqa: PLC0415 (used by those who need a name)
 
@@ -136,5 +136,5 @@ def program_file(data_folder: DataFolder, *, program: str, source: str) -> tuple
 
 
 def optimised_name(name: str) -> str:
-    """File name of an optimised program."""
+    """Return the file name of the optimised version of a program."""
     return f"{Path(name).stem}.optimised.stpnc"

@@ -1,1 +1,1 @@
-"""Verbs of the knowledge base."""
+"""Functions of the knowledge base commands: record, evaluate, review, export and correct."""

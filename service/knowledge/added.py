@@ -1,8 +1,8 @@
-"""Outcomes of real runs, from a file: JSON as ``stepnc kbe export outcomes`` writes it.
+"""Outcomes of real runs, added from JSON as written by ``stepnc kbe export outcomes``.
 
-A machine that no virtual one stands for records what it measured in such a file: a list of
-objects whose keys are the columns of the knowledge base, with their units. Keys that may be
-missing in an outcome may be left out.
+For a real machine, measured values are recorded in such a file: a list of objects whose keys
+are the columns of the knowledge base, including their units. Keys of optional values may be
+omitted.
 """
 
 import json
@@ -18,13 +18,13 @@ from stepnc_model.errors import StepNcError
 from stepnc_model.outcome import ProcessOutcome
 
 LARGEST = 2**63 - 1
-"""of a whole number: what a column of the knowledge base holds"""
+"""Largest whole number that a column of the knowledge base can hold."""
 
 LONGEST_SHOWN = 80
-"""letters of a value in a message"""
+"""Most characters of a value that a message shows."""
 
 WORDS = {
-    str: "a text",
+    str: "text",
     int: f"a whole number of at most {LARGEST}",
     float: "a finite number of at most 1.8e308",
     bool: "true or false",
@@ -32,19 +32,19 @@ WORDS = {
 
 
 def add_outcomes(place: str, file: Path) -> int:
-    """Keep the outcomes of a file, all of them or none; how many.
+    """Add the outcomes of a file to the knowledge base, all or none; return their number.
 
     Raises
     ------
     StepNcError
-        With row, key and value of what is wrong.
+        With row, key and value of the first error.
     """
     try:
         rows = json.loads(read_bytes(file))
     except (ValueError, RecursionError) as error:
-        raise StepNcError(f"{file}: is no JSON: {error}") from error
+        raise StepNcError(f"{file}: is not valid JSON: {error}") from error
     if not isinstance(rows, list) or not rows:
-        raise StepNcError(f"{file}: must hold a list of outcomes, at least one")
+        raise StepNcError(f"{file}: must hold a list with at least one outcome")
     outcomes = [
         _outcome(row, f"{file}, outcome {number}") for number, row in enumerate(rows, 1)
     ]
@@ -53,9 +53,9 @@ def add_outcomes(place: str, file: Path) -> int:
 
 
 def _outcome(row: object, where: str) -> ProcessOutcome:
-    """One outcome; keys that the knowledge base makes itself are passed over."""
+    """Build an outcome from a row; keys that the knowledge base generates are ignored."""
     if not isinstance(row, dict):
-        raise StepNcError(f"{where}: is no object with keys and values")
+        raise StepNcError(f"{where}: must be an object with keys and values")
     known = {leaf.name for leaf in OUTCOME.leaves}
     unknown = sorted(set(row) - known)
     if unknown:
@@ -70,7 +70,7 @@ def _outcome(row: object, where: str) -> ProcessOutcome:
 
 
 def _value(leaf: AttributeColumn, value: Any, where: str) -> Any:
-    """The value of a key as the noun has it."""
+    """Convert the value of a key to its type."""
     if value is None:
         if leaf.is_optional:
             return None
@@ -85,16 +85,16 @@ def _value(leaf: AttributeColumn, value: Any, where: str) -> Any:
         return value
     shown = repr(value)
     shown = shown if len(shown) <= LONGEST_SHOWN else f"{shown[: LONGEST_SHOWN - 1]}…"
-    raise StepNcError(f"{where}: '{leaf.name}' is {shown} and must be {WORDS[leaf.kind]}")
+    raise StepNcError(f"{where}: '{leaf.name}' is {shown}, but must be {WORDS[leaf.kind]}")
 
 
 def _is_too_large(value: object) -> bool:
-    """Whether it is an integer that is too large for a column."""
+    """Whether a value is an integer that is too large for a column."""
     return isinstance(value, int) and abs(value) > LARGEST
 
 
 def _number(value: Any) -> float | None:
-    """A finite number, or None: an integer may be beyond the range of a float."""
+    """Return a finite number, or None; an integer may exceed the range of a float."""
     if not isinstance(value, (int, float)) or isinstance(value, bool):
         return None
     try:
@@ -110,6 +110,6 @@ def _moment(leaf: AttributeColumn, value: Any, where: str) -> datetime:
     except (ValueError, TypeError):
         moment = None
     if moment is None or moment.tzinfo is None:
-        text = f"is {value!r} and must be a time with its zone, 2026-03-02T08:00:00+01:00"
+        text = f"is {value!r}, but must be a time with its zone, as 2026-03-02T08:00:00+01:00"
         raise StepNcError(f"{where}: '{leaf.name}' {text}")
     return moment

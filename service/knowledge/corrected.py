@@ -23,20 +23,20 @@ def factors_for(  # noqa: PLR0913 (all that a context is made of)
     safety: float = USUAL_QUANTILE,
     is_new_allowed: bool = False,
 ) -> "tuple[AcceptedFactor, ...]":
-    """Accepted factors of the tools of some workingsteps.
+    """Return the accepted factors for the tools of some workingsteps.
 
     Parameters
     ----------
     place : str
-        File or URL; when empty that of the environment, and where there is none: no factors.
+        File or URL; empty: from the environment, and no factors if that names none.
     program : Program
     steps : iterable of ResolvedWorkingstep
     machine : Machine
     material : MaterialMatch
     safety : float
-        Quantile of the factor that the plan takes, 0.5 to 0.999.
+        Quantile of the factor that the plan applies, 0.5 to 0.999.
     is_new_allowed : bool
-        Whether it may be a file that is still to be made.
+        Whether the place may be a file that does not exist yet.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def factors_for(  # noqa: PLR0913 (all that a context is made of)
 
 
 def finding_of(factor: "AcceptedFactor", *, safety: float) -> Finding:
-    """Note on a factor for the user."""
+    """Return a note that tells the user about an applied factor."""
     when = factor.accepted_at.date().isoformat()
     text = (
         f"tool '{factor.tool}': learned k_c × {factor.centre:.3f} from {factor.outcomes} "
@@ -73,7 +73,7 @@ def finding_of(factor: "AcceptedFactor", *, safety: float) -> Finding:
 
 
 def with_corrections(program: Program, factors: "Iterable[AcceptedFactor]") -> bytes:
-    """The program with the corrections that its plan took, as entities."""
+    """Return the program with the corrections applied to its plan, written as entities."""
     from stepnc_model.outcome_record import write_outcomes  # noqa: PLC0415 (only when learned)
 
     return write_outcomes(program, (), [each.correction for each in factors])

@@ -1,7 +1,7 @@
-"""The evaluation table as a user asks for it: what was planned, what it was, what to do.
+"""Evaluation table of recorded outcomes: planned and measured values, and recommended actions.
 
-The full table reads every outcome that is meant. The summary is made by the database itself:
-counts, means and spreads only, but of a million outcomes in about a second.
+The full table reads every selected outcome. The summary is computed by the database itself:
+only counts, means and spreads, but of a million outcomes in about a second.
 """
 
 from collections.abc import Iterable
@@ -25,22 +25,22 @@ from service.requests.knowledge import EvaluationRequest
 from stepnc_model.outcome import Context
 
 MANY = 100_000
-"""outcomes from which it takes so long that something is said"""
+"""Number of outcomes above which a progress message is shown."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvaluationTable:
-    """The table and what it was made from."""
+    """Evaluation table, with the request and data that it was made from."""
 
     request: EvaluationRequest
     place: str
-    """as people may see it"""
+    """Location of the knowledge base for display."""
     outcomes: int
-    """that were read"""
+    """Number of outcomes read."""
     rows: tuple[EvaluationRow, ...]
-    """those that the filter keeps"""
+    """Rows that pass the filter."""
     left_out: int
-    """rows that it does not keep"""
+    """Number of rows that the filter removed."""
     made_at: datetime
 
 
@@ -54,10 +54,10 @@ class Summary:
 
 
 def table(place: str, request: EvaluationRequest, *, tell: Tell = silent) -> EvaluationTable:
-    """Read the outcomes that are meant, and evaluate them.
+    """Read the selected outcomes and evaluate them.
 
-    Factors are learned from all outcomes of a context, also from those that the selection
-    leaves out: they hold for the context.
+    Factors are learned from all outcomes of a context, including those outside the selection,
+    because they hold for the whole context.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def table(place: str, request: EvaluationRequest, *, tell: Tell = silent) -> Eva
         if store is not None:
             outcomes = store.count(request.selection)
             if outcomes > MANY:
-                tell(f"reading {outcomes} outcomes; --summary answers at once")
+                tell(f"reading {outcomes} outcomes; use --summary for a fast overview")
             rows = _rows(store, request, at=now)
     kept = ordered(selected(rows, request.only), request.sort)
     return EvaluationTable(
@@ -85,7 +85,7 @@ def table(place: str, request: EvaluationRequest, *, tell: Tell = silent) -> Eva
 
 
 def summary(place: str, selection: Selection) -> Summary:
-    """Counts and spreads, made by the database; errors as :func:`table`."""
+    """Counts and spreads computed by the database; raises the same errors as :func:`table`."""
     with readable(place) as store:
         groups = () if store is None else store.groups(selection)
     return Summary(place=shown(place), groups=groups, made_at=datetime.now(UTC))
@@ -94,7 +94,7 @@ def summary(place: str, selection: Selection) -> Summary:
 def _rows(
     store: Store, request: EvaluationRequest, *, at: datetime
 ) -> tuple[EvaluationRow, ...]:
-    """The whole table."""
+    """Return all rows of the table, before filtering."""
     present = {group.context for group in store.groups(request.selection)}
     return evaluation(
         store.outcomes(request.selection),
@@ -104,7 +104,7 @@ def _rows(
 
 
 def _knowledge(store: Store, contexts: Iterable[Context], *, at: datetime) -> Knowledge:
-    """Learned factors and those in force; one context after the other in memory."""
+    """Return learned and accepted factors; only one context at a time is in memory."""
     proposed, accepted = {}, {}
     for context in contexts:
         within = Selection(

@@ -1,8 +1,8 @@
 """Columns of the evaluation table and of its summary, in the user's units.
 
-The two-level header on screens is that of [1]_, Table 1; what follows are the four quantities
-that [1]_ evaluates, and what the knowledge base makes of them. A row has a line for its
-roughing and a line for its finishing.
+The two-level header on screens is that of [1]_, Table 1; then follow the four quantities that
+[1]_ evaluates, and the results of the knowledge base. A row has a line for its roughing and a
+line for its finishing.
 
 References
 ----------
@@ -25,23 +25,23 @@ from stepnc_model.outcome import EvaluatedQuantity
 from stepnc_model.units import m_min_from_speed
 
 LEGEND = (
-    "Deviation: measured over planned, less one; mean ± standard deviation of the outcomes; "
-    "↑ ↓ changes from run to run, by more than chance. Grade: A within 5 %, B 10 %, C 20 %, "
-    "D beyond; violated: the force passed its bound; wasted: it stayed far below. "
-    "k_c factor: measured over the catalogue's, with where the next run lies 9 times of 10; "
-    "* is not what plans take."
+    "Deviation: measured over planned, minus one; mean ± standard deviation of the outcomes; "
+    "↑ ↓ significant trend from run to run. Grade: A within 5 %, B 10 %, C 20 %, "
+    "D more; violated: the force exceeded its bound; wasted: it stayed far below. "
+    "k_c factor: measured over catalogue value, with the interval of 9 in 10 next runs; "
+    "* differs from the factor that plans apply."
 )
 
 GRADES = {EvaluationGrade.VIOLATED: "violated", EvaluationGrade.WASTED: "wasted"}
-"""classes of cells"""
+"""CSS classes of cells by grade."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvaluationLine:
-    """One side of one row."""
+    """Line of the evaluation table: the roughing or finishing side of a row."""
 
     number: int
-    """Number of the row, from 1"""
+    """Number of the row, from 1."""
     row: EvaluationRow
     side: Side
     is_finishing: bool
@@ -53,7 +53,7 @@ class EvaluationLine:
 
 
 def lines(rows: Sequence[EvaluationRow]) -> Iterator[EvaluationLine]:
-    """Roughing, then finishing of each row."""
+    """Yield the roughing line, then the finishing line of each row."""
     for number, row in enumerate(rows, start=1):
         for side in row.sides:
             yield EvaluationLine(
@@ -62,34 +62,34 @@ def lines(rows: Sequence[EvaluationRow]) -> Iterator[EvaluationLine]:
 
 
 def screen_columns(rows: Sequence[EvaluationRow]) -> tuple[Column[EvaluationLine], ...]:
-    """Columns for some rows: that of the program only where there is more than one."""
+    """Return the columns for some rows; the program column only if there are several."""
     programs = {row.key.program for row in rows}
     return tuple(each for each in COLUMNS if each.key != "program" or len(programs) > 1)
 
 
 def factor(found: FactorInterval) -> str:
-    """Centre and interval."""
+    """Return the centre and interval of a k_c factor as text."""
     return f"{found.centre:.2f} ({found.low:.2f}–{found.high:.2f})"
 
 
 def deviation(seen: DeviationStatistics | Spread) -> str | None:
-    """Mean and scatter, in per cent."""
+    """Return the mean and standard deviation of deviations, in per cent, as text."""
     if seen.mean is None:
         return None
     scatter = "" if seen.deviation is None else f" ± {100.0 * seen.deviation:.0f}"
-    # Rounding leaves no minus before nothing.
+    # Adding zero avoids a minus sign before a rounded zero.
     return f"{round(100.0 * seen.mean) + 0:+d}{scatter}"
 
 
 def arrow(seen: DeviationStatistics) -> str:
-    """Arrow of a trend from run to run; empty: there is none."""
+    """Return the arrow of a significant trend from run to run; empty if there is none."""
     if seen.trend is None or not seen.trend.is_significant:
         return ""
     return " ↑" if seen.trend.per_run > 0.0 else " ↓"
 
 
 def change(quantity: EvaluatedQuantity) -> Change:
-    """Planned and measured value."""
+    """Return the planned and measured value of a quantity as a change."""
     return Change(before=quantity.predicted, after=quantity.measured)
 
 
@@ -98,7 +98,7 @@ def _per_cent(share: float | None) -> float | None:
 
 
 def _roughing(of: Callable[[Side], Cell]) -> Callable[[EvaluationLine], Cell]:
-    """A cell that the paper has for roughing only."""
+    """Return a cell function for a column that the paper has for roughing only."""
     return lambda line: BLANK if line.is_finishing else of(line.side)
 
 
@@ -107,7 +107,7 @@ def _finishing(of: Callable[[Side], Cell]) -> Callable[[EvaluationLine], Cell]:
 
 
 def _size(row: EvaluationRow) -> str | None:
-    """L/X as the paper writes it."""
+    """Length and width of the feature as the paper writes them, L/X."""
     if row.length is None and row.width is None:
         return None
     return "/".join(shown(each, ".4g", nothing="–") for each in (row.length, row.width))
@@ -143,7 +143,7 @@ ROUGHING, FINISHING = "Roughing f_z, mm", "Finishing, mm"
 CUTTING, DEVIATION = "Cutting", "Deviation from plan, %"
 LEARNED = "Evaluation"
 
-# Columns of files and of screens, in the order of either.
+# Columns of files and of screens, in the order in which either shows them.
 _COLUMNS: tuple[Column[EvaluationLine], ...] = (
     Column(heading="#", value=lambda line: line.number, is_of_row=True, is_key=True),
     Column(
@@ -176,7 +176,7 @@ _COLUMNS: tuple[Column[EvaluationLine], ...] = (
     Column(
         heading="a_s mm", group=GEOMETRY, form=".3g",
         value=_roughing(lambda side: change(side.step_depth)),
-        help="depth of a pass, a_s: planned and, where it differs, measured",
+        help="depth of a pass, a_s: planned and, if different, measured",
     ),
     Column(
         key="material", heading="ID", group=MATERIAL, kind=str,
@@ -222,12 +222,12 @@ _COLUMNS: tuple[Column[EvaluationLine], ...] = (
     Column(
         heading="f_z", group=FINISHING, form=".3g",
         value=_finishing(lambda side: change(side.feed_per_tooth)),
-        help="feed per tooth f_z: planned and, where it differs, measured",
+        help="feed per tooth f_z: planned and, if different, measured",
     ),
     Column(
         heading="a_s", group=FINISHING, form=".3g",
         value=_finishing(lambda side: change(side.step_depth)),
-        help="depth of a pass, a_s: planned and, where it differs, measured",
+        help="depth of a pass, a_s: planned and, if different, measured",
     ),
     Column(
         key="immersion_type", heading="Type", group=CUTTING, kind=str, is_words=True,
@@ -266,7 +266,7 @@ _COLUMNS: tuple[Column[EvaluationLine], ...] = (
     Column(key="kc_factor_is_pending", kind=bool, value=lambda line: line.side.is_pending),
     Column(
         heading="k_c factor", group=LEARNED, value=_factor, is_words=True,
-        help="measured k_c over the catalogue's, and where the next run's lies 9 times of 10",
+        help="measured over catalogue k_c, with the interval of 9 in 10 next runs",
     ),
 )  # fmt: skip
 
@@ -289,11 +289,11 @@ STATISTICS: tuple[Column[DeviationStatistics], ...] = (
         value=lambda seen: None if seen.trend is None else seen.trend.is_significant,
     ),
 )
-"""of the deviations of one quantity"""
+"""Columns with the deviation statistics of one quantity."""
 
 
 def _flat(which: Evaluated, column: Column[DeviationStatistics]) -> Column[EvaluationLine]:
-    """Statistics of one quantity as a column of a file."""
+    """Return a statistic of one quantity as a column of a file."""
     return Column(
         key=f"{which}_{column.key}",
         kind=column.kind,
@@ -314,7 +314,7 @@ def _spread(group: Group, which: Evaluated) -> Spread:
 
 
 def _summed(which: Evaluated, heading: str) -> tuple[Column[Group], ...]:
-    """Columns of one quantity."""
+    """Return the summary columns of one quantity."""
     return (
         Column(key=f"{which}_count", kind=int, value=lambda group: _spread(group, which).count),
         Column(

@@ -1,4 +1,4 @@
-"""The evaluation table and its summary as text, HTML, CSV, Parquet and JSON."""
+"""Evaluation table and summary as text, HTML, CSV, Parquet and JSON."""
 
 import sys
 from collections.abc import Iterator, Sequence
@@ -35,7 +35,7 @@ from service.terminal import write_out
 from stepnc_model.errors import StepNcError
 
 COLOURS = {EvaluationGrade.VIOLATED: text.RED, EvaluationGrade.WASTED: text.YELLOW}
-"""of lines"""
+"""Colours of text lines by grade."""
 
 OF_ROW = tuple(each for each in COLUMNS if each.is_of_row)
 OF_SIDE = tuple(each for each in COLUMNS if not each.is_of_row)
@@ -44,12 +44,12 @@ OF_SIDE = tuple(each for each in COLUMNS if not each.is_of_row)
 def put_table(
     place: str, request: EvaluationRequest, *, form: str, output: Path | None, tell: Tell
 ) -> int:
-    """Make the table and put it where it is wanted; how many outcomes it is of.
+    """Evaluate outcomes and write the table to its destination; return the outcome count.
 
     Raises
     ------
     KnowledgeError, WriteError
-        When it cannot be made, or not be written.
+        When the table cannot be computed or written.
     """
     _require_output(place, form, output)
     found = table(place, request, tell=tell)
@@ -68,10 +68,10 @@ def put_table(
 
 
 def put_summary(place: str, selection: Selection, *, form: str, output: Path | None) -> int:
-    """The same for the summary."""
+    """Summarise outcomes and write the summary to its destination; return the group count."""
     _require_output(place, form, output)
     if form == "html" or (form == "text" and output is not None):
-        raise StepNcError("a summary in a file is CSV, JSON or Parquet")
+        raise StepNcError("write a summary to a CSV, JSON or Parquet file")
     found = summary(place, selection)
     if form in {Format.CSV, Format.PARQUET}:
         _put_rows(SUMMARY, found.groups, form=Format(form), output=output)
@@ -83,9 +83,9 @@ def put_summary(place: str, selection: Selection, *, form: str, output: Path | N
 
 
 def _require_output(place: str, form: str, output: Path | None) -> None:
-    """Refuse bytes for a terminal, and the knowledge base itself as a file."""
+    """Refuse Parquet on a terminal, and the knowledge base itself as an output file."""
     if form == Format.PARQUET and output is None:
-        raise StepNcError("Parquet goes to a file; name it: -o FILE.parquet")
+        raise StepNcError("Parquet cannot be printed; name a file with -o FILE.parquet")
     require_apart(place, output)
 
 
@@ -108,15 +108,15 @@ def _put_rows(
 
 
 def table_text(found: EvaluationTable, *, width: int, is_coloured: bool = False) -> str:
-    """The table, its remarks, its key figures and its legend.
+    """Return the table as text, with its remarks, key figures and legend.
 
     Parameters
     ----------
     found : EvaluationTable
     width : int
-        Letters in a line; what has no place goes below.
+        Characters per line; columns that do not fit are placed in blocks below.
     is_coloured : bool
-        Whether the reader's screen shows colours, and wants them.
+        Whether lines are coloured by grade.
     """
     sides = tuple(lines(found.rows))
     shown = text.table(
@@ -137,17 +137,17 @@ def table_text(found: EvaluationTable, *, width: int, is_coloured: bool = False)
 
 
 def _remarks(sides: Sequence[EvaluationLine]) -> list[tuple[EvaluationLine, Remark]]:
-    """What was seen and what to do, with the line that it is about."""
+    """Remarks with the lines that they are about."""
     return [(line, remark) for line in sides for remark in line.side.remarks]
 
 
 def _wrapped(sentence: str, width: int) -> list[str]:
-    """A sentence in lines, those after the first set in."""
+    """Wrap a sentence; further lines are indented."""
     return wrap(text.one_line(sentence), width=max(width, 20), subsequent_indent="   ")
 
 
 def key_figures(found: EvaluationTable) -> tuple[tuple[str, str], ...]:
-    """What is looked at first; a side that stands in two rows counts once."""
+    """Key figures of the table, as names and values; a side in two rows counts once."""
     sides = list({id(side): side for row in found.rows for side in row.sides}.values())
     grades = [side.grade for side in sides]
     hidden = f" and {found.left_out} not shown" if found.left_out else ""
@@ -163,12 +163,7 @@ def key_figures(found: EvaluationTable) -> tuple[tuple[str, str], ...]:
 
 
 def evaluation_page(found: EvaluationTable) -> str:
-    """The table as one self-contained HTML page: it can be mailed, printed and kept.
-
-    Parameters
-    ----------
-    found : EvaluationTable
-    """
+    """Return the table as one self-contained HTML page that can be mailed, printed and kept."""
     from service.rendering.pages import rendered  # noqa: PLC0415 (Jinja is slow to import)
 
     sides = tuple(lines(found.rows))
@@ -186,7 +181,7 @@ def evaluation_page(found: EvaluationTable) -> str:
 
 
 def _filters(request: EvaluationRequest) -> Iterator[str]:
-    """Filters that the user asked for."""
+    """Yield the filters of the request as text."""
     for name in (*NAMES, "since", "until"):
         value = getattr(request, name)
         if value is not None:
@@ -196,7 +191,7 @@ def _filters(request: EvaluationRequest) -> Iterator[str]:
 
 
 def table_json(found: EvaluationTable) -> str:
-    """The table with what it was made from; rows have their sides within."""
+    """Return the table as JSON; rows contain their sides."""
     request = found.request
     return dump({
         "place": found.place,
@@ -214,7 +209,7 @@ def table_json(found: EvaluationTable) -> str:
 
 
 def _row_json(sides: Sequence[EvaluationLine]) -> dict[str, Any]:
-    """One row with its sides."""
+    """Return a row with its sides as a JSON object."""
     by_kind = {each.is_finishing: _side_json(each) for each in sides}
     return {
         **record(OF_ROW, sides[0]),
@@ -235,17 +230,17 @@ def _side_json(line: EvaluationLine) -> dict[str, Any]:
 
 
 def print_summary(found: Summary) -> None:
-    """A line for each machine, material, tool and kind of feature."""
+    """Print a line for each combination of machine, material, tool and kind of feature."""
     text.print_table(SUMMARY, found.groups, nothing="–")
     count = sum(group.outcomes for group in found.groups)
     text.print_line(
         f"{found.place}: {count} outcomes; mean ± standard deviation of measured over "
-        "planned, less one"
+        "planned, minus one"
     )
 
 
 def summary_json(found: Summary) -> str:
-    """The summary with what it was made from."""
+    """Return the summary as JSON."""
     return dump({
         "place": found.place,
         "made_at": found.made_at.isoformat(),

@@ -1,6 +1,6 @@
-"""Outcomes and corrections as rows of a file: columns as the database has them, with units.
+"""Export of outcomes and corrections as rows of a file, with the columns of the database.
 
-Canonical units (mm, s, N), so that what is read back is what was stored.
+Units are canonical (mm, s, N), so that an import restores exactly what was stored.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -33,12 +33,12 @@ CORRECTION_FIELDS = (
 
 
 def export_outcomes(place: str, selection: Selection, *, file: Path, form: Format) -> int:
-    """Write outcomes to a file, oldest first; how many.
+    """Write outcomes to a file, oldest first; return their number.
 
     Raises
     ------
     KnowledgeError, WriteError
-        When they cannot be read, or not be written.
+        When the outcomes cannot be read or written.
     """
     require_apart(place, file)
     with selected_outcomes(place, selection) as found:
@@ -46,18 +46,18 @@ def export_outcomes(place: str, selection: Selection, *, file: Path, form: Forma
 
 
 def export_corrections(place: str, *, file: Path, form: Format) -> int:
-    """Write all corrections to a file; errors as :func:`export_outcomes`."""
+    """Write all corrections to a file; raises the same errors as :func:`export_outcomes`."""
     require_apart(place, file)
     return write_rows(file, CORRECTION_FIELDS, correction_rows(corrections(place)), form=form)
 
 
 def outcome_rows(outcomes: Iterable[ProcessOutcome]) -> Iterator[Row]:
-    """Columns of the database."""
+    """Yield outcomes as rows with the columns of the database."""
     return map(OUTCOME.row, outcomes)
 
 
 def correction_rows(entries: Sequence[StoredCorrection]) -> Iterator[Row]:
-    """Columns of the database, the factor with its 90 % interval, and the last decision."""
+    """Yield corrections as rows: database columns, 90 % interval and latest decision."""
     for entry in entries:
         found = interval(entry.correction)
         yield {

@@ -1,7 +1,7 @@
 """Outcomes and corrections as text, in the user's units, and as JSON.
 
-Keys of JSON carry their units, which are canonical as in the database and in exports; others
-parse them.
+JSON keys carry their units, which are canonical as in the database and in exports; they never
+change, because other programs read them.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -23,10 +23,10 @@ from stepnc_model.outcome import EvaluatedQuantity, ProcessOutcome
 from stepnc_model.units import m_min_from_speed, mm_min_from_speed, um_from_mm
 
 NOTHING = "–"
-"""not known"""
+"""Text for unknown values."""
 
 Quantity = Callable[[ProcessOutcome], EvaluatedQuantity]
-"""of an outcome, in the user's unit"""
+"""Function that returns a quantity of an outcome, in the user's unit."""
 
 EVALUATED: Mapping[str, Quantity] = {
     "Ra µm": lambda each: _scaled(each.roughness, um_from_mm(1.0)),
@@ -34,18 +34,18 @@ EVALUATED: Mapping[str, Quantity] = {
     "force N": lambda each: each.force,
     "feed mm/min": lambda each: _scaled(each.feed, mm_min_from_speed(1.0)),
 }
-"""the four quantities that are evaluated, by their headings"""
+"""The four evaluated quantities, by their headings."""
 
 QUANTITIES: Mapping[str, Quantity] = {
     **EVALUATED,
     "feed per tooth mm": lambda each: each.feed_per_tooth,
     "step depth mm": lambda each: each.step_depth,
 }
-"""all that has a plan and a measurement"""
+"""All quantities with a planned and a measured value, by their headings."""
 
 
 def _scaled(quantity: EvaluatedQuantity, by: float) -> EvaluatedQuantity:
-    """In another unit."""
+    """Convert planned and measured value to another unit."""
     predicted, measured = quantity.predicted, quantity.measured
     return EvaluatedQuantity(
         predicted=None if predicted is None else predicted * by,
@@ -54,7 +54,7 @@ def _scaled(quantity: EvaluatedQuantity, by: float) -> EvaluatedQuantity:
 
 
 def told(quantity: EvaluatedQuantity) -> str:
-    """Planned, measured and deviation in a cell."""
+    """Return the text of a cell: planned, measured and deviation."""
     values = (quantity.predicted, quantity.measured)
     if values == (None, None):
         return ""
@@ -140,11 +140,11 @@ FACTS: tuple[Column[ProcessOutcome], ...] = (
     Column(heading="samples", value=lambda each: each.trace),
     Column(heading="force, measured over expected", value=_force_ratio, is_optional=True),
 )
-"""all else that is known of an outcome"""
+"""Further facts about an outcome, shown as lines of text."""
 
 
 def print_listing(listing: Listing) -> None:
-    """A line for each outcome, newest first."""
+    """Print a line for each outcome, newest first."""
     print_table(LISTING, listing.outcomes)
     print_line(
         f"{len(listing.outcomes)} of {listing.total} outcomes; planned -> measured, and "
@@ -153,7 +153,7 @@ def print_listing(listing: Listing) -> None:
 
 
 def listing_json(listing: Listing) -> str:
-    """Outcomes, newest first, and how many there are of which these are some."""
+    """Return the listed outcomes, newest first, and the total number, as JSON."""
     return dump({
         "total": listing.total,
         "outcomes": [plain(OUTCOME.row(each)) for each in listing.outcomes],
@@ -161,7 +161,7 @@ def listing_json(listing: Listing) -> str:
 
 
 def print_run(outcomes: Sequence[ProcessOutcome]) -> None:
-    """One run in full: every workingstep with all that was planned and measured."""
+    """Print a run in full: each workingstep with all planned and measured values."""
     first = outcomes[0]
     print_line(
         f"run {one_line(first.run)}: {one_line(first.program)}, {len(outcomes)} workingsteps, "
@@ -176,7 +176,7 @@ def print_run(outcomes: Sequence[ProcessOutcome]) -> None:
 
 
 def run_json(outcomes: Sequence[ProcessOutcome]) -> str:
-    """One run in full, with the deviations."""
+    """Return a run in full as JSON, including the deviations."""
     return dump({
         "run": outcomes[0].run,
         "outcomes": [
@@ -192,7 +192,7 @@ def run_json(outcomes: Sequence[ProcessOutcome]) -> str:
 
 
 def print_corrections(entries: Sequence[StoredCorrection]) -> None:
-    """A line for each correction."""
+    """Print a line for each correction."""
     print_table(_correction_columns(_in_force(entries)), entries)
 
 
@@ -218,19 +218,19 @@ def _correction_columns(in_force: frozenset[int]) -> tuple[Column[StoredCorrecti
 
 
 def _in_force(entries: Sequence[StoredCorrection]) -> frozenset[int]:
-    """Of each context the correction that was accepted last."""
+    """Ids of the corrections in force: the one accepted last in each context."""
     accepted = [each for each in entries if each.standing is Standing.ACCEPTED]
     accepted.sort(key=lambda each: each.decided_at or each.correction.proposed_at)
     return frozenset({each.correction.context: each.id for each in accepted}.values())
 
 
 def corrections_json(entries: Sequence[StoredCorrection]) -> str:
-    """Corrections with what was decided last about them."""
+    """Return corrections with their latest decisions as JSON."""
     return dump({"corrections": [plain(row) for row in correction_rows(entries)]})
 
 
 def print_content(content: Content, *, place: str) -> None:
-    """Content of a knowledge base."""
+    """Print the numbers of entries in a knowledge base, and its fingerprint."""
     print_line(
         f"{place}: {content.outcomes} outcomes, {content.corrections} corrections, "
         f"{content.decisions} decisions"
@@ -239,5 +239,5 @@ def print_content(content: Content, *, place: str) -> None:
 
 
 def content_json(content: Content, *, place: str) -> str:
-    """Content of a knowledge base."""
+    """Return the numbers of entries in a knowledge base, and its fingerprint, as JSON."""
     return dump({"place": place, **asdict(content)})

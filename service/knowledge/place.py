@@ -1,6 +1,6 @@
 """Location of the knowledge base: from the user, the environment, or the default file.
 
-Knows no database, so that who has none does not load one.
+Imports no database library, which commands without a knowledge base do not need.
 """
 
 import os
@@ -10,7 +10,7 @@ from service.files import is_same
 from stepnc_model.errors import StepNcError, WriteError
 
 VARIABLE = "STEPNC_KB"
-"""environment variable that names the knowledge base"""
+"""Environment variable that names the knowledge base."""
 
 FOLDER, FILE = "stepnc", "knowledge.db"
 
@@ -21,44 +21,44 @@ def named_place(option: str) -> str | None:
     Parameters
     ----------
     option : str
-        What was given as ``--kb``; empty: nothing.
+        Value of ``--kb``; empty: not given.
     """
     return option or os.environ.get(VARIABLE) or None
 
 
 def usual_place(option: str) -> str:
-    """The same, else the usual file of this user.
+    """Location named by ``--kb`` or the environment, else the default file of this user.
 
     Raises
     ------
     StepNcError
-        When nothing is named and the user has no home.
+        When no location is named and the user has no home folder.
     """
     return named_place(option) or str(usual_file())
 
 
 def usual_file() -> Path:
-    """``$XDG_DATA_HOME/stepnc/knowledge.db``, else below ``~/.local/share``.
+    """Default file ``$XDG_DATA_HOME/stepnc/knowledge.db``, or below ``~/.local/share``.
 
     Raises
     ------
     StepNcError
-        When the user has no home.
+        When the user has no home folder.
     """
     named = os.environ.get("XDG_DATA_HOME", "")
-    # The XDG Base Directory Specification wants relative names ignored.
+    # The XDG Base Directory Specification requires relative paths to be ignored.
     if os.path.isabs(named):
         return Path(named) / FOLDER / FILE
     try:
         return Path.home() / ".local" / "share" / FOLDER / FILE
     except RuntimeError as error:
         raise StepNcError(
-            f"no home folder to keep a knowledge base in; name one: --kb FILE, or {VARIABLE}"
+            f"no home folder for a knowledge base; name one with --kb FILE, or {VARIABLE}"
         ) from error
 
 
 def is_usual(place: str) -> bool:
-    """Whether this is the default file."""
+    """Whether a location is the default file."""
     try:
         return place == str(usual_file())
     except StepNcError:
@@ -66,12 +66,12 @@ def is_usual(place: str) -> bool:
 
 
 def make_folder(place: str) -> None:
-    """Make the folder of the usual file; a folder that the user named is the user's to make.
+    """Create the folder of the default file; users create other folders themselves.
 
     Raises
     ------
     WriteError
-        When it cannot be made.
+        When the folder cannot be created.
     """
     if not is_usual(place):
         return
@@ -80,16 +80,16 @@ def make_folder(place: str) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         reason = error.strerror or str(error)
-        raise WriteError(f"{reason}; name another place with --kb", path=str(folder)) from error
+        raise WriteError(f"{reason}; name another file with --kb", path=str(folder)) from error
 
 
 def require_apart(place: str | None, *outputs: Path | None) -> None:
-    """Refuse an output that is the knowledge base itself, or one of the files beside it.
+    """Refuse an output file that is the knowledge base or one of its auxiliary files.
 
     Raises
     ------
     WriteError
-        Nothing was written.
+        When an output would overwrite the knowledge base; nothing was written.
     """
     name = (place or "").removeprefix("sqlite:///")
     if not name or "://" in name:

@@ -1,4 +1,4 @@
-"""Outcomes and corrections that a program itself holds: ``stepnc kbe read``."""
+"""Outcomes and corrections stored in a program file, for ``stepnc kbe read``."""
 
 from pathlib import Path
 
@@ -57,7 +57,7 @@ CORRECTIONS: tuple[Column[RecordedCorrection], ...] = (
 
 
 def recorded_in(file: Path) -> RecordedOutcomes:
-    """Outcomes and corrections of a program, as ``stepnc kbe write`` wrote them.
+    """Read the outcomes and corrections that ``stepnc kbe write`` stored in a program.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def recorded_in(file: Path) -> RecordedOutcomes:
 
 
 def recorded_json(found: RecordedOutcomes) -> str:
-    """The same as JSON; keys carry their units."""
+    """Return stored outcomes and corrections as JSON; keys carry their units."""
     return dump({
         "outcomes": records(OUTCOMES, found.outcomes),
         "corrections": records(CORRECTIONS, found.corrections),
@@ -76,7 +76,7 @@ def recorded_json(found: RecordedOutcomes) -> str:
 
 
 def print_recorded(found: RecordedOutcomes) -> None:
-    """Two tables, in the order of the file."""
+    """Print stored outcomes and corrections as two tables, in file order."""
     print_line(f"{len(found.outcomes)} outcomes, {len(found.corrections)} corrections")
     if found.outcomes:
         print_table(OUTCOMES, found.outcomes, nothing="–")

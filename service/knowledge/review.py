@@ -1,7 +1,7 @@
-"""The review of the knowledge base: learn from outcomes, and propose what is new or changed.
+"""Review of the knowledge base: learn from outcomes and propose new or changed corrections.
 
-Nothing that is proposed is taken by a plan before it is accepted. A person accepts it; or,
-where that is asked for, nobody does, when it keeps the bounds of :mod:`kbe.acceptance`.
+No proposal affects a plan before it is accepted: by a person, or automatically if requested and
+within the bounds of :mod:`kbe.acceptance`.
 """
 
 from collections.abc import Iterator
@@ -22,15 +22,15 @@ from stepnc_model.outcome import Context, LearnedCorrection
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Acceptance:
-    """How corrections are accepted without a person."""
+    """Settings for accepting corrections automatically."""
 
     by: str = ""
-    """who lets them be accepted; empty: nobody"""
+    """Person who requests automatic acceptance; empty: nobody."""
     bounds: AcceptanceBounds = field(default_factory=AcceptanceBounds)
 
 
 PROPOSE = Acceptance()
-"""nothing is accepted without a person"""
+"""Settings that accept nothing automatically."""
 
 
 class ReviewResult(StrEnum):
@@ -49,24 +49,24 @@ class Reviewed:
     learned: LearnedFactor
     change: ReviewResult
     entry: StoredCorrection | None
-    """the stored correction that says so; None: nothing to learn from"""
+    """Stored correction with the learned factor; None: nothing to learn from."""
     accepted: LearnedCorrection | None
-    """in force before the review"""
+    """Correction in force before the review."""
     objections: tuple[Objection, ...]
-    """against accepting it without a person"""
+    """Objections to automatic acceptance."""
 
 
 SAME = 0.005
-"""change of the factor below which, with no more outcomes, nothing new is proposed"""
+"""Change of the factor below which nothing is proposed, unless there are more outcomes."""
 
 AUTOMATIC = "{by} (automatically)"
-"""who accepted when no person looked"""
+"""Name recorded as the decider of an automatic acceptance."""
 
 
 def review(
     place: str, request: ReviewRequest, acceptance: Acceptance = PROPOSE
 ) -> tuple[Reviewed, ...]:
-    """Learn from outcomes and propose what is new or changed, context after context."""
+    """Learn from outcomes and propose new or changed corrections, for each context."""
     with readable(place) as store:
         if store is None:
             return ()
@@ -80,7 +80,7 @@ def review(
 
 
 def _learned(store: Store, selection: Selection, *, at: datetime) -> Iterator[LearnedFactor]:
-    """One context after the other, so that only the outcomes of one are in memory."""
+    """Learn from one context at a time, so that only its outcomes are in memory."""
     for context in store.contexts():
         narrowed = narrowed_to(context, selection)
         if narrowed is not None:
@@ -88,7 +88,7 @@ def _learned(store: Store, selection: Selection, *, at: datetime) -> Iterator[Le
 
 
 def narrowed_to(context: Context, selection: Selection) -> Selection | None:
-    """The selection within one context; None: they have nothing in common."""
+    """Return the selection limited to a context; None if they have nothing in common."""
     names = ("machine", "material", "tool")
     asked = [getattr(selection, name) for name in names]
     given = [getattr(context, name) for name in names]
@@ -106,7 +106,7 @@ def _reviewed(
     *,
     acceptance: Acceptance,
 ) -> Reviewed:
-    """Propose, and accept where that is wished and nothing speaks against it."""
+    """Propose a learned factor; accept it if requested and there are no objections."""
     accepted = store.accepted(found.context)
     proposed = found.correction
     if proposed is None:
@@ -121,7 +121,7 @@ def _reviewed(
     if entry is None or is_changed(proposed, entry.correction):
         entry, change = _proposed(store, proposed), ReviewResult.PROPOSED
     against = objections(proposed, accepted, bounds=acceptance.bounds)
-    # What a person has decided about is not decided again by nobody.
+    # Decisions of a person are never changed automatically.
     if acceptance.by and not against and entry.standing is Standing.PROPOSED:
         by, at = AUTOMATIC.format(by=acceptance.by), datetime.now(UTC)
         store.accept(entry.id, by=by, at=at)
@@ -142,7 +142,7 @@ def is_changed(proposed: LearnedCorrection, before: LearnedCorrection) -> bool:
 
 
 def _proposed(store: Store, proposed: LearnedCorrection) -> StoredCorrection:
-    """Keep a proposal."""
+    """Store a proposal."""
     return StoredCorrection(
         id=store.propose(proposed),
         correction=proposed,

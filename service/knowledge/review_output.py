@@ -1,4 +1,4 @@
-"""A review of the knowledge base as text and as JSON."""
+"""Results of a knowledge base review as text and as JSON."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -17,7 +17,7 @@ from stepnc_model.outcome import LearnedCorrection
 
 
 def print_review(found: Sequence[Reviewed]) -> None:
-    """A paragraph for each context."""
+    """Print a paragraph for each context."""
     for each in found:
         names = " / ".join(map(one_line, asdict(each.learned.context).values()))
         number = NOTHING if each.entry is None else each.entry.id
@@ -30,7 +30,7 @@ def print_review(found: Sequence[Reviewed]) -> None:
 
 
 def _findings(found: Reviewed) -> list[str]:
-    """Learned factor, its data, the factor in force, and objections."""
+    """Learned factor, its data, the factor in force, and objections, one text each."""
     report, texts = found.learned.report, []
     if found.entry is not None:
         correction = found.entry.correction
@@ -47,7 +47,7 @@ def _findings(found: Reviewed) -> list[str]:
         by = one_line(found.accepted.accepted_by)
         before = f"{factor(interval(found.accepted))}, accepted by {by}"
     texts.append(f"in force before: {before}")
-    texts += [f"not without a person: {each}" for each in found.objections]
+    texts += [f"needs a person's decision: {each}" for each in found.objections]
     return texts
 
 
@@ -59,7 +59,7 @@ def _decided(entry: StoredCorrection) -> str:
 
 
 def review_json(found: Sequence[Reviewed]) -> str:
-    """Results of a review, context by context."""
+    """Return the results of a review as JSON, one object per context."""
     return dump({"contexts": [_reviewed(each) for each in found]})
 
 

@@ -1,8 +1,8 @@
-"""Verbs of the knowledge base: one function each.
+"""Operations on the knowledge base, one function each.
 
-A place is a file of SQLite or the address of a PostgreSQL database, see
-:mod:`service.knowledge.place`. Each function opens it, does one thing, and closes it. The
-table is made in :mod:`service.knowledge.evaluated`, proposals in
+A place is an SQLite file or the address of a PostgreSQL database, see
+:mod:`service.knowledge.place`. Each function opens it, performs one operation, and closes it.
+The evaluation table is computed in :mod:`service.knowledge.evaluated`, proposals in
 :mod:`service.knowledge.review`.
 """
 
@@ -28,26 +28,26 @@ from stepnc_model.outcome import Context, LearnedCorrection, ProcessOutcome
 CENTURY = timedelta(days=36_525)
 
 FEWEST_LETTERS = 4
-"""of the beginning of a run's id"""
+"""Fewest characters of an abbreviated run id."""
 
 RECENT = 2000
-"""outcomes among which a run is found by the beginning of its id"""
+"""Number of latest outcomes among which an abbreviated run id is searched."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AcceptedFactor:
-    """The factor on k_c that a plan takes for one tool."""
+    """Accepted factor on k_c that a plan applies to one tool."""
 
     tool: str
     factor: float
-    """at the quantile that was asked for"""
+    """Factor at the requested quantile."""
     centre: float
     accepted_by: str
     accepted_at: datetime
     outcomes: int
-    """that it was learned from"""
+    """Number of outcomes that the factor was learned from."""
     correction: LearnedCorrection
-    """all of it"""
+    """Correction that the factor belongs to."""
 
 
 def accepted_factors(
@@ -59,24 +59,24 @@ def accepted_factors(
     quantile: float = SAFE,
     is_new_allowed: bool = False,
 ) -> tuple[AcceptedFactor, ...]:
-    """Factors in force for the tools of a plan; a tool without one is left out.
+    """Return the accepted factors for the tools of a plan; tools without one are omitted.
 
     Parameters
     ----------
     place : str
     machine, material : str
-        As outcomes name them.
+        Names as in the outcomes.
     tools : iterable of str
-        Each once, or more often.
+        Ids of the tools; duplicates are allowed.
     quantile : float
-        Of the next run's factor; at 0.9 one run in ten needs more force than planned.
+        Quantile of the next run's factor; at 0.9, one run in ten needs more force than planned.
     is_new_allowed : bool
-        Whether it may be a file that is still to be made: then nothing is known yet.
+        Whether a file that does not exist yet is accepted; it has no factors.
 
     Raises
     ------
     KnowledgeError
-        When there is no knowledge base, or it cannot be read.
+        When the knowledge base does not exist or cannot be read.
     """
     file = parsed_place(place).file
     if is_new_allowed and file and not Path(file).exists():
@@ -106,12 +106,12 @@ def _factor(tool: str, correction: LearnedCorrection, quantile: float) -> Accept
 
 
 def record(place: str, outcomes: Sequence[ProcessOutcome]) -> None:
-    """Keep what a run showed, all of it or nothing; makes the knowledge base when it is new.
+    """Store the outcomes of a run, all or none; create the knowledge base if it is new.
 
     Raises
     ------
     KnowledgeError, WriteError
-        When it cannot be kept.
+        When the outcomes cannot be stored.
     """
     make_folder(place)
     with open_store(place) as store:
@@ -120,7 +120,7 @@ def record(place: str, outcomes: Sequence[ProcessOutcome]) -> None:
 
 @contextmanager
 def readable(place: str) -> Iterator[Store | None]:
-    """The store; None: it is the usual file, and nothing was ever kept in it."""
+    """Open the store for reading; None if the default file does not exist yet."""
     if is_usual(place) and not Path(place).exists():
         yield None
         return
@@ -130,20 +130,20 @@ def readable(place: str) -> Iterator[Store | None]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Listing:
-    """Some outcomes, newest first, of all that were meant."""
+    """Latest outcomes of a selection, with the number of all selected outcomes."""
 
     outcomes: tuple[ProcessOutcome, ...]
     total: int
 
 
 def newest(place: str, selection: Selection, *, limit: int) -> Listing:
-    """The outcomes that were recorded last, newest first.
+    """Return the latest outcomes of a selection, newest first.
 
     Raises
     ------
     KnowledgeError
-        As for all that follow: when the knowledge base cannot be opened or read. The usual
-        file of a user who has kept nothing yet counts as an empty one.
+        When the knowledge base cannot be opened or read; this holds for all functions below. A
+        missing default file counts as an empty knowledge base.
     """
     with readable(place) as store:
         if store is None:
@@ -159,9 +159,9 @@ def newest(place: str, selection: Selection, *, limit: int) -> Listing:
 
 
 def _recent(store: Store, selection: Selection, *, end: datetime, at_least: int) -> Selection:
-    """The selection since a moment that leaves about as many outcomes as are wanted.
+    """Limit a selection to a recent period with at least the requested number of outcomes.
 
-    A store tells outcomes oldest first, but counts those since a moment at once.
+    A store returns outcomes oldest first, but counts those of a period quickly.
     """
     span = timedelta(hours=1)
     while span < CENTURY:
@@ -175,18 +175,18 @@ def _recent(store: Store, selection: Selection, *, end: datetime, at_least: int)
 
 
 def outcomes_of_run(place: str, run: str) -> tuple[ProcessOutcome, ...]:
-    """All of one run, in time; empty: there is no such run.
+    """Return all outcomes of a run, in order of time; empty if the run does not exist.
 
     Parameters
     ----------
     place : str
     run : str
-        Its id; of a recent one the beginning will do, at least four letters.
+        Id of the run, or the first four or more characters of a recent run's id.
 
     Raises
     ------
     StepNcError
-        When several recent runs begin so.
+        When several recent runs match an abbreviated id.
     """
     found = _of_run(place, run)
     if found or len(run) < FEWEST_LETTERS:
@@ -199,37 +199,37 @@ def outcomes_of_run(place: str, run: str) -> tuple[ProcessOutcome, ...]:
 
 
 def _of_run(place: str, run: str) -> tuple[ProcessOutcome, ...]:
-    """By its whole id."""
+    """Return the outcomes of a run by its complete id."""
     with readable(place) as store:
         return () if store is None else tuple(store.outcomes(Selection(run=run)))
 
 
 @contextmanager
 def selected_outcomes(place: str, selection: Selection) -> Iterator[Iterator[ProcessOutcome]]:
-    """Outcomes to read one after the other, while the knowledge base is open."""
+    """Provide an iterator over selected outcomes while the knowledge base is open."""
     with readable(place) as store:
         yield iter(()) if store is None else store.outcomes(selection)
 
 
 def corrections(place: str) -> tuple[StoredCorrection, ...]:
-    """All corrections and what was decided about them, in the order of their proposal."""
+    """Return all corrections with their latest decisions, in the order of their proposal."""
     with readable(place) as store:
         return () if store is None else store.corrections()
 
 
 def contexts(place: str) -> tuple[Context, ...]:
-    """Machines, materials and tools of which something is known."""
+    """Return all combinations of machine, material and tool that have outcomes."""
     with readable(place) as store:
         return () if store is None else store.contexts()
 
 
 def accept(place: str, ids: Sequence[int], *, by: str) -> tuple[StoredCorrection, ...]:
-    """Put corrections in force in the name of a person; none when one is not known.
+    """Accept corrections in the name of a person; all or none.
 
     Raises
     ------
     UnknownCorrection
-        When there is none of an id.
+        When an id is unknown.
     """
     with open_store(place, is_new_allowed=False) as store:
         _require_known(store, ids)
@@ -239,7 +239,7 @@ def accept(place: str, ids: Sequence[int], *, by: str) -> tuple[StoredCorrection
 
 
 def withdraw(place: str, ids: Sequence[int], *, by: str) -> tuple[StoredCorrection, ...]:
-    """Take corrections out of force, or refuse proposals; errors as :func:`accept`."""
+    """Withdraw accepted corrections, or reject proposals; raises as :func:`accept`."""
     with open_store(place, is_new_allowed=False) as store:
         _require_known(store, ids)
         for each in ids:
@@ -248,7 +248,7 @@ def withdraw(place: str, ids: Sequence[int], *, by: str) -> tuple[StoredCorrecti
 
 
 def _require_known(store: Store, ids: Sequence[int]) -> None:
-    """Refuse before the first is decided about."""
+    """Refuse unknown ids before anything is decided."""
     known = {entry.id for entry in store.corrections()}
     for each in ids:
         if each not in known:
@@ -273,12 +273,12 @@ def restore(file: Path, place: str) -> Content:
 
 
 def check(place: str) -> Content:
-    """Read all that is stored, to the last page; what there is.
+    """Check the integrity of all stored data and return the numbers of entries.
 
     Raises
     ------
     StoreDamaged
-        When it is not whole.
+        When the stored data are damaged.
     """
     with open_store(place, is_new_allowed=False) as store:
         store.check()
@@ -286,5 +286,5 @@ def check(place: str) -> Content:
 
 
 def shown(place: str) -> str:
-    """The place as people may see it: without its password."""
+    """Return the location for display, without its password."""
     return parsed_place(place).shown

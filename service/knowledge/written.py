@@ -1,4 +1,4 @@
-"""Outcomes of a run and accepted corrections, written into the program as entities."""
+"""Writing of a run's outcomes and accepted corrections into the program as entities."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +15,7 @@ from stepnc_model.outcome_record import write_outcomes
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WrittenOutcomes:
-    """Content that was written to the file."""
+    """Numbers of outcomes and corrections written to a file."""
 
     place: Path
     run: str
@@ -26,23 +26,23 @@ class WrittenOutcomes:
 def write_back(
     place: str, file: Path, *, run: str = "", output: Path | None = None
 ) -> WrittenOutcomes:
-    """Write the outcomes of one run, and the corrections in force for its tools.
+    """Write the outcomes of a run, and the accepted corrections for its tools, to a file.
 
     Parameters
     ----------
     place : str
         File or URL of the knowledge base.
     file : Path
-        The program that was run.
+        Program that was run.
     run : str
-        Its id; the program's newest run when empty.
+        Id of the run; empty: the program's newest run.
     output : Path, optional
-        Default: ``FILE.recorded.stpnc``.
+        Output file; default: ``FILE.recorded.stpnc``.
 
     Raises
     ------
     StepNcError
-        When there is no such run, the program is another, or the output cannot be written.
+        When the run does not exist, belongs to another program, or the output is not writable.
     """
     target = output or beside(file, ".recorded.stpnc")
     require_place(target, apart_from=file)
@@ -61,7 +61,7 @@ def write_back(
 
 
 def _outcomes(store: Store, program: str, run: str) -> tuple[ProcessOutcome, ...]:
-    """Those of the run that is meant."""
+    """Return the outcomes of the requested run, or of the program's newest run."""
     wanted = Selection(run=run) if run else Selection(program=program)
     newest: list[ProcessOutcome] = []
     for outcome in store.outcomes(wanted):
@@ -70,14 +70,14 @@ def _outcomes(store: Store, program: str, run: str) -> tuple[ProcessOutcome, ...
         newest.append(outcome)
     if not newest:
         what = f"run '{run}'" if run else f"run of a program '{program}'"
-        raise StepNcError(f"{store.place.shown}: no {what}; list them: stepnc kbe list")
+        raise StepNcError(f"{store.place.shown}: no {what}; list runs with: stepnc kbe list")
     return tuple(newest)
 
 
 def _in_force(
     store: Store, outcomes: tuple[ProcessOutcome, ...]
 ) -> tuple[LearnedCorrection, ...]:
-    """Accepted corrections of the contexts of some outcomes."""
+    """Return the accepted corrections for the contexts of some outcomes."""
     contexts = dict.fromkeys(outcome.context for outcome in outcomes)
     found = (store.accepted(context) for context in contexts)
     return tuple(correction for correction in found if correction is not None)

@@ -1,1 +1,1 @@
-"""A run while it runs: its rows, its events, and what is asked of it."""
+"""Files of a live run: rows, events, status, and requested changes."""

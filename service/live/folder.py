@@ -1,4 +1,4 @@
-"""The files of a run while it runs, as they are named in its job's folder."""
+"""Files of a live run in the folder of its job."""
 
 import json
 import os
@@ -10,7 +10,7 @@ from typing import Any
 from service.live.storage import storing
 
 FORMER = {"is_over": "is_overloaded"}
-"""keys of a status as earlier versions wrote them"""
+"""Keys of a status written by earlier versions, with their current names."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,31 +21,31 @@ class LiveFolder:
 
     @property
     def series(self) -> Path:
-        """Rows, see :mod:`service.live.series`."""
+        """File of rows, see :mod:`service.live.series`."""
         return self.path / "series.bin"
 
     @property
     def events(self) -> Path:
-        """Events, a line each."""
+        """File of events, one per line."""
         return self.path / "events.jsonl"
 
     @property
     def orders(self) -> Path:
-        """Orders to the run, a line each."""
+        """File of orders to the run, one per line."""
         return self.path / "orders.jsonl"
 
     @property
     def status(self) -> Path:
-        """Latest status snapshot."""
+        """File with the latest status snapshot."""
         return self.path / "status.json"
 
     def write_status(self, status: Mapping[str, Any]) -> None:
-        """Replace the status; readers see the old or the new. It need not outlive a crash.
+        """Replace the status atomically; it need not survive a crash.
 
         Raises
         ------
         StorageFull, Unavailable
-            When it cannot be written; the old one stays.
+            When it cannot be written; the old status stays.
         """
         partial = self.path / ".status.json"
         with storing(self.status.name):
@@ -53,7 +53,7 @@ class LiveFolder:
             os.replace(partial, self.status)
 
     def read_status(self) -> dict[str, Any] | None:
-        """Latest status snapshot; None: there is none yet."""
+        """Return the latest status snapshot; None before the first one."""
         try:
             found: dict[str, Any] = json.loads(self.status.read_text(encoding="utf-8"))
         except FileNotFoundError:

@@ -1,9 +1,8 @@
-"""Lines of JSON that one process appends and others read while it goes on.
+"""Journals of JSON lines that one process appends while others read them.
 
-A line is written at once, by one process after another, so that a reader meets whole lines
-only; what stands behind the last line break is still being written, or was cut off when its
-writer died. A line that was cut off is none: it is passed over, and the next begins anew. One
-for which the disk has no room is taken back.
+Each line is written in one call while the file is locked, so that readers see whole lines only;
+text after the last line break is still being written, or was cut off when its writer died.
+Lines that were cut off are skipped. A line for which the disk has no room is removed again.
 """
 
 import fcntl
@@ -17,31 +16,31 @@ from typing import Any
 from service.live.storage import storing, write_whole
 
 LONGEST = 1 << 20
-"""bytes that are read at once"""
+"""Most bytes that are read at once."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JournalPart:
-    """Lines, and where the next begins."""
+    """Lines read from a journal, and the offset of the next line."""
 
     lines: tuple[dict[str, Any], ...]
     offset: int
-    """Offset, bytes from the beginning of the file"""
+    """Offset of the next line, in bytes from the beginning of the file."""
 
 
 def append(file: Path, entry: Mapping[str, Any]) -> None:
-    """Add a line; several processes may.
+    """Append a line to a journal; several processes may do so.
 
     Raises
     ------
     StorageFull, Unavailable
-        When it cannot be written; the file is as it was then.
+        When the line cannot be written; the file is unchanged then.
     """
     line = json.dumps(entry, ensure_ascii=False, allow_nan=False).encode() + b"\n"
     with storing(file.name):
         descriptor = os.open(file, os.O_RDWR | os.O_APPEND | os.O_CREAT, 0o600)
         try:
-            # Free again when it is closed.
+            # The lock is released when the file is closed.
             fcntl.flock(descriptor, fcntl.LOCK_EX)
             _add(descriptor, line)
         finally:
@@ -49,7 +48,7 @@ def append(file: Path, entry: Mapping[str, Any]) -> None:
 
 
 def _add(descriptor: int, line: bytes) -> None:
-    """A line at the end, or nothing."""
+    """Write a line at the end of the file, or nothing."""
     begin = os.fstat(descriptor).st_size
     is_cut = begin > 0 and os.pread(descriptor, 1, begin - 1) != b"\n"
     try:
@@ -60,7 +59,7 @@ def _add(descriptor: int, line: bytes) -> None:
 
 
 def read_on(file: Path, offset: int) -> JournalPart:
-    """Lines from an offset on; none when the file does not exist yet."""
+    """Read the lines from an offset on; none when the file does not exist yet."""
     try:
         with file.open("rb") as opened:
             opened.seek(offset)

@@ -1,20 +1,20 @@
-"""The way of a tool through a run, thinned to what a picture of it can show.
+"""Path of the tool in a run, thinned to the points that a picture of it can show.
 
-The path is a curve over time: position, feed and force together. Points are ranked as Douglas
-and Peucker [1]_ do it: between two points that stay, the one that lies farthest from the
-straight line *at the same moment* comes next, so that corners and changes of feed or force stay
-and straight cuts at an even feed need their ends only. All stretches are cut in the same round,
-so that a long run takes some dozens of passes over arrays. A very long one is thinned piece by
-piece, and then once more as a whole, so that memory stays bounded. How far the thinned path is
-off is not promised but measured, and told with it.
+The path is a curve over time: position, feed and force together. Points are ranked by the
+method of Douglas and Peucker [1]_: between two kept points, the point farthest from the
+straight line *at the same time* comes next, so that corners and changes of feed or force are
+kept, while straight cuts at constant feed need only their ends. All stretches are split in the
+same round, so that a long run takes some dozens of passes over arrays. A very long path is
+thinned piece by piece and then once more as a whole, so that memory stays bounded. The error of
+the thinned path is measured afterwards and returned with it.
 
 References
 ----------
 .. [1] D. H. Douglas, T. K. Peucker, "Algorithms for the reduction of the number of points
    required to represent a digitized line or its caricature", Cartographica 10 (1973) 112–122,
-   doi:10.3138/FM57-6770-U75U-7727. Distances here are taken at the same moment (as in
-   N. Meratnia, R. A. de By, EDBT 2004, doi:10.1007/978-3-540-24741-8_44), which are never
-   less than those to the line.
+   doi:10.3138/FM57-6770-U75U-7727. Distances here are taken at the same time (as in
+   N. Meratnia, R. A. de By, EDBT 2004, doi:10.1007/978-3-540-24741-8_44); they are never
+   less than the distances to the line.
 """
 
 from collections.abc import Sequence
@@ -30,26 +30,26 @@ COLUMNS = (
     "time_s", "x_mm", "y_mm", "z_mm", "feed_actual_mm_min", "cutting_force_n", "path_mode",
     "workingstep",
 )  # fmt: skip
-"""of a run's rows that a path needs"""
+"""Columns of a run's rows that a path needs."""
 
 RAPID = 1.0
-"""of ``path_mode``, see :class:`simulator.machine.samples.PathMode`"""
+"""Value of ``path_mode`` for rapid moves, see :class:`simulator.machine.samples.PathMode`."""
 
 FINE_LENGTH = 0.0001
-"""share of the path's size that is not seen: a tenth of a pixel, so that one may zoom in"""
+"""Share of the path's size that is not visible: a tenth of a pixel, to allow zooming."""
 
 FINE_COLOUR = 0.02
-"""share of the greatest feed (force) that is not seen as another colour"""
+"""Share of the largest feed (force) that is not visible as another colour."""
 
 FEWEST = 20
-"""points that hold ends and extremes"""
+"""Fewest points of a thinned path, enough for ends and extremes."""
 
 MOST_ROUNDS = 40
-"""in which the farthest point is looked for; later stretches are cut in their middle, so that
-no shape of path takes long"""
+"""Largest number of rounds that look for the farthest point; later rounds split in the middle,
+so that no shape of path takes long."""
 
 PIECE = 250_000
-"""rows that are thinned at once: some hundred MB on the way"""
+"""Number of rows that are thinned at once, which takes some hundred MB."""
 
 Flags = NDArray[np.bool_]
 
@@ -59,23 +59,23 @@ class TravelledPath:
     """Path of a tool, N points ascending in time."""
 
     time: Floats
-    """Time, (N,) s"""
+    """Time of each point, (N,), s."""
     position: Floats
-    """Position, (N, 3) mm"""
+    """Position of the tool, (N, 3), mm."""
     feed: Floats
-    """Feed, (N,) mm/min, along the path"""
+    """Feed along the path, (N,), mm/min."""
     force: Floats
-    """Force, (N,) N"""
+    """Cutting force, (N,), N."""
     is_rapid: Flags
-    """(N,) whether the move that ends here is a rapid one"""
+    """Whether the move that ends at each point is a rapid, (N,)."""
     workingstep: Ints
-    """Workingstep, (N,) counted from 1; 0: none"""
+    """Workingstep of each point, (N,), counted from 1; 0: none."""
 
     def __len__(self) -> int:
         return len(self.time)
 
     def at(self, kept: Ints) -> "TravelledPath":
-        """Some of its points."""
+        """Return the path through some of its points."""
         return TravelledPath(
             time=self.time[kept],
             position=self.position[kept],
@@ -88,33 +88,33 @@ class TravelledPath:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Deviation:
-    """Distance of points that were left out from the thinned path, at the same moment."""
+    """Largest distance of omitted points from the thinned path, at the same time."""
 
     length: float
-    """Length, mm"""
+    """Error of the position, in mm."""
     feed: float
-    """mm/min, outside of rapid moves"""
+    """Error of the feed, in mm/min, except in rapid moves."""
     force: float
-    """Force, N"""
+    """Error of the force, in N."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ThinnedPath:
-    """A thinned path, and how true it is."""
+    """Thinned path of a run, with its deviation from the original."""
 
     path: TravelledPath
     deviation: Deviation
     rows: int
-    """that it stands for"""
+    """Number of rows of the original path."""
 
 
 def shown_path(series: Series, points: int) -> ThinnedPath:
-    """The path in the rows of a run, at most so many points of it.
+    """Thin the path of a run to at most a number of points.
 
     Raises
     ------
     NotFound
-        When the rows have no such columns.
+        When the rows lack a needed column.
     ValueError
         When ``points`` is too small.
     """
@@ -133,12 +133,12 @@ def shown_path(series: Series, points: int) -> ThinnedPath:
 
 
 def path_of(series: Series, *, begin: int = 0, end: int | None = None) -> TravelledPath:
-    """The path in rows of a run, from one on and up to another.
+    """Return the path in a range of rows of a run.
 
     Raises
     ------
     NotFound
-        When the rows have no such columns.
+        When the rows lack a needed column.
     """
     rows = np.asarray(series.values[begin:end, series.places(COLUMNS)], dtype=np.float64)
     return TravelledPath(
@@ -152,21 +152,21 @@ def path_of(series: Series, *, begin: int = 0, end: int | None = None) -> Travel
 
 
 def thinned(path: TravelledPath, points: int) -> Ints:
-    """Indices of the points to keep: at most so many, ascending; ends and extremes always.
+    """Indices of the points to keep, ascending, including ends and extremes.
 
-    Fewer are kept when more would not be seen, see :data:`FINE_LENGTH`, :data:`FINE_COLOUR`.
+    Omits points that would not be visible, see :data:`FINE_LENGTH` and :data:`FINE_COLOUR`.
 
     Parameters
     ----------
     path : TravelledPath
         N points.
     points : int
-        At least :data:`FEWEST`.
+        Most points to keep, at least :data:`FEWEST`.
 
     Returns
     -------
     (M,) array
-        Numbers of points, M ≤ points.
+        Indices of points, M ≤ points.
 
     Raises
     ------
@@ -174,25 +174,25 @@ def thinned(path: TravelledPath, points: int) -> Ints:
         When ``points`` is too small.
     """
     if points < FEWEST:
-        raise ValueError(f"{points} points: at least {FEWEST} hold ends and extremes")
+        raise ValueError(f"{points} points: at least {FEWEST} are needed for ends and extremes")
     if len(path) <= 2:
         return np.arange(len(path))
     rank = _ranks(path.time, _scaled(path), np.union1d(_musts(path), _changes(path)))
     rank[_musts(path)] = np.inf
     worth = np.flatnonzero(rank > 1.0)
     if len(worth) > points:
-        # Stable: of equals the earlier stays.
+        # The sort is stable: of points with equal rank, the earlier stays.
         worth = np.sort(worth[np.argsort(-rank[worth], kind="stable")[:points]])
     return worth
 
 
 def deviation(path: TravelledPath, kept: Ints) -> Deviation:
-    """Distances of the points between those that were kept."""
+    """Return the largest distance of a path's points from the kept ones."""
     return _deviation(path, path.at(kept))
 
 
 def _deviation(path: TravelledPath, shown: TravelledPath) -> Deviation:
-    """Distances of the points of a path from one that stands for it."""
+    """Return the largest distance of a path's points from a thinned path."""
     if len(shown) < 2:
         return Deviation(length=0.0, feed=0.0, force=0.0)
     values, kept = _values(path), _values(shown)
@@ -207,12 +207,12 @@ def _deviation(path: TravelledPath, shown: TravelledPath) -> Deviation:
 
 
 def _values(path: TravelledPath) -> Floats:
-    """(N, 5) position, feed and force; 0 where they are missing."""
+    """Position, feed and force as an array, (N, 5); missing values become 0."""
     return np.nan_to_num(np.column_stack([path.position, path.feed, path.force]))
 
 
 def _joined(parts: Sequence[TravelledPath]) -> TravelledPath:
-    """One path of those that follow each other."""
+    """Join consecutive paths into one."""
     return TravelledPath(**{
         name: np.concatenate([getattr(part, name) for part in parts])
         for name in TravelledPath.__slots__
@@ -220,7 +220,7 @@ def _joined(parts: Sequence[TravelledPath]) -> TravelledPath:
 
 
 def _greatest(found: Sequence[Deviation]) -> Deviation:
-    """The greatest of each."""
+    """Return the largest of each deviation."""
     return Deviation(
         length=max(each.length for each in found),
         feed=max(each.feed for each in found),
@@ -229,7 +229,7 @@ def _greatest(found: Sequence[Deviation]) -> Deviation:
 
 
 def _musts(path: TravelledPath) -> Ints:
-    """Both ends, and where each axis, feed and force are least and greatest."""
+    """Indices of both ends, and of minima and maxima of each axis, feed and force."""
     cut_feed = np.where(path.is_rapid, 0.0, np.nan_to_num(path.feed))
     columns = (*np.nan_to_num(path.position).T, cut_feed, np.nan_to_num(path.force))
     extremes = [find(column) for column in columns for find in (np.argmin, np.argmax)]
@@ -237,16 +237,16 @@ def _musts(path: TravelledPath) -> Ints:
 
 
 def _changes(path: TravelledPath) -> Ints:
-    """Both sides of where a rapid move or a workingstep begins or ends."""
+    """Indices on both sides of each change of rapid mode or workingstep."""
     is_other = np.diff(path.is_rapid.astype(np.int64)) != 0
     before = np.flatnonzero(is_other | (np.diff(path.workingstep) != 0))
     return np.union1d(before, before + 1)
 
 
 def _scaled(path: TravelledPath) -> Floats:
-    """(N, 5) position, feed and force in units of what is just not seen.
+    """Position, feed and force in units of their smallest visible difference, (N, 5).
 
-    Feeds of rapid moves, which are not told by colour, count as the greatest feed of a cut.
+    Rapid feeds, which no colour shows, count as the largest cutting feed.
     """
     position = np.nan_to_num(path.position)
     feed, force = np.nan_to_num(path.feed), np.nan_to_num(path.force)
@@ -262,10 +262,10 @@ def _scaled(path: TravelledPath) -> Floats:
 
 
 def _ranks(time: Floats, values: Floats, fixed: Ints) -> Floats:
-    """(N,) how far each point is off the line in which it is missing first; fixed ones far.
+    """Ranks of points by their distance from the line in which they are missing first, (N,).
 
-    No point ranks higher than the one between whose neighbours it came, so that the highest
-    ranks are a thinned path for any number of them.
+    No point ranks higher than the one that split its stretch, so that the highest ranks form a
+    thinned path for any number of points; fixed points rank highest.
     """
     rank = np.zeros(len(time))
     starts, ends = fixed[:-1], fixed[1:]
@@ -302,7 +302,7 @@ def _ranks(time: Floats, values: Floats, fixed: Ints) -> Floats:
 
 
 def _off(time: Floats, values: Floats, *, at: Ints, start: Ints, end: Ints) -> Floats:
-    """Distances of points from the straight line between two others, at the same moment."""
+    """Distances of points from the straight line between two others, at the same time."""
     span = time[end] - time[start]
     share = np.divide(time[at] - time[start], span, out=np.zeros(len(at)), where=span > 0.0)
     line = values[start] + share[:, None] * (values[end] - values[start])

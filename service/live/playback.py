@@ -1,32 +1,32 @@
-"""Playback of a run in wall time, at so many simulated seconds per second."""
+"""Playback of a run in wall-clock time, at a number of simulated seconds per second."""
 
 import time
 from collections.abc import Callable
 
 LEAST, MOST = 0.01, 1000.0
-"""times as fast as the machine; 0: as fast as can be"""
+"""Bounds of the pace relative to the machine; 0 runs as fast as possible."""
 
 TICK = 0.05
-"""wall-clock seconds between two updates of a run"""
+"""Wall-clock time between two updates of a run, in s."""
 
 
 def checked_pace(factor: float) -> float:
-    """A pace within its bounds.
+    """Return a pace if it is within its bounds.
 
     Raises
     ------
     ValueError
-        When it is not.
+        When the pace is out of bounds.
     """
     if factor != 0.0 and not LEAST <= factor <= MOST:
         raise ValueError(
-            f"pace {factor:g}: it must be {LEAST:g} to {MOST:g}, or 0 without waiting"
+            f"pace {factor:g}: it must be {LEAST:g} to {MOST:g}, or 0 for no waiting"
         )
     return factor
 
 
 class PlaybackClock:
-    """Waits until it is time. Running state.
+    """Delays a run to its pace in wall-clock time. Running state.
 
     Parameters
     ----------
@@ -35,12 +35,12 @@ class PlaybackClock:
     now : callable
         Wall-clock time, in seconds.
     wait : callable
-        For so many s.
+        Function that waits for a number of seconds.
 
     Raises
     ------
     ValueError
-        When the factor is beyond its bounds.
+        When the factor is out of bounds.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class PlaybackClock:
         return self._factor
 
     def wait_for(self, machine_time: float) -> None:
-        """Return when the machine may have come so far."""
+        """Wait until the run may have reached a machine time, in s."""
         if self._factor:
             rest = self._begin + machine_time / self._factor - self._now()
             if rest > 0.0:

@@ -1,9 +1,9 @@
-"""The rows of a run in a file that grows, and a window of them that fits a screen.
+"""Rows of a run in a growing file, and windows of them that fit a screen.
 
-The file is a line of JSON with the names of the columns, which carry their units, and then rows
-of 64-bit numbers, ascending in the first column, which is the time. It is read while it grows:
-what is not a whole row yet is not there yet. A window keeps least, mean and greatest of rows
-that it brings together, so that no peak is lost.
+The file starts with a JSON line of the column names, which carry their units; rows of 64-bit
+numbers follow, ascending in the first column, the time. The file is read while it grows;
+incomplete rows are ignored. A window keeps minimum, mean and maximum of the rows that it
+merges, so that no peak is lost.
 """
 
 import json
@@ -21,43 +21,43 @@ from service.live.storage import storing, write_whole
 from simulator.motion.segments import Floats, Ints
 
 BLOCK = 16 << 20
-"""bytes of rows in memory at once; what is worked out of them takes some times as much"""
+"""Most bytes of rows in memory at once; calculations take several times as much."""
 
 TIME = "time_s"
 
 MOST_POINTS = 5000
-"""of a window: more than a screen has"""
+"""Default number of points in a window, more than a screen shows."""
 
 BYTES = 8
 
 MOST_BYTES = 512 << 20
-"""of a file: some million rows, which a window of them all reads in seconds"""
+"""Largest size of a file, in bytes: some million rows, which are read in seconds."""
 
 
 class SeriesWriter:
-    """Rows on their way to a file. Running state; use it with ``with``.
+    """Writer of rows to a file, a context manager. Running state.
 
     Parameters
     ----------
     file : Path
     columns : sequence of str
-        The first is the time.
+        Names of the columns; the first must be the time.
 
     Raises
     ------
     StorageFull, Unavailable
-        When it cannot be written.
+        When the file cannot be written.
     """
 
     def __init__(self, file: Path, columns: Sequence[str]) -> None:
         self.rows = 0
-        """that are in the file"""
+        """Number of rows in the file."""
         self.is_full = False
-        """whether rows were left out, as the file has as many as it may have"""
+        """Whether rows were omitted because the file has reached its largest size."""
         self._name = file.name
         self._most = MOST_BYTES // (BYTES * len(columns))
         with storing(self._name):
-            # Not cut short in place: who has mapped the rows of an earlier attempt keeps them.
+            # Not truncated in place: readers of an earlier attempt keep their mapped rows.
             file.unlink(missing_ok=True)
             self._file = file.open("wb", buffering=0)
             write_whole(self._file.fileno(), json.dumps(list(columns)).encode() + b"\n")
@@ -74,14 +74,14 @@ class SeriesWriter:
         self._file.close()
 
     def add(self, rows: Floats) -> None:
-        """More rows (M, C), later than those before; NaN is a missing value.
+        """Write rows (M, C), later than all before; NaN is a missing value.
 
-        A file that has as many as it may have takes no more, and says so.
+        When the file reaches its largest size, further rows are omitted and ``is_full`` is set.
 
         Raises
         ------
         StorageFull, Unavailable
-            When they cannot be written.
+            When the rows cannot be written.
         """
         taken = rows[: self._most - self.rows]
         self.is_full = self.is_full or len(taken) < len(rows)
@@ -92,22 +92,22 @@ class SeriesWriter:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Series:
-    """The rows that a file holds now."""
+    """Rows that a file holds at the time of opening."""
 
     columns: tuple[str, ...]
     values: Floats
-    """Values, (N, C), read from the file as they are needed"""
+    """Values, (N, C), read from the file on demand."""
 
     def __len__(self) -> int:
         return len(self.values)
 
     def places(self, names: Sequence[str]) -> list[int]:
-        """Indices of columns by their names.
+        """Return the indices of columns by their names.
 
         Raises
         ------
         NotFound
-            When there is no such column.
+            When a column does not exist.
         """
         for name in names:
             if name not in self.columns:
@@ -117,21 +117,21 @@ class Series:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Window:
-    """Rows of a range of time, B of them or fewer than there were."""
+    """Rows of a time range, merged into at most B points."""
 
     names: tuple[str, ...]
     time: Floats
-    """Time, (B,) s, of the first row of each"""
+    """Time of the first row of each point, (B,), s."""
     end: Floats
-    """End, (B,) s, of the last one"""
+    """Time of the last row of each point, (B,), s."""
     low: Floats
-    """Low, (B, S)"""
+    """Minimum of each signal at each point, (B, S)."""
     mean: Floats
-    """Mean, (B, S)"""
+    """Mean of each signal at each point, (B, S)."""
     high: Floats
-    """High, (B, S)"""
+    """Maximum of each signal at each point, (B, S)."""
     rows: int
-    """that the range holds"""
+    """Number of rows in the time range."""
 
     @property
     def is_reduced(self) -> bool:
@@ -140,9 +140,9 @@ class Window:
 
 
 def open_series(file: Path) -> Series | None:
-    """Rows of a file; None: there is no file yet, or not even its header."""
+    """Open the rows of a file; None before the file and its header exist."""
     try:
-        # Once it is open it stays, whoever deletes it.
+        # An open file stays readable, even when it is deleted.
         with file.open("rb") as opened:
             return _series_in(opened)
     except FileNotFoundError:
@@ -170,7 +170,7 @@ def window(
     end: float = np.inf,
     points: int = MOST_POINTS,
 ) -> Window:
-    """A range of time in a number of points at most.
+    """Return the signals of a time range, merged into at most a number of points.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def window(
     Raises
     ------
     NotFound
-        When there is no such signal.
+        When a signal does not exist.
     """
     places = series.places(names)
     first = first_at(series, begin)
@@ -205,14 +205,14 @@ def window(
 def _reduced(
     series: Series, places: Sequence[int], starts: Ints, *, end: int
 ) -> tuple[Floats, Floats, Floats]:
-    """Least, mean and greatest (B, S) of the rows from each start to the next."""
+    """Minimum, mean and maximum of the rows from each start to the next, each (B, S)."""
     shape = (len(starts), len(places))
     low, high = np.full(shape, np.nan), np.full(shape, np.nan)
     sums, counts = np.zeros(shape), np.zeros(shape)
     for begin, stop in blocks(int(starts[0]), end, width=len(places)):
         values = np.asarray(series.values[begin:stop, places], dtype=np.float64)
         known = ~np.isnan(values)
-        # The first of them may have begun in the block before.
+        # The first point may have begun in the previous block.
         at = slice(
             int(np.searchsorted(starts, begin, side="right")) - 1,
             int(np.searchsorted(starts, stop)),
@@ -228,14 +228,14 @@ def _reduced(
 
 
 def blocks(begin: int, end: int, *, width: int) -> Iterator[tuple[int, int]]:
-    """Pieces of a range of rows of so many numbers, each of which takes little memory."""
+    """Yield ranges of rows that are small enough to be held in memory."""
     step = max(BLOCK // (BYTES * max(width, 1)), 1)
     for first in range(begin, end, step):
         yield first, min(first + step, end)
 
 
 def first_at(series: Series, time: float) -> int:
-    """Number of the first row at or after a time: found by halving, few rows are read."""
+    """Index of the first row at or after a time, by bisection."""
     low, high = 0, len(series)
     while low < high:
         middle = (low + high) // 2

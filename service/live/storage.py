@@ -1,4 +1,4 @@
-"""Writing where a disk may be full: all of it or an error of the project's own."""
+"""Writing to disk with the project's own errors when the disk is full or fails."""
 
 import errno
 import os
@@ -8,24 +8,24 @@ from contextlib import contextmanager
 from service.errors import StorageFull, Unavailable
 
 FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
-"""reasons for which a file grows no more"""
+"""Error numbers of the operating system that mean that the disk or the quota is full."""
 
 
 @contextmanager
 def storing(what: str) -> Iterator[None]:
-    """Tell the operating system's refusals as the project's.
+    """Convert errors of the operating system to those of the project.
 
     Parameters
     ----------
     what : str
-        The file as people know it, without its folder.
+        File name for messages, without its folder.
 
     Raises
     ------
     StorageFull
-        When there is no room.
+        When the disk is full.
     Unavailable
-        When it cannot be written for another reason: its folder is gone.
+        When the file cannot be written for another reason, such as a missing folder.
     """
     try:
         yield
@@ -36,7 +36,7 @@ def storing(what: str) -> Iterator[None]:
 
 
 def write_whole(descriptor: int, content: bytes) -> None:
-    """Write all bytes: one call may take but some of them, so that the next says why.
+    """Write all bytes, repeating the call if it writes only some of them.
 
     Raises
     ------

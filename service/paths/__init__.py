@@ -1,1 +1,1 @@
-"""Tool paths, and NC code made of them."""
+"""Tool paths of programs, and NC code generated from them."""

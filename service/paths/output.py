@@ -22,7 +22,7 @@ from stepnc_model.units import deg_from_rad, mm_min_from_speed
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PathRow:
-    """One tool path with its lengths in mm, or a stop between two."""
+    """Row of the path table: a tool path with its lengths in mm, or a stop between paths."""
 
     name: str
     operation: str
@@ -49,7 +49,7 @@ PATHS: tuple[Column[PathRow], ...] = (
 
 
 def print_paths(paths: Paths) -> None:
-    """A row for each tool path, then what was assumed."""
+    """Print a row for each tool path, then the assumptions made."""
     print_line(f"{paths.program.name}: {len(paths.paths)} tool paths")
     print_table(PATHS, [_row(paths, item) for item in paths.items])
     print_findings(paths.findings)
@@ -83,7 +83,7 @@ def _row(paths: Paths, item: ToolPath | Function) -> PathRow:
 
 
 def paths_json(paths: Paths) -> str:
-    """Every move of every tool path."""
+    """Return every move of every tool path as JSON."""
     return dump({
         "program": paths.program.name,
         "clamping_positions_mm": paths.clamps,
@@ -94,7 +94,7 @@ def paths_json(paths: Paths) -> str:
 
 
 def _item(item: ToolPath | Function) -> dict[str, Any]:
-    """A tool path or a function."""
+    """Return a tool path or a function as a JSON object."""
     if isinstance(item, Function):
         return {"function": item.keyword, "id": item.id, "text": item.text}
     return {
@@ -108,7 +108,7 @@ def _item(item: ToolPath | Function) -> dict[str, Any]:
 
 
 def _step(step: Step) -> dict[str, Any]:
-    """A move, a pause, or what the spindle does."""
+    """Return a move, a dwell or a spindle command as a JSON object."""
     if isinstance(step, Dwell):
         return {"dwell_s": step.seconds, "dwell_revolutions": step.revolutions}
     if isinstance(step, SpindleSpeedChange):

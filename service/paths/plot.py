@@ -1,4 +1,4 @@
-"""A picture of tool paths, coloured by what each move is for."""
+"""Picture of tool paths, coloured by the type of each move."""
 
 import io
 from collections.abc import Iterator, Sequence
@@ -20,27 +20,27 @@ COLOURS = {
     MoveType.NO_CONTACT: "#12b5cb",
     MoveType.CONTACT: "#1a56b0",
 }
-"""grey for rapids, warm for what comes to the cut, blue for the cut"""
+"""Colours of moves: grey for rapids, warm colours for approach and retract, blue for cuts."""
 
 STEP = 0.05
-"""rad between two points of an arc"""
+"""Angle between two drawn points of an arc, in rad."""
 
 COLUMNS = 4
 
 View = tuple[int, int]
-"""axes drawn to the right and upwards"""
+"""Axes drawn to the right and upwards."""
 
 LEAST_EXTENT = 1.0
-"""mm; a path that is smaller from above is drawn from the front"""
+"""Smallest extent of a path seen from above, in mm; smaller ones are drawn from the front."""
 
 MOST_PANELS = 40
-"""workingsteps drawn one by one; more are drawn in the overall view only"""
+"""Most workingsteps that get a panel each; with more, only the overall view is drawn."""
 
 
 def path_png(
     paths: Sequence[ToolPath], stock: Stock | None, clamps: Sequence[Point] = (), *, title: str
 ) -> bytes:
-    """The program from above, or along the lathe's axis, and each workingstep by itself."""
+    """Draw the program from above, or along the lathe's axis, and each workingstep alone."""
     shown = [path for path in paths if path.moves]
     panels = shown if len(shown) <= MOST_PANELS else []
     rows = ceil(len(panels) / COLUMNS)
@@ -77,7 +77,7 @@ def _has(path: ToolPath, kind: MoveType) -> bool:
 
 
 def _draw(axes: Axes, path: ToolPath, view: View | None = None) -> None:
-    """Runs of moves of one type, cuts on top."""
+    """Draw the moves of a path grouped by type, cuts on top."""
     across, up = view or _view(path)
     for kind, points in _runs(path):
         order = 3 if kind is MoveType.CONTACT else 2
@@ -94,7 +94,7 @@ def _draw(axes: Axes, path: ToolPath, view: View | None = None) -> None:
 
 
 def _view(path: ToolPath) -> View:
-    """Lathes along the axis, mills from above; what only goes up and down from the front."""
+    """View of a path: lathe along the axis, mill from above, vertical paths from the front."""
     if path.is_turning:
         return 2, 0
     ends = [path.start, *(move.end for move in path.moves)]
@@ -106,7 +106,7 @@ def _view(path: ToolPath) -> View:
 
 
 def _runs(path: ToolPath) -> Iterator[tuple[MoveType, list[Point]]]:
-    """Points of moves of one type that follow each other."""
+    """Yield the points of consecutive moves of the same type."""
     for kind, group in groupby(path.segments(), key=lambda pair: pair[1].type):
         points: list[Point] = []
         for start, move in group:
@@ -117,7 +117,7 @@ def _runs(path: ToolPath) -> Iterator[tuple[MoveType, list[Point]]]:
 
 
 def _stock(axes: Axes, stock: Stock | None, *, is_turning: bool) -> None:
-    """Outline of the raw part."""
+    """Draw the outline of the raw part."""
     if stock is None:
         return
     (x0, y0, z0), (x1, y1, z1) = stock.low, stock.high

@@ -1,4 +1,4 @@
-"""Tool paths and NC code of a program: the verbs ``toolpath``, ``post`` and ``canonical``."""
+"""Tool paths and NC code of a program: commands ``toolpath``, ``post`` and ``canonical``."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -36,11 +36,11 @@ class Paths:
     program: Program
     items: tuple[ToolPath | Function, ...]
     faults: tuple[SchemaError, ...]
-    """why some executables were left out"""
+    """Reasons why some executables were left out."""
 
     @property
     def paths(self) -> tuple[ToolPath, ...]:
-        """The tool paths without the functions between them."""
+        """Tool paths without the functions between them."""
         return tuple(item for item in self.items if isinstance(item, ToolPath))
 
     @property
@@ -50,7 +50,7 @@ class Paths:
 
     @property
     def stock(self) -> Stock | None:
-        """The raw part there."""
+        """Raw part in the setup of the first workingstep."""
         return stock_of(self.program, self._setup)
 
     @property
@@ -59,13 +59,13 @@ class Paths:
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """Assumptions."""
+        """Assumptions made for the tool paths."""
         return tuple(finding for path in self.paths for finding in path.findings)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PostRequest:
-    """Request of ``post``."""
+    """Request to write NC code for a control."""
 
     file: Path
     control: str
@@ -78,18 +78,18 @@ class PostRequest:
 def tool_paths(
     path: Path, *, units: str = "iso", keep_going: bool = False, tell: Tell = silent
 ) -> Paths:
-    """Tool paths of a program, made or given.
+    """Read a program and generate its tool paths, or take those that it contains.
 
     Raises
     ------
     StepNcError
-        At the first executable for which no path can be made, unless it keeps going.
+        At the first executable for which no path can be generated, unless it keeps going.
     """
     return paths_of(read_program(path, units=units), keep_going=keep_going, tell=tell)
 
 
 def paths_of(program: Program, *, keep_going: bool = False, tell: Tell = silent) -> Paths:
-    """Tool paths of a program that is read already."""
+    """Generate the tool paths of a program, or take those that it contains."""
     faults: list[SchemaError] = []
     progress = Progress(tell, total=len(program.workingsteps))
     items: list[ToolPath | Function] = []
@@ -112,7 +112,7 @@ def plot(paths: Paths, file: Path, picture: Path) -> None:
     from service.paths.plot import path_png  # noqa: PLC0415 (matplotlib takes a second)
 
     if picture.suffix.lower() != ".png":
-        raise WriteError("a picture is a .png file", path=str(picture))
+        raise WriteError("the name of a picture must end with .png", path=str(picture))
     require_place(picture, apart_from=file)
     data = path_png(paths.paths, paths.stock, paths.clamps, title=paths.program.name)
     write_atomically(picture, data)
@@ -124,7 +124,7 @@ def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
     Raises
     ------
     StepNcError
-        When the control is unknown, a path cannot be made, or the file cannot be written.
+        When the control is unknown, a path cannot be generated, or the file cannot be written.
     """
     control = one_of(Dialect, request.control.lower(), "control")
     output = request.output or beside(request.file, control.suffix)
@@ -142,12 +142,12 @@ def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
 
 
 def with_feeds(paths: Paths, *, keep_going: bool, tell: Tell = silent) -> Paths:
-    """The paths whose technology says how fast to run: a control cannot do without.
+    """Keep only paths whose technology defines a feed, which a control needs.
 
     Raises
     ------
     SchemaError
-        At the first other path, unless it keeps going.
+        At the first path without a feed, unless it keeps going.
     """
     items: list[ToolPath | Function] = []
     faults: list[SchemaError] = []
@@ -174,18 +174,18 @@ def with_feeds(paths: Paths, *, keep_going: bool, tell: Tell = silent) -> Paths:
 
 
 def _left_out(ref: Ref[Entity], name: str) -> Function:
-    """Comment in the NC code for a workingstep without a path."""
+    """Placeholder for a workingstep without a path, which becomes a comment in the NC code."""
     return Function(ref=ref, keyword=LEFT_OUT, id=name)
 
 
 def nc_lines(paths: Paths, control: Dialect, cycles: Cycles = Cycles.EXPANDED) -> Iterator[str]:
-    """NC code of tool paths, line by line."""
+    """Generate NC code of tool paths, line by line."""
     blocks = blocks_of(paths.program, paths.items, name=Path(paths.program.name).stem)
     return write(blocks, control, cycles=cycles)
 
 
 def canonical_of(path: Path, *, control: str, is_lathe: bool) -> Iterator[str]:
-    """Canonical commands of NC code, as lines.
+    """Convert NC code to canonical commands, one per line.
 
     Raises
     ------
@@ -199,6 +199,6 @@ def canonical_of(path: Path, *, control: str, is_lathe: bool) -> Iterator[str]:
         commands = read(lines, dialect, machine=machine)
     except PostError as error:
         may_be_lathe = dialect in {Dialect.FANUC, Dialect.HAAS} and not is_lathe
-        hint = " (code for a lathe is read with --lathe)" if may_be_lathe else ""
+        hint = " (use --lathe for lathe code)" if may_be_lathe else ""
         raise StepNcError(f"{path.name}: {error}{hint}") from error
     return (str(command) for command in commands)

@@ -1,1 +1,1 @@
-"""Results as text, HTML, CSV and JSON, from one list of columns each."""
+"""Rendering of results as text, HTML, CSV and JSON, each from one list of columns."""

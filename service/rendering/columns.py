@@ -1,8 +1,8 @@
-"""Columns of a result: written once, rendered as text, HTML, CSV, Parquet and JSON.
+"""Columns of a result: defined once, rendered as text, HTML, CSV, Parquet and JSON.
 
-A result is a sequence of rows, which are frozen dataclasses. A column says how one value of a
-row is named and shown: its key in files, its heading on screens, its format, and a help text
-with the symbol of the papers.
+A result is a sequence of rows, which are frozen dataclasses. A column defines how one value of
+a row is named and shown: its key in files, its heading on screens, its format, and a help text
+with the symbol used in the papers.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,22 +17,22 @@ R = TypeVar("R")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """A value before and after; shown once where both look the same."""
+    """Value before and after a change; shown once if both look the same."""
 
     before: "Cell"
     after: "Cell"
 
 
 Cell = str | float | int | bool | datetime | Change | Sequence[object] | None
-"""value of a column in a row; None: there is none"""
+"""Value of a table cell; None: unknown."""
 
 BLANK = " "
-"""a cell that stays empty, because the column does not apply to the row"""
+"""Content of a cell that stays empty because the column does not apply to the row."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Column(Generic[R]):
-    """One column of a result.
+    """Column of a result table.
 
     Examples
     --------
@@ -44,42 +44,42 @@ class Column(Generic[R]):
     """
 
     value: Callable[[R], Cell]
-    """Value of a row, in the user's unit"""
+    """Function that returns the value of a row, in the user's unit."""
     key: str = ""
-    """in files and JSON, with the unit; dots nest in JSON; empty: not written"""
+    """Name in files and JSON, including the unit; dots nest in JSON; empty: not written."""
     heading: str = ""
-    """on screens, with the unit; empty: not shown"""
+    """Heading on screens, including the unit; empty: not shown."""
     form: str = ""
-    """format of numbers"""
+    """Format specification of numbers."""
     scale: float = 1.0
-    """of numbers on screens, whose unit may be another than in files"""
+    """Factor from the unit in files to the unit on screens."""
     kind: type = float
-    """type in files: str, float, int, bool or datetime"""
+    """Type in files: str, float, int, bool or datetime."""
     group: str = ""
-    """upper level of the header"""
+    """Heading of the group to which the column belongs."""
     help: str = ""
-    """what it is, with the symbol of the papers"""
+    """Description of the column, with the symbol used in the papers."""
     is_right: bool = False
-    """whether text tables align it to the right"""
+    """Whether text tables align the column to the right."""
     is_words: bool = False
-    """whether pages align it to the left"""
+    """Whether HTML pages align the column to the left."""
     is_of_row: bool = False
-    """whether all lines of one row share the cell"""
+    """Whether all lines of a row share the cell."""
     is_key: bool = False
-    """whether it is repeated where a table is broken into blocks"""
+    """Whether the column is repeated where a table is broken into blocks."""
     is_optional: bool = False
-    """whether it is left out where no row has a value"""
+    """Whether the column is omitted when no row has a value."""
     css: Callable[[R], str] | None = None
-    """class of the cell on pages"""
+    """Function that returns the CSS class of a row's cell on HTML pages."""
 
     def text(self, row: R, *, arrow: str = "->", nothing: str = "") -> str:
-        """Cell as shown."""
+        """Return the cell text as shown on screens."""
         value = _scaled(self.value(row), self.scale)
         return shown(value, self.form, arrow=arrow, nothing=nothing)
 
 
 def _scaled(value: Cell, scale: float) -> Cell:
-    """A number, or a change of one, in another unit."""
+    """Scale a number, or both numbers of a change; other values stay as they are."""
     if scale == 1.0 or value is None:
         return value
     if isinstance(value, Change):
@@ -88,17 +88,17 @@ def _scaled(value: Cell, scale: float) -> Cell:
 
 
 def shown(value: Cell, form: str = "", *, arrow: str = "->", nothing: str = "") -> str:
-    """A value as people read it; times in the zone of this computer.
+    """Format a value for people; times are in the local time zone.
 
     Parameters
     ----------
     value : Cell
     form : str
-        Format of numbers.
+        Format specification of numbers.
     arrow : str
-        Between a value before and after.
+        Separator between a value before and after.
     nothing : str
-        For what is not known, or not finite.
+        Text for a value that is unknown or not finite.
 
     Examples
     --------
@@ -125,13 +125,13 @@ def shown(value: Cell, form: str = "", *, arrow: str = "->", nothing: str = "") 
 
 
 def _number(value: float, form: str) -> str:
-    """In its format; large numbers of so many significant digits without an exponent."""
+    """Format a number; large numbers in a "g" format get no exponent."""
     text = format(value, form)
     return f"{value:.0f}" if form.endswith("g") and "e+" in text else text
 
 
 def visible(columns: Sequence[Column[R]], rows: Sequence[R]) -> list[Column[R]]:
-    """Columns with a heading, without optional ones that are empty in all rows."""
+    """Return columns with a heading, without optional ones that are empty in all rows."""
     return [
         column
         for column in columns
@@ -141,13 +141,13 @@ def visible(columns: Sequence[Column[R]], rows: Sequence[R]) -> list[Column[R]]:
 
 
 def grouped(columns: Sequence[Column[R]]) -> list[tuple[str, list[Column[R]]]]:
-    """Columns below the name of their group each."""
+    """Group adjacent columns by the name of their group."""
     groups = groupby(columns, key=lambda column: column.group)
     return [(name, list(members)) for name, members in groups]
 
 
 def clock(seconds: float) -> str:
-    """Time as people say it."""
+    """Format a duration in hours, minutes and seconds, for people."""
     if seconds < 120.0:
         return f"{seconds:.1f} s"
     minutes, rest = divmod(round(seconds), 60)

@@ -1,8 +1,8 @@
-"""Self-contained HTML pages from Jinja templates; they fetch nothing from anywhere.
+"""Self-contained HTML pages from Jinja templates; they load nothing from the network.
 
-Templates stand in ``service/templates``; everything that is filled in is escaped.
-``page.html.jinja`` is the frame of all pages; ``parts.html.jinja`` has the macros for tables
-of columns, lists and key figures.
+Templates are in ``service/templates``; all values filled in are escaped. ``page.html.jinja`` is
+the frame of all pages; ``parts.html.jinja`` has the macros for tables of columns, lists and key
+figures.
 """
 
 from collections.abc import Iterable, Sequence
@@ -22,25 +22,25 @@ TOUCH = """
 if (window.matchMedia("(pointer: coarse)").matches)
   Plotly.relayout("{plot_id}", {dragmode: false});
 """
-"""a finger on the plot scrolls the page"""
+"""Script that lets a finger on the plot scroll the page."""
 
 PLOT = {
     "displaylogo": False,
     "showSendToCloud": False,
     "modeBarButtonsToRemove": ["select2d", "lasso2d"],
 }
-"""without the button that sends a plot to another host, which plotly.js shows by itself"""
+"""Plot options without the button that would upload the plot to another host."""
 
 
 def rendered(template: str, /, **values: object) -> str:
-    """A template of ``service/templates``, filled in.
+    """Return a template of ``service/templates`` filled in with values.
 
     Parameters
     ----------
     template : str
-        Name of its file.
+        File name of the template.
     **values
-        As the template names them.
+        Values of the variables in the template.
     """
     return _environment().get_template(template).render(**values)
 
@@ -67,7 +67,7 @@ def _plotly() -> Markup:
 
 
 def plot(figure: "go.Figure", name: str) -> Markup:
-    """A figure as a part of the page; the name is unique on it."""
+    """Return a figure as an HTML fragment; its name must be unique on the page."""
     return Markup(
         figure.to_html(
             full_html=False, include_plotlyjs=False, div_id=name, post_script=TOUCH, config=PLOT
@@ -76,11 +76,11 @@ def plot(figure: "go.Figure", name: str) -> Markup:
 
 
 def bad(texts: Iterable[str]) -> list[tuple[str, str]]:
-    """Class and text of what is wrong."""
+    """Return CSS class and text of each problem."""
     return [("bad", text) for text in texts]
 
 
 def findings(found: Sequence[Finding]) -> list[tuple[str, str]]:
-    """Class and text of each finding, equal ones once."""
+    """Return CSS class and text of each finding, without duplicates."""
     unique = {str(each): each.severity.value for each in found}
     return [(kind, text) for text, kind in unique.items()]

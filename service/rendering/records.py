@@ -1,6 +1,6 @@
-"""Rows as JSON and as lines of files.
+"""Rendering of rows as JSON and as lines of files.
 
-Keys carry their units and are fixed: others parse them.
+Keys carry their units and never change, because other programs read them.
 """
 
 import json
@@ -15,7 +15,7 @@ from stepnc_model.errors import Finding
 
 
 def record(columns: Sequence[Column[R]], row: R) -> dict[str, Any]:
-    """One row as an object; keys with dots nest.
+    """Return a row as an object; keys with dots nest.
 
     Examples
     --------
@@ -35,24 +35,24 @@ def record(columns: Sequence[Column[R]], row: R) -> dict[str, Any]:
 
 
 def records(columns: Sequence[Column[R]], rows: Iterable[R]) -> list[dict[str, Any]]:
-    """An object for each row."""
+    """Return an object for each row."""
     return [record(columns, row) for row in rows]
 
 
 def file_columns(columns: Sequence[Column[R]]) -> tuple[FileColumn, ...]:
-    """Columns of a CSV or Parquet file."""
+    """Return the columns of a CSV or Parquet file."""
     return tuple(FileColumn(name=each.key, kind=each.kind) for each in columns if each.key)
 
 
 def file_rows(columns: Sequence[Column[R]], rows: Iterable[R]) -> Iterator[Row]:
-    """Rows of a CSV or Parquet file, as they come."""
+    """Yield the rows of a CSV or Parquet file."""
     keyed = [each for each in columns if each.key]
     for row in rows:
         yield {each.key: cast(Value, each.value(row)) for each in keyed}
 
 
 def finding_record(finding: Finding) -> dict[str, Any]:
-    """One finding."""
+    """Return a finding as an object."""
     return {
         "severity": finding.severity.value,
         "message": finding.message,
@@ -64,7 +64,7 @@ def finding_record(finding: Finding) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """The value as JSON knows it: null where a number is not finite."""
+    """Convert a value for JSON; numbers that are not finite become null."""
     match value:
         case float():
             return value if isfinite(value) else None
@@ -80,5 +80,5 @@ def plain(value: Any) -> Any:
 
 
 def dump(value: object) -> str:
-    """Readable JSON without NaN."""
+    """Return readable JSON without NaN."""
     return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False, default=str)

@@ -1,7 +1,7 @@
-"""Tables and findings as text; on a terminal, as wide as it is.
+"""Tables and findings as text, as wide as the terminal.
 
-Where the screen is too narrow, columns go below each other in blocks, each with the columns
-that tell what a line is about; a group of columns stays together where it can.
+On a narrow screen, columns are arranged in blocks below each other, each block with the columns
+that identify a line; a group of columns stays together where possible.
 """
 
 import os
@@ -19,29 +19,29 @@ from stepnc_model.errors import Finding, Severity
 GAP = "  "
 
 RED, GREEN, YELLOW, CYAN = "31", "32", "33", "36"
-"""ANSI colours"""
+"""ANSI colour codes."""
 
 COLOURS = {Severity.ERROR: RED, Severity.WARNING: YELLOW, Severity.NOTE: CYAN}
-"""of findings"""
+"""Colours of findings by severity."""
 
 MOST_FINDINGS = 40
-"""findings shown in a table; --json has all"""
+"""Most findings that a text table shows; --json has all."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TextColumn:
-    """A column with its cells as they are shown."""
+    """Column with the texts of its cells."""
 
     column: Column[Any]
     cells: tuple[str, ...]
     width: int
 
     def with_foot(self, cell: str) -> "TextColumn":
-        """The column with one more cell at its end."""
+        """Return the column with one more cell at its end."""
         return replace(self, cells=(*self.cells, cell), width=max(self.width, len(cell)))
 
     def place(self, text: str) -> str:
-        """A cell, as wide as the column."""
+        """Return a cell text padded to the width of the column."""
         return text.rjust(self.width) if self.column.is_right else text.ljust(self.width)
 
 
@@ -55,22 +55,22 @@ def table(  # noqa: PLR0913 (each is a choice of the caller)
     colour: Callable[[R], str] | None = None,
     foot: Mapping[str, str] | None = None,
 ) -> Iterator[str]:
-    """Lines of a table: header, rule, rows; blocks of columns where it is too wide.
+    """Yield the lines of a table: header, rule, rows; in blocks if it is too wide.
 
     Parameters
     ----------
     columns : sequence of Column
     rows : sequence
     width : int
-        Letters in a line.
+        Characters per line.
     nothing : str
-        For what is not known.
+        Text for unknown values.
     row_of : callable
-        The same for lines that belong to one row and share cells.
+        Function with an equal result for lines that belong to one row and share cells.
     colour : callable, optional
-        ANSI colour of a line.
+        Function that returns the ANSI colour of a line.
     foot : mapping, optional
-        Cells of a last line, by the headings of their columns.
+        Cells of an additional last line, by column heading.
     """
     names = [row_of(row) for row in rows]
     is_first = [name != before for before, name in zip([None, *names], names, strict=False)]
@@ -92,18 +92,18 @@ def print_table(
     nothing: str = "",
     foot: Mapping[str, str] | None = None,
 ) -> None:
-    """A table, to stdout."""
+    """Print a table to stdout."""
     for line in table(columns, rows, width=screen_width(), nothing=nothing, foot=foot):
         print_line(line)
 
 
 def print_line(text: str, colour: str = "") -> None:
-    """One line of data, to stdout; in a colour on a terminal that wants colours."""
+    """Print a line of data to stdout; coloured only on a terminal that allows colours."""
     sys.stdout.write(coloured(clean(text), colour if wants_colours() else "") + "\n")
 
 
 def print_findings(findings: Sequence[Finding]) -> None:
-    """Findings, errors first, equal ones once."""
+    """Print findings without duplicates, errors first."""
     order = list(Severity)[::-1]
     ranked = sorted(findings, key=lambda finding: order.index(finding.severity))
     unique = {str(finding): COLOURS[finding.severity] for finding in ranked}
@@ -114,35 +114,35 @@ def print_findings(findings: Sequence[Finding]) -> None:
 
 
 def one_line(text: str) -> str:
-    """A name as one line that cannot steer a terminal; a dash where it is empty."""
+    """Return a name on one line without control characters; a dash where it is empty."""
     return clean(" ".join(text.split())) or "–"
 
 
 def coloured(text: str, colour: str) -> str:
-    """The text in an ANSI colour; as it is without one."""
+    """Return the text in an ANSI colour; unchanged without a colour."""
     return f"\x1b[{colour}m{text}\x1b[0m" if colour else text
 
 
 def screen_width() -> int:
-    """Letters in a line of the terminal; a pipe has no end."""
+    """Characters per line of the terminal; unlimited for a pipe."""
     if not sys.stdout.isatty() and "COLUMNS" not in os.environ:
         return sys.maxsize
     return shutil.get_terminal_size().columns
 
 
 def wants_colours() -> bool:
-    """Whether stdout is a terminal and colours are not refused."""
+    """Whether stdout is a terminal and colours are not disabled."""
     return sys.stdout.isatty() and not os.environ.get("NO_COLOR")
 
 
 def blocks(laid: Sequence[TextColumn], *, width: int) -> Iterator[tuple[TextColumn, ...]]:
-    """Columns that have place beside each other, each time with those that are the key."""
+    """Yield blocks of columns that fit side by side, each with the key columns."""
     keys = tuple(each for each in laid if each.column.is_key) or tuple(laid[:1])
     rest = [each for each in laid if each not in keys]
     block = keys
     for name, members in groupby(rest, key=lambda each: each.column.group):
         group = tuple(members)
-        # A group stays together, unless it has no place of its own.
+        # A group stays together unless it is wider than the screen.
         whole = bool(name) and _width(keys + group) <= width
         for part in (group,) if whole else [(each,) for each in group]:
             if block != keys and _width(block + part) > width:
@@ -156,7 +156,7 @@ def blocks(laid: Sequence[TextColumn], *, width: int) -> Iterator[tuple[TextColu
 def _laid(
     column: Column[R], rows: Sequence[R], is_first: Sequence[bool], nothing: str
 ) -> TextColumn:
-    """Column with its cells; what all lines of a row share is shown in its first."""
+    """Return a column with its cells; a cell shared by the lines of a row is shown once."""
     cells = tuple(
         clean(column.text(row, nothing=nothing).replace("\n", " "))
         if first or not column.is_of_row
@@ -173,7 +173,7 @@ def _width(laid: Sequence[TextColumn]) -> int:
 
 
 def _widened(laid: Sequence[TextColumn]) -> list[TextColumn]:
-    """Columns that together have place for the name of their group."""
+    """Widen the last column of each group so that the name of the group fits."""
     wide = []
     for name, members in groupby(laid, key=lambda each: each.column.group):
         group = list(members)
@@ -184,7 +184,7 @@ def _widened(laid: Sequence[TextColumn]) -> list[TextColumn]:
 
 
 def _block(laid: Sequence[TextColumn], colours: Sequence[str]) -> Iterator[str]:
-    """Header, of two levels where columns have groups, rule, lines."""
+    """Yield a block: header (of two levels if columns are grouped), rule, lines."""
     laid = _widened(laid)
     if any(each.column.group for each in laid):
         names = (

@@ -1,1 +1,1 @@
-"""Requests of the verbs: what the command line fills, REST validates and jobs keep."""
+"""Requests of the commands: filled by the command line, validated by REST, stored with jobs."""

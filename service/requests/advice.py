@@ -1,4 +1,4 @@
-"""Request of ``optimise``: feeds for a program."""
+"""Request of ``optimise``: optimise the feeds of a program."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -17,15 +17,15 @@ from stepnc_model.units import PROFILES
 Name = Annotated[str, MaxLen(LONGEST_NAME)]
 
 Units = StrEnum("Units", {name.replace("-", "_"): name for name in PROFILES})  # type: ignore[misc]
-"""unit profiles of files, by name"""
+"""Unit profiles of files, by name."""
 
 ISO = Units("iso")
-"""as the standard says"""
+"""Unit profile that follows the standard."""
 
 MachineName = Annotated[
     Name,
     About(
-        "one of `stepnc machines`, or your own TOML or XML file (default: one that suits)",
+        "one of `stepnc machines`, or your own TOML or XML file (default: a suitable one)",
         flag="--machine", examples=("vmc15",),
     ),
 ]  # fmt: skip
@@ -41,7 +41,7 @@ FileUnits = Annotated[Units, About("units of feeds and speeds in the file", flag
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AdviceRequest(Request):
-    """Request of an advice."""
+    """Request to optimise the feeds of a program."""
 
     mode: Annotated[
         Mode,
@@ -56,51 +56,51 @@ class AdviceRequest(Request):
         float | None,
         Interval(gt=0.0, le=1000.0),
         About(
-            "Ra in µm that finished surfaces must keep", unit="µm", name="roughness",
+            "largest Ra of finished surfaces, in µm", unit="µm", name="roughness",
             flag="--roughness", metavar="UM",
         ),
     ] = None  # fmt: skip
     free: Annotated[
         tuple[Free, ...],
         Len(1, 3),
-        About("what may change, of feed,depth,speed", flag="--free", metavar="WORDS"),
+        About("quantities to optimise: feed,depth,speed", flag="--free", metavar="WORDS"),
     ] = (Free.FEED, Free.DEPTH)
     workingsteps: Annotated[
         tuple[Name, ...],
         MaxLen(10_000),
         About(
-            "only this one, by its id or #instance; repeatable (default: all)",
+            "only this workingstep, by its id or #instance; repeatable (default: all)",
             flag="--workingstep", metavar="ID",
         ),
     ] = ()  # fmt: skip
     profile: Annotated[
         FileProfile,
-        About("how records are written: optimisation or standard", flag="--profile"),
+        About("how advice is recorded: optimisation or standard", flag="--profile"),
     ] = FileProfile.OPTIMISATION
     nc_control: Annotated[
         Dialect | None,
         About(
-            "also NC code with the advised feeds, for linuxcnc, fanuc, haas, sinumerik, "
+            "also write NC code with the advised feeds, for linuxcnc, fanuc, haas, sinumerik, "
             "heidenhain or canonical",
             name="control", flag="--nc", metavar="CONTROL", examples=("linuxcnc",),
         ),
     ] = None  # fmt: skip
     has_pareto: Annotated[
-        bool, About("also the front of time, roughness and energy", flag="--pareto")
+        bool, About("also compute the front of time, roughness and energy", flag="--pareto")
     ] = False
     tool_change_s: Annotated[
         float,
         Interval(ge=0.0, le=86_400.0),
         About(
-            "time to change a worn tool, in s; tool life then counts", unit="s",
+            "time to change a worn tool, in s; tool life is then considered", unit="s",
             name="tool change", flag="--tool-change-s", metavar="S",
         ),
     ] = 0.0  # fmt: skip
-    has_corrections: Annotated[bool, About("plan with what was learned and accepted")] = True
+    has_corrections: Annotated[bool, About("apply accepted corrections of k_c")] = True
     is_confirmed: Annotated[
         bool,
         About(
-            "run the advised program on the virtual machine and compare what it finds with "
+            "run the advised program on the virtual machine and compare the results with "
             "the plan; exit 5 where a bound is exceeded",
             flag="--confirm",
         ),
@@ -108,7 +108,7 @@ class AdviceRequest(Request):
     stock: Annotated[
         Name,
         About(
-            "raw part of a program that draws none, in mm: x0,y0,z0,x1,y1,z1 or "
+            "raw part of a program that defines none, in mm: x0,y0,z0,x1,y1,z1 or "
             "diameter,z0,z1",
             flag="--stock", metavar="NUMBERS", examples=("0,0,-30,100,120,5",),
         ),
@@ -132,8 +132,8 @@ class AdviceRequest(Request):
     allow_plunge: Annotated[
         bool,
         About(
-            "let tools that do not cut over centre go straight down into solid material; "
-            "exit 5 without",
+            "let tools that do not cut over centre plunge straight into solid material; "
+            "without it: exit 5",
             flag="--allow-plunge",
         ),
     ] = False

@@ -1,8 +1,8 @@
-"""Fields of requests: their documentation, bounds and units, written once.
+"""Fields of requests: documentation, bounds and units, defined once.
 
 A request is a frozen dataclass. Its fields are ``Annotated`` with :class:`About` and with
-bounds of :mod:`annotated_types`. From these come the options of the command line and their
-help, the schemas of OpenAPI, and the checks of values. Names of fields are keys in JSON.
+bounds of :mod:`annotated_types`. These define the options of the command line with their
+help, the OpenAPI schemas, and the checks of values. Field names are keys in JSON.
 """
 
 import argparse
@@ -29,7 +29,7 @@ E = TypeVar("E", bound=StrEnum)
 R = TypeVar("R", bound="Request")
 
 LONGEST_NAME = 200
-"""characters of a name"""
+"""Largest number of characters in a name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,17 +37,17 @@ class About:
     """Documentation of a field."""
 
     text: str
-    """of help and OpenAPI"""
+    """Description for help texts and OpenAPI."""
     unit: str = ""
     name: str = ""
-    """in messages; as the field when empty"""
+    """Name of the field in messages; empty: the attribute's name."""
     flag: str = ""
-    """option of the command line; empty: there is none"""
+    """Option on the command line; empty: none."""
     metavar: str | None = None
     examples: tuple[object, ...] = ()
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
-        """Description and examples in OpenAPI; pydantic calls it."""
+        """Return the JSON schema with description and examples; called by pydantic."""
         found: dict[str, Any] = {**handler(schema), "description": self.text}
         if self.examples:
             found["examples"] = list(self.examples)
@@ -56,18 +56,18 @@ class About:
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """A request of a verb."""
+    """Base class of all requests."""
 
     __pydantic_config__: ClassVar[dict[str, Any]] = {"extra": "forbid"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RequestField:
-    """A field with what its type says."""
+    """Field of a request with the information from its type annotation."""
 
     name: str
     kind: Any
-    """type of a value; of a sequence that of its members"""
+    """Type of the value, or of the members of a sequence."""
     is_sequence: bool
     is_optional: bool
     about: About
@@ -76,12 +76,12 @@ class RequestField:
 
     @property
     def label(self) -> str:
-        """Name in messages."""
+        """Name of the field in messages."""
         return self.about.name or self.name.replace("_", " ")
 
 
 def fields_of(kind: type[Request]) -> list[RequestField]:
-    """Fields of a request that are documented."""
+    """Return the documented fields of a request."""
     hints = get_type_hints(kind, include_extras=True)
     return [found for each in fields(kind) if (found := _field(each, hints[each.name]))]
 
@@ -119,14 +119,14 @@ def add_options(
     *,
     usual: Mapping[str, object] | None = None,
 ) -> None:
-    """Options of the command line for the fields of a request that have a flag.
+    """Add a command-line option for each field of a request that has a flag.
 
     Parameters
     ----------
     parser : ArgumentParser
     kind : type
     usual : mapping, optional
-        Values by the names of fields, for which this command has its own default.
+        Command-specific default values, by field name.
     """
     for each in fields_of(kind):
         field = replace(each, default=(usual or {}).get(each.name, each.default))
@@ -148,7 +148,7 @@ def add_options(
 
 
 def _help(field: RequestField) -> str:
-    """Help of an option, with its default."""
+    """Return the help text of an option, including its default."""
     text = field.about.text.replace("%", "%%")
     shown = field.default
     if field.kind is bool or shown is None or shown == () or not str(shown):
@@ -159,20 +159,20 @@ def _help(field: RequestField) -> str:
 
 
 def from_options(kind: type[R], options: argparse.Namespace, **values: object) -> R:
-    """A request as the user typed it.
+    """Build a request from the parsed command-line options.
 
     Parameters
     ----------
     kind : type
     options : Namespace
-        With the options of :func:`add_options`.
+        Options that :func:`add_options` has added.
     **values
-        Of fields without an option.
+        Values of fields without an option.
 
     Raises
     ------
     StepNcError
-        When a word is none that the field takes.
+        When a word is not a value of its field.
     """
     for field in fields_of(kind):
         typed = getattr(options, field.name, None) if field.about.flag else None
@@ -182,7 +182,7 @@ def from_options(kind: type[R], options: argparse.Namespace, **values: object) -
 
 
 def _read(field: RequestField, typed: Any) -> Any:
-    """A value as the field has it; sequences are words with commas, or options again."""
+    """Convert option text to a field value; sequences are split at commas, or repeated."""
     if field.is_sequence:
         words = typed if isinstance(typed, list) else typed.split(",")
         return tuple(_member(field, word.strip()) for word in words)
@@ -196,12 +196,12 @@ def _member(field: RequestField, typed: Any) -> Any:
 
 
 def member_of(kind: type[E], word: str, label: str) -> E:
-    """Member of an enumeration by its value, in upper or lower case.
+    """Return the enumeration member with the given value, ignoring case.
 
     Raises
     ------
     StepNcError
-        When there is none.
+        When no member has this value.
     """
     for member in kind:
         if member.value.lower() == word.lower():
@@ -216,7 +216,7 @@ def require_bounds(request: Request) -> None:
     Raises
     ------
     StepNcError
-        With name, value, bound and unit of the first that is not.
+        With name, value, bound and unit of the first value out of bounds.
     """
     for field in fields_of(type(request)):
         value = getattr(request, field.name)
@@ -228,7 +228,7 @@ def require_bounds(request: Request) -> None:
 
 
 def _broken(value: Any, bound: Any) -> str:
-    """The bound in words if a value breaks it, else nothing."""
+    """Return the bound in words if a value breaks it, else an empty text."""
     match bound:
         case Interval(gt=gt, ge=ge, lt=lt, le=le):
             is_low = (gt is None or value > gt) and (ge is None or value >= ge)
@@ -242,7 +242,7 @@ def _broken(value: Any, bound: Any) -> str:
 
 
 def dumped(request: Request) -> dict[str, Any]:
-    """Values as JSON knows them, under the names of the fields."""
+    """Return the values for JSON, by field name."""
     from pydantic import TypeAdapter  # noqa: PLC0415 (slow to import)
 
     found: dict[str, Any] = TypeAdapter(type(request)).dump_python(request, mode="json")
@@ -250,12 +250,12 @@ def dumped(request: Request) -> dict[str, Any]:
 
 
 def loaded(kind: type[R], values: Mapping[str, Any]) -> R:
-    """A request as a job keeps it.
+    """Build a request from its stored values.
 
     Raises
     ------
     StepNcError
-        When the values are none of this request.
+        When the values do not fit the request.
     """
     from pydantic import TypeAdapter, ValidationError  # noqa: PLC0415 (slow to import)
 

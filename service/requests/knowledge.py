@@ -1,4 +1,4 @@
-"""Requests of the knowledge base: which outcomes, and what to make of them."""
+"""Requests of the knowledge base: selection, evaluation and review of outcomes."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -15,7 +15,7 @@ Wanted = Annotated[str, MaxLen(LONGEST_NAME)] | None
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SelectionRequest(Request):
-    """Outcomes with all of these; null: any."""
+    """Selection of outcomes that match all given values; null matches any."""
 
     machine: Wanted = None
     material: Wanted = None
@@ -23,12 +23,12 @@ class SelectionRequest(Request):
     feature_kind: Annotated[Wanted, About("EXPRESS name", examples=("closed_pocket",))] = None
     program: Wanted = None
     run: Wanted = None
-    since: Annotated[datetime | None, About("first moment that counts, with zone")] = None
-    until: Annotated[datetime | None, About("first moment that counts no more")] = None
+    since: Annotated[datetime | None, About("start time (inclusive), with zone")] = None
+    until: Annotated[datetime | None, About("end time (exclusive), with zone")] = None
 
     @property
     def selection(self) -> Selection:
-        """The outcomes."""
+        """Return the selection of outcomes."""
         return Selection(
             machine=self.machine,
             material=self.material,
@@ -45,11 +45,11 @@ class SelectionRequest(Request):
 class EvaluationRequest(SelectionRequest):
     """Request of an evaluation table."""
 
-    grouping: Annotated[Grouping, About("what a row is for")] = Grouping.FEATURE
+    grouping: Annotated[Grouping, About("feature or kind of feature")] = Grouping.FEATURE
     only: Annotated[RowFilter, About("which rows to keep")] = RowFilter.ALL
-    sort: Annotated[SortKey, About("what comes first")] = SortKey.NAME
+    sort: Annotated[SortKey, About("sort key of the rows")] = SortKey.NAME
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReviewRequest(SelectionRequest):
-    """Request of a review: what to learn from."""
+    """Request to propose corrections from selected outcomes."""

@@ -19,23 +19,23 @@ from simulator.motion.model_name import ControlModelName
 GREATEST_SEED = 2**31
 
 GREATEST_LOOK_AHEAD = 50
-"""revolutions"""
+"""Longest preview, in revolutions."""
 
 JUNCTION_DEVIATION = 0.01
-"""mm"""
+"""Default path deviation of the junction control, in mm."""
 
 
 class ForceView(StrEnum):
-    """View of the forces: means or teeth."""
+    """Time resolution of forces in results."""
 
     MEAN = "mean"
-    """over a revolution"""
+    """Mean force over a revolution."""
     TOOTH = "tooth"
-    """of the teeth that cut at each time"""
+    """Force of the teeth that cut at each time."""
 
 
 class SensorChoice(StrEnum):
-    """Quantity that the loop measures."""
+    """Quantity that the control loop measures."""
 
     DYNAMOMETER = "dynamometer"
     POWER = "power"
@@ -43,10 +43,10 @@ class SensorChoice(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class IdPattern:
-    """An id of the service, or null."""
+    """Schema of an optional id of the service."""
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
-        """Schema of values; pydantic calls it."""
+        """Return the schema of values; called by pydantic."""
         from pydantic_core import core_schema  # noqa: PLC0415 (slow to import)
 
         return core_schema.nullable_schema(core_schema.str_schema(pattern=PATTERN))
@@ -54,16 +54,16 @@ class IdPattern:
 
 @dataclass(frozen=True, slots=True)
 class PaceOrNone:
-    """Zero, or a pace at which a run ends."""
+    """Schema of a pace: zero, or within the bounds at which a run ends."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
-        """Schema of values; pydantic calls it."""
+        """Return the schema of values; called by pydantic."""
         from pydantic_core import core_schema  # noqa: PLC0415 (slow to import)
 
         return core_schema.no_info_after_validator_function(checked_pace, handler(source))
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
-        """The same in OpenAPI; pydantic calls it."""
+        """Return the JSON schema for OpenAPI; called by pydantic."""
         return {**handler(schema), "anyOf": [{"const": 0.0}, {"minimum": LEAST}]}
 
 
@@ -76,29 +76,29 @@ Seed = Annotated[
 ]
 
 Percent = Interval(gt=0.0, le=1000.0)
-"""of changes: more is a slip"""
+"""Bounds of changes, in per cent; larger values are taken for typing errors."""
 
 PACE = "simulated seconds per wall-clock second; 0: as fast as possible"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunRequest(Request):
-    """A program on the virtual machine: as it came, or as an advice made it."""
+    """Run of an uploaded or an optimised program on the virtual machine."""
 
-    program_id: Annotated[OptionalId, About("a program as it came")] = None
-    advice_id: Annotated[OptionalId, About("or what an advice made of one")] = None
+    program_id: Annotated[OptionalId, About("an uploaded program")] = None
+    advice_id: Annotated[OptionalId, About("or the program optimised by this advice")] = None
     machine: MachineName = ""
     material: MaterialName = ""
     units: FileUnits = ISO
     control: Annotated[
         ControlModelName,
-        About("how the control runs the path: exact-stop, junction or fir", flag="--control"),
+        About("motion control of the path: exact-stop, junction or fir", flag="--control"),
     ] = ControlModelName.FIR
     filter_s: Annotated[
         Name,
         About(
-            "filter times of the fir control, s, as T1,T2; empty: by the axes' acceleration "
-            "and jerk",
+            "filter times of the fir control, s, as T1,T2; empty: derived from the axes' "
+            "acceleration and jerk",
             flag="--filter-s", metavar="T1,T2",
         ),
     ] = ""  # fmt: skip
@@ -121,12 +121,12 @@ class SimulationRequest(RunRequest):
     rate_hz: Annotated[
         float,
         Interval(ge=1.0, le=10_000.0),
-        About("samples a second, 1 to 10000", unit="Hz", name="rate", flag="--rate",
+        About("samples per second, 1 to 10000", unit="Hz", name="rate", flag="--rate",
               metavar="HZ"),
     ] = 20.0  # fmt: skip
     force: Annotated[
         ForceView,
-        About("force: mean of a revolution (mean), or of each tooth (tooth)", flag="--force"),
+        About("force: mean over a revolution (mean), or of each tooth (tooth)", flag="--force"),
     ] = ForceView.MEAN
     kc_factor: Annotated[
         float,
@@ -144,7 +144,7 @@ class SimulationRequest(RunRequest):
         False
     )
     has_lag: Annotated[
-        bool, About("with delay and overshoot of the main drive", flag="--lag")
+        bool, About("simulate delay and overshoot of the main drive", flag="--lag")
     ] = False
     noise: Annotated[
         NoiseKind, About("sensor noise: none, normal or uniform", flag="--noise")
@@ -157,7 +157,7 @@ class SimulationRequest(RunRequest):
     zero: Annotated[
         Name,
         About(
-            "place of the program's zero on the axes in mm: x,y,z (default: by the stock)",
+            "position of the program's zero on the axes in mm: x,y,z (default: by the stock)",
             flag="--zero", metavar="X,Y,Z",
         ),
     ] = ""  # fmt: skip
@@ -165,17 +165,16 @@ class SimulationRequest(RunRequest):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ControlRequest(RunRequest):
-    """Request of a program under the force loop."""
+    """Request to run a program under force control."""
 
     seed: Seed = 0
-    mode: Annotated[Criterion, About("TC fast, QC the programmed chip load", flag="--mode")] = (
+    mode: Annotated[Criterion, About("TC fast, QC programmed chip load", flag="--mode")] = (
         Criterion.TC
     )
     law: Annotated[
         LawName,
         About(
-            "control law: log-pi, pi, fuzzy, self-tuning, mrac, mpc, or none: the program's "
-            "feed",
+            "control law: log-pi, pi, fuzzy, self-tuning, mrac, mpc, or none (programmed feed)",
             flag="--law",
         ),
     ] = LawName.LOG_PI
@@ -191,7 +190,7 @@ class ControlRequest(RunRequest):
     disturbances: Annotated[
         tuple[Annotated[str, MaxLen(60)], ...],
         MaxLen(50),
-        About("what the loop is not told of, as kc:1.3; repeatable", flag="--disturb",
+        About("disturbance unknown to the loop, as kc:1.3; repeatable", flag="--disturb",
               metavar="WHAT:VALUE[@TIME]", examples=(["kc:1.3"],)),
     ] = ()  # fmt: skip
     force_set_point_n: Annotated[
@@ -212,37 +211,37 @@ class ControlRequest(RunRequest):
     ] = 120.0
     sensor: Annotated[
         SensorChoice,
-        About("what the loop measures: dynamometer, or power of the drive", flag="--sensor"),
+        About("sensor of the loop: dynamometer, or drive power", flag="--sensor"),
     ] = SensorChoice.DYNAMOMETER
-    has_corrections: Annotated[bool, About("expect what was learned and accepted")] = True
-    is_recorded: Annotated[bool, About("keep the outcomes in the knowledge base")] = True
+    has_corrections: Annotated[bool, About("apply accepted corrections of k_c")] = True
+    is_recorded: Annotated[bool, About("record the outcomes in the knowledge base")] = True
     pace: Annotated[float, Interval(ge=0.0, le=MOST), PaceOrNone(), About(PACE)] = 10.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ControlChanges(Request):
-    """Changes to a run under control; omitted fields stay unchanged."""
+    """Changes to a controlled run; omitted fields stay unchanged."""
 
     mode: Annotated[Criterion | None, About("TC or QC")] = None
-    is_on: Annotated[bool | None, About("whether the loop acts")] = None
+    is_on: Annotated[bool | None, About("whether force control is on")] = None
     motor_power_percent: Annotated[
         float | None,
         Percent,
-        About("that the operator allows, %", unit="%", name="motor power"),
+        About("motor power that the operator allows, %", unit="%", name="motor power"),
     ] = None
     depth_percent: Annotated[
         float | None,
         Percent,
-        About("of the programmed depth; hidden from the loop", unit="%", name="depth"),
+        About("actual over programmed depth; hidden from the loop", unit="%", name="depth"),
     ] = None
     hardness_percent: Annotated[
         float | None,
         Percent,
-        About("k_c of the workpiece; hidden from the loop", unit="%", name="hardness"),
+        About("k_c of the workpiece, %; hidden from the loop", unit="%", name="hardness"),
     ] = None
     material: Annotated[
         Annotated[str, MaxLen(LONGEST_NAME)] | None,
-        About("another workpiece, by its name in the library; hidden from the loop"),
+        About("another workpiece material of the library; hidden from the loop"),
     ] = None
     pace: Annotated[
         float | None,

@@ -1,1 +1,1 @@
-"""REST: the door through which other programs and the dashboard come."""
+"""REST service, used by the dashboard and by other programs."""

@@ -1,4 +1,4 @@
-"""The application: routes, gate, problems, the OpenAPI document."""
+"""ASGI application of the service: routes, access check, problem replies, OpenAPI document."""
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -35,30 +35,31 @@ from service.storage.folder import DataFolder, known_data_folder, open_data_fold
 from stepnc_model.errors import StepNcError
 
 TITLE = "stepnc-optimiser"
-BY_KIND = "planner; for trials and runs under control operator"
+BY_KIND = "planner; for trials and controlled runs operator"
 
-ABOUT = """Feeds of STEP-NC programs, optimal within the limits of machine, tool and part; runs
-on a virtual machine; runs under a force loop; and what was learned from them.
+ABOUT = """Optimise the feeds of STEP-NC programs within the limits of machine, tool and part;
+run programs on a virtual machine and under force control; learn from the outcomes.
 
-Names of fields carry their units. Long work is a job: the answer is 202 with its place; look
-at it, watch its events, cancel it. Problems are told as in RFC 9457. Lists come in pages with a
-cursor. Answers to GET have an ETag. A POST with an `Idempotency-Key` makes nothing twice."""
+Field names carry their units. Long work is a job: the answer is 202 with its location; poll it,
+watch its events, or cancel it. Problems follow RFC 9457. Lists come in pages with a
+cursor. Answers to GET have an ETag. A POST that repeats an `Idempotency-Key` has no second
+effect."""
 
 
 def application(settings: Settings) -> FastAPI:
-    """A service on a data folder.
+    """Create the application of the service on a data folder.
 
     Raises
     ------
     ServiceError, KnowledgeError
-        When folder or knowledge base cannot be used.
+        When the data folder or the knowledge base cannot be used.
     """
     return _on(open_data_folder(settings.root, knowledge=settings.knowledge), settings)
 
 
 def _on(data_folder: DataFolder, settings: Settings) -> FastAPI:
     with open_store(data_folder.knowledge):
-        """made when it is new"""
+        """The store is created if it is new."""
     app = _routed()
     app.state.data_folder, app.state.settings, app.state.hub = (
         data_folder,
@@ -71,12 +72,12 @@ def _on(data_folder: DataFolder, settings: Settings) -> FastAPI:
 
 
 def openapi() -> dict[str, Any]:
-    """The OpenAPI document, without a service."""
+    """Return the OpenAPI document without starting the service."""
     return described(_routed())
 
 
 def _routed() -> FastAPI:
-    """Routes and what becomes of errors."""
+    """Create the application with its routes and error handlers."""
     app = FastAPI(
         title=TITLE,
         description=ABOUT,
@@ -87,7 +88,7 @@ def _routed() -> FastAPI:
         openapi_url="/v1/openapi.json",
         responses=PROBLEMS,
     )
-    # The most frequent first: routes are tried in their order.
+    # The most frequently used first: routes are tried in this order.
     for routes in (
         advice.ROUTES, jobs.ROUTES, live.CONTROL, live.TRIALS, programs.ROUTES,
         simulations.ROUTES, knowledge.EVALUATIONS, knowledge.REVIEWS, knowledge.CORRECTIONS,
@@ -104,13 +105,13 @@ def _routed() -> FastAPI:
 
 @asynccontextmanager
 async def _living(app: FastAPI) -> AsyncIterator[None]:
-    """From start to end: streams do not outlive the service."""
+    """Close all streams when the service stops."""
     yield
     await app.state.hub.close()
 
 
 def from_environment() -> FastAPI:
-    """The application of a process that was started by another, which has made the folder."""
+    """Create the application of a worker process; its parent has made the data folder."""
     settings = handed_on()
     logs.configure(settings.level)
     end_with_parent()
@@ -118,7 +119,7 @@ def from_environment() -> FastAPI:
 
 
 def described(app: FastAPI) -> dict[str, Any]:
-    """The OpenAPI document, with the role that each route needs."""
+    """Return the OpenAPI document, including the role that each route needs."""
     if app.openapi_schema:
         return app.openapi_schema
     found = get_openapi(
@@ -136,7 +137,7 @@ def described(app: FastAPI) -> dict[str, Any]:
 
 
 async def _project(request: Request, error: Exception) -> Response:
-    """An error of the project's tree."""
+    """Reply with the problem for an error of the project."""
     if not isinstance(error, StepNcError):
         raise error
     root = str(request.app.state.data_folder.root)
@@ -147,11 +148,11 @@ async def _project(request: Request, error: Exception) -> Response:
 
 
 async def _invalid(request: Request, error: Exception) -> Response:
-    """A body or a parameter that is not what it should be."""
+    """Reply with the problem for an invalid request body or parameter."""
     if not isinstance(error, RequestValidationError):
         raise error
     if media_type := _foreign_media_type(request, error):
-        detail = f"the body must be application/json and is '{media_type}'"
+        detail = f"the body must be application/json, but is '{media_type}'"
         problem = plain_problem(
             415, "Unsupported media type", detail, instance=request.state.id
         )
@@ -159,7 +160,7 @@ async def _invalid(request: Request, error: Exception) -> Response:
     broken = [one for one in error.errors() if one["type"] == "json_invalid"]
     if broken:
         position, why = broken[0]["loc"][-1], broken[0]["ctx"]["error"]
-        detail = f"the body is no JSON: {why} at character {position}"
+        detail = f"the body is not valid JSON: {why} at character {position}"
         problem = plain_problem(400, "Malformed JSON", detail, instance=request.state.id)
         return problem_reply(problem)
     wrong = [
@@ -174,7 +175,7 @@ async def _invalid(request: Request, error: Exception) -> Response:
 
 
 def _foreign_media_type(request: Request, error: RequestValidationError) -> str:
-    """Media type of a body that was not read as JSON for it; empty where that is no fault."""
+    """Return the media type of a body that was not parsed as JSON; empty if that is fine."""
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     is_json = media_type == "application/json" or media_type.endswith("+json")
     is_whole = any(
@@ -184,11 +185,11 @@ def _foreign_media_type(request: Request, error: RequestValidationError) -> str:
 
 
 async def _http(request: Request, error: Exception) -> Response:
-    """Problem for errors of the framework: unknown path, method not allowed."""
+    """Reply with the problem for errors of the framework: unknown path, method not allowed."""
     if not isinstance(error, HTTPException):
         raise error
     if isinstance(error.__cause__, StepNcError):
-        # Met while the body was read: the framework tells it as a body that cannot be parsed.
+        # Raised while the body was read: the framework wraps it as an unparsable body.
         return await _project(request, error.__cause__)
     title = {404: "Not found", 405: "Method not allowed"}.get(error.status_code, "Refused")
     problem = plain_problem(

@@ -1,4 +1,4 @@
-"""Request bodies, with bounds, in the user's units."""
+"""Request bodies of the REST API, with bounds, in the user's units."""
 
 from typing import Annotated, Any
 
@@ -15,13 +15,13 @@ Pace = Annotated[float, Field(ge=LEAST, le=MOST)]
 
 
 class RequestBody(BaseModel):
-    """A request's body: what is not known is refused."""
+    """Base class of request bodies; unknown fields are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 def _numbers() -> dict[str, Any]:
-    """Numbers of a trial with their bounds, as the trial itself knows them."""
+    """Return the numeric inputs of a trial cut as request fields with their bounds."""
     return {
         field.name: (
             (int if field.is_whole else float) | None,
@@ -37,33 +37,33 @@ def _numbers() -> dict[str, Any]:
 TrialInputs = create_model(
     "TrialInputs",
     __base__=RequestBody,
-    __doc__="Inputs of a trial cut; what is left out stays as it is, at first as usual.",
+    __doc__="Inputs of a trial cut; missing ones keep their value, initially the default.",
     milling_type=(MillingType | None, Field(None, description="immersion of the cutter")),
-    material=(Name | None, Field(None, description="workpiece", examples=["c45"])),
-    mode=(Criterion | None, Field(None, description="TC or QC")),
-    is_on=(bool | None, Field(None, description="whether the loop acts")),
+    material=(Name | None, Field(None, description="workpiece material", examples=["c45"])),
+    mode=(Criterion | None, Field(None, description="control criterion, TC or QC")),
+    is_on=(bool | None, Field(None, description="whether force control is on")),
     **_numbers(),
 )
 
 
 class TrialBody(RequestBody):
-    """A trial cut."""
+    """Request for a trial cut."""
 
     inputs: TrialInputs = TrialInputs()
-    seed: int = Field(0, ge=0, le=2**31, description="of the sensors' noise")
+    seed: int = Field(0, ge=0, le=2**31, description="seed of the sensor noise")
     pace: Pace = Field(1.0, description="simulated seconds per wall-clock second")
 
 
 class TrialChanges(RequestBody):
-    """Changes to a trial; ``restart`` goes on with a new cutter."""
+    """Changes to a trial; ``restart`` continues with a new cutter."""
 
     inputs: TrialInputs = TrialInputs()
     pace: Pace | None = Field(None, description="simulated seconds per wall-clock second")
-    restart: bool = Field(False, description="a new cutter, after the loop has stopped")
+    restart: bool = Field(False, description="continue with a new cutter after a stop")
     end: bool = Field(False, description="end the trial")
 
 
 class DecisionBody(RequestBody):
-    """Decision on a correction."""
+    """Name of the person who decides on a correction."""
 
     by: str = Field(min_length=1, max_length=100, examples=["A. Smith"])

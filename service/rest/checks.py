@@ -1,7 +1,7 @@
-"""Checks of programs: few at a time, and none twice.
+"""Checks of programs: few at a time, with cached answers.
 
 The check of a large program takes some seconds and some hundred MB, and its answer does not
-change: answers are kept, within a bound of bytes, those asked for last.
+change: recent answers are cached, up to a total size.
 """
 
 from collections import OrderedDict
@@ -15,29 +15,29 @@ T = TypeVar("T")
 MOST_AT_ONCE = 2
 
 MOST_BYTES = 32 << 20
-"""of answers that are kept"""
+"""Total size of cached answers, in bytes."""
 
 READERS = CapacityLimiter(MOST_AT_ONCE)
-"""of programs, all of it in memory"""
+"""Limit of threads that read programs, each of which is held in memory."""
 
 
 async def in_turn(read: Callable[[], T]) -> T:
-    """Read a program in a thread, when not too many do."""
+    """Read a program in a thread, while few other threads do."""
     return await to_thread.run_sync(read, limiter=READERS)
 
 
 class CheckCache:
-    """Answers that were given lately. Running state."""
+    """Cache of recent check answers. Running state."""
 
     def __init__(self) -> None:
         self._kept: OrderedDict[str, bytes] = OrderedDict()
         self._size = 0
 
     async def get(self, name: str, make: Callable[[], bytes]) -> bytes:
-        """The answer of a name: the one that is kept, else one that is made in turn."""
+        """Return the cached answer of a name, or compute it."""
 
         def made() -> bytes:
-            # Who waited for the same finds it now.
+            # Another request may have computed the same answer while this one waited.
             found = self._kept.get(name)
             return make() if found is None else found
 

@@ -1,4 +1,4 @@
-"""Dependencies of the routes: data folder, pages, idempotency keys."""
+"""Dependencies of the routes: data folder, settings, pages, idempotency keys."""
 
 import hashlib
 from collections.abc import Callable
@@ -33,57 +33,57 @@ PROBLEMS: dict[int | str, dict[str, Any]] = {
         "content": {"application/problem+json": {}},
     }
     for status, what in (
-        (400, "The request cannot be read"),
-        (401, "A key is needed"),
-        (403, "The key, or the page it comes from, does not open this"),
-        (404, "There is none"),
-        (409, "It is not in the state for that"),
+        (400, "The request is malformed"),
+        (401, "A valid API key is required"),
+        (403, "The key, or the site of the page, does not allow this request"),
+        (404, "The resource does not exist"),
+        (409, "The state of the resource does not allow this request"),
         (412, "The resource has changed since (If-Match)"),
         (413, "The body is too large"),
-        (415, "The body is not of the media type that the route takes"),
-        (422, "What is asked is not possible; the detail names value, bound and unit"),
-        (429, "Too many requests; Retry-After says when"),
-        (503, "Something the service stands on does not answer"),
-        (507, "The disk has no room"),
+        (415, "The route does not accept the media type of the body"),
+        (422, "The request cannot be carried out; the detail states value, bound and unit"),
+        (429, "Too many requests; Retry-After says when to try again"),
+        (503, "Something that the service depends on does not answer"),
+        (507, "The disk is full"),
     )
 }
-"""that any route may answer with"""
+"""Problem responses that any route may return."""
 
 
 def data_folder_of(request: Request) -> DataFolder:
-    """The data folder."""
+    """Return the data folder of the service."""
     found: DataFolder = request.app.state.data_folder
     return found
 
 
 def settings_of(request: Request) -> Settings:
-    """Settings of the service."""
+    """Return the settings of the service."""
     found: Settings = request.app.state.settings
     return found
 
 
 def hub_of(request: Request) -> StreamHub:
-    """Hub of the streams."""
+    """Return the hub of the event streams."""
     found: StreamHub = request.app.state.hub
     return found
 
 
 def key_of(request: Request) -> Key:
-    """Key of the client, with its role."""
+    """Return the API key of the client, with its roles."""
     found: Key = request.state.key
     return found
 
 
 def owner_of(request: Request) -> str:
-    """Owner of the request."""
+    """Return the name of the client's key, which owns what the request creates."""
     return key_of(request).name
 
 
 def cursor_of(
-    limit: Annotated[int, Query(ge=1, le=MOST, description="entries of a page")] = USUAL,
-    cursor: Annotated[str | None, Query(description="next_cursor of the page before")] = None,
+    limit: Annotated[int, Query(ge=1, le=MOST, description="entries per page")] = USUAL,
+    cursor: Annotated[str | None, Query(description="next_cursor of the previous page")] = None,
 ) -> PageCursor:
-    """Page of a list."""
+    """Return the page cursor of a list request."""
     return PageCursor(limit=limit, cursor=cursor)
 
 
@@ -94,14 +94,14 @@ IdempotencyHeader = Annotated[
     str | None,
     Header(
         alias="Idempotency-Key",
-        description="the same key with the same request makes nothing twice, for a day",
+        description="repeating the key with the same request within a day has no effect",
         max_length=LONGEST_KEY,
     ),
 ]
 
 
 def idempotency_of(request: Request, key: str | None, body: bytes) -> IdempotencyKey | None:
-    """Idempotency key of a request; None: it has none.
+    """Return the idempotency key of a request; None if it has none.
 
     Raises
     ------
@@ -118,14 +118,14 @@ def idempotency_of(request: Request, key: str | None, body: bytes) -> Idempotenc
 
 
 READING = BoundedSemaphore(2)
-"""programs that are read at once to check a request: each is wholly in memory"""
+"""Limits how many programs are read at once to check requests; each is held in memory."""
 
 Require = Callable[[DataFolder, JobRequest], None]
-"""refuses a request that could not be done"""
+"""Check that refuses a request which cannot be carried out."""
 
 
 def nothing(_data_folder: DataFolder, _asked: JobRequest) -> None:
-    """Whatever is asked can be done."""
+    """Accept every request without a check."""
 
 
 def runnable(data_folder: DataFolder, asked: JobRequest) -> None:
@@ -136,7 +136,7 @@ def runnable(data_folder: DataFolder, asked: JobRequest) -> None:
     NotFound
         When the program or its file was deleted.
     UnknownMachine, UnknownMaterial, Unreadable, LibraryError
-        As the job would.
+        When the job would raise the same error.
     """
     if not asked.source:
         programs.require_file(data_folder, asked.program)
@@ -147,7 +147,7 @@ def runnable(data_folder: DataFolder, asked: JobRequest) -> None:
 
 
 def _require_possible(data_folder: DataFolder, asked: JobRequest) -> None:
-    """Refuse an unknown workingstep, and a machine that can run none of them."""
+    """Refuse an unknown workingstep, and a machine that can run none of the workingsteps."""
     words = asked.request
     with READING:
         file = data_folder.program_file(asked.program)
@@ -158,23 +158,23 @@ def _require_possible(data_folder: DataFolder, asked: JobRequest) -> None:
         machine = load_machine(library.machine_word(data_folder, words["machine"]))
         reasons = [why_elsewhere(step, machine) for step in steps]
     if reasons and all(reasons):
-        raise StepNcError(f"no workingstep can be run: {reasons[0]}")
+        raise StepNcError(f"no workingstep can be run on this machine: {reasons[0]}")
 
 
 def page_reply(request: Request, page: Page[Any], items: list[Any]) -> Response:
-    """A page of a list."""
+    """Reply with a page of a list."""
     return json_reply(request, {"items": items, "next_cursor": page.cursor})
 
 
 async def queued(
     request: Request, asked: JobRequest, key: str | None, *, require: Require = nothing
 ) -> Response:
-    """Queue a job: 202, and where to look.
+    """Queue a job and reply 202 with its location.
 
     Raises
     ------
     StepNcError
-        When the job could not begin; one that was asked for before is told as it is.
+        When the job could not start; a repeated idempotency key returns the existing job.
     """
     data_folder, idempotency = (
         data_folder_of(request),
@@ -194,5 +194,5 @@ async def queued(
 
 
 def _words(asked: JobRequest) -> bytes:
-    """Fingerprint text of a request."""
+    """Return a stable text of a request for its fingerprint."""
     return repr(sorted(asked.request.items())).encode()

@@ -1,4 +1,4 @@
-"""Signs of life for those who run the service, and its counts."""
+"""Routes for operators of the service: health checks, metrics, version."""
 
 from typing import Any
 
@@ -16,23 +16,23 @@ from service.storage.jobs import JobState
 ROUTES = APIRouter(tags=["service"])
 
 
-@ROUTES.get("/healthz", summary="Whether the process answers")
+@ROUTES.get("/healthz", summary="Check that the process answers")
 async def healthz(request: Request) -> Response:
-    """It does."""
+    """Confirm that the process answers."""
     return json_reply(request, {"status": "ok"})
 
 
-@ROUTES.get("/readyz", summary="Whether requests can be served")
+@ROUTES.get("/readyz", summary="Check that requests can be served")
 async def readyz(request: Request) -> Response:
-    """The database answers, and a runner is alive; else 503."""
+    """Report whether the database answers and a runner is alive; 503 if not."""
     found = _state(data_folder_of(request))
     return json_reply(request, found, status=200 if all(found.values()) else 503)
 
 
-@ROUTES.get("/metrics", summary="Counts for Prometheus", response_class=Response,
+@ROUTES.get("/metrics", summary="Metrics for Prometheus", response_class=Response,
             responses={200: {"content": {"text/plain": {}}}})  # fmt: skip
 async def metrics(request: Request) -> Response:
-    """Requests by route and status, their times, streams, jobs by state."""
+    """Return metrics: requests by route and status, durations, streams, jobs by state."""
     with data_folder_of(request).database.reading() as connection:
         rows = connection.execute("SELECT state, count(*) FROM jobs GROUP BY state").fetchall()
     counts = dict(map(tuple, rows))
@@ -41,9 +41,9 @@ async def metrics(request: Request) -> Response:
     return Response(exposition(), media_type=TYPE)
 
 
-@ROUTES.get("/v1/about", summary="What this service is, and has")
+@ROUTES.get("/v1/about", summary="Show version and settings of the service")
 async def about(request: Request) -> Response:
-    """For the dashboard: version, whether keys are needed, samples."""
+    """Show what the dashboard needs: version, whether keys are required, samples, owner."""
     from importlib.metadata import version  # noqa: PLC0415 (used once a page)
 
     return json_reply(

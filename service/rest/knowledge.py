@@ -1,4 +1,4 @@
-"""``/v1/evaluations``, ``/v1/reviews``, ``/v1/corrections``, ``/v1/outcomes``: learning."""
+"""Routes of the knowledge base: evaluations, reviews, corrections and outcomes."""
 
 import json
 from collections.abc import Callable, Sequence
@@ -42,16 +42,14 @@ OUTCOMES = APIRouter(prefix="/v1/outcomes", tags=["knowledge"])
 
 MOST_NUMBER = 2**31 - 1
 
-Number = Annotated[int, Path(ge=1, le=MOST_NUMBER, description="of the correction")]
+Number = Annotated[int, Path(ge=1, le=MOST_NUMBER, description="number of the correction")]
 Word = Annotated[str | None, Query(max_length=200)]
-Since = Annotated[datetime | None, Query(description="first moment that counts, with zone")]
-Until = Annotated[
-    datetime | None, Query(description="first moment that counts no more, with zone")
-]
+Since = Annotated[datetime | None, Query(description="start time (inclusive), with zone")]
+Until = Annotated[datetime | None, Query(description="end time (exclusive), with zone")]
 
 
 class TableFormat(StrEnum):
-    """Forms of a table for other programs."""
+    """File format of a table for other programs."""
 
     CSV = "csv"
     PARQUET = "parquet"
@@ -63,11 +61,11 @@ KINDS = {
 }
 
 
-@EVALUATIONS.post("", status_code=202, response_model=JobView, summary="Make a table")
+@EVALUATIONS.post("", status_code=202, response_model=JobView, summary="Compute a table")
 async def ask_evaluation(
     request: Request, body: EvaluationRequest, owner: ByOwner, key: IdempotencyHeader = None
 ) -> Response:
-    """A job: what was planned against what it was, feature by feature."""
+    """Queue a job that compares planned with actual values, feature by feature."""
     _require_moments(since=body.since, until=body.until)
     order = JobRequest(kind=JobKind.EVALUATION, request=dumped(body), owner=owner)
     return await queued(request, order, key)
@@ -77,20 +75,20 @@ async def ask_evaluation(
 async def list_evaluations(
     request: Request, data_folder: InDataFolder, cursor: OnPage
 ) -> Response:
-    """A page of their jobs."""
+    """List the evaluation jobs page by page."""
     page = jobs.listed(data_folder, cursor, kind=JobKind.EVALUATION)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
-@EVALUATIONS.get("/{id}", summary="A table")
+@EVALUATIONS.get("/{id}", summary="Show a table")
 async def evaluation(request: Request, id: Id) -> Response:
-    """Rows with their roughing and finishing sides, grades and remarks."""
+    """Show the rows of a table with roughing and finishing values, grades and remarks."""
     return await result_reply(request, id, JobKind.EVALUATION)
 
 
 @EVALUATIONS.get(
     "/{id}/table",
-    summary="A table as a file",
+    summary="Download a table as a file",
     response_class=Response,
     responses={200: {"content": {kind: {} for kind in KINDS.values()}}},
 )
@@ -98,9 +96,9 @@ async def evaluation_file(
     request: Request,
     data_folder: InDataFolder,
     id: Id,
-    form: Annotated[TableFormat, Query(description="of the file")] = TableFormat.CSV,
+    form: Annotated[TableFormat, Query(description="format of the file")] = TableFormat.CSV,
 ) -> Response:
-    """A line for each side of a row."""
+    """Download a table with one line for each side (roughing, finishing) of a row."""
     jobs.get(data_folder, id, JobKind.EVALUATION)
     file, name = (
         data_folder.job_folder(id) / f"{TABLE}.{form.value}",
@@ -109,10 +107,10 @@ async def evaluation_file(
     return file_reply(request, file, name=name, kind=KINDS[form], thing="table")
 
 
-@EVALUATIONS.get("/{id}/report", summary="A table as a page", response_class=Response,
+@EVALUATIONS.get("/{id}/report", summary="Show a table as a page", response_class=Response,
                  responses={200: {"content": {"text/html": {}}}})  # fmt: skip
 async def evaluation_report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """A page that stands for itself."""
+    """Show the self-contained HTML page of an evaluation table."""
     jobs.get(data_folder, id, JobKind.EVALUATION)
     return report_reply(request, data_folder.job_folder(id) / REPORT, id=id)
 
@@ -121,49 +119,49 @@ async def evaluation_report(request: Request, data_folder: InDataFolder, id: Id)
 async def ask_review(
     request: Request, body: ReviewRequest, owner: ByOwner, key: IdempotencyHeader = None
 ) -> Response:
-    """A job: it proposes corrections; a person accepts them."""
+    """Queue a job that proposes corrections, which a person may then accept."""
     _require_moments(since=body.since, until=body.until)
     order = JobRequest(kind=JobKind.REVIEW, request=dumped(body), owner=owner)
     return await queued(request, order, key)
 
 
-@REVIEWS.get("/{id}", summary="What a review found")
+@REVIEWS.get("/{id}", summary="Show the result of a review")
 async def review(request: Request, id: Id) -> Response:
-    """Context by context: the factor on k_c, what speaks against it, what was done."""
+    """Show each context with its factor on k_c, the objections to it, and the action taken."""
     return await result_reply(request, id, JobKind.REVIEW)
 
 
-@CORRECTIONS.get("", summary="All corrections, with what was decided last")
+@CORRECTIONS.get("", summary="List all corrections with their latest decision")
 async def corrections(request: Request, data_folder: InDataFolder) -> Response:
-    """In the order of their proposal."""
+    """List all corrections in the order of their proposal."""
     return await _corrections(request, lambda: verbs.corrections(data_folder.knowledge))
 
 
-@CORRECTIONS.post("/{number}/accept", summary="Put a correction in force")
+@CORRECTIONS.post("/{number}/accept", summary="Accept a correction")
 async def accept(
     request: Request, data_folder: InDataFolder, number: Number, body: DecisionBody
 ) -> Response:
-    """In the name of a person; the next plan takes it."""
+    """Accept a correction in the name of a person; the next plan applies it."""
     place = data_folder.knowledge
     return await _corrections(request, lambda: verbs.accept(place, [number], by=body.by))
 
 
-@CORRECTIONS.post("/{number}/withdraw", summary="Take a correction out of force")
+@CORRECTIONS.post("/{number}/withdraw", summary="Withdraw or reject a correction")
 async def withdraw(
     request: Request, data_folder: InDataFolder, number: Number, body: DecisionBody
 ) -> Response:
-    """Or refuse what is proposed."""
+    """Withdraw an accepted correction, or reject a proposed one."""
     place = data_folder.knowledge
     return await _corrections(request, lambda: verbs.withdraw(place, [number], by=body.by))
 
 
 def _require_moments(**times: datetime | None) -> None:
-    """Refuse a moment that no clock shows, before a job meets it.
+    """Refuse invalid times before a job is queued with them.
 
     Raises
     ------
     Unreadable
-        When it has no zone, or lies beyond the years that there are.
+        When a time has no zone or lies outside the supported years.
     """
     for name, time in times.items():
         try:
@@ -179,12 +177,12 @@ async def _corrections(
     try:
         entries = await run_in_threadpool(work)
     except ValueError as error:
-        # A name that is none, or cannot be stored.
+        # The person's name is empty or cannot be stored.
         raise Unreadable(str(error)) from error
     return json_reply(request, corrections_json(entries).encode())
 
 
-@OUTCOMES.get("", summary="Outcomes, newest first")
+@OUTCOMES.get("", summary="List outcomes, newest first")
 async def outcomes(  # noqa: PLR0913 (each is a parameter of the request)
     request: Request,
     *,
@@ -197,7 +195,7 @@ async def outcomes(  # noqa: PLR0913 (each is a parameter of the request)
     until: Until = None,
     limit: Annotated[int, Query(ge=1, le=2000)] = 200,
 ) -> Response:
-    """Outcomes of runs, workingstep by workingstep; canonical units, as in exports."""
+    """List outcomes of runs by workingstep, in canonical units as in exports."""
     _require_moments(since=since, until=until)
     selection = Selection(
         machine=machine, material=material, tool=tool, feature_kind=feature_kind,
@@ -208,20 +206,20 @@ async def outcomes(  # noqa: PLR0913 (each is a parameter of the request)
     return json_reply(request, listing_json(listing).encode())
 
 
-@OUTCOMES.get("/runs/{run}", summary="The outcomes of one run")
+@OUTCOMES.get("/runs/{run}", summary="List the outcomes of one run")
 async def run_outcomes(
     request: Request, data_folder: InDataFolder, run: Annotated[str, Path(max_length=200)]
 ) -> Response:
-    """With their deviations."""
+    """List the outcomes of a run with their deviations."""
     found = await run_in_threadpool(verbs.outcomes_of_run, data_folder.knowledge, run)
     if not found:
         raise NotFound("run", run)
     return json_reply(request, run_json(found).encode())
 
 
-@OUTCOMES.get("/contexts", summary="Machines, materials and tools of which something is known")
+@OUTCOMES.get("/contexts", summary="List machines, materials and tools with known outcomes")
 async def contexts(request: Request, data_folder: InDataFolder) -> Response:
-    """For filters."""
+    """List the known combinations of machine, material and tool, for filters."""
     found = await run_in_threadpool(verbs.contexts, data_folder.knowledge)
     known = [{"machine": each.machine, "material": each.material, "tool": each.tool}
              for each in found]  # fmt: skip

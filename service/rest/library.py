@@ -1,4 +1,4 @@
-"""Routes of ``/v1/machines`` and ``/v1/materials``: built-in library and own data."""
+"""Routes of ``/v1/machines`` and ``/v1/materials``: built-in library and data of the shop."""
 
 import json
 from typing import Annotated

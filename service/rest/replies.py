@@ -1,4 +1,4 @@
-"""Answers: JSON with an ETag, files, problems."""
+"""Building of HTTP replies: JSON with an ETag, files, problems."""
 
 import hashlib
 import os
@@ -21,7 +21,7 @@ JSON = "application/json"
 PROBLEM = "application/problem+json"
 
 PART = 1 << 18
-"""bytes of a file that are read at once"""
+"""Size of the parts in which a file is read and sent, in bytes."""
 
 
 def json_reply(
@@ -31,7 +31,7 @@ def json_reply(
     status: int = 200,
     headers: Mapping[str, str] | None = None,
 ) -> Response:
-    """JSON; 304 when the client has it already."""
+    """Reply with JSON, or with 304 when the client has it already."""
     option = orjson.OPT_SERIALIZE_NUMPY
     body = content if isinstance(content, bytes) else orjson.dumps(content, option=option)
     if status != 200:
@@ -42,7 +42,7 @@ def json_reply(
 def tagged(
     request: Request, body: bytes, tag: str, *, headers: Mapping[str, str] | None = None
 ) -> Response:
-    """JSON whose tag is known."""
+    """Reply with JSON whose entity tag is known, or with 304."""
     told = {"etag": tag, "cache-control": "no-cache", **(headers or {})}
     if matches(request.headers.get("if-none-match"), tag):
         return Response(status_code=304, headers=told)
@@ -50,7 +50,7 @@ def tagged(
 
 
 class PreparedResponse(Response):
-    """A body whose headers were made before: what is asked again and again is sent as it is."""
+    """Response with prepared headers, for content that is requested again and again."""
 
     def __init__(self, status: int, body: bytes, headers: list[tuple[bytes, bytes]]) -> None:
         self.status_code, self.body, self.raw_headers = status, body, headers
@@ -58,12 +58,12 @@ class PreparedResponse(Response):
 
 
 def tag_of(body: bytes) -> str:
-    """Entity tag of a content."""
+    """Return the entity tag of a content."""
     return f'"{hashlib.blake2b(body, digest_size=12).hexdigest()}"'
 
 
 def matches(condition: str | None, tag: str) -> bool:
-    """Whether a tag is among those of a condition, RFC 9110 §13.1.2."""
+    """Whether a tag is among those of an If-None-Match header, RFC 9110 §13.1.2."""
     if condition is None:
         return False
     tags = {each.strip().removeprefix("W/") for each in condition.split(",")}
@@ -71,18 +71,18 @@ def matches(condition: str | None, tag: str) -> bool:
 
 
 def problem_reply(problem: Mapping[str, Any]) -> Response:
-    """A problem body."""
+    """Reply with a problem body."""
     return Response(orjson.dumps(problem), problem["status"], None, PROBLEM)
 
 
 class FileReply(Response):
-    """An opened file: who deletes it meanwhile does no harm. It is closed in every case.
+    """Response with an open file, which may be deleted meanwhile; always closed at the end.
 
     Parameters
     ----------
     file : BinaryIO
     size : int
-        Bytes of it.
+        Size of the file, in bytes.
     kind : str
         Media type.
     headers : mapping
@@ -96,14 +96,14 @@ class FileReply(Response):
         self._left = size
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """See ASGI."""
+        """Send the file in parts (see ASGI)."""
         start = {"status": self.status_code, "headers": self.raw_headers}
         try:
             await send({"type": "http.response.start", **start})
             while self._left:
                 part = await run_in_threadpool(self.file.read, min(PART, self._left))
                 if not part:
-                    raise OSError(f"the file has lost {self._left} bytes while it was sent")
+                    raise OSError(f"the file lost {self._left} bytes while it was sent")
                 self._left -= len(part)
                 await send({"type": "http.response.body", "body": part, "more_body": True})
             await send({"type": "http.response.body", "body": b""})
@@ -114,25 +114,25 @@ class FileReply(Response):
 def file_reply(
     request: Request, file: Path, *, name: str, kind: str, thing: str, tag: str = ""
 ) -> Response:
-    """A file to save, under a name of the user's.
+    """Reply with a file to download, under the name that its owner gave it.
 
     Parameters
     ----------
     request : Request
     file : Path
     name : str
-        As its owner calls it.
+        Name of the download.
     kind : str
         Media type.
     thing : str
-        What is not found when there is no file.
+        Name of the resource in the error when the file does not exist.
     tag : str
-        What changes with its content; empty: the moment at which it was written.
+        Entity tag of the content; empty: derived from the time of writing.
 
     Raises
     ------
     NotFound
-        When it does not exist.
+        When the file does not exist.
     """
     plain = "".join(each if (each.isascii() and each.isalnum()) or each in "._- " else "_"
                     for each in name)  # fmt: skip
@@ -142,12 +142,12 @@ def file_reply(
 
 
 def report_reply(request: Request, file: Path, *, id: str) -> Response:
-    """A page that stands for itself, and may reach nothing.
+    """Reply with a self-contained page that may not load anything.
 
     Raises
     ------
     NotFound
-        When it does not exist.
+        When the report does not exist.
     """
     headers = {"content-security-policy": REPORT_POLICY}
     kind, missing = "text/html; charset=utf-8", NotFound("report", id)
@@ -157,7 +157,7 @@ def report_reply(request: Request, file: Path, *, id: str) -> Response:
 def _opened(
     request: Request, file: Path, *, kind: str, headers: Mapping[str, str], missing: NotFound
 ) -> Response:
-    """The answer with a file, or that the client has it already."""
+    """Reply with an opened file, or with 304 when the client has it already."""
     try:
         opened = file.open("rb")
     except (FileNotFoundError, NotADirectoryError, IsADirectoryError):
@@ -172,7 +172,7 @@ def _opened(
 
 
 def moment(seconds: float | None) -> str | None:
-    """A time as in RFC 3339."""
+    """Return a time as RFC 3339 text."""
     if seconds is None:
         return None
     return datetime.fromtimestamp(seconds, UTC).isoformat(timespec="milliseconds")

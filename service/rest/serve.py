@@ -1,4 +1,4 @@
-"""Start the service: web processes, and beside them the one that runs jobs."""
+"""Start of the service: the web processes and the process that runs jobs."""
 
 import multiprocessing
 import os
@@ -27,13 +27,13 @@ from stepnc_model.errors import StepNcError
 LOG = structlog.get_logger("serve")
 
 AGAIN = 1.0
-"""s before a runner that has ended is started again"""
+"""Delay before a runner that has ended is started again, in s."""
 
 KEEP_ALIVE = 20
-"""s for which an idle connection is kept"""
+"""Time for which an idle connection is kept open, in s."""
 
 FAREWELL = 5
-"""s for open requests when the service stops"""
+"""Time for open requests to finish when the service stops, in s."""
 
 MOST_CONNECTIONS = 2000
 
@@ -44,20 +44,20 @@ class ServerOptions:
 
     settings: Settings
     workers: int
-    """web processes"""
+    """Number of web processes."""
     jobs: int
-    """jobs at once"""
+    """Number of jobs that run at once."""
     certificate: Path | None = None
     key: Path | None = None
 
 
 def serve(start: ServerOptions) -> None:
-    """Serve until told to stop.
+    """Run the service until it is told to stop.
 
     Raises
     ------
     StepNcError
-        When it cannot be started.
+        When the service cannot be started.
     """
     settings = start.settings
     data_folder = open_data_folder(settings.root, knowledge=settings.knowledge)
@@ -65,14 +65,14 @@ def serve(start: ServerOptions) -> None:
         each.revoked is None for each in keys.listed(data_folder)
     ):
         command = f"stepnc keys create --for NAME --role planner --data {settings.data}"
-        raise Forbidden(f"host {settings.host}: keys are needed, and there is none: {command}")
+        raise Forbidden(f"host {settings.host} requires keys, but none exists: {command}")
     for file in (start.certificate, start.key):
         if file is not None and not file.is_file():
             raise StepNcError(f"{file}: no such file")
     _require_port(settings)
     with runner.locked(data_folder.root, "server"):
         with runner.locked(data_folder.root):
-            """what is left of an earlier one is refused at once"""
+            """Fail at once if the runner of an earlier server is still alive."""
         _serve(start, data_folder)
 
 
@@ -84,8 +84,8 @@ def _serve(start: ServerOptions, data_folder: DataFolder) -> None:
         _share_metrics(data_folder.root)
     keeper = RunnerKeeper(start, knowledge=data_folder.knowledge)
     keeper.start()
-    # uvicorn raises the signal once more when all requests are answered: without this the
-    # process would end there, before the one that runs jobs has freed the folder.
+    # uvicorn raises the signal again when all requests are answered; without this handler the
+    # process would end there, before the runner of jobs has released the folder.
     signal.signal(signal.SIGTERM, _end)
     LOG.info("serving", host=settings.host, port=settings.port, data=str(data_folder.root))
     try:
@@ -112,13 +112,13 @@ def _serve(start: ServerOptions, data_folder: DataFolder) -> None:
 
 
 def _require_port(settings: Settings) -> None:
-    """Refuse a port that another has, or that one may not have."""
+    """Refuse a port that is in use or not permitted."""
     family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
     try:
         socket.create_server((settings.host, settings.port), family=family).close()
     except OSError as error:
         where = f"{settings.host}, port {settings.port}"
-        raise StepNcError(f"{where}: {error.strerror or error}; --port names another") from None
+        raise StepNcError(f"{where}: {error.strerror or error}; try another --port") from None
 
 
 def _end(_signal: int, _frame: FrameType | None) -> None:
@@ -126,7 +126,7 @@ def _end(_signal: int, _frame: FrameType | None) -> None:
 
 
 class RunnerKeeper:
-    """Keeps a runner alive. Running state."""
+    """Keeps the runner process alive. Running state."""
 
     def __init__(self, start: ServerOptions, *, knowledge: str) -> None:
         settings = start.settings
@@ -136,12 +136,12 @@ class RunnerKeeper:
         self._thread = threading.Thread(target=self._keep, daemon=True)
 
     def start(self) -> None:
-        """Start the first."""
+        """Start the first runner and the thread that watches it."""
         self._process = self._started()
         self._thread.start()
 
     def stop(self) -> None:
-        """End it; jobs that run are taken up by the next."""
+        """End the runner; the next runner restarts its unfinished jobs."""
         self._is_stopping.set()
         self._thread.join()
         if self._process is not None:
@@ -159,22 +159,22 @@ class RunnerKeeper:
     def _keep(self) -> None:
         while not self._is_stopping.wait(AGAIN):
             if self._process is not None and not self._process.is_alive():
-                LOG.error("the runner of jobs has ended", exit_code=self._process.exitcode)
+                LOG.error("the job runner has ended", exit_code=self._process.exitcode)
                 self._process = self._started()
 
 
 def run_jobs(data: str, knowledge: str, workers: int, parent: int, level: str) -> None:
-    """Main function of the process that runs jobs."""
+    """Run jobs; main function of the runner process."""
     logs.configure(level)
     try:
         runner.main(data, knowledge, workers, parent)
     except StepNcError as error:
-        # What is wrong stands in its text.
+        # The message says what is wrong; no traceback is needed.
         LOG.error("jobs cannot be run", reason=str(error))  # noqa: TRY400
 
 
 def _share_metrics(root: Path) -> None:
-    """Processes count into files of one folder, begun anew at each start."""
+    """Let the processes share metrics through files in a folder emptied at each start."""
     folder = root / "metrics"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(mode=0o700)

@@ -1,4 +1,4 @@
-"""``/v1/simulations``: programs on the virtual machine."""
+"""Routes of ``/v1/simulations``: runs of programs on the virtual machine."""
 
 from typing import Annotated, Any
 
@@ -52,7 +52,7 @@ PARQUET = "application/vnd.apache.parquet"
 
 PATH_POINTS = 20_000
 
-PathPoints = Annotated[int, Query(ge=100, le=50_000, description="of the path, at most")]
+PathPoints = Annotated[int, Query(ge=100, le=50_000, description="most points of the path")]
 
 
 @ROUTES.post("", status_code=202, response_model=JobView, summary="Simulate a program")
@@ -63,7 +63,7 @@ async def ask(
     owner: ByOwner,
     key: IdempotencyHeader = None,
 ) -> Response:
-    """A job; watch it by its events, then read its result."""
+    """Queue a simulation job; watch its events, then read its result."""
     return await queued(
         request, run_order(data_folder, JobKind.SIMULATION, body, owner), key, require=runnable
     )
@@ -72,15 +72,15 @@ async def ask(
 def run_order(
     data_folder: DataFolder, kind: JobKind, body: RunRequest, owner: str
 ) -> JobRequest:
-    """A job for a run of a program, or of what an advice made of it.
+    """Return the job request for a run of an uploaded program or of an optimised one.
 
     Raises
     ------
     Unreadable, NotFound
-        When neither or both are named, or there is none.
+        When not exactly one of them is named, or it does not exist.
     """
     if (body.program_id is None) == (body.advice_id is None):
-        raise Unreadable("name a program_id or an advice_id")
+        raise Unreadable("name either a program_id or an advice_id")
     program, source = body.program_id or "", body.advice_id or ""
     if source:
         program = jobs.get(data_folder, source, JobKind.ADVICE).program
@@ -93,18 +93,18 @@ def run_order(
 async def list_simulations(
     request: Request, data_folder: InDataFolder, cursor: OnPage
 ) -> Response:
-    """A page of their jobs."""
+    """List the simulation jobs page by page."""
     page = jobs.listed(data_folder, cursor, kind=JobKind.SIMULATION)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
-@ROUTES.get("/{id}", response_model=SimulationView, summary="The result of a simulation")
+@ROUTES.get("/{id}", response_model=SimulationView, summary="Show the result of a simulation")
 async def simulation(request: Request, id: Id) -> Response:
-    """Time, energy, peaks and removal, of the run and of each workingstep."""
+    """Show time, energy, peaks and removal of the run and of each workingstep."""
     return await result_reply(request, id, JobKind.SIMULATION)
 
 
-@ROUTES.get("/{id}/series", response_model=SeriesView, summary="Signals against time")
+@ROUTES.get("/{id}/series", response_model=SeriesView, summary="Signals over time")
 async def series(  # noqa: PLR0913, PLR0917 (each is a parameter of the request)
     request: Request,
     data_folder: InDataFolder,
@@ -114,18 +114,18 @@ async def series(  # noqa: PLR0913, PLR0917 (each is a parameter of the request)
     end_s: End = None,
     points: Points = SERIES_POINTS,
 ) -> Response:
-    """A range of time, brought down to as many points as are wanted; also while it runs."""
+    """Show signals over a time range with the requested resolution, also during a run."""
     job = jobs.get(data_folder, id, JobKind.SIMULATION)
     return await series_reply(
         request, job, signals=signals, begin=begin_s, end=end_s, points=points
     )
 
 
-@ROUTES.get("/{id}/path", response_model=PathView, summary="Where the tool went")
+@ROUTES.get("/{id}/path", response_model=PathView, summary="Path of the tool")
 async def path(
     request: Request, data_folder: InDataFolder, id: Id, points: PathPoints = PATH_POINTS
 ) -> Response:
-    """Thinned so that corners and changes of feed and force stay; also while it runs."""
+    """Show the tool path, thinned but with all corners and changes of feed and force."""
     job = jobs.get(data_folder, id, JobKind.SIMULATION)
     found = await read_in_turn(_path, data_folder, job, points)
     return json_reply(request, found)
@@ -157,10 +157,10 @@ def _path(data_folder: DataFolder, job: Job, points: int) -> dict[str, Any]:
     }
 
 
-@ROUTES.get("/{id}/samples", summary="All samples as a Parquet file", response_class=Response,
+@ROUTES.get("/{id}/samples", summary="Download the samples as Parquet", response_class=Response,
             responses={200: {"content": {PARQUET: {}}}})  # fmt: skip
 async def samples(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """As ``stepnc simulate -o run.parquet`` writes them."""
+    """Download the samples as ``stepnc simulate -o run.parquet`` writes them."""
     file = file_of(
         data_folder, jobs.get(data_folder, id, JobKind.SIMULATION), SAMPLES, thing="samples"
     )
@@ -171,6 +171,6 @@ async def samples(request: Request, data_folder: InDataFolder, id: Id) -> Respon
 @ROUTES.get("/{id}/report", summary="The report as a page", response_class=Response,
             responses={200: {"content": {"text/html": {}}}})  # fmt: skip
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """A page that stands for itself."""
+    """Show the self-contained HTML report of a simulation."""
     jobs.get(data_folder, id, JobKind.SIMULATION)
     return report_reply(request, data_folder.job_folder(id) / REPORT, id=id)

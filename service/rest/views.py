@@ -1,4 +1,4 @@
-"""Response bodies, with units in the names of their fields."""
+"""Response bodies of the REST API, with units in the names of their fields."""
 
 from typing import Any, Generic, TypeVar
 
@@ -12,13 +12,13 @@ T = TypeVar("T")
 
 
 class View(BaseModel):
-    """An answer."""
+    """Base class of response bodies."""
 
     model_config = ConfigDict(frozen=True)
 
 
 class ProblemDetails(BaseModel):
-    """A problem after RFC 9457; errors of the project add fields (line, entity, limits …)."""
+    """Problem details (RFC 9457); project errors add fields such as line, entity and limits."""
 
     model_config = ConfigDict(extra="allow")
 
@@ -29,14 +29,16 @@ class ProblemDetails(BaseModel):
 
 
 class PageView(View, Generic[T]):
-    """Some of a list, newest first."""
+    """Page of a list, newest first."""
 
     items: list[T]
-    next_cursor: str | None = Field(description="for the next page; null: there is none")
+    next_cursor: str | None = Field(
+        description="cursor of the next page; null on the last page"
+    )
 
 
 class ProgramView(View):
-    """A program."""
+    """Uploaded program."""
 
     id: str
     name: str
@@ -47,18 +49,18 @@ class ProgramView(View):
 
 
 class FindingView(View):
-    """A deviation that was found."""
+    """Finding of a check: an error, a warning or a note."""
 
     severity: str
     message: str
     entity: str
     attribute: str
-    line: int = Field(description="of the file, from 1; 0: the whole file")
+    line: int = Field(description="line of the file, from 1; 0: the whole file")
     rule: str
 
 
 class WorkingstepView(View):
-    """A workingstep of a program."""
+    """Workingstep of a program."""
 
     id: str
     instance: str
@@ -67,7 +69,7 @@ class WorkingstepView(View):
 
 
 class ExecutableView(View):
-    """A line of the workplan."""
+    """Executable of the workplan."""
 
     instance: str
     entity: str
@@ -76,7 +78,7 @@ class ExecutableView(View):
 
 
 class ContentsView(View):
-    """Content of a program, and its faults."""
+    """Contents and findings of a program."""
 
     program: str
     schemas: list[str]
@@ -88,7 +90,7 @@ class ContentsView(View):
 
 
 class JobView(View):
-    """A job: long work that goes on by itself."""
+    """Job: long work that runs in the background."""
 
     id: str
     kind: JobKind
@@ -99,28 +101,28 @@ class JobView(View):
     created_at: str
     started_at: str | None
     ended_at: str | None
-    share: float = Field(description="that is done, 0 to 1")
+    share: float = Field(description="share of the work done, 0 to 1")
     message: str
     is_cancelling: bool
     attempt: int
-    problem: ProblemDetails | None = Field(description="why it failed")
+    problem: ProblemDetails | None = Field(description="why the job failed")
     request: dict[str, Any]
-    result: str = Field(description="path of the result, once it has succeeded")
+    result: str = Field(description="path of the result, once the job has succeeded")
 
 
 class LimitView(View):
-    """Use of a limit."""
+    """Load and bound of a limit."""
 
     name: str
     value: float | None
     bound: float | None
     unit: str
     sense: str
-    margin: float | None = Field(description="share of the bound that is left")
+    margin: float | None = Field(description="unused share of the bound")
 
 
 class SettingView(View):
-    """Feed, speed and depth."""
+    """Feed, spindle speed and depth of cut."""
 
     feed_mm_min: float
     spindle_rpm: float
@@ -128,46 +130,46 @@ class SettingView(View):
     axial_depth_mm: float
     passes: int | None = None
     plunge_feed_mm_min: float | None = Field(
-        default=None, description="on the way down into the material; null: as the cut"
+        default=None, description="feed into the material; null: same as the feed of the cut"
     )
     plunge_feed_per_tooth_mm: float | None = None
 
 
 class PlungeView(View):
-    """Plunge feed and the limit that holds it."""
+    """Limits of the plunge feed, and its active limit."""
 
     reason: str
-    fault: str | None = Field(description="why the tool may not go straight down; null: it may")
+    fault: str | None = Field(description="why the tool must not plunge; null: it may")
     limits: list[LimitView]
 
 
 class BeforeAfterView(View):
-    """As programmed, and as advised."""
+    """Value as programmed and as advised."""
 
     before: float | None
     after: float | None
 
 
 class StabilityView(View):
-    """Stability of a cut; its bound is one of the limits."""
+    """Chatter stability of a cut; its bound is one of the limits."""
 
-    basis: str = Field(description="measured, estimated (bounds nothing) or not_used")
+    basis: str = Field(description="measured, estimated (sets no bound) or not_used")
     reason: str
     stable_at_any_speed_mm: float | None
-    band_mm: list[float] | None = Field(description="of an estimate, least and greatest")
+    band_mm: list[float] | None = Field(description="lower and upper value of an estimate")
 
 
 class HoldingLoadView(View):
-    """Loads of a cut on the work-holding; bounds are among the limits."""
+    """Loads of a cut on the work-holding; their bounds are among the limits."""
 
     torque_nm: float = Field(description="about the axis of a bar, axial force included")
-    moment_nm: float = Field(description="of tilting about the jaws; 0: not known, or none")
-    force_n: float = Field(description="across the axis of a mill, the greatest")
-    lift_n: float = Field(description="along it, that pulls the workpiece up")
+    moment_nm: float = Field(description="tilting moment about the jaws; 0: unknown or none")
+    force_n: float = Field(description="largest force across the axis of a mill")
+    lift_n: float = Field(description="largest axial force that lifts the workpiece")
 
 
 class AdvisedView(View):
-    """The advice for one workingstep: the feed, and why."""
+    """Advised feed of one workingstep, with the reasons."""
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
@@ -176,7 +178,7 @@ class AdvisedView(View):
     operation: str
     tool: str
     status: str
-    reason: str = Field(description="what holds the feed, in a sentence")
+    reason: str = Field(description="what limits the feed, in a sentence")
     programmed: SettingView | None
     advised: SettingView | None
     active_limit: str | None
@@ -187,27 +189,27 @@ class AdvisedView(View):
     energy_j: float | None
     time_s: BeforeAfterView
     stability: StabilityView | None = Field(
-        default=None, description="null: chatter is no matter of this cut's depth"
+        default=None, description="null: chatter does not depend on the depth of this cut"
     )
     plunge: PlungeView | None = Field(
-        default=None, description="null: no way down has a feed of its own"
+        default=None, description="null: the cut has no separate plunge feed"
     )
     holding_load: HoldingLoadView | None = Field(
-        default=None, description="null: not cut, or nothing is asked of a holding"
+        default=None, description="null: no cut, or no work-holding applies"
     )
 
 
 class FigureView(View):
-    """One promise and what became of it."""
+    """Predicted value and the value found in the simulated run."""
 
     promised: float
     found: float
-    ratio: float | None = Field(description="found over promised")
-    bound: float | None = Field(description="that the figure must keep")
+    ratio: float | None = Field(description="found over predicted")
+    bound: float | None = Field(description="bound that the value must keep")
 
 
 class ConfirmedView(View):
-    """A workingstep beside its run."""
+    """Predicted and found figures of one workingstep."""
 
     id: str
     time_s: FigureView
@@ -219,14 +221,14 @@ class ConfirmedView(View):
 
 
 class ConfirmationView(View):
-    """A plan beside its run."""
+    """Comparison of a plan with its simulated run."""
 
     workingsteps: list[ConfirmedView]
-    passed: list[str] = Field(description="a sentence for each bound that the run passed")
+    passed: list[str] = Field(description="a sentence for each bound that the run exceeded")
 
 
 class AdviceView(View):
-    """An advice: the workingsteps of a program with their feeds."""
+    """Advice for a program: feeds of its workingsteps."""
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
@@ -237,15 +239,15 @@ class AdviceView(View):
     workingsteps: list[AdvisedView]
     total_time_s: BeforeAfterView
     findings: list[FindingView]
-    is_written: bool = Field(description="whether there is an optimised program")
+    is_written: bool = Field(description="whether an optimised program was written")
     nc_control: str | None
     confirmation: ConfirmationView | None = Field(
-        None, description="what a run of the advised program found; only where asked for"
+        None, description="comparison with a simulated run; null if not requested"
     )
 
 
 class RunTotalView(View):
-    """Time, energy and peaks."""
+    """Time, energy and volume of a run or a workingstep."""
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
@@ -256,7 +258,7 @@ class RunTotalView(View):
 
 
 class SimulationView(View):
-    """A simulated run."""
+    """Result of a simulated run."""
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
@@ -269,7 +271,7 @@ class SimulationView(View):
 
 
 class SignalView(View):
-    """A signal in each of the rows that were brought together; null: not known."""
+    """Minimum, mean and maximum of a signal at each point; null: unknown."""
 
     low: list[float | None]
     mean: list[float | None]
@@ -277,49 +279,49 @@ class SignalView(View):
 
 
 class SeriesView(View):
-    """Signals of a range of time, in as many points as were asked for at most."""
+    """Signals over a time range, in at most the requested number of points."""
 
-    begin_s: list[float] = Field(description="of the first row of each point, s")
-    end_s: list[float] = Field(description="of the last one, s")
-    signals: dict[str, SignalView] = Field(description="by name, which tells the unit")
-    rows: int = Field(description="that the range holds")
-    is_reduced: bool = Field(description="whether rows were brought together")
-    is_growing: bool = Field(description="whether the run goes on")
-    columns: list[str] = Field(description="all signals that there are")
+    begin_s: list[float] = Field(description="time of the first row of each point, s")
+    end_s: list[float] = Field(description="time of the last row of each point, s")
+    signals: dict[str, SignalView] = Field(description="signals by name, which states the unit")
+    rows: int = Field(description="number of rows in the time range")
+    is_reduced: bool = Field(description="whether several rows were merged into a point")
+    is_growing: bool = Field(description="whether the run is still going on")
+    columns: list[str] = Field(description="names of all available signals")
 
 
 class PathView(View):
-    """The way of the tool, thinned to as many points as were asked for at most."""
+    """Path of the tool, thinned to at most the requested number of points."""
 
     workingsteps: list[str] = Field(description="ids, in the order of their numbers")
-    rows: int = Field(description="that the run has")
+    rows: int = Field(description="number of rows of the run")
     deviation_mm: float = Field(
-        description="at most, of what was left out, from the line between its neighbours"
+        description="largest distance of an omitted point from the drawn line"
     )
-    deviation_mm_min: float = Field(description="of the feed, outside of rapid moves")
-    deviation_n: float = Field(description="of the force")
-    is_growing: bool = Field(description="whether the run goes on")
+    deviation_mm_min: float = Field(description="largest error of the feed, except in rapids")
+    deviation_n: float = Field(description="largest error of the force")
+    is_growing: bool = Field(description="whether the run is still going on")
     time_s: list[float]
     x_mm: list[float]
     y_mm: list[float]
     z_mm: list[float]
     feed_actual_mm_min: list[float]
     cutting_force_n: list[float | None]
-    is_rapid: list[bool] = Field(description="of the move that ends in the point")
-    workingstep: list[int] = Field(description="its number from 1; 0: none")
+    is_rapid: list[bool] = Field(description="whether the move to the point is a rapid")
+    workingstep: list[int] = Field(description="workingstep number from 1; 0: none")
 
 
 class EntryView(View):
-    """A machine or a material by name."""
+    """Machine or material of the library."""
 
     name: str
     title: str
-    is_own: bool = Field(description="of the shop, not of the library")
-    problem: str | None = Field(description="why it cannot be read; null: it can")
+    is_own: bool = Field(description="whether it belongs to the shop, not the built-in library")
+    problem: str | None = Field(description="why it cannot be read; null if it can")
 
 
 def program_view(program: StoredProgram) -> dict[str, Any]:
-    """See :class:`ProgramView`."""
+    """Return a stored program as a :class:`ProgramView`."""
     return {
         "id": program.id,
         "name": program.name,
@@ -338,11 +340,11 @@ PLACES = {
     JobKind.EVALUATION: "evaluations",
     JobKind.REVIEW: "reviews",
 }
-"""where results of a kind are"""
+"""Path segment of the results by kind of job."""
 
 
 def job_view(job: Job) -> dict[str, Any]:
-    """See :class:`JobView`."""
+    """Return a job as a :class:`JobView`."""
     return {
         "id": job.id,
         "kind": job.kind.value,

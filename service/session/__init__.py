@@ -1,1 +1,1 @@
-"""Runs that people watch and steer while they go on: a program under control, a trial cut."""
+"""Live sessions, watched and changed as they go on: controlled runs and trial cuts."""

@@ -1,7 +1,7 @@
-"""Rows of a session: as the loop makes them, as they wait to be read, and as files keep them.
+"""Rows and events of a live session, and their conversion to columns of files.
 
-The "Power Limit Warning" of [1]_: over while the main drive draws more than the motor has.
-Running state. Units s, W.
+Includes the "Power Limit Warning" of [1]_: on while the main drive draws more than the motor
+can deliver. Running state. Units s, W.
 
 References
 ----------
@@ -23,7 +23,7 @@ from stepnc_model.units import kw_from_watts, mm_min_from_speed
 
 
 class Moment(NamedTuple):
-    """One row; NaN: not known, or there is none."""
+    """Values of a run at one time; NaN where a value is unknown or does not exist."""
 
     time: float
     progress: float
@@ -58,29 +58,29 @@ class RunUpdate:
     """Rows and events since the last call, ascending in time."""
 
     moments: tuple[Moment, ...] = ()
-    """a row for each revolution, or quarter of a second"""
+    """Rows, one for each revolution or quarter of a second."""
     events: tuple[LoopEvent, ...] = ()
 
 
 LIT = 1.0
-"""least time in s for which the lamp is lit, so that it can be seen"""
+"""Shortest time for which the power warning stays on, in s, so that it can be seen."""
 
 CM3_MIN = 0.06
-"""cm³/min in a mm³/s"""
+"""Removal rate of 1 mm³/s, in cm³/min."""
 
 
 class LiveRows:
-    """Takes rows and events. Running state; it is the sink of a trace.
+    """Collects rows and events, as the sink of a trace. Running state.
 
     Parameters
     ----------
     motor_power : callable
-        W that the motor has now.
+        Function that returns the power that the motor can deliver now, in W.
     """
 
     def __init__(self, motor_power: Callable[[], float]) -> None:
         self.last: Moment | None = None
-        """row"""
+        """Latest row."""
         self._motor_power = motor_power
         self._moments: list[Moment] = []
         self._events: list[LoopEvent] = []
@@ -88,7 +88,7 @@ class LiveRows:
         self._is_lit = False
 
     def __call__(self, moment: Moment) -> None:
-        """One more row."""
+        """Add a row, and an event when the power warning changes."""
         self._moments.append(moment)
         self.last = moment
         power, motor = moment.spindle_power_true, self._motor_power()
@@ -99,15 +99,15 @@ class LiveRows:
             self.note(_change(moment.time, power, motor, is_lit=self._is_lit))
 
     def note(self, event: LoopEvent) -> None:
-        """One more event."""
+        """Add an event."""
         self._events.append(event)
 
     def is_overloaded(self, time: float) -> bool:
-        """Whether the drive exceeds the motor's power, or did a moment ago."""
+        """Whether the drive exceeds the motor power, or did within the last second."""
         return time < self._lit_until
 
     def taken(self) -> RunUpdate:
-        """Rows and events since the last call."""
+        """Return rows and events since the last call, and clear them."""
         taken = RunUpdate(moments=tuple(self._moments), events=tuple(self._events))
         self._moments.clear()
         self._events.clear()
@@ -115,22 +115,22 @@ class LiveRows:
 
 
 def _change(time: float, power: float, motor: float, *, is_lit: bool) -> LoopEvent:
-    """Event for a change of the lamp."""
+    """Return the event for a change of the power warning."""
     draws, has = f"{kw_from_watts(power):.3g} kW", f"{kw_from_watts(motor):.3g} kW"
     if is_lit:
-        text = f"power limit: the drive draws {draws}, the motor has {has}"
+        text = f"power limit: the drive draws {draws}, the motor delivers {has}"
         return LoopEvent(time=time, kind=EventKind.OVER, text=text)
     text = f"power limit: for {LIT:g} s at most {EXCESS_RATIO - 1.0:.0%} above {has}"
     return LoopEvent(time=time, kind=EventKind.SAFE, text=text)
 
 
 def known(value: float) -> float | None:
-    """A number of a row; None where it has none."""
+    """Return a number of a row, or None where it is NaN."""
     return None if isnan(value) else value
 
 
 FEED, RATE = mm_min_from_speed(1.0), 0.001 * mm_min_from_speed(1.0)
-"""mm/min in one mm/s, cm³/min in one mm³/s"""
+"""Feed of 1 mm/s in mm/min, and removal rate of 1 mm³/s in cm³/min."""
 
 PER_CENT = 100.0
 
@@ -155,14 +155,14 @@ COLUMNS: Mapping[str, tuple[str, float]] = {
     "axial_depth_mm": ("axial_depth", 1.0),
     "flank_wear_mm": ("flank_wear", 1.0),
 }
-"""name of each column, its value of a moment, and its units per internal unit"""
+"""Columns in files: attribute of :class:`Moment` and factor from internal units."""
 
 _PLACES = [Moment._fields.index(name) for name, _ in COLUMNS.values()]
 _SCALES = np.array([scale for _, scale in COLUMNS.values()])
 
 
 def rows_of(moments: Sequence[Moment]) -> Floats:
-    """(M, C) rows of as many moments."""
+    """Return moments as an array of rows, (M, C), in the units of the columns."""
     rows = [[moment[place] for place in _PLACES] for moment in moments]
     values: Floats = np.array(rows, dtype=np.float64).reshape(-1, len(_PLACES)) * _SCALES
     return values

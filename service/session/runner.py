@@ -1,8 +1,8 @@
-"""A run that goes on in wall time, tells how it is, and does what it is asked. Running state.
+"""Runner of a live session: it advances a run in wall-clock time and obeys change requests.
 
-Each tick: what was asked of it is done, it goes on as far as it is time for, what came of it is
-written where others read it. A run that stands, and of which nobody asks anything for long, has
-been forgotten: it ends.
+In each tick the runner carries out requested changes, advances the run, and writes rows, events
+and status to files that others read. A run that waits for an order is ended when no order comes
+for a long time. Running state.
 """
 
 import time
@@ -20,26 +20,26 @@ from simulator.motion.segments import Floats
 from stepnc_model.errors import StepNcError
 
 AT_ONCE = 2.0
-"""simulated seconds of a tick when the clock does not matter"""
+"""Simulated time of a tick when the run is not paced, in s."""
 
 FORGOTTEN_AFTER = 3600.0
-"""wall-clock seconds for which a stopped run waits for an order"""
+"""Wall-clock time for which a waiting run waits for an order, in s."""
 
 MOST_ROWS = 20_000_000
-"""that come of a run: what is kept of them then takes some gigabytes"""
+"""Largest number of rows of a run, some gigabytes in files."""
 
 REFUSED = "refused"
-"""kind of the event that tells of an order that could not be done"""
+"""Kind of event that reports an order which could not be carried out."""
 
 FORGOTTEN = "forgotten"
-"""kind of the event for the end of a run that got no order"""
+"""Kind of event that reports the end of a run which received no order."""
 
 FULL = "full"
-"""kind of the event that tells that no more rows are kept to be looked at"""
+"""Kind of event that reports that no more rows are kept for display."""
 
 
 class LiveSession(Protocol):
-    """A run that goes on when it is told to, may be watched, and obeys orders."""
+    """Run that can be advanced, watched and changed."""
 
     @property
     def time(self) -> float:
@@ -52,47 +52,46 @@ class LiveSession(Protocol):
         ...
 
     def advance(self, until: float) -> bool:
-        """Go on until a time, s; False: it does not go on any more."""
+        """Advance to a time, in s; return False when the run has ended."""
         ...
 
     def taken(self) -> RunUpdate:
-        """Rows and events since it was asked last."""
+        """Return rows and events since the last call."""
         ...
 
     def obey(self, order: Mapping[str, Any]) -> None:
-        """Do what is asked.
+        """Carry out a change request.
 
         Raises
         ------
         StepNcError
-            When it cannot be; nothing has changed then.
+            When the request cannot be carried out; nothing has changed then.
         """
         ...
 
     def snapshot(self) -> dict[str, Any]:
-        """Status snapshot as JSON."""
+        """Return the status snapshot as JSON."""
         ...
 
 
 @dataclass(kw_only=True)
 class LiveRunner:
-    """Steers one run. Running state."""
+    """Advances and publishes one live session. Running state."""
 
     run: LiveSession
     folder: LiveFolder
     pace: float
-    """simulated seconds per wall-clock second; 0: as fast as possible"""
+    """Simulated seconds per wall-clock second; 0: as fast as possible."""
     now: Callable[[], float] = time.monotonic
     wait: Callable[[float], None] = time.sleep
     clock: Callable[[], datetime] = lambda: datetime.now(UTC)
-    """of the moment that each status carries: who watches knows a run that hangs from one that
-    stands"""
+    """Clock for the time stamp of each status, by which watchers notice a run that hangs."""
     tell: Callable[[dict[str, Any]], None] = lambda _: None
-    """hears the status of each tick"""
+    """Callback that receives the status of each tick."""
     patience: float = FORGOTTEN_AFTER
     _offset: int = 0
     _touched_at: float = 0.0
-    """wall-clock time of the last progress or order, s"""
+    """Wall-clock time of the last progress or order, s."""
     _rows: int = 0
 
     def go(self) -> None:
@@ -101,9 +100,9 @@ class LiveRunner:
         Raises
         ------
         StepNcError
-            When more comes of it than can be kept.
+            When the run has more rows than can be kept.
         StorageFull, Unavailable
-            When what came of it cannot be written.
+            When results cannot be written.
         """
         self._touched_at = self.now()
         with SeriesWriter(self.folder.series, list(COLUMNS)) as series:
@@ -111,7 +110,7 @@ class LiveRunner:
             while goes_on:
                 begin = self.now()
                 self._obey()
-                # A cycle passes the time that is due: what it was too early waits in the next.
+                # A control cycle may pass the due time; the next tick makes up for it.
                 if self.run.is_waiting or not self.pace:
                     due = self.run.time
                 due += TICK * self.pace or AT_ONCE
@@ -121,16 +120,16 @@ class LiveRunner:
                     self.wait(max(TICK - (self.now() - begin), 0.0))
 
     def _is_awaited(self) -> bool:
-        """Whether the run stands, and an order may still come."""
+        """Whether the run waits for an order that may still come."""
         if not self.run.is_waiting:
             return False
         if self.now() - self._touched_at < self.patience:
             return True
-        self._say(FORGOTTEN, f"ended: no order for {self.patience:g} s while it stood")
+        self._say(FORGOTTEN, f"ended: no order for {self.patience:g} s while the run waited")
         return False
 
     def _obey(self) -> None:
-        """All that was asked since the last tick."""
+        """Carry out all orders received since the last tick."""
         read = read_on(self.folder.orders, self._offset)
         if read.lines or not self.run.is_waiting:
             self._touched_at = self.now()
@@ -163,12 +162,10 @@ class LiveRunner:
         was_full = series.is_full
         series.add(rows)
         if series.is_full and not was_full:
-            self._say(
-                FULL, "the series has as many rows as it may have: later ones are not shown"
-            )
+            self._say(FULL, "the series is full: later rows are not shown")
         self._rows += len(rows)
         if self._rows > MOST_ROWS:
-            raise StepNcError(f"the run has more than {MOST_ROWS} rows, which is the most")
+            raise StepNcError(f"the run exceeds {MOST_ROWS} rows, the largest number allowed")
 
     def _say(self, kind: str, text: str, *, at: float | None = None) -> None:
         moment = self.run.time if at is None else at

@@ -1,4 +1,4 @@
-"""Status snapshot of a session, and its JSON: names with their units."""
+"""Status snapshot of a live session, and its JSON with units in the names."""
 
 from dataclasses import asdict, dataclass
 from enum import Enum
@@ -15,44 +15,44 @@ UNITS = {
     "specific_cutting_force": "specific_cutting_force_n_mm2",
     "progress": "progress_share",
 }
-"""names that are canonical inside"""
+"""JSON names, with units, of attributes that are in canonical units."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SessionStatus:
-    """What programs and trial cuts have in common."""
+    """Status values that controlled runs and trial cuts have in common."""
 
     time: float
-    """s"""
+    """Machine time, in s."""
     feed_programmed_mm_min: float
     feed_advised_mm_min: float
-    """that the loop commands"""
+    """Feed advised by the force loop, in mm/min."""
     feed_actual_mm_min: float
     override_percent: float
-    """commanded"""
+    """Commanded override, in per cent."""
     force_measured: float | None
-    """N, mean of the last revolution; None: there was none"""
+    """Mean force of the last revolution, in N; None if there was none."""
     set_point: float | None
-    """N; None: nothing bounds the force, or it is not known yet"""
+    """Force set point, in N; None if the force is not bounded, or not known yet."""
     power_kw: float
-    """that the main drive really draws"""
+    """True power that the main drive draws, in kW."""
     motor_power_kw: float | None
-    """that the motor gives now, as far as the operator allows; None: the spindle stands"""
+    """Power available from the motor, in kW, as limited by the operator; None at standstill."""
     removal_rate_cm3_min: float
-    """that really is removed"""
+    """True material removal rate, in cm³/min."""
     is_overloaded: bool
-    """power limit warning: the drive draws more than the motor has, or did a second ago"""
+    """Power warning: the drive draws more than the motor delivers, or did a second ago."""
     holding: str
-    """what holds the feed now"""
+    """What limits the feed now."""
     level: str
-    """of the force, as the loop sees it"""
+    """Level of the force, as the loop sees it."""
     criterion: Criterion
     is_on: bool
     is_stopped: bool
-    """the loop has stopped the run, or lost the machine"""
+    """Whether the loop has stopped the run, or lost the machine."""
 
     def as_json(self) -> dict[str, Any]:
-        """Values by names that carry their units."""
+        """Return the values by names that carry their units."""
         return {UNITS.get(name, name): _plain(value) for name, value in asdict(self).items()}
 
 

@@ -1,1 +1,1 @@
-"""A program on the virtual machine."""
+"""Simulation of a program on the virtual machine."""

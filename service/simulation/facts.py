@@ -9,12 +9,12 @@ from simulator.machine.totals import Total
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimulationRow:
-    """One workingstep, or what comes before them all."""
+    """Figures of a workingstep, of the time outside workingsteps, or of the whole run."""
 
     id: str | None
-    """None: before the first workingstep, or in a program without any"""
+    """Id of the workingstep; None before the first one, or in a program without any."""
     begin: float
-    """Begin, s from the start of the program; not a number for the whole run"""
+    """Start time in the program, in s; NaN for the whole run."""
     total: Total
 
     @property
@@ -24,7 +24,7 @@ class SimulationRow:
 
 
 def rows(simulation: Simulation) -> tuple[SimulationRow, ...]:
-    """The run's workingsteps in their order; what comes before them only if it takes time."""
+    """Return the workingsteps in order; the time before them only if it is not zero."""
     found: list[SimulationRow] = []
     now = 0.0
     for number, (name, total) in enumerate(simulation.totals):
@@ -42,16 +42,16 @@ COMPONENTS = {
     "coolant": "coolant",
     "base": "base load",
 }
-"""headings of the components of energy, by their names"""
+"""Headings of the energy components, by their names."""
 
 
 def ratio(part: float, whole: float) -> float:
-    """Part over whole; 0 of nothing."""
+    """Return a part over a whole; 0 if the whole is zero."""
     return part / whole if whole else 0.0
 
 
 def exceeded(simulation: Simulation, found: Sequence[SimulationRow]) -> tuple[str, ...]:
-    """A sentence for each workingstep that was above a limit."""
+    """Return a sentence for each workingstep that exceeded a limit."""
     return tuple(
         f"{row.name}: {row.total.overload_time:.3g} s above {_limits(simulation)}"
         for row in found

@@ -1,7 +1,7 @@
-"""One plotly figure of a simulated run.
+"""Plotly figure of a simulated run.
 
-Powers are stacked by their mean in each bucket of the trace; all else is drawn through the
-least and the greatest value of each bucket.
+Powers are stacked by their mean in each bucket; all other signals are drawn through the minimum
+and the maximum of each bucket.
 """
 
 from collections.abc import Sequence
@@ -34,16 +34,16 @@ AXES = (
 )
 
 ROOM = 1.15
-"""times the greatest feed of the program: what the panel of feed shows"""
+"""Ratio of the upper end of the feed panel to the largest programmed feed."""
 
 
 def run_figure(found: Sequence[SimulationRow], trace: BucketedRun) -> go.Figure:
-    """Workingsteps, powers, feed, spindle speed, force and removal rate against time.
+    """Figure of workingsteps, powers, feed, spindle speed, force and removal rate over time.
 
     Parameters
     ----------
     found : sequence of SimulationRow
-        The run's workingsteps.
+        Rows of the workingsteps of the run.
     trace : BucketedRun
 
     Returns
@@ -68,7 +68,7 @@ def run_figure(found: Sequence[SimulationRow], trace: BucketedRun) -> go.Figure:
 
 
 def _power(panels: Panels, trace: BucketedRun) -> None:
-    """Components stacked, the greatest total, and where the drive is overloaded."""
+    """Add the panel of stacked power components, with peaks and overloads of the drive."""
     parts = [
         ("base", GREY, SimulationSignal.BASE_POWER),
         ("coolant", SKY, SimulationSignal.COOLANT_POWER),
@@ -94,7 +94,7 @@ def _power(panels: Panels, trace: BucketedRun) -> None:
 
 
 def _axes(panels: Panels, trace: BucketedRun) -> None:
-    """The axes by themselves: they vanish beside the spindle."""
+    """Add the panel of axis powers, which would not be visible beside the spindle power."""
     shown = [part for part in AXES if _is_used(trace, part[2])]
     keys = " ".join(key(name, colour) for name, colour, _ in shown)
     panels.begin(f"<b>Axis power</b>, W<br>{keys}", height=130)
@@ -103,9 +103,9 @@ def _axes(panels: Panels, trace: BucketedRun) -> None:
 
 
 def _feed(panels: Panels, trace: BucketedRun) -> None:
-    """Feed as programmed and as it is; rapids are far above and leave the panel."""
+    """Add the panel of commanded and actual feed; rapids leave its frame."""
     keys = f"{key('commanded', GREY)} {key('actual', BLUE)}"
-    # fmax passes over what is missing.
+    # fmax ignores missing values.
     most = (
         np.fmax.reduce(trace.curve(SimulationSignal.FEED_PROGRAMMED).high, initial=0.0) * 60.0
     )

@@ -1,4 +1,4 @@
-"""Collector of a run on the virtual machine: totals, samples, a trace."""
+"""Collector of a run's totals, samples and plot signals on the virtual machine."""
 
 from collections.abc import Callable, Sequence
 from typing import Protocol
@@ -13,21 +13,21 @@ from simulator.machine.totals import Total, added
 from simulator.machine.virtual import VirtualMachine
 
 MOST_SECONDS = 1e7
-"""of machining, a hundred days: a slip of the feed or of a dwell rather than a program"""
+"""Longest machining time, in s, about 100 days; more suggests a wrong feed or dwell."""
 
 
 class SampleWatcher(Protocol):
-    """Observer of the samples while the machine runs: a live view."""
+    """Observer of the samples while the machine runs, e.g. a live view."""
 
     def begin(self, workingsteps: Sequence[str]) -> None:
-        """Told once: ids of the workingsteps by their number, from 1; they grow on the way."""
+        """Receive the list of workingstep ids, numbered from 1, which grows during the run."""
 
     def add(self, samples: Samples) -> None:
-        """More samples, later than those before."""
+        """Receive samples, later than all before."""
 
 
 class RunCollector:
-    """Collected totals, samples and trace."""
+    """Collected totals, samples and plot signals of a run."""
 
     def __init__(
         self,
@@ -41,9 +41,9 @@ class RunCollector:
         self.file: TimelineFile | None = None
         self.trace: TraceKeeper | None = None
         self.block = 0.0
-        """number of the block that runs, with the share of it that is behind"""
+        """Number of the current block, plus the completed share of it."""
         self.share = 0.0
-        """of the program that is behind, as it was told last"""
+        """Completed share of the program that was reported last."""
         self._watchers = watchers
         for watcher in watchers:
             watcher.begin(virtual.workingsteps)
@@ -54,7 +54,7 @@ class RunCollector:
         )
 
     def add(self, episode: Episode, *, ticked: Callable[[], None]) -> None:
-        """One more episode."""
+        """Add an episode of the run to totals and samples."""
         require_sense(episode)
         at = episode.state.workingstep
         self.totals += [Total() for _ in range(len(self.totals), at + 1)]
@@ -75,7 +75,7 @@ class RunCollector:
 
 
 def block_at(episode: Episode, time: float) -> float:
-    """Number of the block that runs at a time, s; those of a stretch count as equally long."""
+    """Fractional block number at a time in s; blocks of a stretch count as equally long."""
     if episode.course is None:
         return float(episode.state.line)
     blocks = episode.course.segments.block
@@ -84,11 +84,11 @@ def block_at(episode: Episode, time: float) -> float:
 
 
 def require_sense(episode: Episode) -> None:
-    """Refuse a program without anything in it, and one without an end."""
+    """Refuse a program that takes no time or does not end."""
     if episode.state.execution is Execution.PROGRAM_COMPLETED and episode.end == 0.0:
-        raise SimulationError("there is nothing in it that takes time")
+        raise SimulationError("the program contains nothing that takes time")
     if episode.end > MOST_SECONDS:
         course = episode.course
         line = episode.state.line if course is None else int(course.segments.block[-1])
-        text = f"{episode.end:.3g} s of machining: {MOST_SECONDS:g} s at most"
+        text = f"{episode.end:.3g} s of machining: the limit is {MOST_SECONDS:g} s"
         raise ProgramFault(text, line)

@@ -1,4 +1,4 @@
-"""A simulated run while it runs: its samples as rows that others read. In the user's units."""
+"""Live data of a simulated run: samples as rows in the user's units, for other processes."""
 
 from collections.abc import Callable, Mapping, Sequence
 from math import inf
@@ -14,10 +14,10 @@ from simulator.motion.segments import Floats
 from stepnc_model.units import mm_min_from_speed, rpm_from_rev_s
 
 MM_MIN, RPM = mm_min_from_speed(1.0), rpm_from_rev_s(1.0)
-"""the user's units per internal unit"""
+"""Feed of 1 mm/s in mm/min, and speed of 1 rev/s in rpm."""
 
 CM3_MIN = 0.001 * mm_min_from_speed(1.0)
-"""cm³/min in one mm³/s"""
+"""Removal rate of 1 mm³/s, in cm³/min."""
 
 COLUMNS: Mapping[str, Callable[[Samples], Floats]] = {
     "time_s": lambda samples: samples.time,
@@ -44,23 +44,23 @@ COLUMNS: Mapping[str, Callable[[Samples], Floats]] = {
     "tool": lambda samples: samples.tool.astype(np.float64),
     "workingstep": lambda samples: samples.workingstep.astype(np.float64),
 }
-"""what a row holds; words of the last are those of :mod:`simulator.machine.samples`"""
+"""Columns of a row; enumerations are those of :mod:`simulator.machine.samples`."""
 
 
 MOST_SAMPLES = 20_000_000
-"""of a run: its file then takes some gigabytes"""
+"""Largest number of samples of a run, some gigabytes in a file."""
 
 
 class LiveSamples:
-    """Looks at the samples of a run. Running state; use the writer with ``with``.
+    """Writes the samples of a run as live rows; enter its writer with ``with``. Running state.
 
     Parameters
     ----------
     folder : LiveFolder
     paced : callable
-        Returns when the machine may have come to a time, s.
+        Function that waits until the machine may have come to a time, in s.
     apart : float, s
-        Of the machine, that are shown at once: a paced run shows nothing before its time.
+        Machine time between two updates, so that a paced run shows nothing too early.
     """
 
     def __init__(
@@ -72,25 +72,25 @@ class LiveSamples:
         self._count = 0
 
     def begin(self, workingsteps: Sequence[str]) -> None:
-        """See :class:`service.simulation.gathering.SampleWatcher`."""
+        """Store the workingstep ids (:class:`service.simulation.gathering.SampleWatcher`)."""
         self._workingsteps = workingsteps
 
     def add(self, samples: Samples) -> None:
-        """See :class:`service.simulation.gathering.SampleWatcher`.
+        """Write samples as rows (:class:`service.simulation.gathering.SampleWatcher`).
 
         Raises
         ------
         SimulationError
-            When there are more samples than can be kept.
+            When there are more samples than can be stored.
         StorageFull, Unavailable
-            When they cannot be written.
+            When the rows cannot be written.
         """
         if not len(samples):
             return
         self._count += len(samples)
         if self._count > MOST_SAMPLES:
             text = f"more than {MOST_SAMPLES} samples until {samples.time[0]:.0f} s"
-            raise SimulationError(f"{text}: ask for fewer a second")
+            raise SimulationError(f"{text}: choose a lower sampling rate")
         rows = np.column_stack([of(samples) for of in COLUMNS.values()])
         ends = np.flatnonzero(np.diff(samples.time // self._apart)) + 1
         first = 0

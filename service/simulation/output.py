@@ -1,6 +1,6 @@
-"""A simulated run as text, JSON and one self-contained HTML page: same run, same bytes.
+"""A simulated run as text, JSON and one self-contained HTML page; equal runs give equal bytes.
 
-Keys of JSON carry their units and are fixed: others parse them.
+JSON keys carry their units and never change, because other programs read them.
 """
 
 from collections.abc import Callable, Sequence
@@ -24,16 +24,16 @@ from stepnc_model.units import kw_from_watts, rpm_from_rev_s
 Columns = tuple[Column[SimulationRow], ...]
 
 CM3_MIN = 0.06
-"""cm³/min in a mm³/s"""
+"""Removal rate of 1 mm³/s, in cm³/min."""
 
 
 def _of(value: Callable[[Total], Any], **about: Any) -> Column[SimulationRow]:
-    """A column of totals."""
+    """Return a column with a value of the totals."""
     return Column(value=lambda row: value(row.total), **about)
 
 
 def _energy(name: str, total: Total) -> float:
-    """Energy of a component, J."""
+    """Energy of a component, in J."""
     joules: float = getattr(total.energy, name)
     return joules
 
@@ -65,7 +65,7 @@ VOLUME = _of(lambda total: total.volume, key="volume_mm3", heading="removed cm³
 
 
 def _peak(value: Callable[[Total], Peak], name: str, unit: str, **about: Any) -> Columns:
-    """Greatest value of a quantity, when and in which line."""
+    """Return columns with the peak of a quantity, its time and its program line."""
     return (
         _of(lambda total: value(total).value, key=f"{name}.value_{unit}", **about),
         _of(lambda total: value(total).time, key=f"{name}.time_s"),
@@ -78,10 +78,10 @@ POWER = _peak(lambda total: total.power, "peak_spindle_power", "w", heading="spi
 FORCE = _peak(lambda total: total.force, "peak_cutting_force", "n", heading="force N",
               form=".0f")  # fmt: skip
 BENT = _peak(lambda total: total.deflection, "peak_tool_deflection", "mm", heading="bent µm",
-             scale=1e3, form=".1f", help="greatest deflection of the tool, δ")  # fmt: skip
+             scale=1e3, form=".1f", help="largest deflection of the tool, δ")  # fmt: skip
 
 TEXT: Columns = (NAME, *TIMES, ENERGY, POWER[0], FORCE[0], BENT[0], VOLUME)
-"""columns on a terminal"""
+"""Columns of the table on a terminal."""
 
 TOTALS: Columns = (
     *TIMES,
@@ -99,7 +99,7 @@ TOTALS: Columns = (
     *_peak(lambda total: total.chip, "peak_chip_thickness", "mm"),
     *BENT,
 )
-"""columns in JSON"""
+"""Columns in JSON."""
 
 REMOVAL: Columns = (
     NAME,
@@ -116,13 +116,13 @@ REMOVAL: Columns = (
 
 
 def _over(part: float, whole: float) -> float | None:
-    """Part over whole; None: one of them is nothing."""
+    """Ratio of two numbers; None if either is zero."""
     return part / whole if part and whole else None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PeakRow:
-    """Greatest value of a quantity in a whole run."""
+    """Row of the peak table: largest value of a quantity in the whole run."""
 
     name: str
     peak: Peak
@@ -133,37 +133,37 @@ class PeakRow:
 
     @property
     def value(self) -> str:
-        """As shown."""
+        """Value as shown in the table."""
         return f"{self.peak.value * self.scale:{self.form}}"
 
     @property
     def time(self) -> float | None:
-        """When it was, s; None: never."""
+        """Time of the peak, in s; None if the quantity was always zero."""
         return self.peak.time if self.peak.value else None
 
     @property
     def line(self) -> int | None:
-        """In which line of the program; None: in none."""
+        """Program line of the peak; None if the quantity was always zero."""
         return self.peak.line if self.peak.value else None
 
 
 PEAKS: tuple[Column[PeakRow], ...] = (
     Column(heading="quantity", value=lambda row: row.name),
-    Column(heading="greatest", value=lambda row: row.value),
+    Column(heading="maximum", value=lambda row: row.value),
     Column(heading="at s", form=".1f", value=lambda row: row.time),
     Column(heading="line", value=lambda row: row.line),
     Column(heading="workingstep", value=lambda row: row.workingstep),
-    Column(heading="the machine permits at most", value=lambda row: row.permitted),
+    Column(heading="limit of the machine", value=lambda row: row.permitted),
 )
 
 
 def whole_row(simulation: Simulation) -> SimulationRow:
-    """The whole run."""
+    """Row of the whole run."""
     return SimulationRow(id="total", begin=nan, total=simulation.whole)
 
 
 def print_simulation(simulation: Simulation, *, carbon: CarbonFactor = WORLD) -> None:
-    """A row for each workingstep, totals, energy by component, limits exceeded, findings."""
+    """Print a row per workingstep, totals, energy by component, limits exceeded, findings."""
     machine, found, whole = simulation.machine, rows(simulation), simulation.whole
     print_line(
         f"{simulation.program}: machine {machine.name} ({machine.title}), "
@@ -193,7 +193,7 @@ def print_simulation(simulation: Simulation, *, carbon: CarbonFactor = WORLD) ->
 
 
 def simulation_json(simulation: Simulation, *, carbon: CarbonFactor = WORLD) -> str:
-    """Time, energy, peaks and removal of the run and of each workingstep."""
+    """Return time, energy, peaks and removal of the run and of each workingstep as JSON."""
     return dump({
         "program": simulation.program,
         "machine": simulation.machine.name,
@@ -217,15 +217,15 @@ def simulation_page(
     material: MaterialMatch | None = None,
     carbon: CarbonFactor = WORLD,
 ) -> str:
-    """The page as HTML.
+    """Return the HTML report of a simulated run.
 
     Parameters
     ----------
     simulation : Simulation
     trace : BucketedRun
-        Of the same run.
+        Signals of the same run.
     material : MaterialMatch, optional
-        None: not known.
+        Material match; None if the material is unknown.
     carbon : CarbonFactor
     """
     from service.rendering.pages import plot, rendered  # noqa: PLC0415 (Jinja)
@@ -257,7 +257,7 @@ def simulation_page(
 
 
 def _shares(columns: Columns, simulation: Simulation, whole: float) -> list[str]:
-    """Shares of the whole run."""
+    """Return the shares of the columns in the whole run, as text."""
     values = (column.value(whole_row(simulation)) for column in columns)
     return [
         f"{ratio(float(each), whole):.1%}" for each in values if isinstance(each, float | int)
@@ -265,7 +265,7 @@ def _shares(columns: Columns, simulation: Simulation, whole: float) -> list[str]
 
 
 def _carbon(carbon: CarbonFactor, whole: float) -> Columns:
-    """What follows from energy."""
+    """Return columns derived from energy: share, kWh and carbon dioxide."""
     return (
         _of(lambda total: 100.0 * ratio(total.energy.total, whole), heading="share %",
             form=".1f"),
@@ -275,7 +275,7 @@ def _carbon(carbon: CarbonFactor, whole: float) -> Columns:
 
 
 def _peak_rows(simulation: Simulation, found: Sequence[SimulationRow]) -> list[PeakRow]:
-    """Greatest values, where they stand, and what the machine permits."""
+    """Return the peaks, their workingsteps, and the limits of the machine."""
     whole, machine = simulation.whole, simulation.machine
     best = max(machine.spindle.curve, key=lambda point: point.power)
     power = f"{kw_from_watts(best.power):g} kW at {rpm_from_rev_s(best.speed):.0f} rpm"

@@ -1,4 +1,4 @@
-"""The verb ``simulate``: a program on the virtual machine."""
+"""Run of a program on the virtual machine, for the command ``simulate``."""
 
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
@@ -42,7 +42,7 @@ from stepnc_model.program import Program
 from stepnc_model.units import mm_from_um
 
 LEAST_FILTER, MOST_FILTER = 1e-6, 100.0
-"""s"""
+"""Bounds of the filter times, in s."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,9 +51,9 @@ class RunFiles:
 
     file: Path | None = None
     name: str = ""
-    """name of the program; that of its file when empty"""
+    """Name of the program; empty: the name of its file."""
     code: CodeRequest | None = None
-    """NC code that runs instead of the program's own"""
+    """NC code to run instead of the program's own paths."""
     output: Path | None = None
     report: Path | None = None
 
@@ -66,20 +66,20 @@ class Simulation:
     machine: Machine
     control: ControlModelName
     material: MaterialMatch | None = None
-    """None: not known"""
+    """Matched workpiece material; None if it is unknown."""
     totals: tuple[tuple[str, Total], ...]
-    """by workingstep in the order of their beginning; the first is what comes before them"""
+    """Totals by workingstep in order of execution; the first is for the time before them."""
     findings: tuple[Finding, ...]
     samples: int = 0
-    """that were written"""
+    """Number of samples written."""
     tools: Mapping[int, LoadedTool] = field(default_factory=dict)
-    """by number"""
+    """Tools by number."""
     trace: BucketedRun | None = None
-    """for a report, when one was asked for"""
+    """Signals for a report, if one was requested."""
 
     @property
     def whole(self) -> Total:
-        """Of the whole run."""
+        """Totals of the whole run."""
         total = Total()
         for _, part in self.totals:
             total = total.plus(part)
@@ -93,12 +93,12 @@ def simulate(
     tell: Tell = silent,
     watchers: Sequence[SampleWatcher] = (),
 ) -> Simulation:
-    """Run a program on the virtual machine.
+    """Simulate a program on the virtual machine and return its totals.
 
     Raises
     ------
     StepNcError
-        For everything that is wrong with file, names, numbers or output.
+        When a file, a name, a number or an output is invalid.
     """
     prepared, virtual = waiting_machine(request, files, tell=tell)
     disturbance = _disturbance(request, virtual.machine)
@@ -128,12 +128,12 @@ def simulate(
 def run_of_program(
     program: Program, machine: Machine, material: MaterialMatch, *, tell: Tell = silent
 ) -> tuple[tuple[str, Total], ...]:
-    """Totals of a program that was read, by workingstep in the order of their beginning.
+    """Return the totals of a program that was read, by workingstep in order of execution.
 
     Raises
     ------
     StepNcError
-        When the machine cannot run it.
+        When the machine cannot run the program.
     """
     prepared = prepared_program(program, machine, material, tell=tell)
     virtual = _machine(SimulationRequest(), prepared, teeth=None)
@@ -145,12 +145,12 @@ def run_of_program(
 def waiting_machine(
     request: SimulationRequest, files: RunFiles, *, tell: Tell = silent
 ) -> tuple[PreparedRun, VirtualMachine]:
-    """A program and the machine that waits for it.
+    """Prepare a program, and the machine that will run it.
 
     Raises
     ------
     StepNcError
-        As :func:`simulate`.
+        When :func:`simulate` would raise it.
     """
     require_bounds(request)
     _require_files(files)
@@ -162,7 +162,7 @@ def waiting_machine(
 def _run(
     prepared: PreparedRun, virtual: VirtualMachine, run: RunCollector, *, tell: Tell
 ) -> None:
-    """Run to the end, told of where it is."""
+    """Run the program to its end, and report progress."""
     ticker = Ticker(tell)
     try:
         with run.file or nullcontext():
@@ -175,16 +175,16 @@ def _run(
 
 
 def _progress(prepared: PreparedRun, virtual: VirtualMachine, run: RunCollector) -> str:
-    """Of what was read the part that has run: a whole stretch is read before it runs."""
+    """Return a progress message with the share of the program that has been run."""
     at = virtual.workingsteps[-1:]
     share = prepared.done() * min(run.block / max(prepared.read(), 1), 1.0)
-    # How much there is to read is an estimate: no way back when there is more.
+    # The amount left to read is an estimate: the share must never decrease.
     run.share = max(run.share, share)
     return ", ".join((f"{bar(run.share)}  {virtual.now:.0f} s of machining", *at))
 
 
 def place_in(prepared: PreparedRun, virtual: VirtualMachine) -> str:
-    """Line of a fault: lines of NC code are known to the user, those of blocks are not."""
+    """Return the place of a fault; only lines of NC code are known to the user."""
     at = virtual.workingsteps[-1:]
     return ": ".join((prepared.name, *(f"workingstep '{name}'" for name in at)))
 
@@ -213,7 +213,7 @@ def _prepared(request: SimulationRequest, files: RunFiles, tell: Tell) -> Prepar
 def _machine(
     request: SimulationRequest, prepared: PreparedRun, *, teeth: ToothOptions | None
 ) -> VirtualMachine:
-    """The machine as it waits for the program."""
+    """Build the machine, ready for the program."""
     require_axes(prepared.machine)
     return VirtualMachine(
         MachineSetup(
@@ -228,10 +228,10 @@ def _machine(
 
 
 def _require_files(files: RunFiles) -> None:
-    """Refuse files that cannot be, before anything is read."""
+    """Refuse invalid combinations of files before anything is read."""
     code = files.code
     if code is not None and files.file is not None and (code.tools or code.stock):
-        raise StepNcError("tools and stock are those of the program: name no others")
+        raise StepNcError("the program defines tools and stock; omit --tools and --stock")
     if files.output is not None:
         require_suffix(files.output)
     inputs = [files.file, *((code.code, code.tools) if code else ())]
@@ -243,25 +243,25 @@ def _require_files(files: RunFiles) -> None:
             if other is not None:
                 require_place(place, apart_from=other)
         if place.exists() and not place.is_file():
-            raise WriteError("is no regular file", path=str(place))
+            raise WriteError("is not a regular file", path=str(place))
 
 
 def _control(request: SimulationRequest, machine: Machine) -> ControlModel:
-    """Control model of the machine, or the one that was asked for."""
+    """Return the requested control model, with its parameters."""
     kind = request.control
     if not request.filter_s:
         return _by_axes(kind, machine, deviation=request.deviation_mm)
     if kind is not ControlModelName.FIR:
-        raise StepNcError(f"control {kind.value}: filter times are for the control fir")
+        raise StepNcError(f"control {kind.value}: filter times are only for the control fir")
     first, second = numbers_in(request.filter_s, "filter times", counts=(2,))
     if not LEAST_FILTER <= second <= first <= MOST_FILTER:
-        bound = f"{LEAST_FILTER:g} to {MOST_FILTER:g} s, the longer first"
-        raise StepNcError(f"filter times {first:g} and {second:g} s: {bound}")
+        bound = f"{LEAST_FILTER:g} to {MOST_FILTER:g} s, the longer one first"
+        raise StepNcError(f"filter times {first:g} and {second:g} s: must be {bound}")
     return FixedTimeFilter(first=first, second=second)
 
 
 def _by_axes(kind: ControlModelName, machine: Machine, *, deviation: float) -> ControlModel:
-    """The control that suits the axes."""
+    """Return a control model with parameters from the limits of the axes."""
     try:
         return control_model(kind, axis_limits(machine), deviation=deviation)
     except ValueError as error:
@@ -269,7 +269,7 @@ def _by_axes(kind: ControlModelName, machine: Machine, *, deviation: float) -> C
 
 
 def _tools(request: SimulationRequest, prepared: PreparedRun) -> dict[int, LoadedTool] | None:
-    """The tools as asked for: they wear or not, the material is harder or not."""
+    """Return the tools with the requested wear and k_c factor."""
     if prepared.tools is None:
         return None
     return {
@@ -285,13 +285,13 @@ def _tools(request: SimulationRequest, prepared: PreparedRun) -> dict[int, Loade
 def _teeth(request: SimulationRequest) -> ToothOptions | None:
     if request.force is ForceView.MEAN:
         if request.runout_um:
-            raise StepNcError("runout shows in forces tooth by tooth: --force tooth")
+            raise StepNcError("runout needs forces of each tooth: add --force tooth")
         return None
     return ToothOptions(eccentricity=mm_from_um(request.runout_um))
 
 
 def _disturbance(request: SimulationRequest, machine: Machine) -> Disturbance:
-    """Disturbance of the readings, with the delay of the machine's drive where it is known."""
+    """Return the disturbance of the readings, with the delay of the main drive if known."""
     delay = machine.spindle.delay
     response = Response() if delay is None else Response(delay=delay)
     return Disturbance(
@@ -303,7 +303,7 @@ def _disturbance(request: SimulationRequest, machine: Machine) -> Disturbance:
 
 
 def _zero(text: str, prepared: PreparedRun) -> Zero | None:
-    """Place of the program's zero: as the user says, or by the stock."""
+    """Return the position of the program's zero: as requested, or by the stock."""
     if not text:
         return None if prepared.raw is None else zero_of(prepared.machine, prepared.raw)
     x, y, z = numbers_in(text, "zero", counts=(3,))

@@ -1,4 +1,4 @@
-"""Setup of ``simulate``: blocks, tools and stock, from a program or from NC code."""
+"""Setup of a simulation: blocks, tools and stock, from a program or from NC code."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -31,12 +31,12 @@ from stepnc_model.toolpath.task import stock_of
 T = TypeVar("T")
 
 AROUND_PATH, AROUND_PROGRAM = 4, 7
-"""blocks that are no steps: tool, spindle and coolant before a path, begin and end at last"""
+"""Blocks around each path (tool, spindle, coolant), and at the start and end of a program."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PreparedRun:
-    """A program and the machine that waits for it."""
+    """Program or NC code, prepared with machine, tools and stock."""
 
     name: str
     machine: Machine
@@ -45,23 +45,23 @@ class PreparedRun:
     tools: dict[int, LoadedTool] | None
     stock: Callable[[str], StockMap | None]
     raw: Stock | None
-    """the first workingstep's stock as it was bought"""
+    """Raw part of the first workingstep."""
     done: Callable[[], float]
-    """share of the program that has been read, 0 to 1"""
+    """Function that returns the share of the program that has been read, 0 to 1."""
     read: Callable[[], int]
-    """number of the last block that was read"""
+    """Function that returns the number of the last block read."""
     program: Program | None = None
-    """None: NC code alone"""
+    """STEP-NC program; None for NC code alone."""
     findings: tuple[Finding, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CodeRequest:
-    """NC code and what it does not say."""
+    """NC code, with the data that it lacks."""
 
     code: Path
     dialect: str = ""
-    """by the ending of the file when empty"""
+    """Dialect of the code; empty: by the file extension."""
     tools: Path | None = None
     stock: str = ""
 
@@ -82,19 +82,19 @@ class CountedIterator(Generic[T]):
             yield item
 
     def share(self, whole: int) -> float:
-        """Share of a whole that has been handed on."""
+        """Return the share of a whole that has been iterated."""
         return min(1.0, self.size / max(1, whole))
 
 
 def from_program(
     file: Path, *, name: str = "", units: str, machine: str, material: str, tell: Tell
 ) -> PreparedRun:
-    """A STEP-NC program on a machine that suits it.
+    """Prepare a STEP-NC program on a suitable machine.
 
     Raises
     ------
     StepNcError
-        For everything that is wrong with file or names.
+        When the file or a name is invalid.
     """
     program = read_program(file, units=units, name=name)
     match = material_for(material, program)
@@ -105,12 +105,12 @@ def from_program(
 def prepared_program(
     program: Program, chosen: Machine, match: MaterialMatch, *, tell: Tell
 ) -> PreparedRun:
-    """A program that was read, on a machine that suits it.
+    """Prepare a program that is already read, on a suitable machine.
 
     Raises
     ------
     StepNcError
-        When a tool path cannot be made.
+        When a tool path cannot be generated.
     """
     paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
     numbers = tool_numbers(paths.paths)
@@ -124,7 +124,7 @@ def prepared_program(
         tools=_tools(program, numbers, match),
         stock=_Clamped(program, chosen).stock,
         raw=paths.stock,
-        # Most steps become one block; what is around them is as in the examples.
+        # Most steps become one block; the number of other blocks is taken from the examples.
         done=lambda: blocks.share(steps + AROUND_PATH * len(paths.paths) + AROUND_PROGRAM),
         read=lambda: blocks.count,
         program=program,
@@ -135,12 +135,12 @@ def prepared_program(
 def from_code(
     request: CodeRequest, *, program: Path | None, units: str, machine: str, material: str
 ) -> PreparedRun:
-    """NC code, with tools and stock of its program or of what the user says.
+    """Prepare NC code, with tools and stock of its program or as the user specifies.
 
     Raises
     ------
     StepNcError
-        For everything that is wrong with files or names.
+        When a file or a name is invalid.
     """
     if program is not None:
         return _code_of_program(request, program, units=units, names=(machine, material))
@@ -160,7 +160,7 @@ def from_code(
     clamped = None if raw is None else stock_map(chosen, raw)
     findings: tuple[Finding, ...] = ()
     if clamped is None or tools is None:
-        text = "nothing is cut without a stock, a tool table and a material: idle power only"
+        text = "no material is removed without stock, tool table and material: idle power only"
         findings = (Finding(severity=Severity.WARNING, message=text),)
     return PreparedRun(
         name=request.code.name,
@@ -179,7 +179,7 @@ def from_code(
 def _code_of_program(
     request: CodeRequest, file: Path, *, units: str, names: tuple[str, str]
 ) -> PreparedRun:
-    """NC code that was made of a program: its tools are numbered in their order there."""
+    """Prepare NC code made from a program; tools are numbered in the order of their use."""
     program = read_program(file, units=units)
     match = material_for(names[1], program)
     machine = machine_for(names[0], program)
@@ -204,19 +204,19 @@ def _code_of_program(
 
 
 def stock_map(machine: Machine, raw: Stock) -> StockMap:
-    """The stock as a map that suits the machine.
+    """Build a model of the stock that suits the kind of machine.
 
     Raises
     ------
     StepNcError
-        When there is nothing of it, or more than any machine holds.
+        When the stock has no volume, or exceeds the size of any machine.
     """
     require_size(raw)
     return TurningStock(raw) if machine.kind is MachineKind.LATHE else MillingStock(raw)
 
 
 class _Clamped:
-    """The stock of each setup, as far as it is cut away. Running state."""
+    """Stock of each setup, updated as it is machined. Running state."""
 
     def __init__(self, program: Program, machine: Machine) -> None:
         self._program = program
@@ -225,7 +225,7 @@ class _Clamped:
         self._maps: dict[object, StockMap | None] = {}
 
     def stock(self, workingstep: str) -> StockMap | None:
-        """Clamped stock at the beginning of a workingstep."""
+        """Return the stock at the beginning of a workingstep."""
         if workingstep not in self._setups:
             return None
         setup = self._setups[workingstep]
@@ -245,24 +245,24 @@ def _tools(
 
 
 def _size(path: Path) -> int:
-    """Bytes of a file; an error of the project's own when there is none."""
+    """Size of a file, in bytes; raises an error of the project if it does not exist."""
     try:
         return path.stat().st_size
     except OSError as error:
         raise StepNcError(f"{path}: {error.strerror}") from error
     except ValueError as error:
-        raise StepNcError(f"{str(path)!r} is no file name: {error}") from error
+        raise StepNcError(f"{str(path)!r} is not a valid file name: {error}") from error
 
 
 def _lines(path: Path) -> Iterator[str]:
-    """Lines of a file that is not opened before the first is asked for."""
+    """Yield the lines of a file, which is opened only when the first is requested."""
     yield from open_lines(path)
 
 
 def _read(
     request: CodeRequest, lines: CountedIterator[str], machine: Machine, ids: dict[str, str]
 ) -> Iterator[Numbered]:
-    """Blocks of NC code; remarks that name a workingstep begin it."""
+    """Yield the blocks of NC code; comments that name a workingstep start it."""
     kind = (
         post.MachineType.LATHE if machine.kind is MachineKind.LATHE else post.MachineType.MILL
     )
@@ -285,9 +285,9 @@ def _dialect(request: CodeRequest) -> Dialect:
         if request.code.name.lower().endswith(suffix):
             return control
     known = ", ".join(control.value for control in Dialect)
-    raise StepNcError(f"{request.code}: name its dialect with --dialect: {known}")
+    raise StepNcError(f"{request.code}: unknown file extension; add --dialect: {known}")
 
 
 def _plain(text: str) -> str:
-    """A remark as any control spells it."""
+    """Normalise a comment, which controls may spell differently, to capitals and digits."""
     return "".join(filter(str.isalnum, text)).upper()

@@ -10,7 +10,7 @@ from simulator.motion.segments import Floats
 
 
 class SimulationSignal(IntEnum):
-    """Signal that is kept of the samples; the number is its column."""
+    """Signals of a run that are kept for plots; the value is the column index."""
 
     X_POWER = 0
     Y_POWER = 1
@@ -25,26 +25,26 @@ class SimulationSignal(IntEnum):
     FORCE = 10
     REMOVAL_RATE = 11
     OVERLOAD = 12
-    """:class:`simulator.machine.samples.Condition`"""
+    """Overload, a :class:`simulator.machine.samples.Condition`."""
 
 
 class TraceKeeper:
-    """Keeps the trace of a run while its samples pass by. Running state."""
+    """Collects the signals of a run for plots while it is simulated. Running state."""
 
     def __init__(self) -> None:
         self._buckets = Buckets(len(SimulationSignal))
 
     def add(self, samples: Samples) -> None:
-        """More samples, later than those before; NaN is a missing value."""
+        """Add samples, later than all before; NaN is a missing value."""
         self._buckets.add(samples.time, _values(samples))
 
     def trace(self) -> BucketedRun:
-        """The run so far."""
+        """Return the signals collected so far."""
         return self._buckets.trace()
 
 
 def _values(samples: Samples) -> Floats:
-    """(M, S) signals in the order of their numbers."""
+    """Return the signals as an array, (M, S), in the order of their numbers."""
     return np.column_stack((
         samples.axis_power,
         samples.spindle_power,

@@ -1,8 +1,8 @@
-"""The service's own database: one file of SQLite that several processes share.
+"""Database of the service: one SQLite file that several processes share.
 
-Readers never wait for a writer (write-ahead log); what a call has returned from is on the disk
-(``synchronous=FULL``). Each thread has a connection of its own. A file that was moved away or
-replaced is not written any more: what went there nobody would find. Running state.
+Readers never wait for a writer (write-ahead log); once a call returns, its changes are on disk
+(``synchronous=FULL``). Each thread has its own connection. A file that was moved away or
+replaced is no longer written, since those changes would be lost. Running state.
 """
 
 import os
@@ -15,7 +15,7 @@ from pathlib import Path
 from service.errors import Unavailable
 
 WAIT = 10.0
-"""s for another writer to finish"""
+"""Time to wait for another writer, in s."""
 
 SCHEMA = (
     """
@@ -45,27 +45,27 @@ SCHEMA = (
         id INTEGER PRIMARY KEY CHECK (id = 1), pid INTEGER NOT NULL, seen REAL NOT NULL
     ) STRICT;
     """,
-    # No NC code was an empty name.
+    # A missing NC code was stored as an empty name in version 1.
     """
     UPDATE jobs SET request = json_replace(request, '$.nc_control', NULL)
     WHERE kind = 'advice' AND json_extract(request, '$.nc_control') = ''
     """,
 )
-"""one script for each version; the file's version is how many of them it has seen"""
+"""Migration script of each version; the file's version is the number of scripts applied."""
 
 
 class Database:
-    """Connections to one file. Running state.
+    """Connections to the database file. Running state.
 
     Parameters
     ----------
     file : Path
-        Made when it does not exist; its folder does.
+        Path of the file; created if it does not exist, in an existing folder.
 
     Raises
     ------
     Unavailable
-        When it cannot be opened, or is of a newer version.
+        When the file cannot be opened, or was written by a newer version.
     """
 
     def __init__(self, file: Path) -> None:
@@ -78,13 +78,13 @@ class Database:
 
     @contextmanager
     def reading(self) -> Iterator[sqlite3.Connection]:
-        """A connection for queries."""
+        """Provide a connection for queries."""
         with self._answering():
             yield self._connection()
 
     @contextmanager
     def writing(self) -> Iterator[sqlite3.Connection]:
-        """A connection within a transaction: all of it or nothing; it waits for its turn."""
+        """Provide a connection within a transaction, which is rolled back on error."""
         with self._answering():
             connection = self._connection()
             connection.execute("BEGIN IMMEDIATE")
@@ -98,7 +98,7 @@ class Database:
     def _connection(self) -> sqlite3.Connection:
         known: sqlite3.Connection | None = getattr(self._local, "connection", None)
         if known is None:
-            # Transactions are begun by hand.
+            # Transactions are begun explicitly.
             known = sqlite3.connect(self.file, timeout=WAIT, isolation_level=None)
             try:
                 known.row_factory = sqlite3.Row
@@ -111,14 +111,14 @@ class Database:
         return known
 
     def close(self) -> None:
-        """End this thread's connection."""
+        """Close this thread's connection."""
         known: sqlite3.Connection | None = getattr(self._local, "connection", None)
         if known is not None:
             known.close()
             self._local.connection = None
 
     def _found(self) -> tuple[int, int]:
-        """Identity of the database file that lies there now."""
+        """Identity (device and inode) of the current database file."""
         try:
             found = os.stat(self.file)
         except OSError as error:
@@ -128,7 +128,7 @@ class Database:
     @contextmanager
     def _answering(self) -> Iterator[None]:
         if self._inode is not None and self._found() != self._inode:
-            raise Unavailable(f"{self.file.name}: it is another file than before")
+            raise Unavailable(f"{self.file.name}: the file was replaced by another one")
         try:
             yield
         except sqlite3.Error as error:
@@ -136,11 +136,11 @@ class Database:
 
 
 def _migrate(connection: sqlite3.Connection, file: Path) -> None:
-    """Bring a file of an older version up to date, within the transaction."""
+    """Migrate a file of an older version, within the transaction."""
     version = int(connection.execute("PRAGMA user_version").fetchone()[0])
     if version > len(SCHEMA):
-        text = f"of version {version}; this program knows up to {len(SCHEMA)}"
-        raise Unavailable(f"{file.name} is {text}: take a newer program")
+        text = f"of version {version}; this program supports up to {len(SCHEMA)}"
+        raise Unavailable(f"{file.name} is {text}: install a newer program")
     for number in range(version, len(SCHEMA)):
         for statement in SCHEMA[number].split(";"):
             connection.execute(statement)

@@ -6,12 +6,12 @@ from contextlib import contextmanager
 from pathlib import Path
 
 LOCK = ".lock"
-"""name of the file in the folder that is locked; it stays"""
+"""Name of the lock file in the folder; it is never deleted."""
 
 
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Hold the lock of a folder; wait for it first."""
+    """Acquire the lock of a folder, waiting if necessary, and hold it."""
     with (folder / LOCK).open("wb") as file:
         # Freed when the file is closed, also when the process dies.
         fcntl.flock(file, fcntl.LOCK_EX)

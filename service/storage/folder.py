@@ -1,4 +1,4 @@
-"""The data folder: where everything lies, by id only, so that no name of a user is a path."""
+"""Data folder of the service; paths consist of ids only, never of names given by users."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,43 +15,43 @@ DATABASE = "service.db"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DataFolder:
-    """A data folder and its database."""
+    """Data folder of the service, with its database."""
 
     root: Path
     database: Database
     knowledge: str
-    """place of the knowledge base"""
+    """Location of the knowledge base."""
 
     def program_file(self, id: str) -> Path:
-        """The bytes of a program, as they came.
+        """Path of an uploaded program.
 
         Raises
         ------
         NotFound
-            When this is no id.
+            When the id has no valid form.
         """
         _require_id("program", id)
         return self.root / "programs" / f"{id}.stpnc"
 
     def job_folder(self, id: str) -> Path:
-        """Folder of a job's results; errors as :meth:`program_file`."""
+        """Folder of a job's results; raises the same errors as :meth:`program_file`."""
         _require_id("job", id)
         return self.root / "jobs" / id
 
 
 def open_data_folder(root: Path, *, knowledge: str = "") -> DataFolder:
-    """The data folder, made when it does not exist.
+    """Open the data folder; create it if it does not exist.
 
     Parameters
     ----------
     root : Path
     knowledge : str
-        Place of the knowledge base; that of the environment, else a file in the folder.
+        Location of the knowledge base; empty: from the environment, else in the folder.
 
     Raises
     ------
     Unavailable
-        When it cannot be made, or its database not be opened.
+        When the folder cannot be created, or its database cannot be opened.
     """
     try:
         root.mkdir(mode=PRIVATE, parents=True, exist_ok=True)
@@ -63,15 +63,15 @@ def open_data_folder(root: Path, *, knowledge: str = "") -> DataFolder:
 
 
 def known_data_folder(root: Path, *, knowledge: str) -> DataFolder:
-    """A data folder that exists: one that was moved away is not made anew, and empty.
+    """Open an existing data folder; one that was moved away is not created again.
 
     Raises
     ------
     Unavailable
-        When there is none, or its database cannot be opened.
+        When the folder does not exist, or its database cannot be opened.
     """
     if not (root / DATABASE).is_file():
-        raise Unavailable(f"{DATABASE}: there is none in the data folder")
+        raise Unavailable(f"{DATABASE}: not found in the data folder")
     return _data_folder(root.resolve(), knowledge)
 
 

@@ -1,7 +1,7 @@
-"""A request that comes again makes nothing again: the ``Idempotency-Key`` of a client.
+"""Idempotency keys: a repeated request returns what the first one created.
 
-What a request made is kept beside its key in the transaction that made it, so that a client
-whose line broke asks again and gets the same.
+The id of what a request created is stored with its key in the same transaction, so that a
+client may repeat a request after a broken connection and get the same answer.
 """
 
 import sqlite3
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from service.errors import Conflict
 
 KEPT = 24 * 3600.0
-"""s after which a key is free again"""
+"""Time after which a key may be used again, in s."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,18 +21,18 @@ class IdempotencyKey:
     owner: str
     key: str
     fingerprint: str
-    """of method, path and body"""
+    """Hash of method, path and body."""
 
 
 def made_before(
     connection: sqlite3.Connection, idempotency: IdempotencyKey | None
 ) -> str | None:
-    """Id of what the same request has made; None: it is new.
+    """Return the id of what the same request created before; None if it is new.
 
     Raises
     ------
     Conflict
-        When the key came with another request, or what it made was deleted.
+        When the key was used for another request, or what it created was deleted.
     """
     if idempotency is None:
         return None
@@ -43,11 +43,11 @@ def made_before(
     if row is None:
         return None
     if row["fingerprint"] != idempotency.fingerprint:
-        raise Conflict(f"Idempotency-Key '{idempotency.key}' came with another request before")
+        raise Conflict(f"Idempotency-Key '{idempotency.key}' was used for another request")
     made = str(row["made"])
     if not _is_there(connection, made):
         raise Conflict(
-            f"Idempotency-Key '{idempotency.key}': what this request made was deleted"
+            f"Idempotency-Key '{idempotency.key}': what this request created was deleted"
         )
     return made
 
@@ -63,7 +63,7 @@ def _is_there(connection: sqlite3.Connection, made: str) -> bool:
 def remember(
     connection: sqlite3.Connection, idempotency: IdempotencyKey | None, made: str
 ) -> None:
-    """Keep what a request made, within the transaction that made it."""
+    """Store what a request created, within the transaction that created it."""
     if idempotency is not None:
         connection.execute("DELETE FROM requests WHERE created < ?", (time.time() - KEPT,))
         connection.execute(

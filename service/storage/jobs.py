@@ -1,8 +1,8 @@
-"""Jobs: what was asked, how far it is, how it ended. Their results lie in folders of theirs.
+"""Storage of jobs: request, progress and outcome. Results are in a folder of each job.
 
-A job is claimed by one runner at a time; each claim is a new attempt, and what belongs to an
-older attempt is not written any more. Running jobs whose runner is gone are queued again when
-their kind may be run twice, else they have failed, and say so.
+A job is claimed by one runner at a time; each claim is a new attempt, and updates from an older
+attempt are ignored. Running jobs whose runner is gone are queued again if their kind may be run
+twice; otherwise they are marked as failed.
 """
 
 import json
@@ -21,16 +21,16 @@ from service.storage.idempotency import IdempotencyKey, made_before, remember
 from service.storage.pages import Page, PageCursor, page_of
 
 MOST_WAITING = 1000
-"""jobs in the queue"""
+"""Largest number of queued jobs."""
 
 LOCAL = "local"
-"""owner of what is asked where no keys are in use: the whole queue is theirs"""
+"""Owner of all requests where no keys are in use; may fill the whole queue."""
 
 OWNERS = 4
-"""of keys that fill the queue, at least: none keeps the others out"""
+"""Number of keys among which the queue is shared, so that none can fill it alone."""
 
 MOST_ATTEMPTS = 3
-"""of a job whose runner was lost each time"""
+"""Largest number of attempts of a job whose runner was lost each time."""
 
 
 class JobState(StrEnum):
@@ -60,7 +60,7 @@ class JobKind(StrEnum):
 
     @property
     def is_live(self) -> bool:
-        """Whether the job can be steered while it runs; it is not run twice."""
+        """Whether the job can be changed while it runs; such a job is not run twice."""
         return self in {JobKind.CONTROL, JobKind.TRIAL}
 
 
@@ -68,31 +68,31 @@ PACED = (
     f"(kind IN ('{JobKind.CONTROL.value}', '{JobKind.TRIAL.value}') OR (kind = "
     f"'{JobKind.SIMULATION.value}' AND coalesce(json_extract(request, '$.pace'), 0) > 0))"
 )
-"""as :attr:`Job.is_paced`; requests of other kinds have no pace, and may be long"""
+"""SQL condition for :attr:`Job.is_paced`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Job:
-    """One job."""
+    """Job of the service, with its request, progress and outcome."""
 
     id: str
     kind: JobKind
     state: JobState
     request: Mapping[str, Any]
     program: str
-    """id of the program that it works on; empty: on none"""
+    """Id of the program that the job works on; empty: none."""
     source: str
-    """id of the job whose result it works on; empty: of none"""
+    """Id of the job whose result this job works on; empty: none."""
     owner: str
     created: float
-    """Created, s since 1970, as those below"""
+    """Time of creation, in s since 1970, like the times below."""
     started: float | None
     ended: float | None
     share: float
-    """that is done, 0 to 1"""
+    """Share of the work done, 0 to 1."""
     message: str
     problem: Mapping[str, Any] | None
-    """why it failed, as in RFC 9457"""
+    """Problem details (RFC 9457) of a failed job."""
     attempt: int
     is_cancelling: bool
 
@@ -104,7 +104,7 @@ class Job:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JobRequest:
-    """A job that is asked for."""
+    """Request to queue a job."""
 
     kind: JobKind
     request: Mapping[str, Any]
@@ -121,9 +121,9 @@ def add(
     Raises
     ------
     TooMany
-        When too many wait.
+        When too many jobs are queued.
     NotFound
-        When its program was deleted meanwhile.
+        When the program was deleted meanwhile.
     """
     id = new_id()
     with data_folder.database.writing() as connection:
@@ -144,12 +144,12 @@ def add(
 
 
 def get(data_folder: DataFolder, id: str, kind: JobKind | None = None) -> Job:
-    """One job, of a kind when one is named.
+    """Return a job by its id, and of a given kind if one is named.
 
     Raises
     ------
     NotFound
-        When there is none.
+        When the job does not exist.
     """
     with data_folder.database.reading() as connection:
         row = connection.execute("SELECT * FROM jobs WHERE id = ?", (id,)).fetchone()
@@ -166,7 +166,7 @@ def listed(
     state: JobState | None = None,
     program: str = "",
 ) -> Page[Job]:
-    """A page of jobs, newest first."""
+    """List jobs page by page, newest first."""
     where, values = ["id < ?"], [place.before]
     for column, wanted in (("kind", kind), ("state", state), ("program", program)):
         if wanted:
@@ -179,12 +179,12 @@ def listed(
 
 
 def cancel(data_folder: DataFolder, id: str) -> Job:
-    """Ask for the end of a job: one that waits is cancelled at once.
+    """Request the end of a job; a queued job is cancelled at once.
 
     Raises
     ------
     NotFound, Conflict
-        When there is none, or it is over.
+        When the job does not exist, or has ended.
     """
     with data_folder.database.writing() as connection:
         row = connection.execute("SELECT state FROM jobs WHERE id = ?", (id,)).fetchone()
@@ -203,12 +203,12 @@ def cancel(data_folder: DataFolder, id: str) -> Job:
 
 
 def remove(data_folder: DataFolder, id: str) -> None:
-    """Delete a job that is over, and its results.
+    """Delete a job that has ended, and its results.
 
     Raises
     ------
     NotFound, Conflict
-        When there is none, or it is not over.
+        When the job does not exist, or has not ended.
     """
     with data_folder.database.writing() as connection:
         row = connection.execute("SELECT state FROM jobs WHERE id = ?", (id,)).fetchone()
@@ -226,14 +226,14 @@ def claim(
     kinds: Sequence[JobKind] = tuple(JobKind),
     is_paced: bool | None = None,
 ) -> Job | None:
-    """Take the oldest job of some kinds that waits; None: there is none.
+    """Claim the oldest queued job of some kinds; None if there is none.
 
     Parameters
     ----------
     data_folder : DataFolder
     kinds : sequence of JobKind
     is_paced : bool, optional
-        Only those that wait for people or the clock, or only others; None: either.
+        True: only paced jobs; False: only other jobs; None: either.
     """
     if not kinds:
         return None
@@ -242,12 +242,12 @@ def claim(
     if is_paced is not None:
         where += f" AND {PACED if is_paced else f'NOT {PACED}'}"
     names = tuple(kind.value for kind in kinds)
-    # Most looks find nothing, and need no turn to write.
+    # Most calls find no job, and need no write transaction.
     with data_folder.database.reading() as connection:
         row = connection.execute(f"SELECT 1 FROM jobs WHERE {where} LIMIT 1", names).fetchone()
     if row is None:
         return None
-    # Ids follow the wall clock, which may be set back; rows are counted.
+    # Ids follow the wall clock, which may be set back; row ids always grow.
     with data_folder.database.writing() as connection:
         row = connection.execute(
             "UPDATE jobs SET state = 'running', attempt = attempt + 1, started = ?, "
@@ -259,7 +259,7 @@ def claim(
 
 
 def tell(data_folder: DataFolder, job: Job, *, share: float, message: str) -> None:
-    """Say how far a job is."""
+    """Record the progress of a job."""
     _update(data_folder, job, "share = ?, message = ?", (share, message))
 
 
@@ -270,7 +270,7 @@ def finish(
     *,
     problem: Mapping[str, Any] | None = None,
 ) -> None:
-    """Say how a job has ended; its results are on the disk before."""
+    """Record how a job has ended; its results must be on disk before."""
     said = None if problem is None else json.dumps(problem)
     share = ", share = 1" if state is JobState.SUCCEEDED else ""
     values = (state.value, time.time(), said)
@@ -278,14 +278,14 @@ def finish(
 
 
 def running(data_folder: DataFolder) -> tuple[Job, ...]:
-    """All jobs that run."""
+    """Return all running jobs."""
     with data_folder.database.reading() as connection:
         rows = connection.execute("SELECT * FROM jobs WHERE state = 'running'").fetchall()
     return tuple(_job(row) for row in rows)
 
 
 def recover(data_folder: DataFolder) -> None:
-    """Recover the jobs of a runner that is gone."""
+    """Queue or fail the jobs of a runner that is gone."""
     for job in running(data_folder):
         if job.is_cancelling:
             finish(data_folder, job, JobState.CANCELLED)
@@ -294,18 +294,18 @@ def recover(data_folder: DataFolder) -> None:
                 data_folder,
                 job,
                 JobState.FAILED,
-                problem=lost("a run with people cannot go on"),
+                problem=lost("a live run cannot be resumed"),
             )
         elif job.attempt >= MOST_ATTEMPTS:
             finish(data_folder, job, JobState.FAILED, problem=lost(f"{job.attempt} attempts"))
         else:
             _update(
-                data_folder, job, "state = 'queued', share = 0, message = ?", ("once more",)
+                data_folder, job, "state = 'queued', share = 0, message = ?", ("restarted",)
             )
 
 
 def lost(why: str) -> dict[str, Any]:
-    """The problem of a job whose process ended without a word."""
+    """Return the problem of a job whose process ended without recording an outcome."""
     return {
         "type": "urn:stepnc:problem:job-lost",
         "title": "Job lost",
@@ -324,7 +324,7 @@ def _update(data_folder: DataFolder, job: Job, columns: str, values: Sequence[ob
 
 
 def _require_room(connection: sqlite3.Connection, owner: str) -> None:
-    """Room in the queue, and in the share of it that one owner may fill."""
+    """Require room in the queue, and in the part of it that one owner may fill."""
     waiting, own = connection.execute(
         "SELECT count(*), total(owner = ?) FROM jobs WHERE state = 'queued'", (owner,)
     ).fetchone()

@@ -1,6 +1,6 @@
-"""Keys that open the service: who has one, what it opens. Only their hashes are kept.
+"""API keys of the service: owners and roles. Only hashes of the keys are stored.
 
-A key is 256 random bits: nobody tries them out, so a plain hash is enough and quick.
+A key has 256 random bits and cannot be guessed, so a plain fast hash is enough.
 """
 
 import hashlib
@@ -19,35 +19,35 @@ PREFIX = "stepnc"
 
 
 class Role(StrEnum):
-    """Role of a key; every key may read."""
+    """Role of an API key; every key may read."""
 
     VIEWER = "viewer"
-    """looks at everything"""
+    """May read everything."""
     PLANNER = "planner"
-    """programs, advice, simulations, reviews, corrections, machines and materials"""
+    """May change programs, advice, simulations, reviews, corrections and the library."""
     OPERATOR = "operator"
-    """runs under control, and what is asked of them"""
+    """May start controlled runs and trial cuts, and change them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Key:
-    """One key, without its secret."""
+    """API key without its secret."""
 
     id: str
     name: str
-    """whose"""
+    """Name of the owner."""
     roles: frozenset[Role]
     created: float
-    """Created, s since 1970"""
+    """Time of creation, in s since 1970."""
     revoked: float | None
 
     def opens(self, role: Role) -> bool:
-        """Whether the key has a role, or a higher one."""
+        """Whether the key has a role; every key has the role viewer."""
         return role is Role.VIEWER or role in self.roles
 
 
 def create(data_folder: DataFolder, *, name: str, roles: frozenset[Role]) -> str:
-    """A new key; it is told this once."""
+    """Create a key and return it; this is the only time that it is shown."""
     id, secret = new_id(), secrets.token_hex(32)
     words = ",".join(sorted({*roles, Role.VIEWER}))
     with data_folder.database.writing() as connection:
@@ -59,7 +59,7 @@ def create(data_folder: DataFolder, *, name: str, roles: frozenset[Role]) -> str
 
 
 def known(data_folder: DataFolder, word: str) -> Key | None:
-    """The key that a word is; None: it is none, or was revoked."""
+    """Return the key that a word represents; None if it is unknown or revoked."""
     prefix, _, rest = word.partition("_")
     id, _, secret = rest.partition("_")
     if prefix != PREFIX or not is_id(id):
@@ -72,19 +72,19 @@ def known(data_folder: DataFolder, word: str) -> Key | None:
 
 
 def listed(data_folder: DataFolder) -> tuple[Key, ...]:
-    """All keys, oldest first."""
+    """Return all keys, oldest first."""
     with data_folder.database.reading() as connection:
         rows = connection.execute("SELECT * FROM keys ORDER BY id").fetchall()
     return tuple(_key(row) for row in rows)
 
 
 def revoke(data_folder: DataFolder, id: str) -> None:
-    """Make a key useless; it stays in the list.
+    """Revoke a key; it stays in the list.
 
     Raises
     ------
     NotFound
-        When there is none, or it was revoked before.
+        When the key does not exist, or was revoked before.
     """
     with data_folder.database.writing() as connection:
         gone = connection.execute(

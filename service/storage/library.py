@@ -1,6 +1,6 @@
-"""Machines and materials of the shop beside those of the library: a file each, by a safe name.
+"""Machines and materials of the shop, in addition to the built-in library; a file for each.
 
-A name that comes from outside is looked up; it is never taken for a path.
+Names from clients are only looked up; they are never used as paths.
 """
 
 import re
@@ -27,15 +27,15 @@ from simulator.spec import Machine, WorkMaterial
 from stepnc_model.errors import StepNcError
 
 NAME = "^[a-z0-9][a-z0-9_-]{0,63}$"
-"""regular expression of the name of a file of the shop"""
+"""Regular expression of names of machines and materials of the shop."""
 
 _NAME = re.compile(NAME)
 
 LONGEST = 200
-"""letters of any name of a material"""
+"""Largest number of characters in a material name."""
 
 LARGEST = 1 << 16
-"""bytes of a file, ten times the library's: a parser's time may grow with the square"""
+"""Largest file, in bytes; parsing time may grow with the square of the size."""
 
 
 class LibrarySection(StrEnum):
@@ -46,54 +46,54 @@ class LibrarySection(StrEnum):
 
     @property
     def one(self) -> str:
-        """A single one."""
+        """Singular of the section name."""
         return self.value.removesuffix("s")
 
     @property
     def suffixes(self) -> tuple[str, ...]:
-        """Endings of files, the one that counts first: one name has one file."""
+        """File extensions, the preferred one first; a name should have only one file."""
         return (".toml", ".xml") if self is LibrarySection.MACHINES else (".toml",)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LibraryEntry:
-    """A machine or material by name."""
+    """Machine or material of the library, with its data."""
 
     name: str
     is_own: bool
-    """of the shop, not of the library"""
+    """Whether the entry belongs to the shop, not to the built-in library."""
     entry: Machine | WorkMaterial
     text: bytes
-    """the file that it was read from; empty: it is of the library"""
+    """Content of the shop's file; empty for an entry of the built-in library."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LibraryListing:
-    """A machine or material as lists tell it."""
+    """Machine or material as shown in lists."""
 
     name: str
     is_own: bool
     title: str
     problem: str
-    """why it cannot be read; empty: it can"""
+    """Why the file cannot be read; empty if it can."""
 
 
 Condition = Callable[[bytes | None], bool]
-"""whether a file may be changed, by what is in it now; None: there is none"""
+"""Condition on the current content of a file (None: no file) for changing it."""
 
 
 def always(_text: bytes | None) -> bool:
-    """Whatever is in it."""
+    """Accept any content."""
     return True
 
 
 def machine_word(data_folder: DataFolder, name: str) -> str:
-    """Argument of :func:`simulator.library.load_machine` for a name; empty stays empty.
+    """Return the argument for :func:`simulator.library.load_machine`; empty stays empty.
 
     Raises
     ------
     UnknownMachine
-        When neither the shop nor the library has it.
+        When neither the shop nor the built-in library has the machine.
     """
     if not name or name in machine_names():
         return name
@@ -104,30 +104,30 @@ def machine_word(data_folder: DataFolder, name: str) -> str:
 
 
 def material_word(data_folder: DataFolder, name: str) -> str:
-    """Argument of :func:`service.chosen.load_material_named` for a name; empty stays empty.
+    """Return the argument for :func:`service.chosen.load_material_named`; empty stays empty.
 
     Raises
     ------
     Unreadable
-        When it is no name of a material, but a path.
+        When the name is a path instead of a material name.
     """
     file = _own_file(data_folder, LibrarySection.MATERIALS, name)
     if file is not None:
         return str(file)
-    # Numbers of materials have one point, and four digits behind it: 1.0503.
+    # Material numbers have one point, followed by four digits: 1.0503.
     is_number = re.fullmatch(r"\d\.\d{4}", name) is not None
     if not is_number and (set(name) & set("/\\.") or len(name) > LONGEST):
-        raise Unreadable(f"'{name[:LONGEST]}' is no name of a material")
+        raise Unreadable(f"'{name[:LONGEST]}' is not a valid material name")
     return name
 
 
 def require(data_folder: DataFolder, *, machine: str, material: str) -> None:
-    """Refuse a machine or a material that a job could not take; empty: one that suits.
+    """Refuse a machine or material that a job could not load; empty names are accepted.
 
     Raises
     ------
     UnknownMachine, UnknownMaterial, Unreadable, LibraryError
-        As the job would.
+        When the job would raise the same error.
     """
     if machine:
         machine_word(data_folder, machine)
@@ -139,7 +139,7 @@ def require(data_folder: DataFolder, *, machine: str, material: str) -> None:
 
 
 def entries_of(data_folder: DataFolder, section: LibrarySection) -> tuple[LibraryListing, ...]:
-    """All of them, those of the shop last; one that cannot be read says why."""
+    """List all entries of a section, those of the shop last; unreadable ones say why."""
     found = (_listed(data_folder, section, name) for name in _names(data_folder, section))
     return tuple(each for each in found if each is not None)
 
@@ -147,7 +147,7 @@ def entries_of(data_folder: DataFolder, section: LibrarySection) -> tuple[Librar
 def _listed(
     data_folder: DataFolder, section: LibrarySection, name: str
 ) -> LibraryListing | None:
-    """One of them; None: it was deleted meanwhile."""
+    """Return the listing of an entry; None if it was deleted meanwhile."""
     try:
         found = one(data_folder, section, name)
     except NotFound:
@@ -158,17 +158,17 @@ def _listed(
 
 
 def one(data_folder: DataFolder, section: LibrarySection, name: str) -> LibraryEntry:
-    """One by its name.
+    """Return an entry by its name.
 
     Raises
     ------
     NotFound, LibraryError
-        When neither the shop nor the library has it, or the shop's cannot be read.
+        When neither the shop nor the library has it, or the shop's file cannot be read.
     """
     if name in _library(section):
         return LibraryEntry(name=name, is_own=False, entry=_LOADERS[section](name), text=b"")
     while (file := _own_file(data_folder, section, name)) is not None:
-        # Entry and text are of one file: it is read again when it was replaced meanwhile.
+        # Data and text must come from the same file, which may be replaced meanwhile.
         text = _text(file)
         try:
             entry = _load(section, file)
@@ -189,21 +189,21 @@ def put(
     *,
     condition: Condition = always,
 ) -> LibraryEntry:
-    """Keep one, once it has been read without an error.
+    """Store a file of the shop, after it was read without an error.
 
     Raises
     ------
     Unreadable, Conflict, TooLarge, LibraryError
-        When the name cannot be one, is the library's, or the file is no good.
+        When the name is invalid or belongs to the library, or the file is invalid.
     PreconditionFailed
         When the condition is not met.
     StorageFull, Unavailable
         When the disk refuses.
     """
     if not _NAME.fullmatch(name):
-        raise Unreadable(f"'{name[:LONGEST]}': a name is small letters, digits, '-' and '_'")
+        raise Unreadable(f"'{name[:LONGEST]}': use only lower-case letters, digits, '-', '_'")
     if name in _library(section):
-        raise Conflict(f"{section.one} '{name}' is of the library: take another name")
+        raise Conflict(f"{section.one} '{name}' is built in: choose another name")
     if len(data) > LARGEST:
         raise TooLarge(f"the file of a {section.one}", bound=LARGEST)
     folder = data_folder.root / section.value
@@ -222,16 +222,16 @@ def put(
 def _changeable(
     data_folder: DataFolder, section: LibrarySection, name: str, condition: Condition
 ) -> list[Path]:
-    """Files of a name that may be changed; within the turn."""
+    """Return the files of a name that may be changed; the lock must be held."""
     files = _own_files(data_folder, section, name)
     if not condition(_text(files[0]) if files else None):
-        what = "was changed meanwhile: read it again" if files else "is not there"
+        what = "has changed since it was read" if files else "does not exist"
         raise PreconditionFailed(f"{section.one} '{name}' {what}")
     return files
 
 
 def _try_out(section: LibrarySection, name: str, data: bytes) -> Machine | WorkMaterial:
-    """Read a file before it is kept."""
+    """Parse a file before it is stored."""
     with TemporaryDirectory() as folder:
         trial = Path(folder) / name
         trial.write_bytes(data)
@@ -239,7 +239,7 @@ def _try_out(section: LibrarySection, name: str, data: bytes) -> Machine | WorkM
 
 
 def _load(section: LibrarySection, file: Path) -> Machine | WorkMaterial:
-    """A file of the shop; what is wrong is told by its name alone."""
+    """Load a file of the shop; errors name the file without its folder."""
     try:
         return _LOADERS[section](str(file))
     except LibraryError as error:
@@ -255,24 +255,24 @@ def remove(
     *,
     condition: Condition = always,
 ) -> None:
-    """Delete one of the shop.
+    """Delete a file of the shop.
 
     Raises
     ------
     NotFound, Conflict
-        When there is none, or it is of the library.
+        When the entry does not exist, or belongs to the built-in library.
     PreconditionFailed
         When the condition is not met.
     """
     if name in _library(section):
-        raise Conflict(f"{section.one} '{name}' is of the library: it stays")
+        raise Conflict(f"{section.one} '{name}' is built in and cannot be deleted")
     if not _NAME.fullmatch(name):
         raise NotFound(section.one, name)
     with storing(section.value), locked(data_folder.root / section.value):
         files = _changeable(data_folder, section, name, condition)
         if not files:
             raise NotFound(section.one, name)
-        # The one that counts last: none comes to light on the way.
+        # The preferred file is deleted last, so that no other becomes visible meanwhile.
         for file in reversed(files):
             file.unlink(missing_ok=True)
 
@@ -287,7 +287,7 @@ def _own_file(data_folder: DataFolder, section: LibrarySection, name: str) -> Pa
 
 
 def _own_files(data_folder: DataFolder, section: LibrarySection, name: str) -> list[Path]:
-    """The one that counts first; a second one is left when the power failed in between."""
+    """Files of a name, preferred one first; a second one may remain after a power failure."""
     if not _NAME.fullmatch(name):
         return []
     files = (
@@ -297,7 +297,7 @@ def _own_files(data_folder: DataFolder, section: LibrarySection, name: str) -> l
 
 
 def _text(file: Path) -> bytes | None:
-    """Content of a file; None: it is gone."""
+    """Return the content of a file; None if it does not exist."""
     with storing(file.name):
         try:
             return file.read_bytes()
@@ -327,5 +327,5 @@ _LOADERS: dict[LibrarySection, Callable[[str], Machine | WorkMaterial]] = {
 
 
 def material_of(data_folder: DataFolder, name: str) -> WorkMaterial:
-    """A material by any name that catalogues give it."""
+    """Load a material by any designation used in catalogues."""
     return load_material_named(material_word(data_folder, name)).material

@@ -1,4 +1,4 @@
-"""A list in pages: newest first, from a cursor on, which is an id and survives new entries."""
+"""Pages of a list, newest first; a cursor is an id, so new entries do not disturb it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,12 +10,12 @@ from service.ids import is_id
 T = TypeVar("T")
 
 USUAL, MOST = 50, 500
-"""entries of a page"""
+"""Default and largest number of entries per page."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Page(Generic[T]):
-    """Some entries, and where the next page begins; None: there is none."""
+    """Page of a list, with the cursor of the next page; None on the last page."""
 
     items: tuple[T, ...]
     cursor: str | None
@@ -40,11 +40,11 @@ class PageCursor:
 
     @property
     def before(self) -> str:
-        """Ids of the page sort below this."""
+        """Upper bound (exclusive) of the ids on the page."""
         return self.cursor or "~"
 
 
 def page_of(found: Sequence[T], ids: Sequence[str], *, limit: int) -> Page[T]:
-    """A page of entries of which one more than the limit was looked for."""
+    """Build a page from entries of which one more than the limit was queried."""
     has_more = len(found) > limit
     return Page(items=tuple(found[:limit]), cursor=ids[limit - 1] if has_more else None)

@@ -1,4 +1,4 @@
-"""Programs that were uploaded: their bytes as they came, and what they are called."""
+"""Storage of uploaded programs: their unchanged bytes, and their names."""
 
 import hashlib
 import sqlite3
@@ -15,22 +15,22 @@ from service.storage.pages import Page, PageCursor, page_of
 LONGEST_NAME = 120
 
 FILE = "file of program"
-"""what is not found when the bytes of a program are gone"""
+"""Name of the resource in the error when the bytes of a program are missing."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StoredProgram:
-    """One program."""
+    """Uploaded program."""
 
     id: str
     name: str
-    """as its owner calls it; never part of a path"""
+    """Name given by the owner; never part of a path."""
     size: int
-    """Size, bytes"""
+    """Size of the file, in bytes."""
     sha256: str
     owner: str
     created: float
-    """Created, s since 1970"""
+    """Time of upload, in s since 1970."""
 
 
 def add(
@@ -41,7 +41,7 @@ def add(
     owner: str,
     idempotency: IdempotencyKey | None = None,
 ) -> StoredProgram:
-    """Keep a program; its bytes are on the disk before it is listed."""
+    """Store a program; its bytes are written before it appears in lists."""
     program = StoredProgram(
         id=new_id(),
         name=shown_name(name),
@@ -73,12 +73,12 @@ def add(
 
 
 def get(data_folder: DataFolder, id: str) -> StoredProgram:
-    """One program.
+    """Return a program by its id.
 
     Raises
     ------
     NotFound
-        When there is none.
+        When the program does not exist.
     """
     with data_folder.database.reading() as connection:
         row = connection.execute("SELECT * FROM programs WHERE id = ?", (id,)).fetchone()
@@ -88,12 +88,12 @@ def get(data_folder: DataFolder, id: str) -> StoredProgram:
 
 
 def require_file(data_folder: DataFolder, id: str) -> None:
-    """Refuse a program whose bytes are gone.
+    """Refuse a program whose bytes are missing.
 
     Raises
     ------
     NotFound
-        Also when there is no such program.
+        When the bytes or the program do not exist.
     """
     get(data_folder, id)
     if not data_folder.program_file(id).is_file():
@@ -101,7 +101,7 @@ def require_file(data_folder: DataFolder, id: str) -> None:
 
 
 def listed(data_folder: DataFolder, place: PageCursor) -> Page[StoredProgram]:
-    """A page of programs, newest first."""
+    """List programs page by page, newest first."""
     with data_folder.database.reading() as connection:
         rows = connection.execute(
             "SELECT * FROM programs WHERE id < ? ORDER BY id DESC LIMIT ?",
@@ -113,19 +113,19 @@ def listed(data_folder: DataFolder, place: PageCursor) -> Page[StoredProgram]:
 
 
 def remove(data_folder: DataFolder, id: str) -> None:
-    """Delete a program; what was made of it stays.
+    """Delete a program; results made from it are kept.
 
     Raises
     ------
     NotFound, Conflict
-        When there is none, or a job still works on it.
+        When the program does not exist, or a job still uses it.
     """
     with data_folder.database.writing() as connection:
         busy = connection.execute(
             "SELECT id FROM jobs WHERE program = ? AND state IN ('queued', 'running')", (id,)
         ).fetchone()
         if busy is not None:
-            raise Conflict(f"job '{busy['id']}' works on program '{id}': cancel it first")
+            raise Conflict(f"job '{busy['id']}' uses program '{id}': cancel it first")
         gone = connection.execute("DELETE FROM programs WHERE id = ?", (id,)).rowcount
         if not gone:
             raise NotFound("program", id)
@@ -133,7 +133,7 @@ def remove(data_folder: DataFolder, id: str) -> None:
 
 
 def shown_name(name: str) -> str:
-    """A name of one line without folders; ``program.stpnc`` when nothing is left."""
+    """Return a name in one line without folders; ``program.stpnc`` if nothing is left."""
     last = name.replace("\\", "/").rsplit("/", 1)[-1]
     clean = "".join(letter for letter in last if letter.isprintable()).strip()[:LONGEST_NAME]
     return clean.strip(". ") or "program.stpnc"

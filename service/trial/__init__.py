@@ -1,1 +1,1 @@
-"""The trial cut: the paper's monitoring and optimisation simulator, on the real loop."""
+"""Trial cut: the paper's monitoring and optimisation simulator, on the real control loop."""

@@ -1,10 +1,10 @@
-"""The cut of a trial: from a user's inputs to what machine and loop are given.
+"""Cutting model of a trial cut: from the user's inputs to the data of machine and loop.
 
-A cutter enters a workpiece that has no end. While it enters, the arc of contact opens about the
-feed direction, as the edge of the work moves from the front of the cutter towards its axis;
-then the engagement is constant. The real way in is half a diameter; here it takes a number of
-revolutions, so that large cutters need no minutes. All forces are those of
-:mod:`simulator.physics`; the workpiece's k_c is the library's, without correction for a tool.
+A cutter enters an endless workpiece. While it enters, the arc of contact opens about the feed
+direction, as the edge of the workpiece moves from the front of the cutter towards its axis;
+then the engagement is constant. The real entry length is half a diameter; here entry takes a
+fixed number of revolutions, so that large cutters do not need minutes. All forces come from
+:mod:`simulator.physics`, with the library's k_c, uncorrected for a tool.
 
 Units mm, s, N, W, rad, rev/s.
 
@@ -44,18 +44,18 @@ from stepnc_model.units import rad_from_deg, speed_from_m_min, watts_from_kw
 NAME = "trial cut"
 
 AIR = 10
-"""revolutions before the work, in which the dynamometer's zero is taken"""
+"""Revolutions in air before the cut, in which the dynamometer's zero is measured."""
 
 ENTRY = 30
-"""revolutions of the way in, and cells; more than the loop needs to settle"""
+"""Revolutions (and cells) of the entry, more than the loop needs to settle."""
 
 ENDLESS = 1e9
-"""s of the program that the cut lasts: thirty years"""
+"""Duration of the cut in the program, in s: thirty years."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrialCut:
-    """The engaged cut at the chip load, and what drives it."""
+    """Fully engaged cut at the programmed chip load, and its drive."""
 
     cut: MillingCut
     kienzle: Kienzle
@@ -67,11 +67,11 @@ class TrialCut:
 
     @property
     def feed(self) -> float:
-        """Feed at the chip load, mm/s."""
+        """Feed at the programmed chip load, in mm/s."""
         return self.feed_at(self.cut.feed_per_tooth)
 
     def feed_at(self, feed_per_tooth: float) -> float:
-        """Feed of a feed per tooth, mm/s."""
+        """Feed at a feed per tooth, in mm/s."""
         return kinematics.feed(feed_per_tooth, self.spindle_speed, teeth=self.cut.teeth)
 
 
@@ -80,19 +80,19 @@ class Prediction:
     """Closed-form results at a feed; the governing equations of [1]_."""
 
     force: float = 0.0
-    """F_mt, N"""
+    """Mean cutting force F_mt, in N."""
     power: float = 0.0
-    """of the motor, W"""
+    """Power of the motor, in W."""
     removal_rate: float = 0.0
-    """mm³/s"""
+    """Material removal rate, in mm³/s."""
     chip_thickness: float = 0.0
-    """h_m, mm"""
+    """Mean chip thickness h_m, in mm."""
     specific_cutting_force: float | None = None
-    """N/mm²; None: there is no chip"""
+    """Specific cutting force, in N/mm²; None at standstill."""
 
 
 def trial_cut(inputs: Inputs) -> TrialCut:
-    """The cut that some inputs mean."""
+    """Build the cut that the inputs describe."""
     engagement = engagement_of(inputs)
     speed = speed_from_m_min(inputs.cutting_speed_m_min)
     is_full = inputs.milling_type is MillingType.FULL
@@ -114,7 +114,7 @@ def trial_cut(inputs: Inputs) -> TrialCut:
 
 
 def engagement_of(inputs: Inputs) -> Engagement:
-    """Arc of contact of a milling type."""
+    """Arc of contact of the milling type."""
     width, diameter = inputs.radial_width_mm, inputs.tool_diameter_mm
     match inputs.milling_type:
         case MillingType.FULL:
@@ -128,7 +128,7 @@ def engagement_of(inputs: Inputs) -> Engagement:
 
 
 def predicted(trial: TrialCut, feed_per_tooth: float) -> Prediction:
-    """Closed-form results at a feed per tooth, mm; zero at rest."""
+    """Closed-form results at a feed per tooth in mm; all zero at standstill."""
     if not feed_per_tooth > 0.0:
         return Prediction()
     cut = replace(trial.cut, feed_per_tooth=feed_per_tooth)
@@ -147,13 +147,13 @@ def predicted(trial: TrialCut, feed_per_tooth: float) -> Prediction:
 
 
 def force_bound(trial: TrialCut, power: float) -> float:
-    """Cutting force, N, at which the motor gives a power, W: the two are in proportion."""
+    """Cutting force at a motor power, in N; force and power are proportional."""
     at = predicted(trial, trial.cut.feed_per_tooth)
     return at.force * power / at.power
 
 
 def course_of(trial: TrialCut) -> NominalCourse:
-    """Course of the cut at an override of 1, which is the chip load: air, way in, the cut."""
+    """Course of the cut at an override of 1, the full chip load: air, entry, constant cut."""
     arcs = _arcs(trial.cut.engagement)
     forces = [
         0.0 if arc is None else mean_force(trial.kienzle, replace(trial.cut, engagement=arc))
@@ -174,7 +174,7 @@ def course_of(trial: TrialCut) -> NominalCourse:
     return NominalCourse(
         until=until,
         can_override=np.ones(count, dtype=bool),
-        # Seen from the tool: the work has no end, and so no place.
+        # Relative to the tool: an endless workpiece has no position.
         position=np.zeros((count, 3), np.float32),
         feed=_single(trial.feed, count),
         programmed=_single(trial.feed, count),
@@ -183,7 +183,7 @@ def course_of(trial: TrialCut) -> NominalCourse:
         exponent=_single(exponent_of(trial), count),
         removal_rate=_single(trial.cut.axial_depth * widths * trial.feed, count),
         axial_depth=_single(np.where(cuts, trial.cut.axial_depth, 0.0), count),
-        # The paper's motor power is that of the cut alone, eq. (6).
+        # Motor power in the paper is that of the cut alone, eq. (6).
         idle_power=_single(0.0, count),
         spindle_speed=_single(trial.spindle_speed, count),
         diameter=_single(np.where(cuts, trial.tool_diameter, 0.0), count),
@@ -199,7 +199,7 @@ def course_of(trial: TrialCut) -> NominalCourse:
 
 
 def preview_of(course: NominalCourse) -> Preview:
-    """Workingstep of the cut as the loop needs it."""
+    """Preview of the cut for the loop."""
     return Preview(
         until=course.until,
         force=course.force,
@@ -209,15 +209,15 @@ def preview_of(course: NominalCourse) -> Preview:
 
 
 def step_of(trial: TrialCut, inputs: Inputs) -> LoopStep:
-    """Reference of the loop: the motor's power as a force, the chip load as the ceiling."""
+    """Reference of the loop: motor power as a force bound, chip load as the upper limit."""
     power = watts_from_kw(inputs.motor_power_kw)
     bound = ForceBound(
         name=LimitName.MOTOR_POWER,
         words=LimitName.MOTOR_POWER.words,
         force=force_bound(trial, power),
     )
-    # What a cutter of which only size and teeth are known bears, nobody knows: no breakage
-    # force. The overload threshold is in proportion to the bound and stays.
+    # The strength of a cutter of which only size and teeth are known is unknown, so there is no
+    # breakage force. The overload threshold is proportional to the bound and stays.
     reference = Reference(
         workingstep=NAME,
         bounds=(bound,),
@@ -233,14 +233,14 @@ def step_of(trial: TrialCut, inputs: Inputs) -> LoopStep:
 
 
 def exponent_of(trial: TrialCut) -> float:
-    """P of force over feed, 1 − m_c."""
+    """Exponent p of the force as a function of the feed, 1 − m_c."""
     return 1.0 - trial.kienzle.m_c
 
 
 def _rubbing(trial: TrialCut, inputs: Inputs) -> float:
-    """Override at which the mean chip of a carbide insert is too thin to be cut.
+    """Override at which the mean chip is too thin for a carbide insert.
 
-    A material that is of no ISO group has no grade of inserts and no such bound.
+    A material without an ISO group has no insert grade, and so no such bound.
     """
     group = load_material(inputs.material).iso_group
     if not group:
@@ -252,29 +252,29 @@ def _rubbing(trial: TrialCut, inputs: Inputs) -> float:
 
 
 def _arcs(engagement: Engagement) -> list[Engagement | None]:
-    """Arc of each cell; None: air.
+    """Arcs of contact by cell; None in air.
 
-    The edge of the work, x in front of the axis of a cutter of radius R, leaves the arc
-    ``π/2 ± acos(x/R)`` to it; x falls evenly from R to 0.
+    The edge of the workpiece, at a distance x in front of the axis of a cutter of radius R,
+    limits the arc to ``π/2 ± acos(x/R)``; x falls evenly from R to 0.
     """
     arcs: list[Engagement | None] = [None]
     for cell in range(ENTRY):
         half = acos(1.0 - (cell + 0.5) / ENTRY)
         entry = max(engagement.entry_angle, pi / 2.0 - half)
         exit_ = min(engagement.exit_angle, pi / 2.0 + half)
-        # On one side of the cutter the work is met late.
+        # On one side of the cutter, contact begins later.
         is_met = exit_ > entry
         arcs.append(Engagement(entry_angle=entry, exit_angle=exit_) if is_met else None)
     return [*arcs, engagement]
 
 
 def _engaged_width(cut: MillingCut) -> float:
-    """Width of all teeth in the cut, mean of a revolution, across the depth, mm."""
+    """Engaged length of all cutting edges, mean over a revolution, in mm."""
     return cut.axial_depth * cut.teeth * cut.engagement.contact_angle / (2.0 * pi)
 
 
 def _peak(trial: TrialCut, arc: Engagement | None) -> float:
-    """Greatest force of a revolution over its mean."""
+    """Ratio of the largest force in a revolution to the mean force."""
     if arc is None:
         return 1.0
     teeth = EngagedTeeth(

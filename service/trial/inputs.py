@@ -19,34 +19,34 @@ from stepnc_model.errors import StepNcError
 from stepnc_model.units import rpm_from_rev_s, speed_from_m_min
 
 MOST_RPM = 12_000.0
-"""rpm, greatest speed of the spindle: that of the library's machining centre ``vmc15``"""
+"""Largest spindle speed, in rpm: that of the library's machining centre ``vmc15``."""
 
 
 class MillingType(StrEnum):
-    """Immersions of [1]_ Fig. 6, unidirectional ones by the sense of the feed."""
+    """Milling types by immersion after [1]_, Fig. 6; unidirectional ones by feed direction."""
 
     FULL = "full"
-    """a slot: the width of cut is the cutter's diameter"""
+    """Slot: the width of cut is the cutter diameter."""
     UP = "up"
-    """one side of the cutter, conventional"""
+    """One side of the cutter, conventional milling."""
     DOWN = "down"
-    """one side of the cutter, climb"""
+    """One side of the cutter, climb milling."""
     SYMMETRIC = "symmetric"
-    """the middle of the cutter: bidirectional immersion"""
+    """Middle of the cutter, bidirectional immersion."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InputField:
-    """A number that a user sets."""
+    """Numeric input that a user sets, with its unit and bounds."""
 
     name: str
-    """of the attribute of :class:`Inputs`"""
+    """Name of the attribute of :class:`Inputs`."""
     words: str
     unit: str
-    """empty: none"""
+    """Unit; empty if the number has none."""
     low: float
     high: float
-    """both bounds can be had"""
+    """Upper bound; both bounds are inclusive."""
     is_whole: bool = False
 
 
@@ -70,50 +70,50 @@ FIELDS = (
     InputField(name="motor_power_kw", words="motor power", unit="kW", low=0.1, high=100.0),
     InputField(name="axial_depth_max_mm", words="allowed depth", unit="mm", low=0.1, high=20.0),
 )
-"""Numbers with their bounds: what a shop meets; beyond them it is a slip."""
+"""Numeric inputs with their bounds; values outside are taken for typing errors."""
 
 NUMBERS = {field.name: field for field in FIELDS}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inputs:
-    """All that a user sets; by default a slot in C45 on a machine of 7.5 kW.
+    """Inputs of a trial cut; the default is a slot in C45 on a machine of 7.5 kW.
 
-    Efficiency and allowed depth are those of [1]_, Table 2. The rest of its case is a cutter of
-    one tooth on a motor of 0.29 kW in a material with a third of a steel's specific force
-    (``paper002`` in the library). Here 2 mm are bounded by the chip load at 65 % of the motor,
-    4 mm by the motor.
+    Efficiency and allowed depth are those of [1]_, Table 2. The rest of that example is a
+    cutter with one tooth on a motor of 0.29 kW, in a material with a third of the specific
+    force of steel (``paper002`` in the library). Here, chip load limits the feed at 2 mm depth,
+    with 65 % of the motor power in use; the motor limits it at 4 mm.
 
     Raises
     ------
     StepNcError
-        When a value is beyond its bounds, with its name, the bound and the unit.
+        When a value is out of bounds, with name, bound and unit.
     """
 
     milling_type: MillingType = MillingType.FULL
     material: str = "c45"
-    """name in the library"""
+    """Name of the workpiece material in the library."""
     tool_diameter_mm: float = 50.0
     teeth: int = 4
-    """the flutes of [1]_"""
+    """Number of teeth, the flutes of [1]_."""
     cutting_edge_angle_deg: float = 90.0
-    """the setting angle χ of [1]_"""
+    """Cutting edge angle, the setting angle χ of [1]_, in °."""
     radial_width_mm: float = 40.0
-    """in full milling it is not looked at: there it is the diameter"""
+    """Radial width of cut, in mm; ignored in full milling, where it equals the diameter."""
     cutting_speed_m_min: float = 220.0
-    """within the library's window of carbide inserts in C45"""
+    """Cutting speed, in m/min; within the library's window of carbide inserts in C45."""
     efficiency: float = 0.9
-    """of the main drive"""
+    """Efficiency of the main drive."""
     feed_per_tooth_mm: float = 0.2
-    """chip load: TC the greatest that is allowed, QC the one that is kept; within the
-    library's window of carbide face mills in steel"""
+    """Chip load, in mm: the largest allowed in mode TC, the one kept in mode QC; within the
+    library's window of carbide face mills in steel."""
     axial_depth_mm: float = 2.0
     motor_power_kw: float = 7.5
     axial_depth_max_mm: float = 3.0
-    """depth that the machine's capability allows"""
+    """Depth that the machine's capability allows, in mm."""
     mode: Criterion = Criterion.TC
     is_on: bool = True
-    """whether the loop acts; off, the chip load is run whatever the force"""
+    """Whether force control is on; if off, the chip load is run whatever the force."""
 
     def __post_init__(self) -> None:
         for field in FIELDS:
@@ -136,12 +136,12 @@ class Inputs:
 
 
 def changed(inputs: Inputs, **changes: Any) -> Inputs:
-    """The inputs with some of them changed; enumerations may come as their words.
+    """Return the inputs with some of them changed; enumerations may be given as text.
 
     Raises
     ------
     StepNcError
-        When there is no such input, or a value is beyond its bounds.
+        When an input is unknown, or a value is out of bounds.
     """
     known = [field.name for field in fields(Inputs)]
     for name in changes:
@@ -158,13 +158,13 @@ def changed(inputs: Inputs, **changes: Any) -> Inputs:
 
 
 def differing(before: Inputs, after: Inputs) -> tuple[str, ...]:
-    """Names of the inputs that differ."""
+    """Return the names of the inputs that differ."""
     names = (field.name for field in fields(Inputs))
     return tuple(name for name in names if getattr(before, name) != getattr(after, name))
 
 
 def change_words(before: Inputs, after: Inputs, name: str) -> str:
-    """A change of one input as a sentence tells it: ``depth 2 -> 4 mm``."""
+    """Describe a change of one input for an event, as in ``depth 2 -> 4 mm``."""
     old, new = getattr(before, name), getattr(after, name)
     if name == "is_on":
         return "control off -> on" if new else "control on -> off"
@@ -175,7 +175,7 @@ def change_words(before: Inputs, after: Inputs, name: str) -> str:
 
 
 def _require_within(field: InputField, value: object) -> None:
-    """Refuse what is no number or beyond the bounds."""
+    """Refuse a value that is not a number or is out of bounds."""
     bound = f"{field.low:g} to {field.high:g} {field.unit}".rstrip()
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise StepNcError(f"{field.words} '{value}': it must be a number, {bound}")

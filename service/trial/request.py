@@ -1,4 +1,4 @@
-"""Request of a trial cut."""
+"""Request to run a trial cut."""
 
 from dataclasses import dataclass, field
 from typing import Annotated
@@ -13,11 +13,11 @@ from service.trial.inputs import Inputs
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrialRequest(Request):
-    """Request of a trial cut."""
+    """Request to run a trial cut."""
 
     inputs: Inputs = field(default_factory=Inputs)
     seed: Annotated[
-        int, Interval(ge=0, le=GREATEST_SEED), About("seed of the sensors' noise")
+        int, Interval(ge=0, le=GREATEST_SEED), About("seed of the sensor noise")
     ] = 0
     pace: Annotated[
         float,

@@ -1,14 +1,14 @@
-"""The trial cut as it runs: every input may change while it goes on, as in [1]_, Fig. 9.
+"""Live trial cut: every input may change while it runs, as in [1]_, Fig. 9.
 
-What a change is:
+Effects of changes:
 
-- depth and workpiece change in the machine only; the loop finds out by the force;
-- mode, ON/OFF, motor power and efficiency are told to the loop, which goes on;
-- the allowed depth only warns: what it protects from, chatter, the machine does not model, and
-  the depth is where the part is;
-- all else is another set-up: the cutter enters anew, and the loop knows the inputs as they are.
+- depth and workpiece change only in the machine; the loop notices them by the force;
+- mode, control on or off, motor power and efficiency are orders to the loop, which continues;
+- the allowed depth only gives a warning: it protects from chatter, which the machine does not
+  model, and the depth is set by the part;
+- every other change starts a new setup: the cutter enters again, and the loop knows all inputs.
 
-Running state; no wall time. Units s at the inside, the user's units in the status.
+Running state; independent of wall-clock time. Units inside: s; the status uses the user's.
 
 References
 ----------
@@ -38,11 +38,11 @@ SET_UP = frozenset({
     "cutting_speed_m_min",
     "feed_per_tooth_mm",
 })
-"""inputs that cannot change while the cutter is in the work"""
+"""Inputs that cannot change while the cutter is engaged."""
 
 
 LONGEST = 4 * 3600.0
-"""s of a trial: then it was forgotten"""
+"""Longest duration of a trial, in s; a longer one was forgotten."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,29 +51,29 @@ class TrialStatus(SessionStatus):
 
     inputs: Inputs
     power_predicted_kw: float
-    """of the motor, at the feed that runs"""
+    """Predicted motor power at the actual feed, in kW."""
     force_predicted: float
-    """N, at the feed that runs"""
+    """Predicted force at the actual feed, in N."""
     feed_per_tooth_mm: float
-    """that runs"""
+    """Actual feed per tooth, in mm."""
     specific_cutting_force: float | None
-    """N/mm², predicted; None: the feed stands"""
+    """Predicted specific cutting force, in N/mm²; None at standstill."""
     chip_thickness_mm: float
-    """mean, predicted"""
+    """Predicted mean chip thickness, in mm."""
     depth_warning: str
-    """empty: the machine allows the depth"""
+    """Warning if the depth exceeds the allowed one, else empty."""
     stopped_by: str
-    """why the loop has stopped it; empty: it has not"""
+    """Why the loop has stopped the run; empty if it has not."""
 
 
 class TrialRun:
-    """A trial cut. Running state.
+    """Trial cut in progress. Running state.
 
     Parameters
     ----------
     inputs : Inputs
     seed : int
-        Of the instruments' noise.
+        Seed of the instruments' noise.
     law : LawName
     """
 
@@ -89,16 +89,16 @@ class TrialRun:
 
     @property
     def time(self) -> float:
-        """S, continuous over all changes."""
+        """Time of the run, in s, continuous over all changes."""
         return self._set_up.time
 
     @property
     def inputs(self) -> Inputs:
-        """As they are now."""
+        """Current inputs."""
         return self._inputs
 
     def advance(self, until: float) -> bool:
-        """Run until a time, s; False: it was ended, or the loop has stopped it."""
+        """Run until a time, in s; return False when the run has ended or was stopped."""
         if self._is_ended or self.time > LONGEST:
             return False
         set_up = self._set_up
@@ -112,7 +112,7 @@ class TrialRun:
         return not set_up.is_done
 
     def taken(self) -> RunUpdate:
-        """Rows and events since it was asked last."""
+        """Return rows and events since the last call."""
         return self._live_rows.taken()
 
     def change(self, inputs: Inputs) -> None:
@@ -131,22 +131,22 @@ class TrialRun:
         for name in names:
             self._say(EventKind.ORDER, change_words(before, inputs, name))
         if is_new:
-            self._say(EventKind.ORDER, "another set-up: the cutter enters the work anew")
+            self._say(EventKind.ORDER, "new setup: the cutter enters the workpiece again")
         if not {"axial_depth_mm", "axial_depth_max_mm"}.isdisjoint(names):
             self._warn_of_depth()
 
     def restart(self) -> None:
-        """Go on with a new cutter, which enters the work anew."""
+        """Continue with a new cutter, which enters the workpiece again."""
         self._renew()
-        self._say(EventKind.RESUME, "a new cutter enters the work")
+        self._say(EventKind.RESUME, "a new cutter enters the workpiece")
 
     @property
     def is_waiting(self) -> bool:
-        """See :class:`service.session.runner.LiveSession`: stopped, it may be begun again."""
+        """Whether the loop has stopped the run, which may then be restarted."""
         return self._set_up.loop.state.is_stopped and not self._is_ended
 
     def obey(self, order: Mapping[str, Any]) -> None:
-        """See :class:`service.session.runner.LiveSession`: inputs, ``restart`` or ``end``."""
+        """Apply an order: changed inputs, ``restart`` or ``end``."""
         if order.get("end"):
             self._is_ended = True
         elif order.get("restart"):
@@ -155,11 +155,11 @@ class TrialRun:
             self.change(changed(self._inputs, **order))
 
     def snapshot(self) -> dict[str, Any]:
-        """See :class:`service.session.runner.LiveSession`."""
+        """Return the status snapshot as JSON."""
         return self.status().as_json()
 
     def status(self) -> TrialStatus:
-        """Status snapshot of the trial."""
+        """Return the status snapshot of the trial."""
         inputs, cut, set_up = self._inputs, self._cut, self._set_up
         row = None if set_up.is_done else self._live_rows.last
         feed = 0.0 if row is None else row.feed_actual
@@ -203,7 +203,7 @@ class TrialRun:
             self._say(EventKind.WARNING, self._depth_warning)
 
     def _renew(self) -> None:
-        """Another set-up at the present time, with the inputs as they are."""
+        """Start a new setup at the present time, with the current inputs."""
         self._set_up.trace.end()
         self._set_up = self._begun(self.time)
         self._live_rows.last, self._stopped_by = None, ""

@@ -1,8 +1,8 @@
-"""One cutter in its work: the virtual machine and the loop of a trial, plugged together.
+"""Setup of a trial cut: one engaged cutter, its virtual machine and the control loop.
 
-Running state. The machine's clock begins anew with each set-up and its motor power is that at
-the tool; here both are brought to the run's time and to the drive of the inputs, so that times
-go on over all changes and an efficiency can change while the cut goes on. Units s, N, W.
+Running state. The machine's clock restarts with each setup, and its motor power is that at the
+tool; here both are converted to the time of the run and to the drive of the inputs, so that
+time continues over all changes and the efficiency can change during the cut. Units s, N, W.
 """
 
 from collections.abc import Callable
@@ -29,23 +29,23 @@ from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
 from simulator.reading import Reading
 
 BAND = OverrideBand(floor=0.05)
-"""of the override: 100 % is the greatest chip load, far above what a weak motor allows"""
+"""Override band; 100 % is the full chip load, far above what a weak motor allows."""
 
 INSTRUMENT = replace(DYNAMOMETER, drift=0.0)
-"""without drift: the cut has no end after which its zero could be taken again"""
+"""Dynamometer without drift, because an endless cut never allows it to be zeroed again."""
 
 
 class TrialMachine:
-    """The machine as the loop meets it, in the run's time. Running state.
+    """Virtual machine as seen by the loop, in the time of the run. Running state.
 
     Parameters
     ----------
     machine : ControlledMachine
-        Whose drive loses nothing.
+        Machine whose drive has no losses.
     begin : float
-        S of the run at which the machine's time begins.
+        Time in the run at which the machine's time begins, in s.
     efficiency : float
-        Of the drive.
+        Efficiency of the drive.
     """
 
     def __init__(self, machine: ControlledMachine, *, begin: float, efficiency: float) -> None:
@@ -64,30 +64,30 @@ class TrialMachine:
         return replace(truth, power=truth.power / self.efficiency)
 
     def read(self) -> Reading | None:
-        """See :class:`controller.ports.Sensor`."""
+        """Return the next reading (:class:`controller.ports.Sensor`)."""
         raw = self._machine.read()
         if raw is None:
             return None
         return replace(raw, time=self._begin + raw.time, power=raw.power / self.efficiency)
 
     def set(self, override: float, /) -> None:
-        """See :class:`controller.ports.Override`."""
+        """Command an override (:class:`controller.ports.Override`)."""
         self._machine.set(override)
 
 
 class TrialSetup:
-    """A cutter that enters its work and stays there. Running state.
+    """Cutter that enters the workpiece and stays engaged. Running state.
 
     Parameters
     ----------
     inputs : Inputs
-        As the plan knows them.
+        Inputs that the plan is based on.
     begin : float
-        S of the run.
+        Time in the run at the start of the setup, in s.
     seed : int
     law : LawName
     sink : callable
-        Is given the rows.
+        Callback that receives the rows.
     """
 
     def __init__(
@@ -130,20 +130,20 @@ class TrialSetup:
 
     @property
     def holdings(self) -> HoldTallies:
-        """Reason that holds the feed, and the level of the force."""
+        """Reasons that limit the feed, and the level of the force."""
         return self._holdings
 
     @property
     def is_done(self) -> bool:
-        """Whether the loop has stopped the program and the axes stand."""
+        """Whether the loop has stopped the program and the axes stand still."""
         return self.loop.state.is_stopped and self._override < STANDING
 
     def cycle(self) -> LoopCycle:
-        """One cycle of the loop."""
+        """Run one cycle of the loop."""
         cycle = self.loop.cycle()
         if cycle is None:
             raise RuntimeError("a trial cut has no end")
-        # The run tells what was ordered itself, with both values.
+        # The run reports orders itself, with old and new values.
         events = tuple(each for each in cycle.events if each.kind is not EventKind.ORDER)
         if len(events) < len(cycle.events):
             cycle = replace(cycle, events=events)
@@ -153,10 +153,10 @@ class TrialSetup:
         return cycle
 
     def change(self, inputs: Inputs) -> None:
-        """Apply changes that need no other set-up, from the next cycle on.
+        """Apply changes that need no new setup, from the next cycle on.
 
-        Depth and workpiece change behind the loop's back: it is told nothing, and still
-        compares the force with that of the inputs with which it began.
+        Depth and workpiece change without notice to the loop, which still compares the force
+        with that of the inputs with which it began.
         """
         before, self._inputs = self._inputs, inputs
         machine, planned = self._machine, self._planned
@@ -166,13 +166,13 @@ class TrialSetup:
                 HiddenChange(time=machine.time, what=HiddenQuantity.DEPTH, value=depth)
             )
         if inputs.material != before.material:
-            # Its exponent is another as well, which no factor on k_c would tell.
+            # The exponent differs as well, so a factor on k_c is not enough.
             real = replace(planned, material=inputs.material)
             machine.course = course_of(trial_cut(real))
         self._order(before, inputs)
 
     def _order(self, before: Inputs, inputs: Inputs) -> None:
-        """Apply an order of the operator."""
+        """Pass changes of mode, switch and motor power to the loop as orders."""
         if inputs.mode is not before.mode:
             self.loop.order(CriterionTo(criterion=inputs.mode))
         if inputs.is_on is not before.is_on:
@@ -182,7 +182,7 @@ class TrialSetup:
         self._drive.efficiency = inputs.efficiency
 
     def _hold(self, cycle: LoopCycle) -> None:
-        """Reason that holds the override, in words."""
+        """Record the reason that limits the override."""
         settings, holdings = self.loop.state.settings, self._holdings
         holdings.add(cycle, settings)
         if cycle.revolution is not None and holdings.words != NO_CHIPS:
@@ -190,7 +190,7 @@ class TrialSetup:
 
     @property
     def _ends(self) -> OverrideLimits:
-        """Between which overrides the cut may run; in mode QC the mode is the ceiling."""
+        """Override limits of the cut; in mode QC the mode itself sets the ceiling."""
         reference = self._step.reference
         is_quality = self.loop.state.settings.criterion is Criterion.QC
         return OverrideLimits(
@@ -201,5 +201,5 @@ class TrialSetup:
 
 
 def _power(inputs: Inputs) -> float:
-    """Motor power at the tool, kW."""
+    """Motor power at the tool, in kW."""
     return inputs.motor_power_kw * inputs.efficiency

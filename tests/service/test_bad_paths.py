@@ -274,7 +274,7 @@ def test_what_is_no_program_is_refused(part: Path, refused: Refused) -> None:
         junk.write_bytes(data)
         assert "line 1" in refused("post", junk, "--control", "fanuc")
     assert "irectory" in refused("post", part.parent, "--control", "fanuc")
-    assert "is no file" in refused("post", ".", "--control", "fanuc")
+    assert "is not a file" in refused("post", ".", "--control", "fanuc")
     assert "No such file" in refused("post", "nowhere", "--control", "fanuc")
     assert "unknown control 'x'" in refused("post", part, "--control", "x")
 
@@ -285,8 +285,8 @@ def test_what_is_no_program_is_refused(part: Path, refused: Refused) -> None:
         ("part.stpnc", "name another file"),
         ("link", "name another file"),
         ("nowhere/out.nc", "the folder does not exist"),
-        (".", "is no regular file"),
-        ("/dev/full", "is no regular file"),
+        (".", "is not a regular file"),
+        ("/dev/full", "is not a regular file"),
     ],
 )
 def test_an_output_that_cannot_be_is_refused(

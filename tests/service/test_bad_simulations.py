@@ -105,7 +105,10 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
         (START + "G1 X120 F0\n", "line 6: a feed move without F"),
         (START + "G1 X120 F-5\n", "line 6: word F-5: must not be negative"),
         (START + f"G1 X120 F{'9' * 400}\n", "line 6: word F99"),
-        (START + "G1 X120 F0.000000001\n", "line 6: 8.4e+12 s of machining: 1e+07 s at most"),
+        (
+            START + "G1 X120 F0.000000001\n",
+            "line 6: 8.4e+12 s of machining: the limit is 1e+07 s",
+        ),
         (START + f"G1 X{'9' * 40} F100\n", "line 6: word X99"),
         (
             START + "G2 X0 Y10 I3 J0 F100\n",
@@ -114,7 +117,7 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
         (START + "G2 X0 Y10 I0 J0 F100\n", "line 6: invalid arc"),
         (START + "G2 X0 Y10 R2 F100\n", "line 6: invalid arc"),
         (START + "G4 P-1\n", "line 6: word P-1: must not be negative"),
-        (START + "G4 P999999999\n", "line 6: 1e+09 s of machining: 1e+07 s at most"),
+        (START + "G4 P999999999\n", "line 6: 1e+09 s of machining: the limit is 1e+07 s"),
         (START.replace("S3000", "S-1"), "line 3: word S-1: must not be negative"),
         (START.replace("T1 M6", "T9 M6"), "line 2: tool T9 is not in the table; known: T1"),
         (START.replace("T1 M6", "T0 M6"), "line 2: word T0: must be a whole number above 0"),
@@ -212,15 +215,15 @@ def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
         ({"machine": "lathe22"}, "line 4: word Y10: not used by this block"),
         ({"material": "x"}, "unknown material 'x'; similar names:"),
         ({"material": ""}, "a tool table without a material: name one with --material"),
-        ({"stock": "text"}, "stock 'text': 3 or 6 numbers with commas between them"),
-        ({"stock": "1,2,3,4"}, "stock '1,2,3,4': 3 or 6 numbers"),
-        ({"stock": "nan,0,0,1,1,1"}, "stock 'nan,0,0,1,1,1': 3 or 6 numbers"),
+        ({"stock": "text"}, "stock 'text': expected 3 or 6 numbers separated by commas"),
+        ({"stock": "1,2,3,4"}, "stock '1,2,3,4': expected 3 or 6 numbers"),
+        ({"stock": "nan,0,0,1,1,1"}, "stock 'nan,0,0,1,1,1': expected 3 or 6 numbers"),
         (
             {"stock": "0,0,0,0,0,0"},
-            "stock: x from 0 to 0 mm: at least 0.01 mm, within 100000 mm",
+            "stock: x from 0 to 0 mm: must span at least 0.01 mm, within 100000 mm",
         ),
-        ({"stock": "0,0,0,1,-1,1"}, "y from 0 to -1 mm: at least 0.01 mm"),
-        ({"stock": "0,0,0,1,1,1e6"}, "z from 0 to 1e+06 mm: at least 0.01 mm"),
+        ({"stock": "0,0,0,1,-1,1"}, "y from 0 to -1 mm: must span at least 0.01 mm"),
+        ({"stock": "0,0,0,1,1,1e6"}, "z from 0 to 1e+06 mm: must span at least 0.01 mm"),
         ({"stock": "-10,0,20"}, "x from 5 to -5 mm"),
     ],
 )
@@ -265,10 +268,10 @@ def test_a_tool_table_that_cannot_be_used_is_refused(
     ("words", "message"),
     [
         ([], "name a STEP-NC program, or NC code with --nc"),
-        ([PARTS / "shaft.stpnc", "--tools", "x"], "are for NC code: name it with --nc"),
+        ([PARTS / "shaft.stpnc", "--tools", "x"], "need NC code: name it with --nc"),
         (["nowhere"], "nowhere: No such file or directory"),
         ([PARTS], "Is a directory"),
-        ([PARTS / "paper002.stpnc", "--machine", "paper002"], "nothing of its axes"),
+        ([PARTS / "paper002.stpnc", "--machine", "paper002"], "no data for its axes"),
         (
             [PARTS / "shaft.stpnc", "--machine", "vmc15"],
             "shaft.stpnc: workingstep 'ROUGH FACE': line 13: T1 ROUGHING TOOL, CARBIDE P25 "
@@ -280,7 +283,7 @@ def test_a_tool_table_that_cannot_be_used_is_refused(
         ),
         (
             [PARTS / "bracket.stpnc", "--nc", "x.ngc", "--stock", STOCK],
-            "tools and stock are those of the program",
+            "the program defines tools and stock",
         ),
     ],
 )
@@ -296,7 +299,7 @@ def test_a_program_whose_stock_has_no_volume_is_refused(code: Path, refused: Ref
     few = text.replace("'MAIN WORKPLAN',(#3,#7,#4,#5,#6)", "'MAIN WORKPLAN',(#15)")
     part.write_text(few.replace("#34,156.,", "#34,0.,"), encoding="ascii")
     told = refused("simulate", part, "--machine=vmc15")
-    assert "stock: x from -3 to -3 mm: at least 0.01 mm" in told
+    assert "stock: x from -3 to -3 mm: must span at least 0.01 mm" in told
 
 
 # ------------------------------------------------------------------ files and disks
@@ -308,8 +311,8 @@ def test_code_that_cannot_be_read_is_refused(code: Path, refused: Refused) -> No
     assert "junk.ngc: line 1: " in refused(*alone(code, nc=str(junk)))
     assert "nowhere.ngc: No such file" in refused(*alone(code, nc="nowhere.ngc"))
     assert "Is a directory" in refused(*alone(code, nc=str(code.parent)), "--dialect=fanuc")
-    assert "name its dialect with --dialect" in refused(*alone(code, nc=str(PARTS)))
-    assert "is no file name" in refused(*alone(code, nc="a\0.ngc"))
+    assert "add --dialect" in refused(*alone(code, nc=str(PARTS)))
+    assert "is not a valid file name" in refused(*alone(code, nc="a\0.ngc"))
 
 
 @pytest.mark.parametrize(
@@ -321,10 +324,10 @@ def test_code_that_cannot_be_read_is_refused(code: Path, refused: Refused) -> No
         ("link.csv", "name another file"),
         ("nowhere/run.csv", "the folder does not exist"),
         ("/dev/full/run.csv", "the folder does not exist"),
-        ("folder.csv", "is no regular file"),
-        ("full.csv", "is no regular file"),
+        ("folder.csv", "is not a regular file"),
+        ("full.csv", "is not a regular file"),
         ("n" * 300 + ".csv", "File name too long"),
-        ("a\0.csv", "is no file name"),
+        ("a\0.csv", "is not a valid file name"),
         ("/proc/run.csv", "No such file or directory"),
     ],
 )

@@ -117,7 +117,7 @@ def test_no_bound_is_passed_by_a_part_that_keeps_its_promises(
     with pytest.raises(SystemExit) as stopped:
         optimise_main([str(part), "--machine", "vmc15", "--confirm", "--dry-run"])
     assert stopped.value.code == OK
-    assert "promised -> found" in capsys.readouterr().out
+    assert "predicted -> found" in capsys.readouterr().out
 
 
 def test_a_bound_is_passed_from_a_hundredth_above_it() -> None:
@@ -126,7 +126,7 @@ def test_a_bound_is_passed_from_a_hundredth_above_it() -> None:
     assert not figure(found=1e9).is_passed
     steps = (ConfirmedStep(id="one", figures=(figure(found=120.0, bound=100.0), figure())),)
     (told,) = Confirmation(steps=steps).passed
-    assert told == "one: force N 120 passes its bound of 100"
+    assert told == "one: force N 120 exceeds its bound of 100"
 
 
 def test_the_ratio_of_nothing_is_none() -> None:
@@ -162,7 +162,7 @@ def test_a_bound_that_is_passed_is_said_and_is_the_exit_code(
     assert stopped.value.code == LIMIT_EXCEEDED
     shown, told = capsys.readouterr()
     assert "100 -> 130 (1.300)" in shown
-    assert "bound passed: ROUGH FACE: force N 130 passes its bound of 110" in shown + told
+    assert "bound exceeded: ROUGH FACE: force N 130 exceeds its bound of 110" in shown + told
 
 
 def test_a_machine_without_axes_is_refused_before_anything_is_planned() -> None:
@@ -170,7 +170,7 @@ def test_a_machine_without_axes_is_refused_before_anything_is_planned() -> None:
         PARTS / "paper002.stpnc", machine="paper002", dry_run=True, confirm=True
     )
     told: list[str] = []
-    with pytest.raises(SimulationError, match="nothing of its axes X, Y, Z"):
+    with pytest.raises(SimulationError, match="no data for its axes X, Y, Z"):
         usecases.optimise(*asked, tell=told.append)
     assert told == []
 
@@ -183,7 +183,7 @@ def test_a_program_that_draws_no_raw_part_needs_one(part: Path, tmp_path: Path) 
     asked = asked_advice(file=bare, machine="vmc15", dry_run=True, confirm=True)
     with pytest.raises(StepNcError, match=r"cannot be confirmed.*--stock"):
         usecases.optimise(*asked)
-    with pytest.raises(StepNcError, match="draws its own raw part"):
+    with pytest.raises(StepNcError, match="defines its own raw part"):
         usecases.optimise(
             *asked_advice(
                 part, machine="vmc15", dry_run=True, confirm=True, stock="0,0,0,1,1,1"

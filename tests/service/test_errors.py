@@ -22,8 +22,8 @@ def test_each_is_of_the_projects_tree_and_drawn_in_the_docstring(kind: type) -> 
 
 def test_messages_name_thing_bound_and_unit() -> None:
     assert str(NotFound("program", "x")) == "there is no program 'x'"
-    assert str(TooLarge("the body", bound=10)).endswith("10 bytes, which is the most")
-    assert str(TooMany(1.25)) == "too many requests: the next is taken in 1.2 s"
+    assert str(TooLarge("the body", bound=10)).endswith("10 bytes, the largest size accepted")
+    assert str(TooMany(1.25)) == "too many requests: try again in 1.2 s"
 
 
 def test_fields_are_there_for_programs() -> None:

@@ -19,12 +19,12 @@ def test_numbers_come_back_as_they_were_written(numbers: list[float]) -> None:
 def test_a_refusal_names_the_thing_the_text_and_every_count() -> None:
     with pytest.raises(StepNcError) as refused:
         numbers_in("1,2", "stock", counts=(3, 6))
-    assert str(refused.value) == "stock '1,2': 3 or 6 numbers with commas between them"
+    assert str(refused.value) == "stock '1,2': expected 3 or 6 numbers separated by commas"
 
 
 @pytest.mark.parametrize("text", ["1e400,0,0", "-inf,0,0", "nan,0,0", "0x1,0,0", "1;2;3"])
 def test_what_is_not_finite_or_not_decimal_is_refused(text: str) -> None:
-    with pytest.raises(StepNcError, match=f"zero '{text}': 3 numbers"):
+    with pytest.raises(StepNcError, match=f"zero '{text}': expected 3 numbers"):
         numbers_in(text, "zero", counts=(3,))
 
 
@@ -59,7 +59,7 @@ def test_a_stock_of_nothing_or_beyond_any_machine_is_refused(
     with pytest.raises(StepNcError) as refused:
         stock_in(text)
     assert str(refused.value) == (
-        f"stock: {axis} from {low} to {high} mm: at least 0.01 mm, within 100000 mm of zero"
+        f"stock: {axis} from {low} to {high} mm: must span at least 0.01 mm, within 100000 mm of zero"
     )
 
 

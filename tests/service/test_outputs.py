@@ -69,7 +69,7 @@ class TestPlacesOfOutputs:
         part = str(PARTS / "paper002.stpnc")
         answer = call(optimise_main, part, "--machine", "paper002", "-o", str(pipe))
         assert answer.code == 3
-        assert "is no regular file" in answer.error
+        assert "is not a regular file" in answer.error
         assert pipe.is_fifo()
 
     def test_in_place_through_a_link_changes_its_target(

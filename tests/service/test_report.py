@@ -38,7 +38,7 @@ def test_all_five_plots_are_drawn(page: str) -> None:
         "Feed",
         "Motor power before and after",
         "Share of each limit that the advice uses",
-        "Fronts between time and roughness",
+        "Pareto fronts of time and roughness",
     ):
         assert title in own(page)
 

@@ -31,7 +31,9 @@ def test_times_and_errors_stand_side_by_side(shown: str) -> None:
 
 def test_shares_of_nothing_stay_empty(shown: str) -> None:
     assert re.search(r"^run +coolant_wattage +2\.0 +4\.0 *$", shown, re.MULTILINE)
-    assert re.search(r"^run +electric_wattage +2\.0 +4\.0 +none to tell$", shown, re.MULTILINE)
+    assert re.search(
+        r"^run +electric_wattage +2\.0 +4\.0 +not measurable$", shown, re.MULTILINE
+    )
     assert not re.search(r"\b(nan|inf)\b", shown)
 
 

@@ -315,14 +315,14 @@ def test_files_that_are_none_are_refused(command: Command, tmp_path: Path) -> No
     assert command(tmp_path) == (BAD_INPUT, "", f"error: {tmp_path}: Is a directory\n")
     code, _, told = command("a\0b.csv")
     assert code == BAD_INPUT
-    assert "invalid file name" in told
+    assert "not a valid file name" in told
 
 
 @pytest.mark.parametrize(
     ("output", "words"),
     [
         ("slots.toml/m.toml", "the folder does not exist"),
-        ("run.csv", "a machine is written as .toml"),
+        ("run.csv", "the name of a machine file must end with .toml"),
         ("tools.toml", "is also"),
         ("truth.toml", "is also"),
     ],

@@ -82,11 +82,11 @@ def test_a_workpiece_belongs_to_no_tool(response: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"tool": ""}, "say what was tapped"),
-        ({"workpiece": True}, "say what was tapped"),
+        ({"tool": ""}, "name what was tapped"),
+        ({"workpiece": True}, "name what was tapped"),
         ({"direction": "w"}, "unknown direction 'w'; known: x, y, z, xy"),
         ({"tool_diameter_mm": -1.0}, "tool diameter: -1 mm is below 0.01 mm"),
-        ({"modes": 0}, "0 modes: at least 1"),
+        ({"modes": 0}, "0 modes: at least 1 is needed"),
         ({"modes": 4}, "1 peaks found, but 4 modes were requested"),
         ({"machine": "vmc15"}, "name a file with -o"),
         ({"output": Path("mine.toml")}, "name the machine with --machine"),
@@ -102,7 +102,9 @@ def test_what_cannot_be_done_is_told(
 def test_another_unit_is_noticed(response: Path) -> None:
     text = response.read_text().replace("real_um_n,imag_um_n", "real_m_n,imag_m_n")
     response.write_text(text)
-    with pytest.raises(StepNcError, match=r"stiffness: 1\.2e-05 N/µm is below .*another unit"):
+    with pytest.raises(
+        StepNcError, match=r"stiffness: 1\.2e-05 N/µm is below .*check the unit"
+    ):
         tap_test(request(response))
 
 

@@ -70,7 +70,7 @@ def test_a_file_without_the_columns_is_refused(
     rows = tmp_path / "lives.csv"
     rows.write_text("speed,life\n1,2\n", encoding="utf-8")
     assert calibrated("--tool-life", rows) == BAD_INPUT
-    assert "has no column speed_m_min and no life_min" in capsys.readouterr().err
+    assert "missing column speed_m_min and life_min" in capsys.readouterr().err
 
 
 def test_neither_runs_nor_lives_is_wrong_usage(capsys: pytest.CaptureFixture[str]) -> None:

@@ -70,12 +70,12 @@ def test_a_time_with_a_zone_is_that_time(when: datetime) -> None:
 @pytest.mark.parametrize("word", ["", "yesterday", "2026-13-01", "5.3.2026", "2026-02-30"])
 @pytest.mark.parametrize("read", [moment, end])
 def test_what_is_no_time_is_refused(read: Callable[[str], datetime], word: str) -> None:
-    with pytest.raises(argparse.ArgumentTypeError, match="is no time"):
+    with pytest.raises(argparse.ArgumentTypeError, match="is not a time"):
         read(word)
 
 
 def test_the_last_day_of_all_has_no_end() -> None:
-    with pytest.raises(argparse.ArgumentTypeError, match="is no time"):
+    with pytest.raises(argparse.ArgumentTypeError, match="is not a supported time"):
         end("9999-12-31")
 
 
@@ -88,17 +88,17 @@ def test_a_share_may_be_in_per_cent(word: str, value: float) -> None:
 
 @pytest.mark.parametrize("word", ["", "%", "25", "-0.1", "nan", "inf", "one"])
 def test_what_is_no_share_is_refused(word: str) -> None:
-    with pytest.raises(argparse.ArgumentTypeError, match="is no share"):
+    with pytest.raises(argparse.ArgumentTypeError, match="is not a share"):
         share(word)
 
 
 @pytest.mark.parametrize("word", ["", "-1", "1.5", "many", "99999999999999999999"])
 def test_what_does_not_count_is_refused(word: str) -> None:
-    with pytest.raises(argparse.ArgumentTypeError, match="is no number"):
+    with pytest.raises(argparse.ArgumentTypeError, match="is not a whole number"):
         count(word)
 
 
 def test_bytes_that_are_no_text_are_refused() -> None:
     assert text("Fräser Ø18") == "Fräser Ø18"
-    with pytest.raises(argparse.ArgumentTypeError, match="is no text"):
+    with pytest.raises(argparse.ArgumentTypeError, match="is not valid text"):
         text("\udcff")

@@ -132,7 +132,9 @@ def walk(place: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert kbe("withdraw", 1, "--kb", place) == OK
     out, error = told(capsys)
     assert "withdrawn" in out
-    assert error == f"decided by {getpass.getuser()}, the login; another: --by NAME\n"
+    by = getpass.getuser()
+    told_text = f"decision recorded for login '{by}'; use --by NAME for another person\n"
+    assert error == told_text
     assert kbe("corrections", "--kb", place, "--json") == OK
     [entry] = json.loads(told(capsys)[0])["corrections"]
     assert (entry["standing"], entry["decided_by"]) == ("withdrawn", getpass.getuser())
@@ -198,7 +200,7 @@ def test_automatic_acceptance_keeps_its_bounds(
 ) -> None:
     strict = ("--auto-accept", "--least-confidence", "99.9%", "--by", "A. Smith")
     assert kbe("review", "--kb", kb, *MINE, *strict) == OK
-    assert "not without a person: confidence" in told(capsys)[0]
+    assert "needs a person's decision: confidence" in told(capsys)[0]
     usual = ("--auto-accept", "--greatest-change", "25%", "--by", "A. Smith")
     assert kbe("review", "--kb", kb, *MINE, *usual, "--json") == OK
     [found] = json.loads(told(capsys)[0])["contexts"]
@@ -225,7 +227,7 @@ def test_only_the_table_is_a_page(
     file = tmp_path / "page.html"
     assert kbe("export", "table", "--kb", kb, "-o", file) == OK
     assert kbe("export", "outcomes", "--kb", kb, "-o", file) == BAD_INPUT
-    assert "only the table is written as html" in told(capsys)[1]
+    assert "outcomes and corrections cannot be written as html" in told(capsys)[1]
 
 
 @pytest.mark.parametrize("verb", [("table",), ("export", "outcomes")])
@@ -246,7 +248,7 @@ def test_a_table_of_nothing_is_a_file_all_the_same(
     for suffix in ("txt", "csv", "json", "html", "parquet"):
         file = tmp_path / f"table.{suffix}"
         assert kbe("table", "--kb", kb, "--machine", "lathe", "-o", file) == OK
-        assert "no outcome is meant" in told(capsys)[1]
+        assert "no outcome matches the selection" in told(capsys)[1]
         assert file.stat().st_size > 0
 
 
@@ -257,7 +259,7 @@ def test_who_has_no_login_is_asked_for_a_name(
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(os, "getuid", lambda: 4_000_000)
     assert kbe("accept", 1, "--kb", kb) == BAD_INPUT
-    assert "name the person who decides with --by NAME" in told(capsys)[1]
+    assert "give the name of the person who decides with --by NAME" in told(capsys)[1]
 
 
 def test_an_export_that_is_asked_to_end_leaves_what_was_there(

@@ -96,7 +96,7 @@ def test_a_drive_above_its_limit_is_an_exit_code_of_its_own(
 @pytest.mark.parametrize("option", ["--dialect", "--tools", "--stock"])
 def test_options_of_code_want_code(capsys: pytest.CaptureFixture[str], option: str) -> None:
     assert run(SLOT, option, "x") == BAD_INPUT
-    assert "are for NC code: name it with --nc" in capsys.readouterr().err
+    assert "need NC code: name it with --nc" in capsys.readouterr().err
 
 
 def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:

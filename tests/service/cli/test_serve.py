@@ -32,9 +32,9 @@ def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (("--upload-mb", 0), "--upload-mb 0: it must be 1 to 1024"),
         (("--rate", -1), "--rate -1: it must be 0 to 1e+06"),
         (("--rate", "nan"), "--rate nan: it must be"),
-        (("--tls-cert", "x.crt"), "--tls-cert and --tls-key go together"),
-        (("--host", "0.0.0.0"), "keys are needed, and there is none"),
-        (("--keys",), "keys are needed, and there is none"),
+        (("--tls-cert", "x.crt"), "--tls-cert and --tls-key must be given together"),
+        (("--host", "0.0.0.0"), "requires keys, but none exists"),
+        (("--keys",), "requires keys, but none exists"),
     ],
 )
 def test_what_cannot_be_is_refused(

@@ -70,7 +70,7 @@ def test_reasons_are_words() -> None:
     )
     assert replace(one, shares=()).why == "no chips: nothing to control"
     thread = replace(one, inhibition="the feed is bound to the pitch of the thread")
-    assert thread.why == "feed left as it is: the feed is bound to the pitch of the thread"
+    assert thread.why == "feed not controlled: the feed is bound to the pitch of the thread"
 
 
 def test_nothing_is_exceeded_in_a_good_run(control_run: ControlRun) -> None:

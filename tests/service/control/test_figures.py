@@ -38,7 +38,7 @@ def test_panels_are_those_of_the_paper_and_more(figure: go.Figure) -> None:
     ]
     assert titles == [
         "Workingsteps", "Events", "Feed rate", "Cutting force", "Removal rate",
-        "Feed override", "Measured over expected force", "Pattern of the teeth",
+        "Feed override", "Measured over expected force", "Tooth pattern",
         "Spindle power",
     ]  # fmt: skip
 

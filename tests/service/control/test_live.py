@@ -178,7 +178,7 @@ def test_changes_stand_in_the_rows(controlled: Controlled) -> None:
     live.change(ControlChanges(depth_percent=150.0))
     live.advance(live.time + 0.2)
     told = [row.event for row in live.taken().moments if row.event]
-    assert "order: depth 150 % of the program's" in told[0]
+    assert "order: depth 150 % of the programmed depth" in told[0]
 
 
 def test_a_lost_machine_ends_the_run(controlled: Controlled) -> None:

@@ -27,7 +27,7 @@ def own(run: ControlRun) -> str:
 def test_the_page_has_all_its_parts(control_run: ControlRun) -> None:
     text = own(control_run)
     for title in (
-        "Limits exceeded", "The run", "Workingsteps", "What held the override", "Events",
+        "Limits exceeded", "The run", "Workingsteps", "What limited the override", "Events",
         "Disturbances", "Findings",
     ):  # fmt: skip
         assert f"<h2>{title}</h2>" in text

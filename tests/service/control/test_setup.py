@@ -52,7 +52,7 @@ def test_workingsteps_know_their_limits_and_their_cut(session: Session) -> None:
 
 def test_what_nothing_is_known_of_is_not_touched() -> None:
     (step,) = steps_of({1: PlannedWorkingstep()}, [None])
-    assert step.reference.inhibition == "the program says nothing of its limits"
+    assert step.reference.inhibition == "the program states no limits"
 
 
 def test_the_plan_leaves_the_program_as_it_is(session: Session) -> None:

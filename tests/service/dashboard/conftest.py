@@ -163,10 +163,10 @@ def keep(page: Page, name: str) -> None:
         page.screenshot(path=SCREENSHOTS / f"{name}-{kind}.png", full_page=kind != "wide")
     page.set_viewport_size(WIDE)
     page.evaluate("localStorage.setItem('stepnc.theme', 'dark')")
-    page.get_by_role("button", name="light or dark").click()
-    page.get_by_role("button", name="light or dark").click()
+    page.get_by_role("button", name="switch between light and dark").click()
+    page.get_by_role("button", name="switch between light and dark").click()
     page.screenshot(path=SCREENSHOTS / f"{name}-dark.png")
-    page.get_by_role("button", name="light or dark").click()
+    page.get_by_role("button", name="switch between light and dark").click()
 
 
 def overflow(page: Page) -> int:

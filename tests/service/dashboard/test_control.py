@@ -107,7 +107,7 @@ def test_a_program_runs_under_control(page: Page) -> None:
     expect(page.locator("#told-workingstep")).to_contain_text("ROUGH", timeout=30_000)
     set_input(page, "motor_power_percent", "50")
     expect(page.locator("#log")).to_contain_text("motor power 50 %")
-    expect(page.locator("#run-state")).to_contain_text("Program through", timeout=60_000)
+    expect(page.locator("#run-state")).to_contain_text("Program finished", timeout=60_000)
     expect(page.locator("#lamp")).to_contain_text("AT REST")
     expect(page.locator("#out-feed_actual_mm_min")).to_have_text("0.0")
     # The next start tells programs of the same name apart.

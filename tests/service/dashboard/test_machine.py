@@ -58,5 +58,5 @@ def test_a_cancelled_run_shows_how_it_was_when_it_was_ended(page: Page) -> None:
     start(page, pace="10")
     expect(page.locator("#now-execution")).to_contain_text("ACTIVE", timeout=30_000)
     page.locator("#run-cancel").click()
-    expect(page.locator("#at-words")).to_contain_text("State when the run was ended")
+    expect(page.locator("#at-words")).to_contain_text("State when the run was cancelled")
     expect(page.locator("#now-execution")).to_have_text("CANCELLED")

@@ -33,9 +33,9 @@ def guard(*, may_ask: bool) -> Callable[[Route], None]:
     def answer(route: Route) -> None:
         request = route.request
         if request.headers.get("authorization") != GOOD:
-            refuse(route, 401, "a key is needed")
+            refuse(route, 401, "API key needed")
         elif request.method == "POST" and not may_ask:
-            refuse(route, 403, "this needs the role planner; the key has viewer")
+            refuse(route, 403, "this request needs the role planner; the key has viewer")
         else:
             route.continue_()
 
@@ -81,9 +81,9 @@ def test_a_plan_goes_on_when_the_service_comes_back(browser: Browser, served: Se
         for away in (plan, runs):
             page.route(away, lambda route: route.abort())
         page.locator("#optimise").click()
-        expect(page.locator("#advice-work")).to_contain_text("The connection is lost")
+        expect(page.locator("#advice-work")).to_contain_text("Connection lost")
         page.unroute(plan)
         expect(page.locator("#steps tr.step").first).to_be_visible(timeout=60_000)
-        expect(page.locator("#runs")).to_contain_text("The connection is lost", timeout=60_000)
+        expect(page.locator("#runs")).to_contain_text("Connection lost", timeout=60_000)
         page.unroute(runs)
         expect(page.locator("#load-card")).to_be_visible(timeout=60_000)

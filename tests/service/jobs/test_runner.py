@@ -68,7 +68,7 @@ def test_live_runs_do_not_wait_for_other_jobs(shop: Shop) -> None:
 
 
 def test_one_runner_works_for_a_folder(shop: Shop) -> None:
-    with pytest.raises(Conflict, match="another server works with this folder"):
+    with pytest.raises(Conflict, match="another server is using this folder"):
         runner.locked(shop.data_folder.root)
 
 
@@ -139,7 +139,7 @@ def test_a_run_for_which_nobody_comes_has_an_end_that_says_why(own_shop: Shop) -
     assert job.state is JobState.FAILED
     assert job.problem is not None
     assert job.problem["type"] == "urn:stepnc:problem:too-long"
-    assert "h, which is the most" in job.problem["detail"]
+    assert "h, the time limit of such a job" in job.problem["detail"]
 
 
 def test_all_are_ended_though_one_of_them_is_gone_already(own_shop: Shop) -> None:

@@ -38,7 +38,7 @@ def test_progress_is_told_now_and_then_and_words_without_a_share_never(
     data_folder: DataFolder,  # noqa: F811
 ) -> None:
     task = running(data_folder)
-    task.tell("material: as asked for")
+    task.tell("material: as requested")
     assert jobs.get(data_folder, task.job.id).message == ""
     task.tell("3 of 10 workingsteps")
     told = jobs.get(data_folder, task.job.id)

@@ -60,16 +60,16 @@ def test_what_nobody_measured_may_be_left_out(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("rows", "message"),
     [
-        ({}, "must hold a list of outcomes"),
+        ({}, "must hold a list with at least one outcome"),
         ([], "at least one"),
-        ([3], "outcome 1: is no object"),
+        ([3], "outcome 1: must be an object"),
         ([LEAST, {**LEAST, "colour": "red"}], "outcome 2: unknown key 'colour'"),
         ([{**LEAST, "tool": None}], "'tool' is missing"),
-        ([{**LEAST, "tool": 7}], "'tool' is 7 and must be a text"),
-        ([{**LEAST, "is_finishing": 1}], "'is_finishing' is 1 and must be true or false"),
-        ([{**LEAST, "force_measured_n": "much"}], "'much' and must be a finite number"),
-        ([{**LEAST, "force_measured_n": True}], "True and must be a finite number"),
-        ([{**LEAST, "force_measured_n": float("nan")}], "nan and must be a finite number"),
+        ([{**LEAST, "tool": 7}], "'tool' is 7, but must be text"),
+        ([{**LEAST, "is_finishing": 1}], "'is_finishing' is 1, but must be true or false"),
+        ([{**LEAST, "force_measured_n": "much"}], "'much', but must be a finite number"),
+        ([{**LEAST, "force_measured_n": True}], "True, but must be a finite number"),
+        ([{**LEAST, "force_measured_n": float("nan")}], "nan, but must be a finite number"),
         ([{**LEAST, "force_measured_n": 10**400}], "'force_measured_n' is 1000"),
         ([{**LEAST, "recorded_at": "2026-03-02T08:00:00"}], "a time with its zone"),
         ([{**LEAST, "recorded_at": 5}], "a time with its zone"),
@@ -89,5 +89,5 @@ def test_what_is_no_outcome_is_refused_and_nothing_kept(
 def test_what_is_no_json_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "x.json"
     path.write_bytes(b"\xff{")
-    with pytest.raises(StepNcError, match="is no JSON"):
+    with pytest.raises(StepNcError, match="is not valid JSON"):
         add_outcomes(str(tmp_path / "new.db"), path)

@@ -106,4 +106,4 @@ def test_much_is_not_read_without_a_word(
     assert told == []
     monkeypatch.setattr(evaluated, "MANY", 1000)
     table(str(shop_file), EvaluationRequest(), tell=told.append)
-    assert told == ["reading 1200 outcomes; --summary answers at once"]
+    assert told == ["reading 1200 outcomes; use --summary for a fast overview"]

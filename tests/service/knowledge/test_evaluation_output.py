@@ -60,7 +60,7 @@ def test_bytes_are_not_for_a_terminal(shop_file: Path) -> None:
 
 def test_a_summary_is_no_page(shop_file: Path, tmp_path: Path) -> None:
     for form in ("html", "text"):
-        with pytest.raises(StepNcError, match="is CSV, JSON or Parquet"):
+        with pytest.raises(StepNcError, match="to a CSV, JSON or Parquet"):
             put_summary(str(shop_file), EVERYTHING, form=form, output=tmp_path / "x")
     put_summary(str(shop_file), EVERYTHING, form="json", output=tmp_path / "x.json")
     groups = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))["groups"]

@@ -58,7 +58,7 @@ def test_only_the_folder_of_the_usual_file_is_made(tmp_path: Path) -> None:
 
 def test_a_folder_that_cannot_be_made_says_so(tmp_path: Path) -> None:
     (tmp_path / "data").write_text("a file in the way", encoding="ascii")
-    with pytest.raises(WriteError, match="name another place with --kb"):
+    with pytest.raises(WriteError, match="name another file with --kb"):
         make_folder(usual_place(""))
 
 

@@ -29,7 +29,7 @@ def test_a_proposal_tells_what_it_rests_on_and_what_speaks_against_it(
     assert f"from {len(used)} outcomes of {runs} runs" in out
     assert "90 % interval" in out
     assert "in force before: the catalogue's k_c" in out
-    assert "not without a person: learned from" in out
+    assert "needs a person's decision: learned from" in out
 
 
 def test_what_was_left_out_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -57,7 +57,7 @@ def test_every_byte_of_the_program_stays(place: str, tmp_path: Path) -> None:
 
 def test_a_run_that_nobody_knows_is_refused(place: str, tmp_path: Path) -> None:
     output = tmp_path / "out.stpnc"
-    with pytest.raises(StepNcError, match="no run 'none'; list them"):
+    with pytest.raises(StepNcError, match="no run 'none'; list runs with"):
         write_back(place, PART, run="none", output=output)
     with pytest.raises(StepNcError, match=r"no run of a program 'bracket\.stpnc'"):
         write_back(place, PART.with_name("bracket.stpnc"), output=output)

@@ -122,7 +122,7 @@ def test_a_process_gets_its_settings_from_the_one_that_started_it(
     monkeypatch.delenv("STEPNC_KB", raising=False)
     settings = Settings(data=str(tmp_path / "data"), upload_bytes=7, level="warning")
     settings.hand_on()
-    with pytest.raises(Unavailable, match="none in the data folder"):
+    with pytest.raises(Unavailable, match="not found in the data folder"):
         from_environment()
     assert not (tmp_path / "data").exists()
     open_data_folder(settings.root)

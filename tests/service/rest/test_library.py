@@ -53,7 +53,7 @@ def test_who_has_seen_it_may_change_it_and_nobody_else(
     assert first.status_code == 200
     late = client.put(f"{path}/ours-1", content=data, headers={"if-match": seen})
     found = is_problem(late, 412, "precondition-failed")
-    assert "changed meanwhile" in found["detail"]
+    assert "has changed since it was read" in found["detail"]
     is_problem(client.delete(f"{path}/ours-1", headers={"if-match": seen}), 412)
     again = client.get(f"{path}/ours-1", headers={"if-none-match": first.headers["etag"]})
     assert again.status_code == 304

@@ -108,7 +108,7 @@ def signalled(server: Server, number: signal.Signals) -> int:
 def test_a_stop_frees_the_folder_at_once_and_a_kill_ends_everything(tmp_path: Path) -> None:
     server = Server(tmp_path, "--workers", "2")
     with server:
-        with pytest.raises(StepNcError, match="another server works with this folder"):
+        with pytest.raises(StepNcError, match="another server is using this folder"):
             serve(ServerOptions(settings=Settings(data=str(server.data)), workers=1, jobs=1))
         assert signalled(server, signal.SIGTERM) == 0
         with locked(server.data):

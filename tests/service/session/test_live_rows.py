@@ -56,7 +56,7 @@ def test_each_change_of_the_lamp_is_an_event() -> None:
         live_rows(row(time, power=power))
     told = [(event.time, event.kind, event.text) for event in live_rows.taken().events]
     assert told == [
-        (0.5, EventKind.OVER, "power limit: the drive draws 2 kW, the motor has 1 kW"),
+        (0.5, EventKind.OVER, "power limit: the drive draws 2 kW, the motor delivers 1 kW"),
         (2.5, EventKind.SAFE, "power limit: for 1 s at most 5% above 1 kW"),
     ]
 

@@ -19,7 +19,7 @@ def test_a_factor_that_cannot_be_is_refused(grams: float) -> None:
 
 def test_a_stated_factor_counts_and_says_whose_it_is() -> None:
     assert stated(36.0).grams(7.2e6) == 72.0
-    assert stated(0.0).source == "as asked for"
+    assert stated(0.0).source == "as requested"
 
 
 @pytest.mark.parametrize("grams", [-1.0, float("inf"), float("nan")])

@@ -112,7 +112,7 @@ def test_a_dialect_that_is_named_wins(tmp_path: Path) -> None:
 
 def test_a_file_that_names_no_dialect_is_refused(tmp_path: Path) -> None:
     prepared = coded(tmp_path, "M30\n", "a.tap")
-    with pytest.raises(StepNcError, match="name its dialect with --dialect: canonical, linux"):
+    with pytest.raises(StepNcError, match="add --dialect: canonical, linux"):
         next(prepared.blocks)
 
 

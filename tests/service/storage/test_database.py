@@ -50,7 +50,7 @@ def test_a_newer_file_is_refused_and_stays_as_it_is(tmp_path: Path) -> None:
         connection.execute("CREATE TABLE of_tomorrow (a)")
         connection.execute(f"PRAGMA user_version = {len(SCHEMA) + 1}")
     before = file.read_bytes()
-    with pytest.raises(Unavailable, match="take a newer program") as refused:
+    with pytest.raises(Unavailable, match="install a newer program") as refused:
         Database(file)
     assert str(tmp_path) not in str(refused.value)
     with closing(sqlite3.connect(file)) as connection:
@@ -130,7 +130,7 @@ def test_a_file_that_was_moved_away_is_not_written_and_not_made_anew(tmp_path: P
             """not met"""
     folder.mkdir()
     Database(folder / "service.db")
-    with pytest.raises(Unavailable, match="another file than before"):
+    with pytest.raises(Unavailable, match="replaced by another one"):
         count(database)
     shutil.rmtree(folder)
     (tmp_path / "moved").rename(folder)

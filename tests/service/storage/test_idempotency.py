@@ -71,15 +71,15 @@ def test_what_was_deleted_is_not_made_again_and_said(data_folder: DataFolder) ->
         data_folder, b"bytes", name="a.stpnc", owner="anna", idempotency=key()
     )
     programs.remove(data_folder, program.id)
-    with pytest.raises(Conflict, match="what this request made was deleted"):
+    with pytest.raises(Conflict, match="what this request created was deleted"):
         programs.add(data_folder, b"bytes", name="a.stpnc", owner="anna", idempotency=key())
     assert list((data_folder.root / "programs").iterdir()) == []
     job = jobs.add(data_folder, ORDER, idempotency=key("j"))
     jobs.cancel(data_folder, job.id)
     jobs.remove(data_folder, job.id)
-    with pytest.raises(Conflict, match="what this request made was deleted"):
+    with pytest.raises(Conflict, match="what this request created was deleted"):
         jobs.add(data_folder, ORDER, idempotency=key("j"))
-    with pytest.raises(Conflict, match="came with another request"):
+    with pytest.raises(Conflict, match="was used for another request"):
         jobs.add(data_folder, ORDER, idempotency=key("j", fingerprint="g"))
 
 

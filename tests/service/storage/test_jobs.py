@@ -211,7 +211,7 @@ def test_a_lost_run_with_people_has_failed_and_says_so(
     found = jobs.get(data_folder, job.id)
     assert found.state is JobState.FAILED
     assert found.problem is not None
-    assert "people" in found.problem["detail"]
+    assert "live run" in found.problem["detail"]
 
 
 def test_a_lost_job_that_was_to_end_is_cancelled(data_folder: DataFolder) -> None:

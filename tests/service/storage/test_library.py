@@ -162,9 +162,9 @@ def test_own_names_become_their_files_and_others_stay_names(data_folder: DataFol
 @pytest.mark.parametrize("name", ["vmc15", "c45"])
 def test_what_is_of_the_library_stays(data_folder: DataFolder, name: str) -> None:
     section = LibrarySection.MACHINES if name == "vmc15" else LibrarySection.MATERIALS
-    with pytest.raises(Conflict, match="of the library"):
+    with pytest.raises(Conflict, match="is built in"):
         library.put(data_folder, section, name, MACHINE)
-    with pytest.raises(Conflict, match="of the library"):
+    with pytest.raises(Conflict, match="is built in"):
         library.remove(data_folder, section, name)
     assert not library.one(data_folder, section, name).is_own
 
@@ -325,7 +325,7 @@ def test_what_is_deleted_or_not_there_is_changed_by_nobody_who_saw_it(
         ),
         lambda: library.remove(data_folder, LibrarySection.MACHINES, "ours", condition=bool),
     ):
-        with pytest.raises(PreconditionFailed, match="is not there"):
+        with pytest.raises(PreconditionFailed, match="does not exist"):
             change()
     assert files(data_folder) == []
 
