@@ -90,12 +90,12 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
         ([SLOT, "--disturb", "material:butter@1s"], "unknown material 'butter'"),
         ([SLOT, "--disturb", "depth:nan@1s"], "'nan' is not a number"),
         ([SLOT, "--deviation-mm", "nan"], "deviation nan mm"),
-        ([SLOT, "--stock", "1,2,3"], "are for NC code: name it with --nc"),
+        ([SLOT, "--stock", "1,2,3"], "need NC code: name it with --nc"),
         (
             [PARTS / "shaft.stpnc", "--machine", "vmc15"],
             "is a turning tool, but the machine is a mill",
         ),
-        ([PARTS / "paper002.stpnc", "--machine", "paper002"], "nothing of its axes"),
+        ([PARTS / "paper002.stpnc", "--machine", "paper002"], "no data for its axes"),
     ],
 )
 def test_what_cannot_be_is_refused(refused: Refused, words: list[object], message: str) -> None:

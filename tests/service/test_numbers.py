@@ -59,7 +59,8 @@ def test_a_stock_of_nothing_or_beyond_any_machine_is_refused(
     with pytest.raises(StepNcError) as refused:
         stock_in(text)
     assert str(refused.value) == (
-        f"stock: {axis} from {low} to {high} mm: must span at least 0.01 mm, within 100000 mm of zero"
+        f"stock: {axis} from {low} to {high} mm: must span at least 0.01 mm, "
+        "within 100000 mm of zero"
     )
 
 

@@ -35,7 +35,7 @@ def test_modes_and_what_they_leave_are_printed(capsys: pytest.CaptureFixture[str
     print_tap_test(RESULT)
     printed = capsys.readouterr().out
     assert "x          922           0.011          1.34" in printed
-    assert "unexplained: 25.0% of the response, 1.1% with residues" in printed
+    assert "unexplained: 25.0% of the response, 1.1% after adding residues" in printed
     assert 'stiffness_n_um = 1.34\nsource = "bench"' in printed
     assert "warning: look at it" in printed
 

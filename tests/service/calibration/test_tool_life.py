@@ -52,8 +52,8 @@ def test_a_file_adds_pairs_and_then_there_is_an_interval(
         (("--life", "160"), "write 120:25"),
         (("--life", "160:x", "--life", "100:3"), "must be two numbers"),
         ((*PAIRS, "--edge", "wood"), "hss, carbide, ceramic"),
-        ((*PAIRS, "-o", "life.csv"), "written as .toml"),
-        ((*PAIRS, "run.csv"), "one at a time"),
+        ((*PAIRS, "-o", "life.csv"), "must end with .toml"),
+        ((*PAIRS, "run.csv"), "in separate calls"),
         (("--tool-life", "/nowhere/lives.csv"), "No such file"),
     ],
 )

@@ -73,7 +73,7 @@ def test_orders_come_in_the_order_of_their_times() -> None:
         ("", "write it like depth:+50%@12s or kc:1.3"),
         ("depth", "write it like depth:+50%@12s or kc:1.3"),
         ("luck:1@2s", "unknown kind 'luck'; known: "),
-        ("depth:+50%", "say when, as in depth:+50%@12s"),
+        ("depth:+50%", "add a time, as in depth:+50%@12s"),
         ("depth:+50%@", "'' is not a number in s or min"),
         ("depth:+50%@-1s", "the time must be at least 0 s"),
         ("depth:+50%@nan", "'nan' is not a number in s or min"),

@@ -63,10 +63,10 @@ def test_a_tenth_of_the_cut_above_the_set_point_is_too_much(
 
 def test_reasons_are_words() -> None:
     one = row(overrides=72.0)
-    assert one.why == f"override 120 %, held by {TOP}"
+    assert one.why == f"override 120 %, limited by {TOP}"
     some = replace(one, shares=((TOP, 0.9), ("roughness", 0.097), ("rate limit", 0.003)))
     assert some.why == (
-        f"override 120 %, held by {TOP} 90 %, roughness 10 %, rate limit < 1 % of the cut"
+        f"override 120 %, limited by {TOP} 90 %, roughness 10 %, rate limit < 1 % of the cut"
     )
     assert replace(one, shares=()).why == "no chips: nothing to control"
     thread = replace(one, inhibition="the feed is bound to the pitch of the thread")

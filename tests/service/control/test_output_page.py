@@ -61,7 +61,7 @@ def test_many_events_are_cut_with_a_word(control_run: ControlRun) -> None:
     )
     text = own(replace(control_run, events=events))
     assert f"{MOST_EVENTS + 5} warning" in text
-    assert "5 more are left out" in text
+    assert "5 more events are not listed" in text
 
 
 def test_the_same_seed_makes_the_same_page(controlled: Controlled, tmp_path: Path) -> None:

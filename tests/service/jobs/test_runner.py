@@ -187,7 +187,7 @@ def test_a_killed_runner_leaves_nobody_and_the_next_one_finishes_its_job(
     lost = own_shop.job(trial)
     assert (lost.state, lost.attempt) == (JobState.FAILED, 1)
     assert lost.problem is not None
-    assert "people" in lost.problem["detail"]
+    assert "cannot be resumed" in lost.problem["detail"]
 
 
 def test_a_runner_that_is_told_to_stop_ends_its_jobs_for_the_next_one(own_shop: Shop) -> None:

@@ -41,7 +41,7 @@ def test_a_run_of_a_machine_without_axes_is_refused(client: httpx.Client, done: 
     job = made(client.post(f"/v1/programs/{done.program}/advice", json=body))
     ended = over(client, job, within=60.0)
     assert ended["state"] == "failed"
-    assert "says nothing of its axes X, Y, Z" in ended["problem"]["detail"]
+    assert "has no data for its axes X, Y, Z" in ended["problem"]["detail"]
 
 
 def test_answers_are_tagged(client: httpx.Client, done: Done) -> None:

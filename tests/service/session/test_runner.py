@@ -185,7 +185,7 @@ def test_a_run_of_more_rows_than_can_be_kept_is_refused(
     folder: LiveFolder, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(live_runner, "MOST_ROWS", 5)
-    with pytest.raises(StepNcError, match="more than 5 rows"):
+    with pytest.raises(StepNcError, match="exceeds 5 rows"):
         go(folder, Run(seconds=1.0), pace=1.0)
 
 

@@ -154,7 +154,7 @@ def test_limits_and_findings_are_said_once(page: str) -> None:
 def test_the_material_is_named_when_known(
     page: str, simulation: Simulation, trace: BucketedRun
 ) -> None:
-    assert "material not known" in page
+    assert "material unknown" in page
     match = MaterialMatch(
         material=load_material("c45"), certainty=Certainty.EXACT, reason="read as <C45>"
     )

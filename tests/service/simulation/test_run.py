@@ -285,7 +285,7 @@ def test_an_interrupted_run_leaves_what_it_has_beside_the_old_one(
 def test_a_program_that_takes_no_time_is_none(tmp_path: Path) -> None:
     code = tmp_path / "empty.ngc"
     code.write_text("(nothing)\nM30\n", encoding="ascii")
-    with pytest.raises(SimulationError, match=r"empty.ngc: there is nothing in it"):
+    with pytest.raises(SimulationError, match=r"empty.ngc: the program contains nothing"):
         simulate(
             *asked_simulation(
                 code=CodeRequest(code=code), machine="vmc15", output=tmp_path / "run.csv"
