@@ -102,7 +102,7 @@ class ExclusionReason(StrEnum):
     """Reason why an outcome is excluded from learning."""
 
     NO_RATIO = "no force ratio"
-    NOT_FINITE = "force ratio is no number"
+    NOT_FINITE = "force ratio is not a number"
     FEW_READINGS = "too few readings"
     WILD = "wild force ratio"
 

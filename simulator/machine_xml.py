@@ -225,7 +225,7 @@ def _attributes(path: Path) -> dict[str, float | str]:
     try:
         root = etree.fromstring(read_bounded(path), parser)
     except etree.XMLSyntaxError as error:
-        raise LibraryError(f"is no XML: {error.msg}", path=str(path)) from error
+        raise LibraryError(f"is not XML: {error.msg}", path=str(path)) from error
     machine = root if root.tag == "Machine" else root.find(".//Machine")
     if machine is None:
         raise LibraryError("has no Machine element", path=str(path), key="Machine")

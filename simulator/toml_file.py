@@ -85,7 +85,7 @@ def require_window(table: FileTable, low_key: str, high_key: str) -> None:
 def require_whole(table: FileTable, key: str) -> None:
     """Refuse a number with a fraction."""
     if (value := getattr(table, key)) != int(value):
-        raise KeyFault(key, f"{value:g} is no whole number")
+        raise KeyFault(key, f"{value:g} is not a whole number")
 
 
 def require_together(table: FileTable, *keys: str) -> None:
@@ -148,7 +148,7 @@ def read_text(path: Path) -> str:
     try:
         return read_bounded(path).decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError as error:
-        raise LibraryError(f"is no UTF-8 text: {error.reason}", path=str(path)) from error
+        raise LibraryError(f"is not UTF-8 text: {error.reason}", path=str(path)) from error
 
 
 def read_bounded(path: Path) -> bytes:
@@ -350,28 +350,28 @@ def _complaint(value: object, kind: inspect.Type, place: str) -> str:
         case inspect.EnumType() | inspect.LiteralType() if isinstance(value, str):
             enumeration = getattr(inner, "cls", None)
             known: Sequence[Any] = getattr(inner, "values", None) or list(enumeration or ())
-            return f"'{_cut(value)}' is none of {', '.join(map(str, filter(None, known)))}"
+            return f"'{_cut(value)}' is not one of {', '.join(map(str, filter(None, known)))}"
         case inspect.StructType():
-            return f"{_shown(value)} is no table"
+            return f"{_shown(value)} is not a table"
         case inspect.VarTupleType(item_type=inspect.StrType()):
-            return f"{_shown(value)} is no list of texts"
+            return f"{_shown(value)} is not a list of texts"
         case inspect.VarTupleType():
-            return f"is no array of tables; write [[{place}]]"
+            return f"is not an array of tables; write [[{place}]]"
         case _:
-            return f"{_shown(value)} is no text"
+            return f"{_shown(value)} is not a text"
 
 
 def _number_complaint(value: object, kind: inspect.Type) -> str:
     unit, low, high = _range(kind)
     allowed = f"{low:g} to {_quantity(high, unit)}"
     if isinstance(value, bool) or not isinstance(value, int | float):
-        return f"{_shown(value)} is no number; expected {allowed}"
+        return f"{_shown(value)} is not a number; expected {allowed}"
     try:
         number = float(value)
     except OverflowError:
         return f"{_shown(value)} is beyond the range of a number; expected {allowed}"
     if not isfinite(number):
-        return f"{number} is no finite number; expected {allowed}"
+        return f"{number} is not a finite number; expected {allowed}"
     if number < low:
         return f"{_quantity(number, unit)} is below {_quantity(low, unit)}"
     return f"{_quantity(number, unit)} exceeds {_quantity(high, unit)}"

@@ -340,8 +340,12 @@ def test_a_material_that_nobody_knows_is_refused_with_near_names(
     [
         ("power_kw = 15\n", "", "spindle.curve[2].power_kw: missing"),
         ("power_kw = 15\n", "power_kw = -15\n", "spindle.curve[2].power_kw: -15 kW is below"),
-        ("power_kw = 15\n", "power_kw = nan\n", "spindle.curve[2].power_kw: nan is no finite"),
-        ("power_kw = 15\n", "power_kw = 1e400\n", "power_kw: inf is no finite number"),
+        (
+            "power_kw = 15\n",
+            "power_kw = nan\n",
+            "spindle.curve[2].power_kw: nan is not a finite",
+        ),
+        ("power_kw = 15\n", "power_kw = 1e400\n", "power_kw: inf is not a finite number"),
         (
             "power_kw = 15\n",
             f"power_kw = 1{'0' * 320}\n",
@@ -351,7 +355,7 @@ def test_a_material_that_nobody_knows_is_refused_with_near_names(
         (
             "power_kw = 15\n",
             "power_kw = '15'\n",
-            "spindle.curve[2].power_kw: '15' is no number",
+            "spindle.curve[2].power_kw: '15' is not a number",
         ),
         ("\nefficiency = 0.85", "\nefficiency = 0", "spindle.efficiency: 0 "),
         ("\nefficiency = 0.85", "\nefficiency = 1.5", "spindle.efficiency: 1.5 "),

@@ -195,7 +195,10 @@ def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
         ({"missing": "1"}, "missing 1: it must be at least 0 and below 1"),
         ({"missing": "nan"}, "missing nan"),
         ({"deviation-mm": "inf"}, "deviation inf mm: it must be above 0 to 10 mm"),
-        ({"filter-s": "1e-300,1e-300"}, "filter times 1e-300 and 1e-300 s: must be 1e-06 to 100 s"),
+        (
+            {"filter-s": "1e-300,1e-300"},
+            "filter times 1e-300 and 1e-300 s: must be 1e-06 to 100 s",
+        ),
         ({"filter-s": "1"}, "filter times '1': expected 2 numbers separated by commas"),
         ({"zero": "nan,0,0"}, "zero 'nan,0,0': expected 3 numbers separated by commas"),
         (
@@ -248,7 +251,7 @@ def test_a_huge_stock_takes_no_more_memory(code: Path) -> None:
         (TABLE.replace("diameter_mm", "diametermm"), "tool[1].diametermm: unknown key"),
         (TABLE + "colour = 1\n", "tool[1].colour"),
         (TABLE.replace("= 10", "= -10"), "tool[1].diameter_mm: -10 mm is below 0.01 mm"),
-        (TABLE.replace("= 10", "= nan"), "tool[1].diameter_mm: nan is no finite number"),
+        (TABLE.replace("= 10", "= nan"), "tool[1].diameter_mm: nan is not a finite number"),
         (TABLE.replace("= 10", '= "ten"'), "tool[1].diameter_mm"),
         (TABLE.replace("endmill", "axe"), "tool[1].kind"),
         (

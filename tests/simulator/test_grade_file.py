@@ -63,7 +63,7 @@ def test_the_helix_belongs_to_the_edge(tmp_path: Path) -> None:
             "grade[1].max_feed_ratio: 2 exceeds 0.2",
         ),
         ("max_feed_ratio", "max_feed_per_rev", "grade[1].max_feed_per_rev: unknown key"),
-        ('iso_group = "P"', 'iso_group = ""', "'' is none of *, H, K, M, N, P, S"),
+        ('iso_group = "P"', 'iso_group = ""', "'' is not one of *, H, K, M, N, P, S"),
         (
             "min_cutting_speed_m_min = 12\n",
             "",

@@ -141,8 +141,16 @@ def test_a_step_in_the_curve_is_told_before_anything_is_cut(tmp_path: Path) -> N
             "power_kw = -1\ntor",
             "curve[1].power_kw: -1 kW is below 0.001 kW",
         ),
-        ("power_kw = 7.5\ntor", "power_kw = nan\ntor", "curve[1].power_kw: nan is no finite"),
-        ("power_kw = 7.5\ntor", "power_kw = '7'\ntor", "curve[1].power_kw: '7' is no number"),
+        (
+            "power_kw = 7.5\ntor",
+            "power_kw = nan\ntor",
+            "curve[1].power_kw: nan is not a finite",
+        ),
+        (
+            "power_kw = 7.5\ntor",
+            "power_kw = '7'\ntor",
+            "curve[1].power_kw: '7' is not a number",
+        ),
         (
             "power_kw = 7.5\ntor",
             "power_w = 7500\ntor",
@@ -155,7 +163,7 @@ def test_a_step_in_the_curve_is_told_before_anything_is_cut(tmp_path: Path) -> N
             "min_speed_rpm = 7000",
             "7000 rpm exceeds max_speed_rpm 6000 rpm",
         ),
-        ('kind = "mill"', 'kind = "saw"', "kind: 'saw' is none of mill, lathe"),
+        ('kind = "mill"', 'kind = "saw"', "kind: 'saw' is not one of mill, lathe"),
         ("rapid_mm_min = 30_000\nb", "rapid_m_min = 30\nb", "rapid_m_min: unknown key"),
         ("block_time_s = 0.004", "block_time_s = 4", "block_time_s: 4 s exceeds 1 s"),
         ("acceleration_mm_s2 = 3_000", "acceleration_mm_s2 = 3", "3 mm/s² is below 10 mm/s²"),
@@ -262,8 +270,8 @@ def test_measured_modes_are_read_in_canonical_units(tmp_path: Path) -> None:
         ("damping_ratio = 0.011", "damping_ratio = 1.1", "damping_ratio: 1.1 exceeds 0.5"),
         ("stiffness_n_um = 1.34", "stiffness_n_um = 1.34e6", "exceeds 10000 N/µm"),
         ("stiffness_n_um", "stiffness", "mode[1].stiffness: unknown key"),
-        ('direction = "xy"', 'direction = "up"', "direction: 'up' is none of x, y, z, xy"),
-        ('part = "tool"', 'part = "bed"', "part: 'bed' is none of tool, workpiece"),
+        ('direction = "xy"', 'direction = "up"', "direction: 'up' is not one of x, y, z, xy"),
+        ('part = "tool"', 'part = "bed"', "part: 'bed' is not one of tool, workpiece"),
         ('part = "tool"', 'part = "workpiece"', "a mode of the workpiece belongs to no tool"),
         ('source = "tap test"', "", "source: missing"),
         (

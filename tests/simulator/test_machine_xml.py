@@ -84,7 +84,7 @@ def test_an_id_that_looks_like_a_number_is_a_name(tmp_path: Path) -> None:
         (
             'pDefaultLoad="370"',
             'pDefaultLoad="much"',
-            "Machine.pDefaultLoad: 'much' is no number",
+            "Machine.pDefaultLoad: 'much' is not a number",
         ),
         ('pDefaultLoad="370"', "", "Machine.pDefaultLoad: missing"),
         ('pDefaultLoad="370"', 'pDefaultLod="370"', "Machine.pDefaultLod: unknown key"),
@@ -96,7 +96,7 @@ def test_an_id_that_looks_like_a_number_is_a_name(tmp_path: Path) -> None:
             'pitchFeedScrew="15"',
             "Machine.pitchFeedScrew: 15 m/rev exceeds 0.5 m/rev",
         ),
-        ("<Machines>", "<Machines", "is no XML"),
+        ("<Machines>", "<Machines", "is not XML"),
         ("<Machine\n", "<Robot\n", "has no Machine element"),
     ],
 )

@@ -80,10 +80,10 @@ def refused(**content: object) -> str:
         (0, "0 rpm is below 1 rpm"),
         (-5.5, "-5.5 rpm is below 1 rpm"),
         (101, "101 rpm exceeds 100 rpm"),
-        (float("nan"), "nan is no finite number; expected 1 to 100 rpm"),
-        (float("inf"), "inf is no finite number; expected 1 to 100 rpm"),
-        ("fast", "'fast' is no number; expected 1 to 100 rpm"),
-        (True, "True is no number; expected 1 to 100 rpm"),
+        (float("nan"), "nan is not a finite number; expected 1 to 100 rpm"),
+        (float("inf"), "inf is not a finite number; expected 1 to 100 rpm"),
+        ("fast", "'fast' is not a number; expected 1 to 100 rpm"),
+        (True, "True is not a number; expected 1 to 100 rpm"),
         (10**400, "…"),
     ],
 )
@@ -113,23 +113,23 @@ def test_a_number_in_its_range_comes_back_unchanged(value: float) -> None:
         ({"table": {}}, "table.speed: missing; expected a number, 1 to 100 rpm"),
         ({"part": [{"side": 3}]}, "part[1].shape: missing; expected a text"),
         ({"part": [{"shape": "round"}]}, "part[1].diameter: missing; expected a number"),
-        ({"part": [{"shape": "oval"}]}, "part[1].shape: 'oval' is none of round, square"),
+        ({"part": [{"shape": "oval"}]}, "part[1].shape: 'oval' is not one of round, square"),
         ({"part": [{"shape": "round", "diameter": 2, "side": 3}]}, "part[1].side: unknown"),
         ({"sped": 5}, "sped: unknown key; known here: colour, curve, high, is_on, low"),
         ({"a` - at `$.b": 5}, "unknown key"),
         ({"curve": [{"speed": 1}, {"speed": 2, "sped": 2}]}, "curve[2].sped: unknown key"),
         ({"low": 20, "high": 10}, "low: 20 rpm exceeds high 10 rpm"),
-        ({"title": 5}, "title: 5 is no text"),
+        ({"title": 5}, "title: 5 is not a text"),
         ({"title": "none"}, "has no title"),
         ({"title": "twice"}, "curve[2].speed: is there twice"),
-        ({"table": {"speed": 1, "names": ["a", 1]}}, "table.names[2]: 1 is no text"),
-        ({"table": {"speed": 1, "names": 1}}, "table.names: 1 is no list of texts"),
-        ({"curve": 3}, "curve: is no array of tables; write [[curve]]"),
-        ({"curve": [3]}, "curve[1]: 3 is no table"),
-        ({"part": [3]}, "part[1]: 3 is no table"),
-        ({"table": []}, "table: [] is no table"),
-        ({"colour": "green"}, "colour: 'green' is none of red, blue"),
-        ({"colour": 7}, "colour: 7 is no text"),
+        ({"table": {"speed": 1, "names": ["a", 1]}}, "table.names[2]: 1 is not a text"),
+        ({"table": {"speed": 1, "names": 1}}, "table.names: 1 is not a list of texts"),
+        ({"curve": 3}, "curve: is not an array of tables; write [[curve]]"),
+        ({"curve": [3]}, "curve[1]: 3 is not a table"),
+        ({"part": [3]}, "part[1]: 3 is not a table"),
+        ({"table": []}, "table: [] is not a table"),
+        ({"colour": "green"}, "colour: 'green' is not one of red, blue"),
+        ({"colour": 7}, "colour: 7 is not a text"),
         ({"is_on": "yes"}, "is_on: 'yes' is neither true nor false"),
     ],
 )
@@ -206,7 +206,7 @@ def test_a_file_that_is_no_toml_is_told(tmp_path: Path) -> None:
 def test_a_file_that_is_no_text_is_told(tmp_path: Path) -> None:
     path = tmp_path / "broken.toml"
     path.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(LibraryError, match="is no UTF-8 text"):
+    with pytest.raises(LibraryError, match="is not UTF-8 text"):
         read_toml(path, Root)
 
 

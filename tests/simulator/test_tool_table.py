@@ -126,7 +126,7 @@ def test_an_insert(tmp_path: Path) -> None:
         (MILL + "diametre = 3", "diametre", ("unknown key",)),
         (MILL + 'diameter = "3"', "diameter", ("unknown key",)),
         (MILL + 'cutting_material = "wood"', "cutting_material", ("'wood'", "hss")),
-        (MILL.replace("10", '"10"'), "diameter_mm", ("'10'", "no number")),
+        (MILL.replace("10", '"10"'), "diameter_mm", ("'10'", "not a number")),
         ('number = 1\nkind = "grooving"', "width_mm", ("missing",)),
         (
             'number = 1\nkind = "turning"\ncutting_edge_angle_deg = 180',

@@ -1,4 +1,4 @@
-"""The table of a calibration names what was found, and leaves empty what is no number."""
+"""The table of a calibration names what was found, and leaves empty what is not a number."""
 
 import re
 

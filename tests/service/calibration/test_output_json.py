@@ -1,4 +1,4 @@
-"""The JSON of a calibration carries its units, and what is no number is null."""
+"""The JSON of a calibration carries its units, and what is not a number is null."""
 
 import json
 from typing import Any

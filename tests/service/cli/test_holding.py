@@ -66,7 +66,7 @@ def test_a_machine_is_shown_with_what_it_holds_with(
     ("good", "bad", "message"),
     [
         ("friction = 0.2", "friction = 7", "holding[1].friction: 7 exceeds 1"),
-        ('"chuck"', '"glue"', "holding[1].kind: 'glue' is none of chuck, vice, clamps"),
+        ('"chuck"', '"glue"', "holding[1].kind: 'glue' is not one of chuck, vice, clamps"),
         ("[[holding]]", "[[hold]]", "hold: unknown key"),
         (
             "jaw_radius_mm = 63\n",

@@ -31,7 +31,9 @@ def test_numbers_are_read_in_order() -> None:
 
 @pytest.mark.parametrize("text", ["", "x", "1,", "1,2,nan", "1,2,inf", "1,2", "1 2 3"])
 def test_what_are_no_numbers_is_refused(text: str) -> None:
-    with pytest.raises(StepNcError, match=f"zero '{text}': expected 3 numbers separated by commas"):
+    with pytest.raises(
+        StepNcError, match=f"zero '{text}': expected 3 numbers separated by commas"
+    ):
         numbers_in(text, "zero", counts=(3,))
 
 
