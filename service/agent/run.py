@@ -2,8 +2,7 @@
 
 import asyncio
 import socket
-import time
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Coroutine, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from functools import partial
@@ -12,6 +11,8 @@ from typing import Any
 
 import uvicorn
 
+from service.agent.play import MICRO, PlayableRun, begun, now, play
+from service.agent.replay import LOGS, read_log
 from service.files import require_place, write_atomically
 from service.reading import Tell, silent
 from service.requests.agent import AgentRequest
@@ -21,13 +22,15 @@ from service.rest.http_protocol import BoundedHttpProtocol
 from service.simulation.run import RunFiles, Simulation, simulate
 from simulator.agent.adapters import AdapterAddress, AdapterIntake, ShdrServer, listen_to
 from simulator.agent.agent import Agent
+from simulator.agent.buffer import Value
 from simulator.agent.http import application
 from simulator.agent.machine_feed import RunFeed, beginning, run_feed
 from simulator.agent.machine_model import MachineModel, device_uuid, machine_model
-from simulator.agent.model import read_model
+from simulator.agent.model import DeviceModel, read_model
 from simulator.agent.names import NameSet, SchemaVersion
 from simulator.agent.requests import StreamQuery
 from simulator.agent.tool_assets import tool_asset
+from simulator.library import load_machine
 from simulator.machine.samples import Samples, joined
 from simulator.machine.virtual import LoadedTool
 from simulator.spec import Machine
@@ -37,11 +40,6 @@ BACKLOG = 2048
 """connections that may wait to be accepted"""
 
 LEAST_BUFFER = 1000
-
-STEP = 0.02
-"""s of wall-clock time between looks at what is due"""
-
-MICRO = 1_000_000
 
 Work = Callable[[], Coroutine[Any, Any, None]]
 """what goes on beside the server"""
@@ -73,6 +71,32 @@ class PublishedRun:
     feed: RunFeed
     tools: tuple[LoadedTool, ...]
 
+    @property
+    def devices(self) -> DeviceModel:
+        """See :class:`service.agent.play.PlayableRun`."""
+        return self.model.model
+
+    @property
+    def duration(self) -> float:
+        """See :class:`service.agent.play.PlayableRun`."""
+        return self.feed.duration
+
+    def feeds(self) -> Iterator[RunFeed]:
+        """See :class:`service.agent.play.PlayableRun`."""
+        yield self.feed
+
+    def first(self, count: int) -> Mapping[str, Value]:
+        """See :class:`service.agent.play.PlayableRun`."""
+        return beginning(self.model, program=self.program, part_count=count)
+
+    def equip(self, agent: Agent) -> None:
+        """Add the tools of the program."""
+        name, uuid = self.machine.name, device_uuid(self.machine)
+        index = agent.model.device_of(name) or 0
+        for tool in self.tools:
+            begin = agent.buffer.last_time
+            agent.put(tool_asset(tool, device=name, uuid=uuid, index=index, time=begin))
+
 
 def published_run(
     request: AgentRequest, files: RunFiles, *, tell: Tell = silent
@@ -84,14 +108,19 @@ def published_run(
     StepNcError
         For everything that is wrong with file, names or numbers.
     """
-    if request.is_looped and (request.speed > 1.0 or request.speed == 0.0):
-        raise StepNcError(
-            "--loop: only at a speed of at most 1, as stamps never pass the clock"
-        )
+    require_possible(request)
     require_bounds(request)
     collector = SampleCollector()
     simulation = simulate(request, files, tell=tell, watchers=[collector])
     return shown_run(simulation, collector, version=request.schema, names=request.names)
+
+
+def require_possible(request: AgentRequest) -> None:
+    """Refuse to start again a run whose stamps would pass the clock."""
+    if request.is_looped and (request.speed > 1.0 or request.speed == 0.0):
+        raise StepNcError(
+            "--loop: only at a speed of at most 1, as stamps never pass the clock"
+        )
 
 
 def shown_run(
@@ -141,7 +170,10 @@ def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent
         if request.shdr_port is not None:
             shdr = stack.enter_context(listening(request.host, request.shdr_port))
             tell(f"SHDR adapter: {_place(shdr)}")
-        if files.device is not None:
+        log = files.run.file
+        if log is not None and log.suffix.lower() in LOGS:
+            agent, work = replayed(request, files, log, tell=tell)
+        elif files.device is not None:
             agent, work = adapted(request, files, tell=tell)
         else:
             agent, work = published(request, files.run, tell=tell)
@@ -160,7 +192,30 @@ def published(
     if run.model.left_out:
         names = ", ".join(run.model.left_out)
         tell(f"left out, as schema {request.schema} does not know them: {names}")
-    agent = new_agent(request, run)
+    return played(request, run)
+
+
+def replayed(
+    request: AgentRequest, files: AgentFiles, log: Path, *, tell: Tell
+) -> tuple[Agent, Sequence[Work]]:
+    """Return an agent, and the recorded run that it publishes again."""
+    if request.adapters:
+        raise StepNcError("--adapter: a recorded run and adapters exclude each other")
+    require_bounds(request)
+    require_possible(request)
+    if files.device is not None:
+        model = read_model(files.device)
+    else:
+        if not request.machine:
+            raise StepNcError("name the machine with --machine, or its model with --device")
+        machine = load_machine(request.machine)
+        model = machine_model(machine, version=request.schema, names=request.names).model
+    return played(request, read_log(log, model, tell=tell))
+
+
+def played(request: AgentRequest, run: PlayableRun) -> tuple[Agent, Sequence[Work]]:
+    """Return an agent, and the work of playing a run."""
+    agent = begun(run, speed=request.speed, size=request.buffer)
     speed, is_looped = request.speed, request.is_looped
     return agent, [lambda: play(agent, run, speed=speed, is_looped=is_looped)]
 
@@ -212,68 +267,12 @@ def simulated_with_document(
 def streams_document(run: PublishedRun) -> bytes:
     """The whole run as one document of streams, that ends now."""
     count = len(run.feed.values) + 2 * len(run.model.model.items)
-    agent = _begun(run, speed=0.0, size=max(LEAST_BUFFER, count))
-    first = beginning(run.model, program=run.program, part_count=0)
+    agent = begun(run, speed=0.0, size=max(LEAST_BUFFER, count))
     begin = agent.buffer.last_time
-    agent.tell(first, time=begin)
+    agent.tell(run.first(0), time=begin)
     stamps = begin + (run.feed.times * MICRO).astype(int)
     agent.add(run.feed.items, stamps, run.feed.values)
     return agent.sample(StreamQuery(chosen=None, count=agent.buffer.size))[0]
-
-
-def new_agent(request: AgentRequest, run: PublishedRun) -> Agent:
-    """An agent that has no observation of the run yet, and begins with it."""
-    return _begun(run, speed=request.speed, size=request.buffer)
-
-
-def _begun(run: PublishedRun, *, speed: float, size: int) -> Agent:
-    begin = _anchor(run, speed)
-    agent = Agent(model=run.model.model, clock=now, size=size, begin=begin)
-    name, uuid = run.machine.name, device_uuid(run.machine)
-    index = agent.model.device_of(name) or 0
-    for tool in run.tools:
-        agent.put(tool_asset(tool, device=name, uuid=uuid, index=index, time=begin))
-    return agent
-
-
-async def play(agent: Agent, run: PublishedRun, *, speed: float, is_looped: bool) -> None:
-    """Hand observations to an agent when they are due.
-
-    Stamps are simulated time. It is anchored so that the last one is not after the clock.
-    """
-    feed, count = run.feed, 0
-    while True:
-        begin, anchor = now(), _anchor(run, speed)
-        if count == 0:
-            anchor = agent.buffer.last_time
-        first = beginning(run.model, program=run.program, part_count=count)
-        agent.tell(first, time=anchor)
-        at, total = 0, len(feed.values)
-        while at < total:
-            due = feed.duration if speed == 0.0 else speed * (now() - begin) / MICRO
-            end = int(feed.times.searchsorted(due, side="right"))
-            stamps = anchor + (feed.times[at:end] * MICRO).astype(int)
-            agent.add(feed.items[at:end], stamps, feed.values[at:end])
-            at = end
-            await asyncio.sleep(STEP if at < total else 0.0)
-        count += 1
-        parts = [id for id in first if first[id] == count - 1 and id.endswith("parts")]
-        agent.tell(dict.fromkeys(parts, count))
-        if not is_looped:
-            return
-
-
-def _anchor(run: PublishedRun, speed: float) -> int:
-    """Stamp of the beginning of a run that is played from now on, µs since 1970."""
-    duration = int(run.feed.duration * MICRO)
-    if speed == 0.0:
-        return now() - duration
-    return now() - (duration - int(duration / speed) if speed > 1.0 else 0)
-
-
-def now() -> int:
-    """Wall-clock time, µs since 1970."""
-    return time.time_ns() // 1000
 
 
 def _new_loop() -> asyncio.AbstractEventLoop:

@@ -22,8 +22,12 @@ def _agent_options(parser: argparse.ArgumentParser) -> None:
 
     parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
-    add("file", type=Path, nargs="?", metavar="FILE", help="a STEP-NC program (Part 21)")
-    add("--device", type=Path, metavar="XML", help="a device model that adapters fill")
+    add("file", type=Path, nargs="?", metavar="FILE",
+        help="a STEP-NC program or a recorded run (.parquet, .csv, .xml, .shdr, .log)",
+    )  # fmt: skip
+    add("--device", type=Path, metavar="XML",
+        help="device model of the adapters or the recorded run",
+    )  # fmt: skip
     add_options(parser, AgentRequest, usual={"rate_hz": USUAL_RATE})
     add_code(parser)
     parser.set_defaults(run=_agent, output=None)

@@ -233,10 +233,7 @@ class DocumentWriter:
         name = of.element
         match value:
             case dict():
-                entries = "".join(
-                    f"<Entry key={quoteattr(_legal(key))}>{escape(_legal(str(text)))}</Entry>"
-                    for key, text in value.items()
-                )
+                entries = "".join(_entry(key, text) for key, text in value.items())
                 return f'<{name}{head} count="{len(value)}">{entries}</{name}>'.encode()
             case TimeSeriesValue():
                 rate = f' sampleRate="{value.rate:g}"' if value.rate else ""
@@ -388,6 +385,13 @@ def _number(text: str) -> Any:
         return text
     whole = [int(each) if each.is_integer() else each for each in numbers]
     return whole[0] if len(whole) == 1 else whole or text
+
+
+def _entry(key: str, text: str | None) -> str:
+    start = f"<Entry key={quoteattr(_legal(key))}"
+    if text is None:
+        return f'{start} removed="true"/>'
+    return f"{start}>{escape(_legal(text))}</Entry>"
 
 
 def _condition(head: str, value: ConditionValue) -> str:

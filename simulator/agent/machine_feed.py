@@ -27,8 +27,11 @@ class RunFeed:
     times: Floats
     """Times from the start of the program, (N,), s"""
     values: list[Value]
-    duration: float
-    """Duration of the run, s"""
+
+    @property
+    def duration(self) -> float:
+        """Time of the last observation, in s."""
+        return float(self.times[-1]) if len(self.times) else 0.0
 
 
 def run_feed(
@@ -63,7 +66,6 @@ def run_feed(
         items=items[order],
         times=samples.time[rows[order]],
         values=[values[at] for at in order.tolist()],
-        duration=float(samples.time[-1]),
     )
 
 

@@ -228,7 +228,7 @@ def read_model(path: Path) -> DeviceModel:
     return model_of(devices, found[1])
 
 
-def parsed(data: bytes, *, what: str) -> Any:
+def parsed(data: bytes, *, what: str, most: int = MOST_BYTES) -> Any:
     """Root element of an XML text that nobody here wrote.
 
     Raises
@@ -236,8 +236,8 @@ def parsed(data: bytes, *, what: str) -> Any:
     AgentError
         When it is too large or deep, declares entities, or is not well formed.
     """
-    if len(data) > MOST_BYTES:
-        raise AgentError(f"{what}: more than {MOST_BYTES} bytes")
+    if len(data) > most:
+        raise AgentError(f"{what}: more than {most} bytes")
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, huge_tree=False, load_dtd=False
     )

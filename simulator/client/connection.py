@@ -130,7 +130,8 @@ class AgentClient:
             When there is no answer, or it is no document of devices.
         """
         root = without_namespaces(self._document("/probe", {}))
-        return tuple(_items(root))
+        devices = root.find("Devices")
+        return () if devices is None else tuple(items_of(devices))
 
     def state(self) -> tuple[ClientObservation, ...]:
         """What holds now; the stream goes on from there.
@@ -236,9 +237,9 @@ class AgentClient:
         return kind(self._host, self._port, timeout=TIMEOUT)
 
 
-def _items(root: Any) -> Iterator[ClientItem]:
-    devices = root.find("Devices")
-    for device in [] if devices is None else devices:
+def items_of(devices: Any) -> Iterator[ClientItem]:
+    """Data items of a ``Devices`` element without namespaces."""
+    for device in devices:
         if not isinstance(device.tag, str):
             continue
         for element in device.iter("DataItem"):

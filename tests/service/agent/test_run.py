@@ -14,14 +14,12 @@ import pytest
 import uvicorn
 from lxml import etree
 
+from service.agent.play import PlayableRun, begun, now, play
 from service.agent.run import (
     AgentFiles,
     PublishedRun,
     adapted,
     listening,
-    new_agent,
-    now,
-    play,
     published,
     published_run,
     simulated_with_document,
@@ -49,13 +47,13 @@ def run_of(part: str, machine: str, **words: Any) -> tuple[AgentRequest, Publish
 
 
 @contextmanager
-def served(request: AgentRequest, run: PublishedRun) -> Iterator[str]:
+def served(request: AgentRequest, run: PlayableRun) -> Iterator[str]:
     """Address of the agent of a run that is played while it is served."""
     listener = listening("127.0.0.1", 0)
     server: list[uvicorn.Server] = []
 
     async def work() -> None:
-        agent = new_agent(request, run)
+        agent = begun(run, speed=request.speed, size=request.buffer)
         config = uvicorn.Config(
             application(agent), log_config=None, lifespan="off", ws="none",
             timeout_graceful_shutdown=1,

@@ -11,18 +11,12 @@ from simulator.agent.machine_model import machine_model
 from simulator.agent.model import without_namespaces
 from simulator.agent.names import NameSet
 from simulator.client.columns import Cell, RecordedColumn, RowMaker, columns_of
-from simulator.client.connection import ClientItem, ClientObservation, _items
+from simulator.client.connection import ClientObservation, items_of
 from simulator.library import load_machine
 from simulator.timeline import COLUMNS
 
 SHARED = Path(__file__).parents[4] / "shared" / "mtconnect"
 OURS = {column.name for column in COLUMNS}
-
-
-def items_of(root: etree._Element) -> list[ClientItem]:
-    holder = etree.Element("MTConnectDevices")
-    holder.append(root)
-    return list(_items(holder))
 
 
 @pytest.mark.parametrize("names", list(NameSet))
@@ -44,7 +38,7 @@ def test_columns_of_a_mill_of_others() -> None:
     if not file.is_file():
         pytest.skip("devices-mill.xml is not in ../shared/mtconnect")
     root = without_namespaces(etree.parse(str(file)).getroot())
-    columns = columns_of(_items(root))
+    columns = columns_of(items_of(root.find("Devices")))
     names = [each.name for each in columns]
     assert len(names) == len(set(names))
     expected = {"x_axis_position_actual", "z_axis_wattage", "c_axis_wattage", "workingstep"}

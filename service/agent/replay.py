@@ -1,0 +1,328 @@
+"""Recorded runs that an agent publishes again: samples, MTConnect documents, SHDR logs.
+
+Files are read in pieces, so that memory stays bounded. Times count from the first record.
+"""
+
+import csv
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from math import inf, nan
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+from pyarrow import csv as arrow_csv
+from pyarrow import parquet
+
+from service.agent.play import MICRO
+from service.reading import Tell
+from simulator.agent.agent import Agent
+from simulator.agent.buffer import Value
+from simulator.agent.machine_feed import RunFeed
+from simulator.agent.model import DeviceModel
+from simulator.agent.shdr import item_of, read_line
+from simulator.agent.streams_document import read_streams
+from simulator.client.columns import TIME, column_name
+from simulator.client.connection import items_of
+from simulator.motion.segments import Floats, Ints
+from stepnc_model.errors import StepNcError
+
+TABLES = frozenset({".parquet", ".csv"})
+DOCUMENTS = frozenset({".xml"})
+LINES = frozenset({".shdr", ".log"})
+LOGS = TABLES | DOCUMENTS | LINES
+"""Suffixes of recorded runs."""
+
+ROWS = 8192
+"""Rows or lines in one piece."""
+
+LONGEST_LINE = 1 << 16
+"""Most characters of a line."""
+
+SHOWN = 8
+"""Most names in a message."""
+
+UNKNOWN = ("", "nan", "NaN", "UNAVAILABLE")
+"""Cells without a value."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecordedRun:
+    """Recorded run, as it is published by an agent."""
+
+    devices: DeviceModel
+    duration: float
+    read: Callable[[], Iterator[RunFeed]]
+
+    def feeds(self) -> Iterator[RunFeed]:
+        """See :class:`service.agent.play.PlayableRun`."""
+        yield from self.read()
+
+    def first(self, _count: int) -> Mapping[str, Value]:
+        """Return the availability of the devices, unless the run tells it."""
+        return {
+            item.id: "AVAILABLE" for item in self.devices.items if item.type == "AVAILABILITY"
+        }
+
+    def equip(self, agent: Agent) -> None:
+        """Add nothing: a recorded run has no assets."""
+
+
+def read_log(path: Path, model: DeviceModel, *, tell: Tell) -> RecordedRun:
+    """Read the recorded run of a file, by its suffix.
+
+    Parameters
+    ----------
+    path : Path
+        Parquet or CSV as ``stepnc simulate`` and ``stepnc record`` write them; an MTConnect
+        document of streams; SHDR lines with timestamps.
+    model : DeviceModel
+        Data items that the values belong to.
+    tell : callable
+        Takes what is left out.
+
+    Raises
+    ------
+    StepNcError
+        When the file cannot be read, is damaged, or has nothing for this device model.
+    """
+    suffix = path.suffix.lower()
+    try:
+        if suffix in TABLES:
+            return _table(path, model, tell)
+        if suffix in DOCUMENTS:
+            return _document(path, model, tell)
+        return _lines(path, model, tell)
+    except (pa.ArrowException, OSError, UnicodeDecodeError, csv.Error) as error:
+        raise StepNcError(f"{path}: cannot be read: {error}") from error
+
+
+# Tables
+
+
+def _table(path: Path, model: DeviceModel, tell: Tell) -> RecordedRun:
+    names = _headings(path)
+    if TIME not in names:
+        raise StepNcError(f"{path}: no column {TIME}")
+    items = _items_by_column(model)
+    found = {name: items[name] for name in names if name in items}
+    _require_some(path, list(found), [name for name in names if name != TIME])
+    _tell_left_out(tell, path, [each for each in names if each not in found and each != TIME])
+    begin, duration = _span(path, model, found)
+
+    def read() -> Iterator[RunFeed]:
+        held: dict[int, Value] = {}
+        for batch in _batches(path, (TIME, *found), model, found):
+            times = batch.column(0).to_numpy(zero_copy_only=False) - begin
+            yield _changes(batch, times, list(found.values()), model, held)
+
+    return RecordedRun(devices=model, duration=duration, read=read)
+
+
+def _span(path: Path, model: DeviceModel, found: Mapping[str, int]) -> tuple[float, float]:
+    """Return the first time of a table and its duration, in s, after all rows were read once.
+
+    Raises
+    ------
+    StepNcError
+        When there are no rows, or times do not ascend.
+    """
+    begin, last, row = nan, -inf, 1
+    for batch in _batches(path, (TIME, *found), model, found):
+        times: Floats = batch.column(0).to_numpy(zero_copy_only=False)
+        begin = float(times[0]) if row == 1 else begin
+        # Also true of a time that is missing.
+        wrong = np.flatnonzero(~(times >= np.append(last, times[:-1])))
+        if len(wrong):
+            at = int(wrong[0])
+            raise StepNcError(
+                f"{path}: row {row + at}: time {times[at]:g} s: it must not be before "
+                f"{times[at - 1] if at else last:g} s"
+            )
+        last, row = float(times[-1]), row + len(times)
+    if row == 1:
+        raise StepNcError(f"{path}: no rows")
+    return begin, last - begin
+
+
+def _changes(
+    batch: pa.RecordBatch,
+    times: Floats,
+    items: Sequence[int],
+    model: DeviceModel,
+    held: dict[int, Value],
+) -> RunFeed:
+    """Return the values of a piece that differ from the ones before; they are held then."""
+    rows: list[Ints] = []
+    numbers: list[int] = []
+    values: list[Value] = []
+    for place, item in enumerate(items, start=1):
+        column = batch.column(place)
+        is_number = model.items[item].category == "SAMPLE"
+        cells = column.to_pylist() if not is_number else _cells(column)
+        is_first = item not in held
+        before = held.get(item)
+        changed = []
+        for row, cell in enumerate(cells):
+            if is_first or cell != before:
+                changed.append(row)
+                values.append(cell)
+                before, is_first = cell, False
+        held[item] = before
+        rows.append(np.array(changed, dtype=np.int64))
+        numbers += [item] * len(changed)
+    at = np.concatenate(rows)
+    # Stable: data items of one moment stay in the order of the columns.
+    order = np.argsort(at, kind="stable")
+    return RunFeed(
+        items=np.array(numbers, dtype=np.int64)[order],
+        times=times[at[order]],
+        values=[values[each] for each in order.tolist()],
+    )
+
+
+def _cells(column: pa.Array) -> list[Value]:
+    """Return numbers as a list; None where a number is missing or not finite."""
+    numbers = column.to_numpy(zero_copy_only=False)
+    return [each if np.isfinite(each) else None for each in numbers.tolist()]
+
+
+def _headings(path: Path) -> list[str]:
+    if path.suffix.lower() == ".parquet":
+        return list(parquet.read_schema(path).names)
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        return next(csv.reader([file.readline(LONGEST_LINE)], delimiter=_delimiter(path)), [])
+
+
+def _delimiter(path: Path) -> str:
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        heading = file.readline(LONGEST_LINE)
+    return next((mark for mark in (";", "\t") if mark in heading), ",")
+
+
+def _batches(
+    path: Path, names: Sequence[str], model: DeviceModel, found: Mapping[str, int]
+) -> Iterator[pa.RecordBatch]:
+    """Yield the columns of a table in pieces: texts of events, numbers of all others."""
+    kinds = {
+        name: pa.string()
+        if name in found and model.items[found[name]].category != "SAMPLE"
+        else pa.float64()
+        for name in names
+    }
+    schema = pa.schema(list(kinds.items()))
+    if path.suffix.lower() == ".parquet":
+        pieces = parquet.ParquetFile(path).iter_batches(ROWS, columns=list(names))
+    else:
+        mark = _delimiter(path)
+        pieces = arrow_csv.open_csv(
+            path,
+            read_options=arrow_csv.ReadOptions(block_size=1 << 20),
+            parse_options=arrow_csv.ParseOptions(delimiter=mark),
+            convert_options=arrow_csv.ConvertOptions(
+                column_types=kinds,
+                include_columns=list(names),
+                null_values=list(UNKNOWN),
+                strings_can_be_null=True,
+                decimal_point="." if mark == "," else ",",
+            ),
+        )
+    for piece in pieces:
+        columns = {name: piece.column(name).cast(kind) for name, kind in kinds.items()}
+        if piece.num_rows:
+            yield pa.record_batch(columns, schema=schema)
+
+
+def _items_by_column(model: DeviceModel) -> dict[str, int]:
+    """Return the data item of each column name; conditions and data sets have no column."""
+    found: dict[str, int] = {}
+    for each in items_of(model.root):
+        number = model.index[each.id]
+        item = model.items[number]
+        if item.category == "CONDITION" or item.representation != "VALUE":
+            continue
+        found.setdefault(column_name(each) or each.id, number)
+        found.setdefault(each.id, number)
+    return found
+
+
+# Documents
+
+
+def _document(path: Path, model: DeviceModel, tell: Tell) -> RecordedRun:
+    streams = read_streams(path, model)
+    _require_some(path, streams.values, list(streams.unknown))
+    _tell_left_out(tell, path, list(streams.unknown))
+    seconds = (streams.times - streams.times[0]) / MICRO
+    feed = RunFeed(items=streams.items, times=seconds, values=streams.values)
+    return RecordedRun(devices=model, duration=feed.duration, read=lambda: iter((feed,)))
+
+
+# Lines
+
+
+def _lines(path: Path, model: DeviceModel, tell: Tell) -> RecordedRun:
+    begin, end, unknown, count = 0, 0, dict[str, None](), 0
+    for items, times, _ in _line_pieces(path, model):
+        begin = int(times[0]) if not count else begin
+        end = int(times[-1])
+        count += len(items)
+    for line in _texts(path):
+        keys = line.split("|")[1:2]
+        unknown |= dict.fromkeys(key for key in keys if item_of(key.strip(), model) is None)
+    _require_some(path, [count] * bool(count), list(unknown))
+    _tell_left_out(tell, path, list(unknown))
+
+    def read() -> Iterator[RunFeed]:
+        for items, times, values in _line_pieces(path, model):
+            yield RunFeed(items=items, times=(times - begin) / MICRO, values=values)
+
+    return RecordedRun(devices=model, duration=(end - begin) / MICRO, read=read)
+
+
+def _line_pieces(path: Path, model: DeviceModel) -> Iterator[tuple[Ints, Ints, list[Value]]]:
+    """Yield data items, times in µs and values of lines, in the order of the file."""
+    items: list[int] = []
+    times: list[int] = []
+    values: list[Value] = []
+    last = 0
+    for line in _texts(path):
+        # A line without a time, or with an earlier one, belongs to the one before.
+        for each in read_line(line, model, partial(int, last)):
+            last = max(last, each.time)
+            items.append(each.item)
+            times.append(last)
+            values.append(each.value)
+        if len(items) >= ROWS:
+            yield np.array(items), np.array(times), values
+            items, times, values = [], [], []
+    if items:
+        yield np.array(items), np.array(times), values
+
+
+def _texts(path: Path) -> Iterator[str]:
+    with path.open(encoding="utf-8", errors="replace") as file:
+        while line := file.readline(LONGEST_LINE):
+            text = line.strip()
+            if "|" in text and not text.startswith("*"):
+                yield text
+
+
+def _require_some(path: Path, found: Sequence[object], names: Sequence[str]) -> None:
+    if not found:
+        raise StepNcError(
+            f"{path}: nothing in it belongs to a data item of the device model "
+            f"({_listed(names) or 'the file is empty'}): name the machine with --machine, "
+            "or its device model with --device"
+        )
+
+
+def _tell_left_out(tell: Tell, path: Path, names: Sequence[str]) -> None:
+    if names:
+        tell(f"{path}: left out, as the device model has no such data item: {_listed(names)}")
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+    return ", ".join(names[:SHOWN]) + more
