@@ -3,7 +3,6 @@
 Files are read in pieces, so that memory stays bounded. Times count from the first record.
 """
 
-import csv
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -12,11 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
-from pyarrow import csv as arrow_csv
-from pyarrow import parquet
 
 from service.agent.play import MICRO
 from service.reading import Tell
+from service.recording.table import TABLES, batches, headings
 from simulator.agent.agent import Agent
 from simulator.agent.buffer import Value
 from simulator.agent.machine_feed import RunFeed
@@ -28,23 +26,22 @@ from simulator.client.connection import items_of
 from simulator.motion.segments import Floats, Ints
 from stepnc_model.errors import StepNcError
 
-TABLES = frozenset({".parquet", ".csv"})
 DOCUMENTS = frozenset({".xml"})
 LINES = frozenset({".shdr", ".log"})
 LOGS = TABLES | DOCUMENTS | LINES
 """Suffixes of recorded runs."""
 
 ROWS = 8192
-"""Rows or lines in one piece."""
+"""Values of lines in one piece."""
 
 LONGEST_LINE = 1 << 16
 """Most characters of a line."""
 
+CONTROLLED = {"force_measured": "cutting_force", "spindle_power": "c_axis_wattage"}
+"""Columns of ``stepnc control`` that have another name in other files."""
+
 SHOWN = 8
 """Most names in a message."""
-
-UNKNOWN = ("", "nan", "NaN", "UNAVAILABLE")
-"""Cells without a value."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,7 +91,7 @@ def read_log(path: Path, model: DeviceModel, *, tell: Tell) -> RecordedRun:
         if suffix in DOCUMENTS:
             return _document(path, model, tell)
         return _lines(path, model, tell)
-    except (pa.ArrowException, OSError, UnicodeDecodeError, csv.Error) as error:
+    except OSError as error:
         raise StepNcError(f"{path}: cannot be read: {error}") from error
 
 
@@ -102,10 +99,13 @@ def read_log(path: Path, model: DeviceModel, *, tell: Tell) -> RecordedRun:
 
 
 def _table(path: Path, model: DeviceModel, tell: Tell) -> RecordedRun:
-    names = _headings(path)
+    names = headings(path)
     if TIME not in names:
         raise StepNcError(f"{path}: no column {TIME}")
     items = _items_by_column(model)
+    for name, usual in CONTROLLED.items():
+        if usual in items and usual not in names:
+            items.setdefault(name, items[usual])
     found = {name: items[name] for name in names if name in items}
     _require_some(path, list(found), [name for name in names if name != TIME])
     _tell_left_out(tell, path, [each for each in names if each not in found and each != TIME])
@@ -113,7 +113,7 @@ def _table(path: Path, model: DeviceModel, tell: Tell) -> RecordedRun:
 
     def read() -> Iterator[RunFeed]:
         held: dict[int, Value] = {}
-        for batch in _batches(path, (TIME, *found), model, found):
+        for batch in batches(path, _kinds(model, found)):
             times = batch.column(0).to_numpy(zero_copy_only=False) - begin
             yield _changes(batch, times, list(found.values()), model, held)
 
@@ -129,7 +129,7 @@ def _span(path: Path, model: DeviceModel, found: Mapping[str, int]) -> tuple[flo
         When there are no rows, or times do not ascend.
     """
     begin, last, row = nan, -inf, 1
-    for batch in _batches(path, (TIME, *found), model, found):
+    for batch in batches(path, _kinds(model, found)):
         times: Floats = batch.column(0).to_numpy(zero_copy_only=False)
         begin = float(times[0]) if row == 1 else begin
         # Also true of a time that is missing.
@@ -188,50 +188,13 @@ def _cells(column: pa.Array) -> list[Value]:
     return [each if np.isfinite(each) else None for each in numbers.tolist()]
 
 
-def _headings(path: Path) -> list[str]:
-    if path.suffix.lower() == ".parquet":
-        return list(parquet.read_schema(path).names)
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        return next(csv.reader([file.readline(LONGEST_LINE)], delimiter=_delimiter(path)), [])
-
-
-def _delimiter(path: Path) -> str:
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        heading = file.readline(LONGEST_LINE)
-    return next((mark for mark in (";", "\t") if mark in heading), ",")
-
-
-def _batches(
-    path: Path, names: Sequence[str], model: DeviceModel, found: Mapping[str, int]
-) -> Iterator[pa.RecordBatch]:
-    """Yield the columns of a table in pieces: texts of events, numbers of all others."""
+def _kinds(model: DeviceModel, found: Mapping[str, int]) -> dict[str, pa.DataType]:
+    """Return the types of the time and of the other columns: texts of events, else numbers."""
     kinds = {
-        name: pa.string()
-        if name in found and model.items[found[name]].category != "SAMPLE"
-        else pa.float64()
-        for name in names
+        name: pa.float64() if model.items[item].category == "SAMPLE" else pa.string()
+        for name, item in found.items()
     }
-    schema = pa.schema(list(kinds.items()))
-    if path.suffix.lower() == ".parquet":
-        pieces = parquet.ParquetFile(path).iter_batches(ROWS, columns=list(names))
-    else:
-        mark = _delimiter(path)
-        pieces = arrow_csv.open_csv(
-            path,
-            read_options=arrow_csv.ReadOptions(block_size=1 << 20),
-            parse_options=arrow_csv.ParseOptions(delimiter=mark),
-            convert_options=arrow_csv.ConvertOptions(
-                column_types=kinds,
-                include_columns=list(names),
-                null_values=list(UNKNOWN),
-                strings_can_be_null=True,
-                decimal_point="." if mark == "," else ",",
-            ),
-        )
-    for piece in pieces:
-        columns = {name: piece.column(name).cast(kind) for name, kind in kinds.items()}
-        if piece.num_rows:
-            yield pa.record_batch(columns, schema=schema)
+    return {TIME: pa.float64(), **kinds}
 
 
 def _items_by_column(model: DeviceModel) -> dict[str, int]:

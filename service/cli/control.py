@@ -67,6 +67,12 @@ def _options(parser: argparse.ArgumentParser) -> None:
     )
     add("-o", "--output", type=Path, metavar="FILE", help="write the run, .parquet or .csv")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
+    add(
+        "--recorded",
+        type=Path,
+        metavar="FILE",
+        help="evaluate a recorded run of the program instead (.parquet, .csv of `record`)",
+    )
     add_knowledge(parser, "records the outcomes and supplies accepted corrections")
     add(
         "--by",
@@ -81,6 +87,8 @@ def _options(parser: argparse.ArgumentParser) -> None:
 
 def _control(options: argparse.Namespace) -> int:
     """Run the command ``stepnc control``."""
+    from dataclasses import replace
+
     from service.control.facts import exceeded, rows
     from service.control.record import control_recorded
     from service.terminal import tell
@@ -88,7 +96,7 @@ def _control(options: argparse.Namespace) -> int:
     with interruptible():
         run = control_recorded(
             _request(options),
-            run_files(options, options.file),
+            replace(run_files(options, options.file), recorded=options.recorded),
             knowledge=options.kb,
             by=options.by,
             tell=tell,

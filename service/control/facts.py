@@ -199,7 +199,9 @@ def disturbed_words(run: ControlRun) -> str:
 
 
 def law_words(run: ControlRun) -> str:
-    """Return the name of the control law and its preview."""
+    """Return the name of the control law and its preview, or the recorded run."""
+    if run.recorded:
+        return f"none, recorded run {run.recorded}"
     if not run.has_preview:
         return run.law.value
     return f"{run.law.value} with preview of {run.settings.look_ahead} revolutions"

@@ -42,8 +42,8 @@ class RecordingContext:
 def outcomes_of(run: ControlRun, recording: RecordingContext) -> tuple[ProcessOutcome, ...]:
     """Return the outcomes of all workingsteps in which material was cut.
 
-    The roughness follows from the actual feed by the model, with the error of an inspection,
-    since a virtual machine leaves no surface to measure.
+    A virtual machine leaves no surface to measure: its roughness follows from the actual feed
+    by the model, with the error of an inspection. Of a recorded run nothing is known of it.
     """
     random = np.random.default_rng(recording.seed)
     errors = 1.0 + INSPECTION * random.standard_normal(len(run.steps))
@@ -80,7 +80,7 @@ def _outcome(
     cut, setting, record = step.cut, step.state.setting, step.record
     material, tool = run.material.material, step.advice.tool.id
     per_tooth = record.feed / (cut.tool.teeth * setting.speed)
-    roughness = _roughness(cut, per_tooth)
+    roughness = None if run.recorded else _roughness(cut, per_tooth)
     return ProcessOutcome(
         context=Context(machine=run.machine.name, material=material.name, tool=tool),
         program=run.program.name,

@@ -9,6 +9,7 @@ from controller.orders import EventKind
 from kbe.store_location import parsed_place, require_openable
 from service.control.outcomes import RecordingContext, outcomes_of
 from service.control.run import ControlRun, Watcher, control
+from service.files import require_place
 from service.knowledge.place import make_folder, named_place, require_apart
 from service.knowledge.verbs import record
 from service.reading import Tell, silent
@@ -28,6 +29,8 @@ def control_recorded(
 ) -> ControlRun:
     """Run a program under force control and record its outcomes if a knowledge base is named.
 
+    With a recorded run among the files, its outcomes are recorded instead.
+
     Runs that were stopped are not recorded, because their times are not those of whole
     workingsteps. The author entry says that the outcomes are from a virtual machine and lists
     the disturbances: otherwise an unknown depth could not be told from a harder material.
@@ -42,9 +45,13 @@ def control_recorded(
         require_apart(place, files.output, files.report)
         make_folder(place)
         require_openable(parsed_place(place), is_new_allowed=True)
+    for written in (files.output, files.report):
+        if files.recorded is not None and written is not None:
+            require_place(written, apart_from=files.recorded)
     run = control(request, files, knowledge=knowledge, tell=tell, watchers=watchers)
     if place is not None:
-        trace = "" if files.output is None else str(files.output.resolve())
+        kept = files.recorded or files.output
+        trace = "" if kept is None else str(kept.resolve())
         keep(run, place, by=by or getpass.getuser(), trace=trace, tell=tell)
     return run
 
@@ -76,7 +83,7 @@ def keep(run: ControlRun, place: str, *, by: str, trace: str, tell: Tell = silen
         at=datetime.now(UTC),
         by=", ".join((
             by,
-            "virtual machine",
+            "recorded run" if run.recorded else "virtual machine",
             *run.disturbances,
             *(("changed while it ran",) if orders else ()),
         )),

@@ -3,9 +3,12 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from controller.cycle import LoopCycle
 from controller.equivalent import equivalent
 from controller.errors import MachineLost
+from controller.estimate import RatioEstimate
 from controller.guard import OverrideBand
 from controller.laws.choice import LawName, law_named
 from controller.loop import Loop
@@ -30,6 +33,7 @@ from service.control.setup import (
 from service.control.trace import ControlTrace, control_schema
 from service.progress import Ticker, bar
 from service.reading import Tell, silent
+from service.recording.signals import read_signals
 from service.requests.fields import require_bounds
 from service.requests.runs import ControlRequest, SensorChoice, SimulationRequest
 from service.run_file import RunFile
@@ -37,6 +41,7 @@ from service.session.rows import Moment
 from service.simulation.run import RunFiles, waiting_machine
 from simulator.errors import MachineSilent
 from simulator.plant.controlled import ControlledMachine, TrueState
+from simulator.plant.recorded import RecordedMachine, RecordedSignals
 from simulator.reading import Reading
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import Finding, StepNcError
@@ -44,6 +49,10 @@ from stepnc_model.program import Program
 
 CHIP_FORCES = {SensorChoice.DYNAMOMETER: 10.0, SensorChoice.POWER: 60.0}
 """Force above which a sensor counts as cutting, in N: several times its noise."""
+
+
+FEWEST_SAMPLES = 20
+"""Fewest recorded samples of a cut from which k_c is learned: entry and exit blur some."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,6 +92,8 @@ class ControlRun:
     """Number of samples written."""
     trace: BucketedRun | None = None
     """Signals for a report, if one was requested."""
+    recorded: str = ""
+    """File of the recorded run that was evaluated; empty: it ran on the virtual machine."""
 
 
 Watcher = Callable[[LoopCycle, TrueState], None]
@@ -97,7 +108,7 @@ def control(
     tell: Tell = silent,
     watchers: Sequence[Watcher] = (),
 ) -> ControlRun:
-    """Run a program under force control and return the result.
+    """Run a program under force control, or evaluate a recorded run; return the result.
 
     Raises
     ------
@@ -123,9 +134,22 @@ def control(
 
 
 def prepare(
-    request: ControlRequest, files: RunFiles, *, knowledge: str = "", tell: Tell = silent
+    request: ControlRequest,
+    files: RunFiles,
+    *,
+    knowledge: str = "",
+    tell: Tell = silent,
 ) -> "Session":
     """Prepare machine, loop and plan of a run, before its first cycle.
+
+    Parameters
+    ----------
+    request : ControlRequest
+    files : RunFiles
+        A recorded run among them stands for the machine; the loop commands nothing then.
+    knowledge : str
+        Location of the knowledge base whose corrections apply; empty: the usual one.
+    tell : callable
 
     Raises
     ------
@@ -133,6 +157,10 @@ def prepare(
         As :func:`control`.
     """
     require_bounds(request)
+    signals = None
+    if files.recorded is not None:
+        signals = read_signals(files.recorded)
+        request = _evaluating(request, signals)
     law, settings = request.law, _settings(request)
     prepared, virtual = waiting_machine(_plain_run(request), files, tell=tell)
     if prepared.material is None or prepared.program is None:
@@ -150,7 +178,11 @@ def prepare(
     bench = replace(
         found.bench, efficiency=virtual.machine.spindle.efficiency, seed=request.seed
     )
-    machine = ControlledMachine(course, found.hidden, bench)
+    machine: ControlledMachine | RecordedMachine
+    if signals is None:
+        machine = ControlledMachine(course, found.hidden, bench)
+    else:
+        machine = RecordedMachine(course, signals)
     planned = planned_steps(course)
     by_id = {advice.workingstep.id: advice for advice in plan.advices}
     advices = tuple(by_id.get(name) for name in virtual.workingsteps)
@@ -184,10 +216,25 @@ def prepare(
     )
 
 
-class VirtualSensor:
-    """Virtual machine as a sensor of the loop; a silent machine counts as lost."""
+def _evaluating(request: ControlRequest, signals: RecordedSignals) -> ControlRequest:
+    """Return the request for a recorded run: no law, and a sensor that was recorded.
 
-    def __init__(self, machine: ControlledMachine) -> None:
+    Raises
+    ------
+    StepNcError
+        When disturbances are requested.
+    """
+    if request.disturbances:
+        raise StepNcError("--disturb: a recorded run is over; it cannot be disturbed")
+    has_force = bool(np.isfinite(signals.force).any())
+    sensor = request.sensor if has_force else SensorChoice.POWER
+    return replace(request, law=LawName.NONE, sensor=sensor)
+
+
+class VirtualSensor:
+    """Machine as a sensor of the loop; a silent one counts as lost."""
+
+    def __init__(self, machine: ControlledMachine | RecordedMachine) -> None:
         self._machine = machine
 
     def read(self) -> Reading | None:
@@ -203,7 +250,7 @@ class Session:
     """Controlled run in progress: loop, machine, plan and records. Running state."""
 
     loop: Loop
-    machine: ControlledMachine
+    machine: ControlledMachine | RecordedMachine
     recorder: Recorder
     holdings: HoldTallies
     workingsteps: tuple[str, ...]
@@ -234,13 +281,16 @@ class Session:
                 return
             if cycle is None:
                 return
+            if isinstance(self.machine, RecordedMachine) and not self.machine.is_steady:
+                # Places of a recording are known less exactly than forces change here.
+                cycle = replace(cycle, ratio=None)
             self.recorder.add(cycle)
             self.holdings.add(cycle, self.loop.state.settings)
             self.events += cycle.events
             for watcher in watchers:
                 watcher(cycle, self.machine.truth)
             yield cycle
-            if self.loop.state.is_stopped:
+            if self.loop.state.is_stopped and self.files.recorded is None:
                 return
 
     def _lose(self, lost: MachineLost) -> None:
@@ -271,6 +321,11 @@ class Session:
     def result(self, trace: ControlTrace | None = None) -> ControlRun:
         """Return the result so far, including what a trace has kept."""
         records = self.recorder.records
+        if isinstance(self.machine, RecordedMachine):
+            least = FEWEST_SAMPLES * self.machine.interval
+            for record in records.values():
+                if record.cutting_time < least:
+                    record.ratio = RatioEstimate()
         return ControlRun(
             program=self.program,
             machine=self.virtual,
@@ -288,7 +343,8 @@ class Session:
             findings=self.findings,
             time=self.machine.time,
             time_planned=self.machine.course.duration,
-            is_stopped=self.loop.state.is_stopped or self.is_lost,
+            is_stopped=(self.loop.state.is_stopped and self.files.recorded is None)
+            or self.is_lost,
             progress=self.machine.share * self.machine.course.duration,
             settings=self.loop.state.settings,
             held=self.holdings.steps,
@@ -296,6 +352,7 @@ class Session:
             seed=self.request.seed,
             samples=0 if trace is None else trace.rows,
             trace=None if trace is None else trace.trace(),
+            recorded="" if self.files.recorded is None else self.files.recorded.name,
         )
 
 

@@ -56,6 +56,8 @@ class RunFiles:
     """NC code to run instead of the program's own paths."""
     output: Path | None = None
     report: Path | None = None
+    recorded: Path | None = None
+    """Recorded run of the program that ``control`` evaluates instead of running it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
