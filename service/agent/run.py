@@ -177,7 +177,7 @@ def adapted(
     addresses = [_address(each) for each in request.adapters]
     model = read_model(files.device)
     tell(f"device model: {files.device}, schema {model.version}, {len(model.items)} data items")
-    agent = Agent(model=model, clock=now, size=request.buffer)
+    agent = Agent(model=model, clock=now, size=request.buffer, allows_put=request.allows_put)
     intake = AdapterIntake(agent=agent)
     return agent, [partial(listen_to, address, intake) for address in addresses]
 
@@ -223,12 +223,16 @@ def streams_document(run: PublishedRun) -> bytes:
 
 def new_agent(request: AgentRequest, run: PublishedRun) -> Agent:
     """An agent that has no observation of the run yet, and begins with it."""
-    return _begun(run, speed=request.speed, size=request.buffer)
+    agent = _begun(run, speed=request.speed, size=request.buffer)
+    agent.allows_put = request.allows_put
+    return agent
 
 
 def _begun(run: PublishedRun, *, speed: float, size: int) -> Agent:
     begin = _anchor(run, speed)
-    agent = Agent(model=run.model.model, clock=now, size=size, begin=begin)
+    agent = Agent(
+        model=run.model.model, clock=now, size=size, begin=begin, is_scaled=speed != 1.0
+    )
     name, uuid = run.machine.name, device_uuid(run.machine)
     index = agent.model.device_of(name) or 0
     for tool in run.tools:

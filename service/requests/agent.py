@@ -48,6 +48,9 @@ class AgentRequest(SimulationRequest):
         About("port of an SHDR adapter that feeds other agents", name="SHDR port",
               flag="--shdr", metavar="N"),
     ] = None  # fmt: skip
+    allows_put: Annotated[
+        bool, About("let clients write assets and observations", flag="--allow-put")
+    ] = False
     adapters: Annotated[
         tuple[Annotated[str, MaxLen(300)], ...],
         MaxLen(20),

@@ -16,6 +16,7 @@ from xml.sax.saxutils import escape, quoteattr
 from lxml import etree
 
 from simulator.agent.buffer import (
+    AssetReference,
     ConditionValue,
     ObservationBuffer,
     State,
@@ -70,6 +71,12 @@ NUMBERS = frozenset({
 })
 """attributes that are numbers in JSON"""
 
+ASSET_TYPES = frozenset({"ASSET_CHANGED", "ASSET_REMOVED"})
+"""types of data items whose values are ids of assets"""
+
+USUAL_ASSET = "CuttingTool"
+"""type of asset that is told where no asset is named"""
+
 _ILLEGAL = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
@@ -117,8 +124,6 @@ class DocumentWriter:
                 )
                 if text and not (key == "subType" and item.category == "CONDITION")
             )
-            if item.type in {"ASSET_CHANGED", "ASSET_REMOVED"}:
-                rest += ' assetType="CuttingTool"'
             if item.category == "CONDITION":
                 rest += f" type={quoteattr(item.type)}"
             self._starts.append((f" dataItemId={quoteattr(item.id)} timestamp=", rest))
@@ -231,7 +236,12 @@ class DocumentWriter:
         if of.category == "CONDITION":
             return f"<Unavailable{head}/>".encode()
         name = of.element
+        if of.type in ASSET_TYPES:
+            kind = value.type if isinstance(value, AssetReference) else USUAL_ASSET
+            head += f" assetType={quoteattr(kind)}"
         match value:
+            case AssetReference():
+                return f"<{name}{head}>{escape(_legal(value.id))}</{name}>".encode()
             case dict():
                 entries = "".join(
                     f"<Entry key={quoteattr(_legal(key))}>{escape(_legal(str(text)))}</Entry>"
