@@ -27,6 +27,7 @@ from simulator.agent.machine_model import MachineModel, device_uuid, machine_mod
 from simulator.agent.model import read_model
 from simulator.agent.names import NameSet, SchemaVersion
 from simulator.agent.requests import StreamQuery
+from simulator.agent.schemas import SchemaFiles, read_schemas
 from simulator.agent.tool_assets import tool_asset
 from simulator.machine.samples import Samples, joined
 from simulator.machine.virtual import LoadedTool
@@ -124,6 +125,8 @@ class AgentFiles:
 
     run: RunFiles
     device: Path | None = None
+    schemas: Path | None = None
+    """folder of schemas that are served"""
 
 
 def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent) -> None:
@@ -132,11 +135,12 @@ def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent
     Raises
     ------
     StepNcError
-        As :func:`published_run`; for a device model or an address that cannot be used, and
-        when a port is not free.
+        As :func:`published_run`; for a device model, an address or schemas that cannot be
+        used, and when a port is not free.
     """
     with ExitStack() as stack:
         listener = stack.enter_context(listening(request.host, request.port))
+        schemas = SchemaFiles() if files.schemas is None else read_schemas(files.schemas)
         shdr = None
         if request.shdr_port is not None:
             shdr = stack.enter_context(listening(request.host, request.shdr_port))
@@ -145,6 +149,7 @@ def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent
             agent, work = adapted(request, files, tell=tell)
         else:
             agent, work = published(request, files.run, tell=tell)
+        agent.allows_put, agent.writer.schemas = request.allows_put, schemas
         tell(f"MTConnect agent: http://{_place(listener)}/current")
         with asyncio.Runner(loop_factory=_new_loop) as runner:
             runner.run(_serve(agent, work, listener, shdr))
@@ -177,7 +182,7 @@ def adapted(
     addresses = [_address(each) for each in request.adapters]
     model = read_model(files.device)
     tell(f"device model: {files.device}, schema {model.version}, {len(model.items)} data items")
-    agent = Agent(model=model, clock=now, size=request.buffer, allows_put=request.allows_put)
+    agent = Agent(model=model, clock=now, size=request.buffer)
     intake = AdapterIntake(agent=agent)
     return agent, [partial(listen_to, address, intake) for address in addresses]
 
@@ -223,9 +228,7 @@ def streams_document(run: PublishedRun) -> bytes:
 
 def new_agent(request: AgentRequest, run: PublishedRun) -> Agent:
     """An agent that has no observation of the run yet, and begins with it."""
-    agent = _begun(run, speed=request.speed, size=request.buffer)
-    agent.allows_put = request.allows_put
-    return agent
+    return _begun(run, speed=request.speed, size=request.buffer)
 
 
 def _begun(run: PublishedRun, *, speed: float, size: int) -> Agent:

@@ -24,6 +24,8 @@ def _agent_options(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("file", type=Path, nargs="?", metavar="FILE", help="a STEP-NC program (Part 21)")
     add("--device", type=Path, metavar="XML", help="a device model that adapters fill")
+    add("--schema-files", type=Path, metavar="FOLDER",
+        help="a folder of schemas (*.xsd) to serve at /schemas")  # fmt: skip
     add_options(parser, AgentRequest, usual={"rate_hz": USUAL_RATE})
     add_code(parser)
     parser.set_defaults(run=_agent, output=None)
@@ -38,6 +40,10 @@ def _agent(options: argparse.Namespace) -> int:
 
     request = from_options(AgentRequest, options, rate_hz=USUAL_RATE)
     with interruptible():
-        files = AgentFiles(run=run_files(options, options.file), device=options.device)
+        files = AgentFiles(
+            run=run_files(options, options.file),
+            device=options.device,
+            schemas=options.schema_files,
+        )
         serve_agent(request, files, tell=tell)
     return OK

@@ -24,6 +24,7 @@ from simulator.agent.buffer import (
     Value,
 )
 from simulator.agent.model import DeviceModel
+from simulator.agent.schemas import SchemaFiles
 
 XSI = "http://www.w3.org/2001/XMLSchema-instance"
 STYLE = "/styles/mtconnect.xsl"
@@ -108,6 +109,7 @@ class DocumentWriter:
     asset_size: int = 1024
     has_quirk: bool = False
     """``errorCode`` in error documents from 2.6 on too, as the reference agent writes it"""
+    schemas: SchemaFiles = field(default_factory=SchemaFiles)
     _starts: list[tuple[str, str]] = field(init=False)
     _groups: list[tuple[int, int]] = field(init=False)
     _stamp: tuple[int, str] = field(init=False, default=(-1, ""))
@@ -327,7 +329,7 @@ class DocumentWriter:
             '<?xml version="1.0" encoding="UTF-8"?>\n'
             f'<?xml-stylesheet type="text/xsl" href="{STYLE}"?>\n'
             f'<MTConnect{kind} xmlns="{space}" xmlns:xsi="{XSI}" xsi:schemaLocation="{space} '
-            f'/schemas/MTConnect{kind}_{version}.xsd">{header}'
+            f'{escape(self.schemas.location(kind, version))}">{header}'
         )
         inner = body if isinstance(body, bytes) else body.encode()
         return b"".join((start.encode(), inner, f"</MTConnect{kind}>\n".encode()))

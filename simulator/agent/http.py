@@ -13,7 +13,7 @@ from urllib.parse import parse_qsl, unquote
 from uuid import uuid4
 
 from simulator.agent.agent import Agent
-from simulator.agent.documents import RequestFault, as_json, indented, packed
+from simulator.agent.documents import STYLE, RequestFault, as_json, indented, packed
 from simulator.agent.puts import (
     MOST_BODY,
     put_asset,
@@ -27,6 +27,7 @@ from simulator.agent.requests import (
     current_query,
     sample_query,
 )
+from simulator.agent.schemas import PLACE
 
 STYLESHEET = Path(__file__).with_name("mtconnect.xsl").read_bytes()
 """makes documents readable in a browser"""
@@ -144,8 +145,10 @@ async def _answer(agent: Agent, request: HttpRequest, receive: Receive, send: Se
     if request.method not in {"GET", "HEAD"}:
         await _write(agent, request, parts, receive, send)
         return
-    if request.path == "/styles/mtconnect.xsl":
-        await _send(send, 200, [*COMMON, (b"content-type", b"text/xsl")], STYLESHEET)
+    if (text := _file(agent, request.path)) is not None:
+        kind = b"text/xsl" if request.path == STYLE else b"text/xml"
+        body = b"" if request.method == "HEAD" else text
+        await _send(send, 200, [*COMMON, (b"content-type", kind)], body)
         return
     device, verb, rest = _place(agent, parts)
     match verb:
@@ -165,6 +168,15 @@ async def _answer(agent: Agent, request: HttpRequest, receive: Receive, send: Se
                 await _stream(agent, request, query, receive, send, is_current=False)
         case _:
             await _document(request, send, _assets(agent, request, device, rest))
+
+
+def _file(agent: Agent, path: str) -> bytes | None:
+    """Style sheet or schema at an address; None: there is none."""
+    if path == STYLE:
+        return STYLESHEET
+    if not path.startswith(PLACE):
+        return None
+    return agent.writer.schemas.files.get(path.removeprefix(PLACE))
 
 
 def _parts_of(path: str) -> list[str]:
