@@ -141,6 +141,7 @@ def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent
     with ExitStack() as stack:
         listener = stack.enter_context(listening(request.host, request.port))
         schemas = SchemaFiles() if files.schemas is None else read_schemas(files.schemas)
+        broker = _broker(request, tell)
         shdr = None
         if request.shdr_port is not None:
             shdr = stack.enter_context(listening(request.host, request.shdr_port))
@@ -152,7 +153,23 @@ def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent
         agent.allows_put, agent.writer.schemas = request.allows_put, schemas
         tell(f"MTConnect agent: http://{_place(listener)}/current")
         with asyncio.Runner(loop_factory=_new_loop) as runner:
-            runner.run(_serve(agent, work, listener, shdr))
+            runner.run(_serve(agent, [*work, *broker(agent)], listener, shdr))
+
+
+def _broker(request: AgentRequest, tell: Tell) -> Callable[[Agent], Sequence[Work]]:
+    """Gives an agent the work that publishes it to an MQTT broker, if one is named."""
+    if request.mqtt is None:
+        return lambda _: ()
+    address = _address(request.mqtt, "MQTT broker", "127.0.0.1:1883")
+    try:
+        from simulator.agent.mqtt import MqttPublisher  # noqa: PLC0415 (an optional extra)
+    except ModuleNotFoundError as error:
+        if not (error.name or "").startswith("paho"):
+            raise
+        install = "pip install 'stepnc-optimiser[mqtt]'"
+        raise StepNcError(f"--mqtt needs the package paho-mqtt: {install}") from error
+    host, port = address.host, address.port
+    return lambda agent: [MqttPublisher(agent=agent, host=host, port=port, tell=tell).run]
 
 
 def published(
@@ -179,7 +196,7 @@ def adapted(
     if not request.adapters or files.device is None:
         raise StepNcError("--device: name its adapters with --adapter HOST:PORT")
     require_bounds(request)
-    addresses = [_address(each) for each in request.adapters]
+    addresses = [_address(each, "adapter", "192.168.0.7:7878") for each in request.adapters]
     model = read_model(files.device)
     tell(f"device model: {files.device}, schema {model.version}, {len(model.items)} data items")
     agent = Agent(model=model, clock=now, size=request.buffer)
@@ -346,8 +363,8 @@ def _place(listener: socket.socket) -> str:
     return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
 
 
-def _address(text: str) -> AdapterAddress:
+def _address(text: str, what: str, example: str) -> AdapterAddress:
     host, colon, port = text.rpartition(":")
     if not (colon and host and port.isdecimal() and 0 < int(port) < 1 << 16):
-        raise StepNcError(f"adapter '{text}': expected HOST:PORT, as 192.168.0.7:7878")
+        raise StepNcError(f"{what} '{text}': expected HOST:PORT, as {example}")
     return AdapterAddress(host=host.strip("[]"), port=int(port))

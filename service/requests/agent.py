@@ -51,6 +51,12 @@ class AgentRequest(SimulationRequest):
     allows_put: Annotated[
         bool, About("let clients write assets and observations", flag="--allow-put")
     ] = False
+    mqtt: Annotated[
+        str | None,
+        MaxLen(300),
+        About("MQTT broker to publish to (extra: mqtt)", name="MQTT broker", flag="--mqtt",
+              metavar="HOST:PORT"),
+    ] = None  # fmt: skip
     adapters: Annotated[
         tuple[Annotated[str, MaxLen(300)], ...],
         MaxLen(20),

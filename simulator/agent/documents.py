@@ -342,6 +342,11 @@ def timestamp(time: int) -> str:
     return f"{moment:%Y-%m-%dT%H:%M:%S}.{micro:06d}Z"
 
 
+def has_observations(document: bytes) -> bool:
+    """Whether there is an observation in a document of streams."""
+    return b"<DeviceStream " in document
+
+
 def indented(document: bytes) -> bytes:
     """The same document, indented."""
     root = etree.fromstring(document)

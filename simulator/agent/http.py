@@ -13,7 +13,14 @@ from urllib.parse import parse_qsl, unquote
 from uuid import uuid4
 
 from simulator.agent.agent import Agent
-from simulator.agent.documents import STYLE, RequestFault, as_json, indented, packed
+from simulator.agent.documents import (
+    STYLE,
+    RequestFault,
+    as_json,
+    has_observations,
+    indented,
+    packed,
+)
 from simulator.agent.puts import (
     MOST_BODY,
     put_asset,
@@ -433,7 +440,7 @@ async def _parts(
             StreamQuery(chosen=query.chosen, start=following, count=query.count)
         )
         heartbeat = query.heartbeat / 1000.0
-        if following > before and _has_observations(document):
+        if following > before and has_observations(document):
             await _part(request, send, boundary, document)
             silent_since = begin
             if following < agent.buffer.next:
@@ -446,10 +453,6 @@ async def _parts(
         if await agent.wait(following, max(0.001, left)):
             # What comes within the interval goes into one document.
             await asyncio.sleep(max(0.0, begin + interval - loop.time()))
-
-
-def _has_observations(document: bytes) -> bool:
-    return b"<DeviceStream " in document
 
 
 async def _part(request: HttpRequest, send: Send, boundary: str, document: bytes) -> None:

@@ -39,7 +39,7 @@ def folder(tmp_path: Path) -> Path:
 
 def location(served: ServedAgent, path: str) -> str:
     root = etree.fromstring(served.get(path).content)
-    space, address = root.attrib[LOCATION].split(" ")
+    space, address = str(root.attrib[LOCATION]).split(" ")
     assert space == etree.QName(root).namespace
     return str(address)
 
