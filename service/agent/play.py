@@ -41,7 +41,13 @@ class PlayableRun(Protocol):
 
 def begun(run: PlayableRun, *, speed: float, size: int) -> Agent:
     """Return an agent that has no observation of the run yet, and begins with it."""
-    agent = Agent(model=run.devices, clock=now, size=size, begin=_anchor(run, speed))
+    agent = Agent(
+        model=run.devices,
+        clock=now,
+        size=size,
+        begin=_anchor(run, speed),
+        is_scaled=speed != 1.0,
+    )
     run.equip(agent)
     return agent
 

@@ -29,6 +29,7 @@ from simulator.agent.machine_model import MachineModel, device_uuid, machine_mod
 from simulator.agent.model import DeviceModel, read_model
 from simulator.agent.names import NameSet, SchemaVersion
 from simulator.agent.requests import StreamQuery
+from simulator.agent.schemas import SchemaFiles, read_schemas
 from simulator.agent.tool_assets import tool_asset
 from simulator.library import load_machine
 from simulator.machine.samples import Samples, joined
@@ -153,6 +154,8 @@ class AgentFiles:
 
     run: RunFiles
     device: Path | None = None
+    schemas: Path | None = None
+    """folder of schemas that are served"""
 
 
 def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent) -> None:
@@ -161,11 +164,13 @@ def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent
     Raises
     ------
     StepNcError
-        As :func:`published_run`; for a device model or an address that cannot be used, and
-        when a port is not free.
+        As :func:`published_run`; for a device model, an address or schemas that cannot be
+        used, and when a port is not free.
     """
     with ExitStack() as stack:
         listener = stack.enter_context(listening(request.host, request.port))
+        schemas = SchemaFiles() if files.schemas is None else read_schemas(files.schemas)
+        broker = _broker(request, tell)
         shdr = None
         if request.shdr_port is not None:
             shdr = stack.enter_context(listening(request.host, request.shdr_port))
@@ -177,9 +182,26 @@ def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent
             agent, work = adapted(request, files, tell=tell)
         else:
             agent, work = published(request, files.run, tell=tell)
+        agent.allows_put, agent.writer.schemas = request.allows_put, schemas
         tell(f"MTConnect agent: http://{_place(listener)}/current")
         with asyncio.Runner(loop_factory=_new_loop) as runner:
-            runner.run(_serve(agent, work, listener, shdr))
+            runner.run(_serve(agent, [*work, *broker(agent)], listener, shdr))
+
+
+def _broker(request: AgentRequest, tell: Tell) -> Callable[[Agent], Sequence[Work]]:
+    """Gives an agent the work that publishes it to an MQTT broker, if one is named."""
+    if request.mqtt is None:
+        return lambda _: ()
+    address = _address(request.mqtt, "MQTT broker", "127.0.0.1:1883")
+    try:
+        from simulator.agent.mqtt import MqttPublisher  # noqa: PLC0415 (an optional extra)
+    except ModuleNotFoundError as error:
+        if not (error.name or "").startswith("paho"):
+            raise
+        install = "pip install 'stepnc-optimiser[mqtt]'"
+        raise StepNcError(f"--mqtt needs the package paho-mqtt: {install}") from error
+    host, port = address.host, address.port
+    return lambda agent: [MqttPublisher(agent=agent, host=host, port=port, tell=tell).run]
 
 
 def published(
@@ -229,7 +251,7 @@ def adapted(
     if not request.adapters or files.device is None:
         raise StepNcError("--device: name its adapters with --adapter HOST:PORT")
     require_bounds(request)
-    addresses = [_address(each) for each in request.adapters]
+    addresses = [_address(each, "adapter", "192.168.0.7:7878") for each in request.adapters]
     model = read_model(files.device)
     tell(f"device model: {files.device}, schema {model.version}, {len(model.items)} data items")
     agent = Agent(model=model, clock=now, size=request.buffer)
@@ -338,8 +360,8 @@ def _place(listener: socket.socket) -> str:
     return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
 
 
-def _address(text: str) -> AdapterAddress:
+def _address(text: str, what: str, example: str) -> AdapterAddress:
     host, colon, port = text.rpartition(":")
     if not (colon and host and port.isdecimal() and 0 < int(port) < 1 << 16):
-        raise StepNcError(f"adapter '{text}': expected HOST:PORT, as 192.168.0.7:7878")
+        raise StepNcError(f"{what} '{text}': expected HOST:PORT, as {example}")
     return AdapterAddress(host=host.strip("[]"), port=int(port))

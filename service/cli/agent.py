@@ -28,6 +28,8 @@ def _agent_options(parser: argparse.ArgumentParser) -> None:
     add("--device", type=Path, metavar="XML",
         help="device model of the adapters or the recorded run",
     )  # fmt: skip
+    add("--schema-files", type=Path, metavar="FOLDER",
+        help="a folder of schemas (*.xsd) to serve at /schemas")  # fmt: skip
     add_options(parser, AgentRequest, usual={"rate_hz": USUAL_RATE})
     add_code(parser)
     parser.set_defaults(run=_agent, output=None)
@@ -42,6 +44,10 @@ def _agent(options: argparse.Namespace) -> int:
 
     request = from_options(AgentRequest, options, rate_hz=USUAL_RATE)
     with interruptible():
-        files = AgentFiles(run=run_files(options, options.file), device=options.device)
+        files = AgentFiles(
+            run=run_files(options, options.file),
+            device=options.device,
+            schemas=options.schema_files,
+        )
         serve_agent(request, files, tell=tell)
     return OK

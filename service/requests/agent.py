@@ -48,6 +48,15 @@ class AgentRequest(SimulationRequest):
         About("port of an SHDR adapter that feeds other agents", name="SHDR port",
               flag="--shdr", metavar="N"),
     ] = None  # fmt: skip
+    allows_put: Annotated[
+        bool, About("let clients write assets and observations", flag="--allow-put")
+    ] = False
+    mqtt: Annotated[
+        str | None,
+        MaxLen(300),
+        About("MQTT broker to publish to (extra: mqtt)", name="MQTT broker", flag="--mqtt",
+              metavar="HOST:PORT"),
+    ] = None  # fmt: skip
     adapters: Annotated[
         tuple[Annotated[str, MaxLen(300)], ...],
         MaxLen(20),

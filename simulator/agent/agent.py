@@ -10,7 +10,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from simulator.agent.buffer import SIZE, ConditionValue, ObservationBuffer, Value
+from simulator.agent.buffer import (
+    SIZE,
+    AssetReference,
+    ConditionValue,
+    ObservationBuffer,
+    Value,
+)
 from simulator.agent.documents import DocumentWriter, RequestFault, timestamp
 from simulator.agent.model import DeviceModel
 from simulator.agent.requests import RequestRefused, StreamQuery
@@ -19,6 +25,9 @@ from simulator.motion.segments import Ints
 CACHED = 64
 """parts of streams that are kept for other clients which ask for the same"""
 
+MOST_ASSET_SIGNS = 1 << 26
+"""characters of all assets together; the oldest go first"""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Asset:
@@ -26,6 +35,7 @@ class Asset:
 
     id: str
     type: str
+    """name of its element"""
     text: str
     device: int = 0
     is_removed: bool = False
@@ -43,6 +53,10 @@ class Agent:
     has_quirk: bool = False
     begin: int | None = None
     """µs since 1970 of the first observations; None: now"""
+    is_scaled: bool = False
+    """stamps of what is published are not those of the clock"""
+    allows_put: bool = False
+    """clients may write observations and assets"""
     assets: OrderedDict[str, Asset] = field(default_factory=OrderedDict)
     """by id, the oldest first"""
     buffer: ObservationBuffer = field(init=False)
@@ -80,6 +94,10 @@ class Agent:
         numbers = np.array([at for at, _ in known], dtype=np.int64)
         self.add(numbers, np.full(len(known), when), [value for _, value in known])
 
+    def stamp(self) -> int:
+        """Time of what clients or the agent itself tell, µs since 1970."""
+        return self.buffer.last_time if self.is_scaled else self.clock()
+
     def lose(self, items: Sequence[int]) -> None:
         """Make data items unavailable whose source is lost."""
         values: list[Value] = [
@@ -93,16 +111,20 @@ class Agent:
         self.add(np.array(numbers, dtype=np.int64), np.full(len(numbers), self.clock()), values)
 
     def put(self, asset: Asset) -> None:
-        """Keep an asset; the oldest goes when there are too many."""
+        """Keep an asset; the oldest go when there are too many."""
         self.assets.pop(asset.id, None)
         self.assets[asset.id] = asset
-        while len(self.assets) > self.writer.asset_size:
-            self.assets.popitem(last=False)
-        kind = "ASSET_REMOVED" if asset.is_removed else "ASSET_CHANGED"
-        for item in self.model.items:
-            of = self.model.components[item.component].device
-            if item.type == kind and of == asset.device:
-                self.tell({item.id: asset.id}, time=self.buffer.last_time)
+        size = sum(len(each.text) for each in self.assets.values())
+        while len(self.assets) > self.writer.asset_size or size > MOST_ASSET_SIGNS:
+            size -= len(self.assets.popitem(last=False)[1].text)
+        told: dict[str, Value] = {}
+        for at in sorted(self.model.items_of(asset.device)):
+            item = self.model.items[at]
+            if item.type == ("ASSET_REMOVED" if asset.is_removed else "ASSET_CHANGED"):
+                told[item.id] = AssetReference(id=asset.id, type=asset.type)
+            elif item.type == "ASSET_CHANGED" and self._is_told(at, asset):
+                told[item.id] = None
+        self.tell(told, time=self.stamp())
 
     def probe(self, device: int | None) -> bytes:
         """Document of devices."""
@@ -175,7 +197,7 @@ class Agent:
 
     def _asset_document(self, found: Sequence[Asset]) -> bytes:
         texts = [
-            each.text.replace(" assetId=", ' removed="true" assetId=', 1)
+            f'<{each.type} removed="true"{each.text[len(each.type) + 1 :]}'
             if each.is_removed
             else each.text
             for each in found
@@ -210,6 +232,12 @@ class Agent:
 
     def _rendered(self, item: int, time: int, sequence: int, value: Value) -> bytes:
         return self.writer.observation(item, time, sequence, value)
+
+    def _is_told(self, item: int, asset: Asset) -> bool:
+        """Whether a data item names an asset."""
+        held = self.buffer.state[item]
+        value = held[0].value if held else None
+        return isinstance(value, AssetReference) and value.id == asset.id
 
     def _at(self, key: str) -> int:
         return self.model.index.get(key, -1)

@@ -43,7 +43,24 @@ class TimeSeriesValue:
     """Hz; 0: that of the data item"""
 
 
-Value = float | int | str | None | ConditionValue | TimeSeriesValue | dict[str, str | None]
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AssetReference:
+    """Asset that was changed or removed."""
+
+    id: str
+    type: str
+
+
+Value = (
+    float
+    | int
+    | str
+    | None
+    | ConditionValue
+    | TimeSeriesValue
+    | AssetReference
+    | dict[str, str | None]
+)
 """None is UNAVAILABLE; a number or a text; an entry of a data set that is None is removed"""
 
 

@@ -16,6 +16,7 @@ from xml.sax.saxutils import escape, quoteattr
 from lxml import etree
 
 from simulator.agent.buffer import (
+    AssetReference,
     ConditionValue,
     ObservationBuffer,
     State,
@@ -23,6 +24,7 @@ from simulator.agent.buffer import (
     Value,
 )
 from simulator.agent.model import DeviceModel
+from simulator.agent.schemas import SchemaFiles
 
 XSI = "http://www.w3.org/2001/XMLSchema-instance"
 STYLE = "/styles/mtconnect.xsl"
@@ -70,6 +72,12 @@ NUMBERS = frozenset({
 })
 """attributes that are numbers in JSON"""
 
+ASSET_TYPES = frozenset({"ASSET_CHANGED", "ASSET_REMOVED"})
+"""types of data items whose values are ids of assets"""
+
+USUAL_ASSET = "CuttingTool"
+"""type of asset that is told where no asset is named"""
+
 _ILLEGAL = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
@@ -101,6 +109,7 @@ class DocumentWriter:
     asset_size: int = 1024
     has_quirk: bool = False
     """``errorCode`` in error documents from 2.6 on too, as the reference agent writes it"""
+    schemas: SchemaFiles = field(default_factory=SchemaFiles)
     _starts: list[tuple[str, str]] = field(init=False)
     _groups: list[tuple[int, int]] = field(init=False)
     _stamp: tuple[int, str] = field(init=False, default=(-1, ""))
@@ -117,8 +126,6 @@ class DocumentWriter:
                 )
                 if text and not (key == "subType" and item.category == "CONDITION")
             )
-            if item.type in {"ASSET_CHANGED", "ASSET_REMOVED"}:
-                rest += ' assetType="CuttingTool"'
             if item.category == "CONDITION":
                 rest += f" type={quoteattr(item.type)}"
             self._starts.append((f" dataItemId={quoteattr(item.id)} timestamp=", rest))
@@ -231,7 +238,12 @@ class DocumentWriter:
         if of.category == "CONDITION":
             return f"<Unavailable{head}/>".encode()
         name = of.element
+        if of.type in ASSET_TYPES:
+            kind = value.type if isinstance(value, AssetReference) else USUAL_ASSET
+            head += f" assetType={quoteattr(kind)}"
         match value:
+            case AssetReference():
+                return f"<{name}{head}>{escape(_legal(value.id))}</{name}>".encode()
             case dict():
                 entries = "".join(_entry(key, text) for key, text in value.items())
                 return f'<{name}{head} count="{len(value)}">{entries}</{name}>'.encode()
@@ -314,7 +326,7 @@ class DocumentWriter:
             '<?xml version="1.0" encoding="UTF-8"?>\n'
             f'<?xml-stylesheet type="text/xsl" href="{STYLE}"?>\n'
             f'<MTConnect{kind} xmlns="{space}" xmlns:xsi="{XSI}" xsi:schemaLocation="{space} '
-            f'/schemas/MTConnect{kind}_{version}.xsd">{header}'
+            f'{escape(self.schemas.location(kind, version))}">{header}'
         )
         inner = body if isinstance(body, bytes) else body.encode()
         return b"".join((start.encode(), inner, f"</MTConnect{kind}>\n".encode()))
@@ -325,6 +337,11 @@ def timestamp(time: int) -> str:
     seconds, micro = divmod(time, 1_000_000)
     moment = datetime.fromtimestamp(seconds, UTC)
     return f"{moment:%Y-%m-%dT%H:%M:%S}.{micro:06d}Z"
+
+
+def has_observations(document: bytes) -> bool:
+    """Whether there is an observation in a document of streams."""
+    return b"<DeviceStream " in document
 
 
 def indented(document: bytes) -> bytes:

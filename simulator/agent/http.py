@@ -1,4 +1,4 @@
-"""HTTP of the agent: an ASGI application, read-only.
+"""HTTP of the agent: an ASGI application, read-only unless the agent allows puts.
 
 One event loop serves all clients and takes the observations, so that no locks are needed. A
 client that does not read is dropped; the machine never waits for one.
@@ -13,13 +13,28 @@ from urllib.parse import parse_qsl, unquote
 from uuid import uuid4
 
 from simulator.agent.agent import Agent
-from simulator.agent.documents import RequestFault, as_json, indented, packed
+from simulator.agent.documents import (
+    STYLE,
+    RequestFault,
+    as_json,
+    has_observations,
+    indented,
+    packed,
+)
+from simulator.agent.puts import (
+    MOST_BODY,
+    put_asset,
+    put_observations,
+    remove_all_assets,
+    remove_assets,
+)
 from simulator.agent.requests import (
     RequestRefused,
     StreamQuery,
     current_query,
     sample_query,
 )
+from simulator.agent.schemas import PLACE
 
 STYLESHEET = Path(__file__).with_name("mtconnect.xsl").read_bytes()
 """makes documents readable in a browser"""
@@ -35,6 +50,13 @@ PATIENCE = 15.0
 LEAST_PACKED = 1024
 """bytes of a document that is worth compressing"""
 
+READS = ("GET", "HEAD", "OPTIONS")
+ASSET_WRITES = ("PUT", "POST", "DELETE")
+VALUE_WRITES = ("PUT", "POST")
+
+SUCCESS = b"<success/>"
+"""answer to values that were put, as the reference agent gives it"""
+
 Receive = Callable[[], Awaitable[Mapping[str, Any]]]
 Send = Callable[[Mapping[str, Any]], Awaitable[None]]
 
@@ -43,6 +65,8 @@ COMMON = [
     (b"cache-control", b"no-store"),
     (b"x-content-type-options", b"nosniff"),
 ]
+
+VERBS = frozenset({"probe", "current", "sample", "asset", "assets"})
 
 KINDS = {
     "probe": "MTConnectDevices",
@@ -61,6 +85,9 @@ class HttpRequest:
     values: Mapping[str, str]
     is_json: bool
     takes_gzip: bool
+    origin: str
+    """of the page whose script asks; empty: none"""
+    host: str
 
     @property
     def is_pretty(self) -> bool:
@@ -106,6 +133,8 @@ def _request(scope: Mapping[str, Any]) -> HttpRequest:
         values=values,
         is_json=wanted == "json" or ("application/json" in accept and wanted != "xml"),
         takes_gzip="gzip" in headers.get("accept-encoding", ""),
+        origin=headers.get("origin", ""),
+        host=headers.get("host", ""),
     )
 
 
@@ -113,19 +142,20 @@ async def _answer(agent: Agent, request: HttpRequest, receive: Receive, send: Se
     if len(request.uri) >= LONGEST_URI:
         raise _bad_uri(f"the address is longer than {LONGEST_URI} bytes", status=414)
     if request.method == "OPTIONS":
-        head = [*COMMON, (b"allow", b"GET, HEAD, OPTIONS")]
+        # Scripts of other pages may read; they never write.
+        head = [*COMMON, (b"allow", _allowed(agent, request.path))]
         head.append((b"access-control-allow-methods", b"GET, HEAD, OPTIONS"))
         head.append((b"access-control-allow-headers", b"*"))
         await _send(send, 204, head, b"")
         return
+    parts = _parts_of(request.path)
     if request.method not in {"GET", "HEAD"}:
-        fault = RequestFault(
-            code="UNSUPPORTED", message=f"{request.method} is not supported: read only"
-        )
-        raise RequestRefused(405, fault)
-    parts = [unquote(part) for part in request.path.split("/") if part]
-    if request.path == "/styles/mtconnect.xsl":
-        await _send(send, 200, [*COMMON, (b"content-type", b"text/xsl")], STYLESHEET)
+        await _write(agent, request, parts, receive, send)
+        return
+    if (text := _file(agent, request.path)) is not None:
+        kind = b"text/xsl" if request.path == STYLE else b"text/xml"
+        body = b"" if request.method == "HEAD" else text
+        await _send(send, 200, [*COMMON, (b"content-type", kind)], body)
         return
     device, verb, rest = _place(agent, parts)
     match verb:
@@ -147,22 +177,121 @@ async def _answer(agent: Agent, request: HttpRequest, receive: Receive, send: Se
             await _document(request, send, _assets(agent, request, device, rest))
 
 
+def _file(agent: Agent, path: str) -> bytes | None:
+    """Style sheet or schema at an address; None: there is none."""
+    if path == STYLE:
+        return STYLESHEET
+    if not path.startswith(PLACE):
+        return None
+    return agent.writer.schemas.files.get(path.removeprefix(PLACE))
+
+
+def _parts_of(path: str) -> list[str]:
+    return [unquote(part) for part in path.split("/") if part]
+
+
+def _writes(agent: Agent, parts: list[str]) -> tuple[str, ...]:
+    """Methods by which a client may write at an address."""
+    if not agent.allows_put:
+        return ()
+    if any(verb in parts[:2] for verb in ("asset", "assets")):
+        return ASSET_WRITES
+    is_device = len(parts) == 1 and parts[0] not in VERBS
+    return VALUE_WRITES if is_device else ()
+
+
+def _allowed(agent: Agent, path: str) -> bytes:
+    return ", ".join((*READS, *_writes(agent, _parts_of(path)))).encode()
+
+
+async def _write(
+    agent: Agent, request: HttpRequest, parts: list[str], receive: Receive, send: Send
+) -> None:
+    """Store what a client puts, or refuse it."""
+    if request.method not in _writes(agent, parts):
+        where = "" if agent.allows_put else ": read only"
+        message = f"{request.method} is not supported{where}"
+        raise RequestRefused(405, RequestFault(code="UNSUPPORTED", message=message))
+    if request.origin and request.origin.partition("://")[2] != request.host:
+        message = "pages of other servers may not write"
+        raise RequestRefused(403, RequestFault(code="UNAUTHORIZED", message=message))
+    device, verb, rest = _place(agent, parts)
+    if verb == "probe" and device is not None:
+        put_observations(agent, request.values, device=device)
+        await _send(send, 200, [*COMMON, (b"content-type", b"text/xml")], SUCCESS)
+        return
+    device = _device_named(agent, request) if device is None else device
+    kind = request.values.get("type", "")
+    if request.method == "DELETE":
+        if rest or verb == "asset":
+            document = remove_assets(agent, _ids(rest))
+        else:
+            document = remove_all_assets(agent, kind=kind, device=device)
+    else:
+        at = _usual_device(agent) if device is None else device
+        body = await _body(receive)
+        document = put_asset(agent, body, id=rest, kind=kind, device=at)
+    await _document(request, send, document)
+
+
+def _device_named(agent: Agent, request: HttpRequest) -> int | None:
+    """Device of a request by its parameter."""
+    name = request.values.get("device")
+    return None if name is None else _device(agent, name)
+
+
+def _usual_device(agent: Agent) -> int:
+    """The first device that is not the agent itself."""
+    devices = agent.model.devices
+    return next((at for at, each in enumerate(devices) if not each.is_agent), 0)
+
+
+async def _body(receive: Receive) -> bytes:
+    """Body of a request.
+
+    Raises
+    ------
+    RequestRefused
+        When it is too large, or takes too long.
+    """
+    body, is_open = b"", True
+    try:
+        async with asyncio.timeout(PATIENCE):
+            while is_open:
+                message = await receive()
+                body += message.get("body", b"")
+                is_open = message.get("more_body", False)
+                if len(body) > MOST_BODY:
+                    fault = f"the body is larger than {MOST_BODY} bytes"
+                    raise RequestRefused(
+                        413, RequestFault(code="INVALID_REQUEST", message=fault)
+                    )
+    except TimeoutError:
+        fault = f"the body did not come within {PATIENCE:g} s"
+        raise RequestRefused(408, RequestFault(code="INVALID_REQUEST", message=fault)) from None
+    return body
+
+
+def _device(agent: Agent, name: str) -> int:
+    device = agent.model.device_of(name)
+    if device is None:
+        fault = RequestFault(code="NO_DEVICE", message=f"no device '{name[:200]}'")
+        raise RequestRefused(404, fault)
+    return device
+
+
 def _place(agent: Agent, parts: list[str]) -> tuple[int | None, str, str]:
     """Device, verb and the rest of a path."""
-    verbs = {"probe", "current", "sample", "asset", "assets"}
     if not parts:
         return None, "probe", ""
     device: int | None = None
-    if parts[0] not in verbs:
-        device = agent.model.device_of(parts[0])
-        if device is None:
-            fault = RequestFault(code="NO_DEVICE", message=f"no device '{parts[0][:200]}'")
-            raise RequestRefused(404, fault)
+    if parts[0] not in VERBS:
+        device = _device(agent, parts[0])
         parts = parts[1:]
     verb = parts[0] if parts else "probe"
     rest = parts[1:]
     is_asset = verb in {"asset", "assets"}
-    if verb not in verbs or len(rest) > int(is_asset):
+    if verb not in VERBS or len(rest) > int(is_asset):
         raise _bad_uri(f"no such address: /{'/'.join(parts)[:200]}")
     return device, verb, rest[0] if rest else ""
 
@@ -173,7 +302,7 @@ def _bad_uri(message: str, *, status: int = 404) -> RequestRefused:
 
 def _assets(agent: Agent, request: HttpRequest, device: int | None, ids: str) -> bytes:
     if ids:
-        return agent.assets_by_id([id for id in ids.split(";") if id])
+        return agent.assets_by_id(_ids(ids))
     text = request.values.get("count", "100")
     if not text.isdecimal() or not 0 < int(text) <= 1 << 31:
         fault = RequestFault(
@@ -193,8 +322,21 @@ def _assets(agent: Agent, request: HttpRequest, device: int | None, ids: str) ->
     )
 
 
+def _ids(text: str) -> list[str]:
+    found = [id for id in text.split(";") if id]
+    if not found:
+        raise RequestRefused(
+            400, RequestFault(code="INVALID_REQUEST", message="no asset named")
+        )
+    return found
+
+
 async def _document(
-    request: HttpRequest, send: Send, document: bytes, status: int = 200
+    request: HttpRequest,
+    send: Send,
+    document: bytes,
+    status: int = 200,
+    more: tuple[tuple[bytes, bytes], ...] = (),
 ) -> None:
     """Send a document in the form that the client asks for."""
     kind = b"text/xml; charset=utf-8"
@@ -202,7 +344,7 @@ async def _document(
         kind, document = b"application/json", as_json(document, is_pretty=request.is_pretty)
     elif request.is_pretty:
         document = indented(document)
-    head = [*COMMON, (b"content-type", kind), (b"vary", b"accept, accept-encoding")]
+    head = [*COMMON, *more, (b"content-type", kind), (b"vary", b"accept, accept-encoding")]
     if request.takes_gzip and len(document) >= LEAST_PACKED:
         document = packed(document)
         head.append((b"content-encoding", b"gzip"))
@@ -219,14 +361,17 @@ async def _refuse(
     agent: Agent, request: HttpRequest, refused: RequestRefused, send: Send
 ) -> None:
     words = [part for part in request.path.split("/") if part]
+    is_asset = any(word in {"asset", "assets"} for word in words[:2])
     verb = words[-1] if words else "probe"
     document = agent.writer.errors(
         refused.faults,
         size=agent.size,
-        request=KINDS.get(verb, "MTConnectAssets" if "asset" in verb else "MTConnectDevices"),
+        request="MTConnectAssets" if is_asset else KINDS.get(verb, "MTConnectDevices"),
         uri=request.uri,
     )
-    await _document(request, send, document, refused.status)
+    allow = (b"allow", _allowed(agent, request.path))
+    more = (allow,) if refused.status == 405 else ()
+    await _document(request, send, document, refused.status, more)
 
 
 async def _stream(
@@ -295,7 +440,7 @@ async def _parts(
             StreamQuery(chosen=query.chosen, start=following, count=query.count)
         )
         heartbeat = query.heartbeat / 1000.0
-        if following > before and _has_observations(document):
+        if following > before and has_observations(document):
             await _part(request, send, boundary, document)
             silent_since = begin
             if following < agent.buffer.next:
@@ -308,10 +453,6 @@ async def _parts(
         if await agent.wait(following, max(0.001, left)):
             # What comes within the interval goes into one document.
             await asyncio.sleep(max(0.0, begin + interval - loop.time()))
-
-
-def _has_observations(document: bytes) -> bool:
-    return b"<DeviceStream " in document
 
 
 async def _part(request: HttpRequest, send: Send, boundary: str, document: bytes) -> None:

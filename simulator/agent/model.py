@@ -140,6 +140,20 @@ class DeviceModel:
         found.update({item.id: number for number, item in enumerate(self.items)})
         return found
 
+    def index_of(self, device: int) -> dict[str, int]:
+        """Numbers of the data items of a device by id or name."""
+        return self._indices[device]
+
+    @cached_property
+    def _indices(self) -> tuple[dict[str, int], ...]:
+        found: tuple[dict[str, int], ...] = tuple({} for _ in self.devices)
+        for number, item in enumerate(self.items):
+            own = found[self.components[item.component].device]
+            own.setdefault(item.id, number)
+            if item.name:
+                own.setdefault(item.name, number)
+        return found
+
     def device_of(self, name: str) -> int | None:
         """Index of a device by its name or uuid."""
         for number, device in enumerate(self.devices):

@@ -14,7 +14,13 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from math import isfinite
 
-from simulator.agent.buffer import CONDITIONS, ConditionValue, TimeSeriesValue, Value
+from simulator.agent.buffer import (
+    CONDITIONS,
+    AssetReference,
+    ConditionValue,
+    TimeSeriesValue,
+    Value,
+)
 from simulator.agent.documents import timestamp
 from simulator.agent.model import DeviceModel, ObservedItem
 
@@ -67,16 +73,23 @@ def item_of(key: str, model: DeviceModel) -> int | None:
     if number is None and ":" in key:
         device, _, name = key.partition(":")
         at = model.device_of(device)
-        if at is None:
-            return None
-        own = model.items_of(at)
-        named = (
-            each
-            for each in sorted(own)
-            if name in {model.items[each].name, model.items[each].id}
-        )
-        return next(named, None)
+        return None if at is None else model.index_of(at).get(name)
     return number
+
+
+def read_value(text: str, item: ObservedItem) -> Value:
+    """Value of a data item in the form of a line: several fields with ``|`` between them.
+
+    Raises
+    ------
+    ValueError
+        When the data item cannot have it.
+    """
+    fields = text.split("|")
+    taken, value = _value(item, fields)
+    if value is _NOTHING or len(fields) > taken:
+        raise ValueError(f"'{text[:100]}' is no value of {item.type}")
+    return value  # type: ignore[return-value]
 
 
 def read_time(text: str, clock: Callable[[], int]) -> int:
@@ -111,6 +124,8 @@ def written(model: DeviceModel, item: int, time: int, value: Value) -> Iterator[
                 for name, text in value.items()
             )
             yield f"{stamp}|{key}|{' '.join(entries)}"
+        case AssetReference():
+            yield f"{stamp}|{key}|{_plain(value.id)}"
         case None if of.category == "CONDITION":
             yield f"{stamp}|{key}|unavailable||||"
         case None:

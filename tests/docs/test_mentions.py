@@ -5,7 +5,8 @@ Not run, and why:
 - ``make`` targets and activation of ``.venv``: they make the environment in which tests run;
 - ``python -m benchmarks…``: minutes, and their figures are of one machine;
 - ``python examples/…``: run, or its parts, in ``tests/examples``;
-- ``curl`` and what stands in its blocks: run by ``test_service_page.py``;
+- ``curl`` and what stands in its blocks: run by ``test_service_page.py`` and
+  ``tests/simulator/agent/test_puts.py``;
 - commands in the text, ``like this``: fragments, with ``part.stpnc`` for any program.
 """
 
