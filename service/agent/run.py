@@ -13,6 +13,8 @@ import uvicorn
 
 from service.agent.play import MICRO, PlayableRun, begun, now, play
 from service.agent.replay import LOGS, read_log
+from service.agent.run_routes import Application, with_runs
+from service.agent.runs import RunKeeper, RunRepository
 from service.files import require_place, write_atomically
 from service.reading import Tell, silent
 from service.requests.agent import AgentRequest
@@ -156,6 +158,8 @@ class AgentFiles:
     device: Path | None = None
     schemas: Path | None = None
     """folder of schemas that are served"""
+    runs: Path | None = None
+    """Folder in which runs are kept and from which they are served."""
 
 
 def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent) -> None:
@@ -183,9 +187,14 @@ def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent
         else:
             agent, work = published(request, files.run, tell=tell)
         agent.allows_put, agent.writer.schemas = request.allows_put, schemas
+        app = application(agent)
+        if files.runs is not None:
+            repository = RunRepository(files.runs)
+            stack.callback(RunKeeper(agent, repository, tell=tell).close)
+            app = with_runs(app, repository)
         tell(f"MTConnect agent: http://{_place(listener)}/current")
         with asyncio.Runner(loop_factory=_new_loop) as runner:
-            runner.run(_serve(agent, [*work, *broker(agent)], listener, shdr))
+            runner.run(_serve(agent, app, [*work, *broker(agent)], listener, shdr))
 
 
 def _broker(request: AgentRequest, tell: Tell) -> Callable[[Agent], Sequence[Work]]:
@@ -308,12 +317,13 @@ def _new_loop() -> asyncio.AbstractEventLoop:
 
 async def _serve(
     agent: Agent,
+    app: Application,
     work: Sequence[Work],
     listener: socket.socket,
     shdr: socket.socket | None,
 ) -> None:
     config = uvicorn.Config(
-        application(agent),
+        app,
         http=BoundedHttpProtocol,
         log_config=None,
         access_log=False,

@@ -30,6 +30,8 @@ def _agent_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     add("--schema-files", type=Path, metavar="FOLDER",
         help="a folder of schemas (*.xsd) to serve at /schemas")  # fmt: skip
+    add("--runs", type=Path, metavar="FOLDER",
+        help="keep each run in this folder, and serve them at /runs")  # fmt: skip
     add_options(parser, AgentRequest, usual={"rate_hz": USUAL_RATE})
     add_code(parser)
     parser.set_defaults(run=_agent, output=None)
@@ -48,6 +50,7 @@ def _agent(options: argparse.Namespace) -> int:
             run=run_files(options, options.file),
             device=options.device,
             schemas=options.schema_files,
+            runs=options.runs,
         )
         serve_agent(request, files, tell=tell)
     return OK

@@ -59,6 +59,8 @@ class Agent:
     """clients may write observations and assets"""
     assets: OrderedDict[str, Asset] = field(default_factory=OrderedDict)
     """by id, the oldest first"""
+    watchers: list[Callable[[Ints, Ints, Sequence[Value]], None]] = field(default_factory=list)
+    """take data items, times and values of what is added, after the buffer has them"""
     buffer: ObservationBuffer = field(init=False)
     writer: DocumentWriter = field(init=False)
 
@@ -84,6 +86,8 @@ class Agent:
         if not len(items):
             return
         self.buffer.append(items, times, values)
+        for watch in self.watchers:
+            watch(items, times, values)
         self._arrival.set()
         self._arrival = asyncio.Event()
 
