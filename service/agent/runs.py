@@ -21,7 +21,6 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
-from lxml import etree
 from pyarrow import parquet
 
 from service.reading import Tell, silent
@@ -34,7 +33,7 @@ from simulator.agent.buffer import (
     Value,
 )
 from simulator.agent.documents import timestamp
-from simulator.agent.model import model_of, parsed
+from simulator.agent.model import devices_text, model_of, parsed
 from simulator.motion.segments import Ints
 from stepnc_model.errors import StepNcError, WriteError
 
@@ -249,7 +248,7 @@ class RunKeeper:
         entries = [
             (item, value)
             for item in sorted(model.items_of(device))
-            if self._types[item] != "EXECUTION" and (value := self._held.get(item)) is not None
+            if self._types[item] != "EXECUTION" and _is_known(value := self._held.get(item))
         ]
         part = next(
             (str(value) for item, value in entries if self._types[item] == "PROGRAM"), ""
@@ -311,7 +310,7 @@ class RunKeeper:
         )
         run.writer.add_key_value_metadata({
             "run": json.dumps(asdict(kept), ensure_ascii=False),
-            "devices": etree.tostring(model.root, encoding="unicode"),
+            "devices": devices_text(model),
             "version": model.version,
         })
         try:
@@ -319,6 +318,12 @@ class RunKeeper:
             os.replace(run.file.with_suffix(".partial"), run.file)
         except OSError as error:
             raise WriteError(error.strerror or str(error), path=str(run.file)) from error
+
+
+def _is_known(value: Value) -> bool:
+    if isinstance(value, ConditionValue):
+        return value.level != "UNAVAILABLE"
+    return value is not None
 
 
 def _plain(text: str) -> str:

@@ -242,6 +242,11 @@ def read_model(path: Path) -> DeviceModel:
     return model_of(devices, found[1])
 
 
+def devices_text(model: DeviceModel) -> str:
+    """Return the ``Devices`` element of a model as text."""
+    return etree.tostring(model.root, encoding="unicode")
+
+
 def parsed(data: bytes, *, what: str, most: int = MOST_BYTES) -> Any:
     """Root element of an XML text that nobody here wrote.
 
