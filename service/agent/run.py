@@ -4,7 +4,7 @@ import asyncio
 import socket
 from collections.abc import Callable, Coroutine, Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ import uvicorn
 from service.agent.play import MICRO, PlayableRun, begun, now, play
 from service.agent.replay import LOGS, read_log
 from service.agent.run_routes import Application, with_runs
-from service.agent.runs import RunKeeper, RunRepository
+from service.agent.runs import RunKeeper, RunRepository, plain_name
 from service.files import require_place, write_atomically
 from service.reading import Tell, silent
 from service.requests.agent import AgentRequest
@@ -73,6 +73,9 @@ class PublishedRun:
     model: MachineModel
     feed: RunFeed
     tools: tuple[LoadedTool, ...]
+    part: str = ""
+    """Id of the part; empty: that of its batch with its number, if there is a batch."""
+    batch: str = ""
 
     @property
     def devices(self) -> DeviceModel:
@@ -90,7 +93,10 @@ class PublishedRun:
 
     def first(self, count: int) -> Mapping[str, Value]:
         """See :class:`service.agent.play.PlayableRun`."""
-        return beginning(self.model, program=self.program, part_count=count)
+        part = self.part or (f"{self.batch}-{count}" if self.batch else "")
+        return beginning(
+            self.model, program=self.program, part_count=count, part=part, batch=self.batch
+        )
 
     def equip(self, agent: Agent) -> None:
         """Add the tools of the program."""
@@ -115,7 +121,8 @@ def published_run(
     require_bounds(request)
     collector = SampleCollector()
     simulation = simulate(request, files, tell=tell, watchers=[collector])
-    return shown_run(simulation, collector, version=request.schema, names=request.names)
+    run = shown_run(simulation, collector, version=request.schema, names=request.names)
+    return replace(run, part=request.part, batch=request.batch)
 
 
 def require_possible(request: AgentRequest) -> None:
@@ -268,28 +275,60 @@ def adapted(
     return agent, [partial(listen_to, address, intake) for address in addresses]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DocumentChoice:
+    """Form of a document of MTConnect."""
+
+    version: SchemaVersion = SchemaVersion.V2_7
+    names: NameSet = NameSet.MODERN
+    part: str = ""
+    """Id of the part; empty: unknown."""
+    batch: str = ""
+
+
+def _document_name(request: SimulationRequest, files: RunFiles, shown: DocumentChoice) -> str:
+    part = shown.part or files.name or getattr(files.file, "stem", "")
+    return f"{plain_name(f'{Path(request.machine).stem}_{part}')}.xml"
+
+
 def simulated_with_document(
     request: SimulationRequest,
     files: RunFiles,
     output: Path,
+    shown: DocumentChoice,
     *,
-    version: SchemaVersion,
-    names: NameSet,
     tell: Tell = silent,
 ) -> Simulation:
     """Simulate a program, and write its samples as a document of MTConnect.
+
+    Parameters
+    ----------
+    request : SimulationRequest
+    files : RunFiles
+    output : Path
+        File of the document, or a folder in which its name is that of machine and part [1]_.
+    shown : DocumentChoice
+    tell : callable
 
     Raises
     ------
     StepNcError
         As :func:`service.simulation.run.simulate`, and when the file cannot be written.
+
+    References
+    ----------
+    .. [1] D. Lechevalier et al., "Simulating a virtual machining model in an agent-based model
+       for advanced analytics", J. Intell. Manuf. (2018), 4.2.
     """
+    if output.is_dir():
+        output = output / _document_name(request, files, shown)
     for other in (files.file, files.output, files.report):
         if other is not None:
             require_place(output, apart_from=other)
     collector = SampleCollector()
     simulation = simulate(request, files, tell=tell, watchers=[collector])
-    run = shown_run(simulation, collector, version=version, names=names)
+    run = shown_run(simulation, collector, version=shown.version, names=shown.names)
+    run = replace(run, part=shown.part, batch=shown.batch)
     write_atomically(output, streams_document(run))
     tell(f"MTConnect document: {output} ({len(run.feed.values)} observations)")
     return simulation

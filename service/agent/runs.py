@@ -2,7 +2,7 @@
 
 Each run of a program is a Parquet file with its observations and, as metadata, the device model
 and what it can be found by: machine, part, times and workingsteps. A run begins when EXECUTION
-becomes ACTIVE and ends with the program; a file gets its name when its run has ended.
+says that a program runs, and ends with the program; its file gets its name then.
 
 References
 ----------
@@ -43,9 +43,12 @@ ROWS = 8192
 MOST = 1 << 22
 """Most observations of a run that can be served."""
 
-RUNNING = "ACTIVE"
+RUNNING = frozenset({"ACTIVE", "WAIT", "FEED_HOLD", "INTERRUPTED"})
 ENDED = frozenset({"PROGRAM_COMPLETED", "PROGRAM_STOPPED", "STOPPED", "READY", "UNAVAILABLE"})
 """Words of EXECUTION between which a run takes place."""
+
+NAMING = ("PART_UNIQUE_ID", "PART_ID", "PROGRAM")
+"""Types whose value names the part, the best first."""
 
 SCHEMA = pa.schema([
     ("item", pa.dictionary(pa.int32(), pa.string())),
@@ -73,7 +76,8 @@ class KeptRun:
     id: str
     machine: str
     part: str
-    """Name of its program."""
+    """Id of the part; without one, the name of the program."""
+    program: str
     begin: str
     """ISO 8601, UTC."""
     end: str
@@ -142,7 +146,7 @@ class RunRepository:
         return agent
 
     def _file(self, id: str) -> Path:
-        return self.folder / f"{_plain(id)}.parquet"
+        return self.folder / f"{plain_name(id)}.parquet"
 
     def _read(self, file: Path) -> KeptRun | None:
         """Return the description of a run; from memory if the file is the same."""
@@ -170,11 +174,12 @@ class _OpenRun:
     """A run that is being kept. Running state."""
 
     begin: int
-    part: str
     file: Path
     writer: parquet.ParquetWriter
     rows: list[dict[str, Any]] = field(default_factory=list)
     count: int = 0
+    names: dict[str, str] = field(default_factory=dict)
+    """Values of PROGRAM and of the ids of the part, by type."""
     last_time: int = 0
     workingsteps: list[KeptWorkingstep] = field(default_factory=list)
     step: tuple[str, int] | None = None
@@ -234,7 +239,7 @@ class RunKeeper:
         if run is not None and run.ended is not None and time > run.ended:
             self._end(device)
             run = None
-        if run is None and is_execution and value == RUNNING:
+        if run is None and is_execution and value in RUNNING:
             run = self._open[device] = self._begun(device, time)
         if run is None:
             return
@@ -250,24 +255,21 @@ class RunKeeper:
             for item in sorted(model.items_of(device))
             if self._types[item] != "EXECUTION" and _is_known(value := self._held.get(item))
         ]
-        part = next(
-            (str(value) for item, value in entries if self._types[item] == "PROGRAM"), ""
-        )
-        name = _plain(f"{model.devices[device].name}-{timestamp(time)}".replace(":", ""))
+        name = plain_name(f"{model.devices[device].name}-{timestamp(time)}".replace(":", ""))
         file = self._repository.folder / f"{name}.parquet"
         try:
             writer = parquet.ParquetWriter(file.with_suffix(".partial"), SCHEMA)
         except OSError as error:
             raise WriteError(error.strerror or str(error), path=str(file)) from error
-        run = _OpenRun(begin=time, part=part, file=file, writer=writer)
+        run = _OpenRun(begin=time, file=file, writer=writer)
         for item, value in entries:
             self._add(run, item, time, value)
         return run
 
     def _add(self, run: _OpenRun, item: int, time: int, value: Value) -> None:
         run.last_time = max(run.last_time, time)
-        if self._types[item] == "PROGRAM" and not run.part:
-            run.part = str(value or "")
+        if self._types[item] in NAMING and value is not None:
+            run.names.setdefault(self._types[item], str(value))
         if self._types[item] == "PROCESS_KIND_ID":
             self._turn(run, str(value or ""))
         run.rows.append({
@@ -301,7 +303,8 @@ class RunKeeper:
         kept = KeptRun(
             id=run.file.stem,
             machine=model.devices[device].name,
-            part=run.part,
+            part=next((run.names[kind] for kind in NAMING if kind in run.names), ""),
+            program=run.names.get("PROGRAM", ""),
             begin=timestamp(run.begin),
             end=timestamp(run.last_time),
             observations=run.count,
@@ -326,8 +329,8 @@ def _is_known(value: Value) -> bool:
     return value is not None
 
 
-def _plain(text: str) -> str:
-    """Return a text that is a file name everywhere."""
+def plain_name(text: str) -> str:
+    """Return a text as it can name a file everywhere."""
     return re.sub(r"[^A-Za-z0-9._-]", "_", text)[:150]
 
 

@@ -137,9 +137,13 @@ def _simulate_options(parser: argparse.ArgumentParser) -> None:
     add("--carbon-g-kwh", type=float, metavar="G", help="grams of CO2 per kWh (default 480)")
     add("-o", "--output", type=Path, metavar="FILE", help="write the run, .parquet or .csv")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
-    add("--mtconnect", type=Path, metavar="XML", help="write the run as an MTConnect document")
+    add("--mtconnect", type=Path, metavar="XML",
+        help="write the run as an MTConnect document; in a folder its name is MACHINE_PART.xml",
+    )  # fmt: skip
     add("--schema", default="2.7", help="schema version of it: 1.3, 2.0 or 2.7 (default)")
     add("--names", default="modern", help="ids in it: modern (default), or papers")
+    add("--part", default="", metavar="ID", help="id of the part in it")
+    add("--batch", default="", metavar="ID", help="id of the batch in it")
     add_json(parser)
     parser.set_defaults(run=_simulate)
 
@@ -190,15 +194,19 @@ def _simulate(options: argparse.Namespace) -> int:
         with interruptible():
             simulation = simulate(request, files, tell=tell)
     else:
-        from service.agent.run import simulated_with_document
+        from service.agent.run import DocumentChoice, simulated_with_document
 
         with interruptible():
             simulation = simulated_with_document(
                 request,
                 files,
                 options.mtconnect,
-                version=member_of(SchemaVersion, options.schema, "schema version"),
-                names=member_of(NameSet, options.names, "set of names"),
+                DocumentChoice(
+                    version=member_of(SchemaVersion, options.schema, "schema version"),
+                    names=member_of(NameSet, options.names, "set of names"),
+                    part=options.part,
+                    batch=options.batch,
+                ),
                 tell=tell,
             )
     if options.report is not None and simulation.trace is not None:

@@ -5,6 +5,7 @@ from typing import Annotated
 
 from annotated_types import Interval, MaxLen
 
+from service.requests.advice import Name
 from service.requests.fields import About
 from service.requests.runs import SimulationRequest
 from simulator.agent.names import NameSet, SchemaVersion
@@ -22,6 +23,11 @@ class AgentRequest(SimulationRequest):
         NameSet,
         About("ids of the data items: modern, or those of the papers", flag="--names"),
     ] = NameSet.MODERN
+    part: Annotated[Name, About("id of the part", flag="--part", metavar="ID")] = ""
+    batch: Annotated[
+        Name,
+        About("id of the batch; its parts are ID-0, ID-1, …", flag="--batch", metavar="ID"),
+    ] = ""
     speed: Annotated[
         float,
         Interval(ge=0.0, le=100_000.0),

@@ -69,8 +69,21 @@ def run_feed(
     )
 
 
-def beginning(shown: MachineModel, *, program: str, part_count: int) -> dict[str, Value]:
-    """Values that hold when a program starts."""
+def beginning(
+    shown: MachineModel, *, program: str, part_count: int, part: str = "", batch: str = ""
+) -> dict[str, Value]:
+    """Values that hold when a program starts.
+
+    Parameters
+    ----------
+    shown : MachineModel
+    program : str
+        Name of the program.
+    part_count : int
+        Number of parts that were made before.
+    part, batch : str
+        Ids of the part and its batch; empty: unknown.
+    """
     words: dict[str, Value] = {
         "avail": "AVAILABLE",
         "estop": "ARMED",
@@ -78,6 +91,8 @@ def beginning(shown: MachineModel, *, program: str, part_count: int) -> dict[str
         "program": program,
         "feed_over": 100,
         "parts": part_count,
+        "part": part or None,
+        "batch": batch or None,
     }
     found: dict[str, Value] = {}
     for number, item in shown.shown:

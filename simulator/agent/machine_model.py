@@ -189,6 +189,12 @@ ITEMS = (
         place=PATH, id="tool_asset", type="TOOL_ASSET_ID", category="EVENT", source="tool",
     ),
     MachineItem(place=PATH, id="parts", type="PART_COUNT", category="EVENT"),
+    MachineItem(place=PATH, id="part", type="PART_ID", category="EVENT", until="2.0"),
+    MachineItem(place=PATH, id="part", type="PART_UNIQUE_ID", category="EVENT", since="2.0"),
+    MachineItem(
+        place=PATH, id="batch", type="PART_GROUP_ID", category="EVENT", sub_type="BATCH",
+        since="2.0",
+    ),
     MachineItem(
         place=PATH, id="pathmode", type="PATH_MODE", category="EVENT", constant="INDEPENDENT",
     ),

@@ -10,7 +10,12 @@ from pyarrow import parquet
 
 from service.agent.play import begun, play
 from service.agent.replay import RecordedRun, read_log
-from service.agent.run import AgentFiles, replayed, simulated_with_document
+from service.agent.run import (
+    AgentFiles,
+    DocumentChoice,
+    replayed,
+    simulated_with_document,
+)
 from service.recording.run import record
 from service.requests.agent import AgentRequest
 from service.requests.runs import SimulationRequest
@@ -19,7 +24,6 @@ from simulator.agent.agent import Agent
 from simulator.agent.buffer import ConditionValue, Value
 from simulator.agent.machine_model import machine_model
 from simulator.agent.model import DeviceModel, read_model
-from simulator.agent.names import NameSet, SchemaVersion
 from simulator.agent.shdr import written
 from simulator.library import load_machine
 from stepnc_model.errors import StepNcError
@@ -43,7 +47,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory, model: DeviceModel) -> Path
     for suffix in ("parquet", "csv"):
         simulated_with_document(
             request, RunFiles(file=part, output=folder / f"run.{suffix}"), folder / "run.xml",
-            version=SchemaVersion.V2_7, names=NameSet.MODERN,
+            DocumentChoice(),
         )  # fmt: skip
     text = (folder / "run.csv").read_text(encoding="utf-8").replace('"', "")
     text = (

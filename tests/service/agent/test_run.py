@@ -17,6 +17,7 @@ from lxml import etree
 from service.agent.play import PlayableRun, begun, now, play
 from service.agent.run import (
     AgentFiles,
+    DocumentChoice,
     PublishedRun,
     adapted,
     listening,
@@ -211,7 +212,7 @@ def test_a_simulated_run_is_written_as_a_document(
     request = SimulationRequest(machine="paper003", rate_hz=10.0)
     files = RunFiles(file=PARTS / "paper003_case1.stpnc")
     simulation = simulated_with_document(
-        request, files, output, version=version, names=NameSet.PAPERS
+        request, files, output, DocumentChoice(version=version, names=NameSet.PAPERS)
     )
     seen = observations(require_valid(output.read_bytes(), version.value))
     assert [int(each.get("sequence")) for each in seen] == list(range(1, len(seen) + 1))
@@ -225,6 +226,25 @@ def test_a_simulated_run_is_written_as_a_document(
     assert energy == pytest.approx(simulation.whole.energy.total, rel=5e-3)
 
 
+def test_a_document_in_a_folder_is_named_by_machine_and_part(tmp_path: Path) -> None:
+    request = SimulationRequest(machine="paper003", rate_hz=1.0)
+    files = RunFiles(file=PARTS / "paper003_case1.stpnc")
+    for shown in (DocumentChoice(), DocumentChoice(part="0-1", batch="0")):
+        simulated_with_document(request, files, tmp_path, shown)
+    names = sorted(each.name for each in tmp_path.iterdir())
+    assert names == ["paper003_0-1.xml", "paper003_paper003_case1.xml"]
+    seen = observations(require_valid((tmp_path / names[0]).read_bytes(), "2.7"))
+    told = {each.get("dataItemId"): each.text for each in seen}
+    assert (told["paper003_part"], told["paper003_batch"]) == ("0-1", "0")
+
+
+def test_the_parts_of_a_batch_are_numbered() -> None:
+    _, run = run_of("paper003_case1", "paper003", rate_hz=1.0, batch="7")
+    parts = [run.first(count)["paper003_part"] for count in range(2)]
+    assert parts == ["7-0", "7-1"]
+    assert run.first(0)["paper003_batch"] == "7"
+
+
 def test_a_document_never_replaces_what_it_is_made_of(tmp_path: Path) -> None:
     program = tmp_path / "part.stpnc"
     program.write_bytes((PARTS / "paper000.stpnc").read_bytes())
@@ -233,7 +253,6 @@ def test_a_document_never_replaces_what_it_is_made_of(tmp_path: Path) -> None:
             SimulationRequest(machine="paper000"),
             RunFiles(file=program),
             program,
-            version=SchemaVersion.V2_7,
-            names=NameSet.MODERN,
+            DocumentChoice(),
         )
     assert program.read_bytes() == (PARTS / "paper000.stpnc").read_bytes()
