@@ -73,6 +73,7 @@ def beginning(shown: MachineModel, *, program: str, part_count: int) -> dict[str
         "avail": "AVAILABLE",
         "estop": "ARMED",
         "mode": "AUTOMATIC",
+        "exec": "READY",
         "program": program,
         "feed_over": 100,
         "parts": part_count,

@@ -1,0 +1,13 @@
+"""An agent that plays a run in real time."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from tests.service.monitor.played import PlayedAgent, looped
+
+
+@pytest.fixture
+def played() -> Iterator[PlayedAgent]:
+    with PlayedAgent(*looped()) as agent:
+        yield agent
