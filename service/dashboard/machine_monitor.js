@@ -8,6 +8,9 @@ import { comparisonTable } from "/dashboard/machine_compare.js";
 
 const FLUSH = 500, COMPARE = 2000;
 
+/** messages that may wait while the page is hidden, before the rows are read again instead */
+const MOST_WAITING = 300;
+
 /** CSS classes of lamps by execution; others are idle */
 const LAMPS = { ACTIVE: "safe", WAIT: "wait", FEED_HOLD: "wait", INTERRUPTED: "wait",
   OPTIONAL_STOP: "wait", PROGRAM_STOPPED: "over" };
@@ -31,7 +34,7 @@ const kilo = (value) => (value === null || value === undefined ? null : value / 
 export function showMonitor(place, name, { programs, prediction = "" }) {
   const path = `/v1/monitors/${encodeURIComponent(name)}`;
   let status = null, heard = Date.now(), isAway = false, isShut = false, isHeld = false;
-  let waiting = [], chart = null, zero = null, compared = 0, shown = "", isBusy = false;
+  let waiting = [], chart = null, zero = null, compared = 0, shown = "", isBusy = false, isBehind = false;
 
   const banner = el("div", { id: "monitor-banner" }), trouble = el("div", { id: "monitor-problem" });
   const lamp = el("span", { class: "lamp idle", id: "real-execution" }, "–");
@@ -147,6 +150,7 @@ export function showMonitor(place, name, { programs, prediction = "" }) {
   async function reload() {
     if (!chart) return;
     waiting = [];
+    isBehind = false;
     await chart.reload().catch((error) => tell(trouble, error));
     await compare();
   }
@@ -154,13 +158,17 @@ export function showMonitor(place, name, { programs, prediction = "" }) {
   const ticks = setInterval(() => {
     tellAge();
     if (document.visibilityState !== "visible") return;
+    if (isBehind && chart) reload();
     flush();
     if (Date.now() - compared >= COMPARE) compare();
   }, FLUSH);
 
   const leave = watchAt(`${path}/events`, {
     status: (now) => { heard = Date.now(); isAway = false; hear(now); },
-    rows: (rows) => { waiting.push(rows); },
+    rows: (rows) => {
+      if (waiting.length >= MOST_WAITING) { waiting = []; isBehind = true; }
+      waiting.push(rows);
+    },
     gap: reload,
     lost: () => { isAway = true; tellAge(); },
     back: () => { isAway = false; reload(); },

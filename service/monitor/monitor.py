@@ -19,7 +19,7 @@ from service.live.series import TIME, Series
 from service.monitor.freshness import ArrivalTimes, Freshness
 from service.monitor.observed import AT_REST, ObservedMoment, ObservedRun, RunTracker
 from service.monitor.ring import RowRing
-from service.monitor.signals import SIGNALS, signals_of
+from service.monitor.signals import READ, SIGNALS, signals_of
 from service.monitor.source import MonitorSource
 from simulator.client.columns import TIME as ROW_TIME
 from simulator.client.columns import Cell, RowMaker, columns_of
@@ -46,8 +46,14 @@ POWER = "total_power_w"
 WORDS = ("execution", "program", STEP)
 AVAILABILITY = "availability"
 
+USED = READ.union(WORDS)
+"""Columns of an agent that are used."""
+
 MOST_NAMES = 1000
 """Workingsteps that get a number; further ones count as none."""
+
+LONGEST = 200
+"""Characters of a name that are kept."""
 
 JUMP = 1.0
 """Step of the timestamps back in time, in s, after which the rows begin anew."""
@@ -109,7 +115,8 @@ class _Told:
             if each.id in self.names:
                 name = self.names[each.id]
                 is_missing = each.value is None and name == AVAILABILITY
-                self.values[name] = UNAVAILABLE if is_missing else each.value
+                text = UNAVAILABLE if is_missing else each.value
+                self.values[name] = None if text is None else text[:LONGEST]
                 is_told = True
         return is_told
 
@@ -259,15 +266,15 @@ class MachineMonitor:
 
     def _begin(self, items: Sequence[ClientItem]) -> None:
         """Begin with a device model, of which nothing is told yet."""
-        columns = columns_of(items)
-        if not columns:
-            raise AgentError(f"{self.source.url}: the device model has no samples")
+        columns = [each for each in columns_of(items) if each.name in USED]
+        if all(each.is_text for each in columns):
+            raise AgentError(f"{self.source.url}: the device model has none of the signals")
         names = {each.id: each.name for each in columns if each.name in WORDS}
         for item in items:
             if item.type == "AVAILABILITY" and item.component == "Device":
                 names.setdefault(item.id, AVAILABILITY)
         with self._lock:
-            self._maker = RowMaker(columns=columns, begin=0.0)
+            self._maker = RowMaker(columns=tuple(columns), begin=0.0)
             self._told = _Told(names=names)
             self._tracker.interrupt()
 

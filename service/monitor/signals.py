@@ -30,6 +30,9 @@ PARTS = (
 )  # fmt: skip
 """Columns that add up to the total power of a machine that does not tell it."""
 
+READ = frozenset({TOTAL, *PARTS, *(column for column, _ in COLUMNS.values())})
+"""Columns of which the signals are made."""
+
 SIGNALS = (*COLUMNS, "total_power_w")
 """Names of all signals, each with its unit."""
 

@@ -5,6 +5,9 @@ from collections.abc import Iterator
 import pytest
 
 from tests.service.monitor.played import PlayedAgent, looped
+from tests.simulator.agent.conftest import serve
+
+__all__ = ["serve"]
 
 
 @pytest.fixture

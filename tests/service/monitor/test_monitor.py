@@ -1,6 +1,7 @@
 """A monitor of our own agent, through our own client, over HTTP."""
 
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import numpy as np
@@ -15,11 +16,18 @@ from service.simulation.run import RunFiles, simulate
 from tests.service.agent.test_run import PARTS, run_of
 from tests.service.monitor.played import PlayedAgent
 from tests.service.waiting import until
+from tests.simulator.agent.conftest import BEGIN, ServedAgent
+
+Serve = Callable[..., ServedAgent]
+SECOND = 1_000_000
+"""µs"""
 
 
 @contextmanager
-def monitoring(url: str, name: str = "paper003") -> Iterator[MachineMonitor]:
-    monitor = MachineMonitor(MonitorSource(name=name, url=url))
+def monitoring(
+    url: str, *, clock: Callable[[], float] = time.monotonic
+) -> Iterator[MachineMonitor]:
+    monitor = MachineMonitor(MonitorSource(name="machine", url=url), clock=clock)
     monitor.start()
     try:
         yield monitor
@@ -124,3 +132,58 @@ def test_a_set_starts_and_ends_all_its_monitors(played: PlayedAgent) -> None:
     until(lambda: monitors.by_name["paper003"].count)
     monitors.stop()
     assert not any(each._thread.is_alive() for each in monitors.by_name.values())
+
+
+def test_a_silent_machine_is_stale_while_it_runs_and_quiet_at_rest(serve: Serve) -> None:
+    served, now = serve(), [0.0]
+    served.add("vmc15_avail", ["AVAILABLE"])
+    served.add("vmc15_exec", ["READY", "ACTIVE"])
+    served.add("vmc15_xpos", [1.0, 2.0], begin=BEGIN + SECOND)
+    with monitoring(f"{served.url}/vmc15", clock=lambda: now[0]) as monitor:
+        until(lambda: monitor.status().latest.get("x_mm") == 2.0)
+        assert monitor.status().freshness is Freshness.FRESH
+        now[0] = 60.0
+        status = monitor.status()
+        assert (status.freshness, status.age) == (Freshness.STALE, 60.0)
+        assert status.state is ConnectionState.CONNECTED
+        served.add("vmc15_exec", ["PROGRAM_COMPLETED"], begin=BEGIN + 9 * SECOND)
+        until(lambda: monitor.status().execution == "PROGRAM_COMPLETED")
+        assert monitor.status().freshness is Freshness.FRESH
+        now[0] = 120.0
+        assert monitor.status().freshness is Freshness.QUIET
+        run = monitor.status().run
+        assert run is not None
+        # From the word ACTIVE to the word PROGRAM_COMPLETED, between which rows came.
+        assert sum(step.time for step in run.steps) == pytest.approx(8.9)
+
+
+def test_a_machine_that_is_unavailable_says_so(serve: Serve) -> None:
+    served = serve()
+    served.add("vmc15_avail", ["AVAILABLE"])
+    served.add("vmc15_exec", ["ACTIVE"])
+    with monitoring(f"{served.url}/vmc15") as monitor:
+        until(lambda: monitor.status().availability == "AVAILABLE")
+        served.add("vmc15_avail", ["UNAVAILABLE"], begin=BEGIN + SECOND)
+        until(lambda: monitor.status().availability == "UNAVAILABLE")
+        assert monitor.status().state is ConnectionState.CONNECTED
+
+
+def test_names_are_bounded(serve: Serve) -> None:
+    served = serve()
+    served.add("vmc15_workingstep", ["A" * 5000])
+    served.add("vmc15_xpos", [1.0], begin=BEGIN + SECOND)
+    with monitoring(f"{served.url}/vmc15") as monitor:
+        until(lambda: monitor.count)
+        assert monitor.status().workingstep == "A" * 200
+
+
+def test_lost_observations_do_not_stop_a_monitor(serve: Serve) -> None:
+    served = serve(size=1000)
+    served.add("vmc15_xpos", [1.0])
+    with monitoring(served.url) as monitor:
+        until(lambda: monitor.count)
+        for part in range(1, 4):
+            begin = BEGIN + part * 1000 * SECOND
+            served.add("vmc15_xpos", [float(n) for n in range(5000)], begin=begin)
+        until(lambda: monitor.status().latest.get("x_mm") == 4999.0)
+        assert monitor.status().state is ConnectionState.CONNECTED
