@@ -8,6 +8,9 @@ const HEIGHT = 150, POINTS = 2000, MOST = 12_000;
 /** part of the shown time that lies ahead of the machine, where a prediction is drawn */
 const AHEAD = 0.15;
 
+/** width of a letter of the workingsteps' names, in pixels */
+const LETTER = 7;
+
 /** Time shown, in s; 0: all that is kept. */
 export const WINDOWS = [["60", "1 min"], ["300", "5 min"], ["1200", "20 min"], ["0", "all"]];
 
@@ -49,8 +52,9 @@ export async function monitorChart(place, path, seconds) {
     const first = measured.time_s[0] ?? 0, last = measured.time_s.at(-1) ?? 0;
     if (range) return range;
     const length = seconds || Math.max(last - first, 10);
-    const end = last + (parts.length ? AHEAD * length : 0);
-    return [Math.max(first, end - length), Math.max(end, first + Math.min(length, 10))];
+    const over = parts.length ? parts.at(-1).end_s + parts.at(-1).shift_s : last;
+    const end = Math.max(last, Math.min(last + AHEAD * length, over));
+    return [seconds ? Math.max(first, end - length) : first, Math.max(end, first + Math.min(length, 10))];
   }
 
   /** Points of a predicted signal on the measured axis; parts are not joined. */
@@ -70,15 +74,25 @@ export async function monitorChart(place, path, seconds) {
     return { x, y };
   }
 
+  /** Names of the workingsteps that begin in a range, without those that would overlap. */
+  function labels(from, to) {
+    const second = Math.max(place.clientWidth - 74, 100) / (to - from);
+    let free = -Infinity;
+    return steps.filter(({ id: text, begin_s: begin }) => {
+      const isShown = text && begin >= from && begin <= to && begin * second >= free;
+      if (isShown) free = begin * second + LETTER * text.length + 8;
+      return isShown;
+    }).map((step) => ({ text: step.id, x: step.begin_s, xref: "x", xanchor: "left", y: 1, yref: "paper",
+      yanchor: "bottom", yshift: 14, showarrow: false, font: { size: 11, color: colour("soft") } }));
+  }
+
   function make() {
     const data = [], count = PANELS.length;
     const laid = layout({ height: HEIGHT * count + 40, margin: { l: 62, r: 12, t: 34, b: 36 },
       grid: { rows: count, columns: 1, pattern: "independent" } });
     const [from, to] = shown();
     laid.shapes = [];
-    laid.annotations = steps.filter((step) => step.id && step.begin_s >= from && step.begin_s <= to).map((step) => ({
-      text: step.id, x: step.begin_s, xref: "x", xanchor: "left", y: 1, yref: "paper", yanchor: "bottom",
-      yshift: 14, showarrow: false, font: { size: 11, color: colour("soft") } }));
+    laid.annotations = labels(from, to);
     for (const step of steps) {
       laid.shapes.push({ type: "line", x0: step.begin_s, x1: step.begin_s, y0: 0, y1: 1, xref: "x",
         yref: "paper", line: { width: 1, dash: "dot", color: colour("soft") } });

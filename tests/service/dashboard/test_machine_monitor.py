@@ -1,9 +1,10 @@
 """Machine: a real machine beside its prediction, through our own agent and client."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
@@ -13,6 +14,9 @@ from tests.service.dashboard.conftest import inside, keep, opened_page
 from tests.service.monitor.played import PlayedAgent, looped
 from tests.service.rest.server import Server, made, over
 from tests.service.waiting import until
+from tests.simulator.agent.conftest import BEGIN, ServedAgent, serve
+
+__all__ = ["serve"]
 
 PART = PARTS / "paper003_case1.stpnc"
 
@@ -120,3 +124,33 @@ def test_a_banner_says_that_the_data_are_old_until_they_come_back(
     expect(banner).to_be_empty(timeout=LATE)
     expect(values).not_to_have_class(re.compile("old"))
     expect(page.locator("#real-state")).to_have_text("connected")
+
+
+@pytest.fixture
+def silent(
+    serve: Callable[..., ServedAgent],
+    tmp_path: Path,
+    browser_thread: ThreadPoolExecutor,
+    browser: Browser,
+) -> Iterator[Page]:
+    """A page of a machine that is UNAVAILABLE, and of one whose agent is not there."""
+    served = serve()
+    served.add("vmc15_exec", ["ACTIVE"])
+    served.add("vmc15_xpos", [12.5], begin=BEGIN + 1_000_000)
+    words = ("--agent", f"vmc15={served.url}/vmc15", "--agent", "lathe22=http://127.0.0.1:9")
+    with (
+        Server(tmp_path, *words) as server,
+        inside(browser_thread, opened_page(browser, server)) as page,
+    ):
+        yield page
+
+
+def test_a_machine_that_is_unavailable_or_not_there_says_so(silent: Page) -> None:
+    silent.goto("/dashboard/machine.html?source=vmc15")
+    banner = silent.locator("#monitor-banner")
+    expect(banner).to_contain_text("vmc15 reports that it is UNAVAILABLE")
+    expect(silent.locator("#real-x")).to_have_text("12.50")
+    expect(silent.locator("#real-values")).to_have_class(re.compile("old"))
+    silent.locator("#source").select_option("lathe22")
+    expect(banner).to_contain_text("There is no connection to lathe22 yet")
+    expect(banner).to_contain_text("Connection refused")
