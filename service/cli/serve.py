@@ -23,6 +23,7 @@ LOOPBACK = ("127.0.0.1", "::1", "localhost")
 SERVE = """examples:
   stepnc serve
   stepnc serve --data /srv/stepnc --workers 2
+  stepnc serve --agent vmc15=http://192.168.0.7:5000/vmc15
   stepnc serve --host 0.0.0.0 --name planner.shop --tls-cert shop.crt --tls-key shop.key
 
 Serve the REST API and the dashboard. API keys are required unless the service listens on this
@@ -56,6 +57,13 @@ def add_service_commands(commands: Commands) -> None:
         default=[],
         metavar="HOST",
         help="a host name by which clients reach this computer; repeatable",
+    )
+    add(
+        "--agent",
+        action="append",
+        default=[],
+        metavar="NAME=URL",
+        help="monitor the MTConnect agent of a machine of the library or shop; repeatable",
     )
     add("--keys", action="store_true", help="require API keys on loopback too")
     add("--tls-cert", type=Path, metavar="FILE", help="TLS certificate: serve https")
@@ -109,6 +117,7 @@ def _add_data(parser: argparse.ArgumentParser) -> None:
 
 
 def _serve(options: argparse.Namespace) -> int:
+    from service.monitor.source import sources_of
     from service.rest.serve import ServerOptions, serve
     from service.rest.settings import MIB, Settings
 
@@ -121,6 +130,7 @@ def _serve(options: argparse.Namespace) -> int:
         host=options.host,
         port=options.port,
         names=tuple(options.name),
+        agents=sources_of(options.agent),
         needs_keys=options.keys or not is_loopback,
         upload_bytes=options.upload_mb * MIB,
         rate=rate,

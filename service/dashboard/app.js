@@ -173,13 +173,16 @@ function changeKey() {
  * Watch a job: `handlers` by event (`job`, `status`, `rows`, `event`, `gap`), `lost` when the
  * connection breaks, `back` when it is restored, `end` when the job has ended. Returns a function that stops watching.
  */
-export function watch(id, handlers) {
+export const watch = (id, handlers) => watchAt(`/v1/jobs/${id}/events`, handlers);
+
+/** Watch an event stream at a path, see `watch`. */
+export function watchAt(path, handlers) {
   const stop = new AbortController();
   let isOver = false, wasLost = false;
   (async () => {
     while (!stop.signal.aborted && !isOver) {
       try {
-        const answer = await ask(`/v1/jobs/${id}/events`, { signal: stop.signal });
+        const answer = await ask(path, { signal: stop.signal });
         if (wasLost) handlers.back?.();
         wasLost = false;
         for await (const [name, content] of messages(answer.body)) {

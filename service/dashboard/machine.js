@@ -1,7 +1,8 @@
-// The machine page: a run of the virtual machine, live or recorded.
+// The machine page: a run of the virtual machine, live or recorded, or a real machine, live.
 
 import { api, byId, el, fill, moment, tell } from "/dashboard/app.js";
 import { allPrograms, isOver, programOf, stateBadge } from "/dashboard/records.js";
+import { showMonitor } from "/dashboard/machine_monitor.js";
 import { paceWord } from "/dashboard/machine_words.js";
 import { showRun } from "/dashboard/machine_run.js";
 import { startForm } from "/dashboard/machine_start.js";
@@ -15,15 +16,17 @@ const older = el("button", { id: "runs-older", hidden: true, onclick: () => list
 const badge = el("span", { id: "run-state" });
 const starting = el("details", { id: "start-box" }, el("summary", {}, "Start a run"),
   el("div", { id: "start-place" }, el("p", { class: "soft" }, "…")));
+const source = el("select", { id: "source", onchange: () => enter(source.value) });
+const sourceCard = el("section", { class: "card", "aria-label": "choice of machine", hidden: true },
+  el("div", { class: "row" }, el("label", { class: "grow" }, "Machine", source)));
+const runCard = el("section", { class: "card", "aria-label": "choice of run" },
+  el("div", { class: "row" }, el("label", { class: "grow" }, "Run", choice), older, badge), starting);
 const trouble = el("div", { id: "problem" }), place = el("div", { id: "run-place", class: "pieces" });
 
 fill(byId("main"),
   el("div", { class: "title" }, el("h1", {}, "Machine"),
-    el("span", { class: "soft" }, "runs of the virtual machine, live and recorded")),
-  trouble,
-  el("section", { class: "card", "aria-label": "choice of run" },
-    el("div", { class: "row" }, el("label", { class: "grow" }, "Run", choice), older, badge), starting),
-  place);
+    el("span", { class: "soft" }, "runs of the virtual machine, and real machines, live")),
+  trouble, sourceCard, runCard, place);
 
 const label = (job) => [programOf(job, programs), job.request.machine || "automatic machine",
   paceWord(job.request.pace), moment(job.created_at), isOver(job) ? "" : job.state,
@@ -56,6 +59,31 @@ function open(job) {
   });
 }
 
+/** Show a monitored machine, or without a name runs of the virtual machine. */
+function enter(name, prediction = "") {
+  leave?.();
+  leave = null;
+  source.value = name;
+  runCard.hidden = Boolean(name);
+  if (name) {
+    leave = showMonitor(place, name, { programs, prediction });
+    return;
+  }
+  history.replaceState(null, "", location.pathname);
+  fill(place);
+  const job = known.get(choice.value);
+  if (job) open(job);
+}
+
+/** List the monitored machines, if there are any. */
+async function listMonitors() {
+  const monitors = await api("/v1/monitors");
+  fill(source, el("option", { value: "" }, "virtual machine"),
+    monitors.map(({ name, url }) => el("option", { value: name }, `${name}, MTConnect agent ${url}`)));
+  sourceCard.hidden = !monitors.length;
+  return monitors.map(({ name }) => name);
+}
+
 function started(job) {
   know(job, true);
   starting.open = false;
@@ -64,7 +92,8 @@ function started(job) {
 }
 
 async function begin() {
-  programs = await allPrograms();
+  let monitors;
+  [programs, monitors] = await Promise.all([allPrograms(), listMonitors()]);
   await list();
   const wanted = asked.get("id");
   if (wanted && !known.has(wanted)) {
@@ -74,7 +103,11 @@ async function begin() {
   const wish = { program: asked.get("program"), advice: asked.get("advice") };
   const isStart = Boolean(wish.program || wish.advice);
   const first = known.get(wanted) ?? (isStart ? null : [...known.values()][0]);
-  if (first) open(first);
+  const watched = monitors.includes(asked.get("source")) ? asked.get("source") : "";
+  if (watched) {
+    if (first) choice.value = first.id;
+    enter(watched, asked.get("prediction") ?? "");
+  } else if (first) open(first);
   else if (!isStart || !known.size) fill(place, el("p", { class: "card empty", id: "no-runs" }, "No runs yet: start one above."));
   if (!first) {
     starting.open = true;

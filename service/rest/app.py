@@ -7,11 +7,13 @@ from typing import Any
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from fastapi.openapi.utils import get_openapi
+from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
 from kbe.store import open_store
 from service.errors import TooMany
 from service.lifeline import end_with_parent
+from service.monitor.monitor import MonitorSet
 from service.problem import plain_problem, problem_of
 from service.rest import (
     advice,
@@ -21,6 +23,7 @@ from service.rest import (
     library,
     live,
     logs,
+    monitors,
     pages,
     programs,
     simulations,
@@ -67,6 +70,7 @@ def _on(data_folder: DataFolder, settings: Settings) -> FastAPI:
         StreamHub(data_folder),
     )
     app.state.advice = advice.AdviceCache()
+    app.state.monitors = MonitorSet(settings.agents)
     app.add_middleware(AccessMiddleware, settings=settings, data_folder=data_folder)
     return app
 
@@ -92,7 +96,8 @@ def _routed() -> FastAPI:
     for routes in (
         advice.ROUTES, jobs.ROUTES, live.CONTROL, live.TRIALS, programs.ROUTES,
         simulations.ROUTES, knowledge.EVALUATIONS, knowledge.REVIEWS, knowledge.CORRECTIONS,
-        knowledge.OUTCOMES, library.MACHINES, library.MATERIALS, health.ROUTES, pages.ROUTES,
+        knowledge.OUTCOMES, library.MACHINES, library.MATERIALS, monitors.ROUTES,
+        health.ROUTES, pages.ROUTES,
     ):  # fmt: skip
         app.include_router(routes)
     app.router.routes.insert(0, advice.LookUpRoute())
@@ -105,9 +110,13 @@ def _routed() -> FastAPI:
 
 @asynccontextmanager
 async def _living(app: FastAPI) -> AsyncIterator[None]:
-    """Close all streams when the service stops."""
-    yield
-    await app.state.hub.close()
+    """Monitor machines while the service runs; close all streams when it stops."""
+    app.state.monitors.start()
+    try:
+        yield
+    finally:
+        await app.state.hub.close()
+        await run_in_threadpool(app.state.monitors.stop)
 
 
 def from_environment() -> FastAPI:

@@ -10,6 +10,7 @@ from starlette.concurrency import run_in_threadpool
 
 from optimiser.source import why_elsewhere
 from service.errors import Unreadable
+from service.monitor.monitor import MonitorSet
 from service.reading import read_program, selected
 from service.rest.replies import json_reply
 from service.rest.settings import Settings
@@ -65,6 +66,12 @@ def settings_of(request: Request) -> Settings:
 def hub_of(request: Request) -> StreamHub:
     """Return the hub of the event streams."""
     found: StreamHub = request.app.state.hub
+    return found
+
+
+def monitors_of(request: Request) -> MonitorSet:
+    """Return the monitors of real machines."""
+    found: MonitorSet = request.app.state.monitors
     return found
 
 

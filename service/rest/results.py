@@ -85,19 +85,43 @@ async def series_reply(
     points: int,
 ) -> Response:
     """Reply with signals over a time range, thinned to as many points as a screen shows."""
+    series = await run_in_threadpool(open_series, _live(request, job).series)
+    if series is None:
+        raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: it has no rows yet")
+    is_growing = not job.state.is_finished
+    return await window_reply(
+        request, series, signals=signals, begin=begin, end=end, points=points,
+        is_growing=is_growing,
+    )  # fmt: skip
+
+
+async def window_reply(  # noqa: PLR0913 (each is a parameter of the request)
+    request: Request,
+    series: Series,
+    *,
+    signals: str,
+    begin: float | None,
+    end: float | None,
+    points: int,
+    is_growing: bool,
+) -> Response:
+    """Reply with a time range of rows.
+
+    Raises
+    ------
+    Unreadable, NotFound
+        When the range ends before it begins, or a signal does not exist.
+    """
     first = -inf if begin is None else begin
     last = inf if end is None else end
     if first > last:
         raise Unreadable(f"begin_s {first:g} s is after end_s {last:g} s")
-    series = await run_in_threadpool(open_series, _live(request, job).series)
-    if series is None:
-        raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: it has no rows yet")
     names = [name for name in signals.split(",") if name] or list(series.columns[1:])
     found = await read_in_turn(window, series, names, begin=first, end=last, points=points)
-    return json_reply(request, _window(found, series, job))
+    return json_reply(request, _window(found, series, is_growing=is_growing))
 
 
-def _window(found: Window, series: Series, job: Job) -> dict[str, Any]:
+def _window(found: Window, series: Series, *, is_growing: bool) -> dict[str, Any]:
     return {
         "begin_s": found.time,
         "end_s": found.end,
@@ -111,7 +135,7 @@ def _window(found: Window, series: Series, job: Job) -> dict[str, Any]:
         },
         "rows": found.rows,
         "is_reduced": found.is_reduced,
-        "is_growing": not job.state.is_finished,
+        "is_growing": is_growing,
         "columns": [name for name in series.columns if name != TIME],
     }
 

@@ -16,11 +16,12 @@ import uvicorn
 
 from service.errors import Forbidden
 from service.jobs import runner
+from service.monitor.source import MonitorSource
 from service.rest import logs
 from service.rest.http_protocol import BoundedHttpProtocol
 from service.rest.metrics import SHARED
 from service.rest.settings import Settings
-from service.storage import keys
+from service.storage import keys, library
 from service.storage.folder import DataFolder, open_data_folder
 from stepnc_model.errors import StepNcError
 
@@ -69,6 +70,8 @@ def serve(start: ServerOptions) -> None:
     for file in (start.certificate, start.key):
         if file is not None and not file.is_file():
             raise StepNcError(f"{file}: no such file")
+    for source in settings.agents:
+        _require_machine(data_folder, source)
     _require_port(settings)
     with runner.locked(data_folder.root, "server"):
         with runner.locked(data_folder.root):
@@ -109,6 +112,14 @@ def _serve(start: ServerOptions, data_folder: DataFolder) -> None:
         )
     finally:
         keeper.stop()
+
+
+def _require_machine(data_folder: DataFolder, source: MonitorSource) -> None:
+    """Refuse an agent of a machine that neither the library nor the shop has."""
+    try:
+        library.require(data_folder, machine=source.name, material="")
+    except StepNcError as error:
+        raise StepNcError(f"--agent {source.name}={source.url}: {error}") from error
 
 
 def _require_port(settings: Settings) -> None:

@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 from service.errors import Unavailable
+from service.monitor.source import MonitorSource
 
 VARIABLE = "STEPNC_SERVE"
 """Environment variable that passes the settings from process to process."""
@@ -27,6 +28,8 @@ class Settings:
     port: int = 8000
     names: tuple[str, ...] = ()
     """Additional host names by which clients reach the service."""
+    agents: tuple[MonitorSource, ...] = ()
+    """MTConnect agents of real machines that are monitored."""
     needs_keys: bool = False
     upload_bytes: int = 32 * MIB
     """Largest program that may be uploaded, unpacked, in bytes."""
@@ -73,4 +76,5 @@ def handed_on() -> Settings:
     found = json.loads(text)
     known = {field.name for field in fields(Settings)}
     values = {name: value for name, value in found.items() if name in known}
-    return Settings(**{**values, "names": tuple(values.get("names", ()))})
+    agents = tuple(MonitorSource(**each) for each in values.get("agents", ()))
+    return Settings(**{**values, "names": tuple(values.get("names", ())), "agents": agents})

@@ -1,4 +1,4 @@
-"""Server-sent events of runs: one reader of a run's files serves all subscribers of the run.
+"""Server-sent events: one reader serves all subscribers of a run or of a monitored machine.
 
 While a run has subscribers, its reader polls the files of the run several times a second, makes
 one message of what is new and sends the same bytes to every subscriber. A client that is too
@@ -6,10 +6,11 @@ slow loses messages, is told so by an event ``gap``, and should read the series 
 """
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Any
+from functools import partial
+from typing import Any, Protocol
 
 import numpy as np
 import orjson
@@ -77,6 +78,21 @@ class StreamClient:
                 self.queue.get_nowait()
             self.queue.put_nowait(event("gap", {}))
         self.queue.put_nowait(END_OF_STREAM)
+
+
+class Reader(Protocol):
+    """Makes the messages for all subscribers of one thing."""
+
+    clients: set[StreamClient]
+    is_finished: bool
+
+    def first(self) -> list[bytes]:
+        """Return the first messages for a new subscriber."""
+        ...
+
+    async def run(self) -> None:
+        """Send messages until there are no more, or no subscriber is left."""
+        ...
 
 
 class RunReader:
@@ -159,11 +175,11 @@ class RunReader:
 
 
 class StreamHub:
-    """Readers of all watched runs, by run id. Running state."""
+    """Readers of everything that is watched, by its id. Running state."""
 
     def __init__(self, data_folder: DataFolder) -> None:
         self._data_folder = data_folder
-        self._readers: dict[str, RunReader] = {}
+        self._readers: dict[str, Reader] = {}
         self._tasks: set[asyncio.Task[None]] = set()
         self._clients = 0
 
@@ -177,8 +193,12 @@ class StreamHub:
         if self._clients >= MOST_CLIENTS:
             raise TooMany(10.0)
 
-    async def watch(self, id: str) -> AsyncIterator[bytes]:
-        """Yield the messages of a run to a new subscriber.
+    def watch(self, id: str) -> AsyncIterator[bytes]:
+        """Yield the messages of a run to a new subscriber; as :meth:`watch_by`."""
+        return self.watch_by(id, partial(RunReader, self._data_folder, id))
+
+    async def watch_by(self, id: str, make: Callable[[], Reader]) -> AsyncIterator[bytes]:
+        """Yield the messages of a reader, made if there is none, to a new subscriber.
 
         Raises
         ------
@@ -187,7 +207,7 @@ class StreamHub:
         """
         self.require_room()
         client = StreamClient()
-        reader = self._joined(id, client)
+        reader = self._joined(id, client, make)
         self._clients += 1
         STREAMS.inc()
         try:
@@ -208,12 +228,12 @@ class StreamHub:
             STREAMS.dec()
             reader.clients.discard(client)
 
-    def _joined(self, id: str, client: StreamClient) -> RunReader:
+    def _joined(self, id: str, client: StreamClient, make: Callable[[], Reader]) -> Reader:
         reader = self._readers.get(id)
         if reader is not None and not reader.is_finished:
             reader.clients.add(client)
             return reader
-        reader = self._readers[id] = RunReader(self._data_folder, id)
+        reader = self._readers[id] = make()
         reader.clients.add(client)
         task = asyncio.create_task(reader.run())
         self._tasks.add(task)
@@ -223,7 +243,7 @@ class StreamHub:
             if self._readers.get(id) is reader:
                 del self._readers[id]
             if not ended.cancelled() and (error := ended.exception()) is not None:
-                LOG.error("watching a run failed", job=id, reason=str(error))
+                LOG.error("watching failed", id=id, reason=str(error))
 
         task.add_done_callback(done)
         return reader

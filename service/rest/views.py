@@ -4,6 +4,9 @@ from typing import Any, Generic, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from service.monitor.comparison import StepState
+from service.monitor.freshness import Freshness
+from service.monitor.monitor import ConnectionState
 from service.rest.replies import moment
 from service.storage.jobs import Job, JobKind, JobState
 from service.storage.programs import StoredProgram
@@ -318,6 +321,88 @@ class EntryView(View):
     title: str
     is_own: bool = Field(description="whether it belongs to the shop, not the built-in library")
     problem: str | None = Field(description="why it cannot be read; null if it can")
+
+
+class MonitorView(View):
+    """Real machine that is monitored through its MTConnect agent."""
+
+    name: str
+    url: str
+    state: ConnectionState
+    problem: str | None = Field(description="why there is no connection; null if there is one")
+    freshness: Freshness = Field(
+        description="fresh; quiet: the agent answers and the machine is at rest; stale: "
+        "the values are old; none: no observation yet"
+    )
+    age_s: float | None = Field(description="time since the last observation arrived here")
+    stale_after_s: float = Field(description="age from which values are old")
+    availability: str | None
+    execution: str | None
+    program: str | None
+    workingstep: str | None
+
+
+class ObservedStepView(View):
+    """Workingstep as measured so far."""
+
+    id: str = Field(description="empty: outside workingsteps")
+    begin_s: float
+    time_s: float
+    energy_j: float | None = Field(description="null: the power was not told")
+    is_running: bool
+    is_whole: bool = Field(description="whether all of it was observed")
+
+
+class ObservedRunView(View):
+    """Current or latest run of a program, as measured so far."""
+
+    program: str
+    begin_s: float | None = Field(description="null: its beginning was not observed")
+    is_running: bool
+    workingsteps: list[ObservedStepView]
+
+
+class MonitorStatusView(MonitorView):
+    """Status of a monitor, with the latest values and the measured run."""
+
+    time_zero: str | None = Field(description="timestamp of the machine at which time_s is 0")
+    rows: int = Field(description="number of rows that are kept")
+    workingsteps: list[str] = Field(description="ids, in the order of their numbers in rows")
+    latest: dict[str, float | None] = Field(description="latest row; null: not told")
+    run: ObservedRunView | None
+
+
+class StepComparisonView(View):
+    """Workingstep as measured and as predicted."""
+
+    id: str = Field(description="empty: outside workingsteps")
+    state: StepState
+    measured_time_s: float | None
+    predicted_time_s: float | None
+    time_ratio: float | None = Field(description="measured over predicted, once it is done")
+    measured_energy_j: float | None
+    predicted_energy_j: float | None
+    energy_ratio: float | None = Field(description="measured over predicted, once it is done")
+
+
+class AlignedPartView(View):
+    """Part of the prediction, and how far it is moved to the time of the measured rows."""
+
+    begin_s: float
+    end_s: float
+    shift_s: float
+
+
+class ComparisonView(View):
+    """Measured run beside a simulation of it."""
+
+    simulation: str
+    machine: str
+    program: str = Field(description="program of the simulation")
+    measured_program: str | None
+    workingsteps: list[StepComparisonView]
+    done: StepComparisonView = Field(description="sum of what is done and predicted")
+    parts: list[AlignedPartView] = Field(description="empty: nothing common was observed yet")
 
 
 def program_view(program: StoredProgram) -> dict[str, Any]:

@@ -88,6 +88,7 @@ def beginning(
         "avail": "AVAILABLE",
         "estop": "ARMED",
         "mode": "AUTOMATIC",
+        "exec": "READY",
         "program": program,
         "feed_over": 100,
         "parts": part_count,

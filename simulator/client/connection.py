@@ -5,8 +5,10 @@ ran over. What is lost is reported, never hidden.
 """
 
 import http.client
+import socket
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
@@ -120,6 +122,14 @@ class AgentClient:
         self._wait = wait
         self._instance = ""
         self._next: int | None = None
+        self._socket: socket.socket | None = None
+
+    def interrupt(self) -> None:
+        """End the request that another thread waits for; a stream yields a fault."""
+        waiting = self._socket
+        if waiting is not None:
+            with suppress(OSError):
+                waiting.shutdown(socket.SHUT_RDWR)
 
     def items(self) -> tuple[ClientItem, ...]:
         """Data items of the device model.
@@ -145,6 +155,19 @@ class AgentClient:
         self._instance, self._next = page.instance, page.following
         return page.observations
 
+    def oldest_state(self) -> tuple[ClientObservation, ...]:
+        """What held at the oldest observation that the agent keeps; the stream goes on there.
+
+        Raises
+        ------
+        AgentError
+            As :meth:`state`, and when the agent drops that observation meanwhile.
+        """
+        oldest = _page(self._document("/sample", {"count": "1"})).first
+        page = _page(self._document("/current", {"at": str(oldest)}))
+        self._instance, self._next = page.instance, oldest + 1
+        return page.observations
+
     def rewind(self) -> None:
         """Let the stream begin with the oldest observation that the agent keeps."""
         page = _page(self._document("/sample", {"count": "1"}))
@@ -166,7 +189,7 @@ class AgentClient:
                     if part.is_restarted or part.lost:
                         break
             except (AgentError, OSError, http.client.HTTPException) as error:
-                yield StreamPart(fault=str(error) or type(error).__name__)
+                yield StreamPart(fault=_reason(error))
             self._wait(PAUSES[min(failures, len(PAUSES) - 1)])
             failures += 1
             yield from self._resumed()
@@ -199,6 +222,7 @@ class AgentClient:
             query["from"] = self._next
         connection = self._connected()
         try:
+            self._open(connection)
             connection.request("GET", f"{self._path}/sample?{urlencode(query)}")
             answer = connection.getresponse()
             if answer.status != http.client.OK:
@@ -213,6 +237,7 @@ class AgentClient:
                     raise AgentError(f"{self.url}: the stream has ended")
                 yield body
         finally:
+            self._socket = None
             connection.close()
 
     def _document(self, path: str, query: Mapping[str, str]) -> Any:
@@ -220,12 +245,14 @@ class AgentClient:
         connection = self._connected()
         words = f"?{urlencode(query)}" if query else ""
         try:
+            self._open(connection)
             connection.request("GET", f"{self._path}{path}{words}")
             answer = connection.getresponse()
             data = answer.read(MOST_BYTES + 1)
         except (OSError, http.client.HTTPException) as error:
-            raise AgentError(f"{self.url}: {error or type(error).__name__}") from error
+            raise AgentError(f"{self.url}: {_reason(error)}") from error
         finally:
+            self._socket = None
             connection.close()
         if answer.status != http.client.OK:
             text = data[:2000].decode("utf-8", "replace")
@@ -235,6 +262,11 @@ class AgentClient:
     def _connected(self) -> http.client.HTTPConnection:
         kind = http.client.HTTPSConnection if self._is_secure else http.client.HTTPConnection
         return kind(self._host, self._port, timeout=TIMEOUT)
+
+    def _open(self, connection: http.client.HTTPConnection) -> None:
+        """Connect, so that the connection can be interrupted."""
+        connection.connect()
+        self._socket = connection.sock
 
 
 def items_of(devices: Any) -> Iterator[ClientItem]:
@@ -307,7 +339,10 @@ def _part_length(answer: http.client.HTTPResponse) -> int:
     """Length of the next part of a stream, by its head."""
     length = -1
     for _ in range(20):
-        line = answer.readline(1000).strip().lower()
+        read = answer.readline(1000)
+        if not read:
+            raise AgentError("the stream has ended")
+        line = read.strip().lower()
         if line.startswith(b"content-length:"):
             number = line.partition(b":")[2].strip()
             if not number.isdigit():
@@ -316,6 +351,11 @@ def _part_length(answer: http.client.HTTPResponse) -> int:
         elif not line and length >= 0:
             return length
     raise AgentError("a part of a stream without its length")
+
+
+def _reason(error: Exception) -> str:
+    """Why there is no answer, without the number of the error."""
+    return getattr(error, "strerror", None) or str(error) or type(error).__name__
 
 
 def _message(text: str) -> str:

@@ -34,6 +34,7 @@ TOGETHER = {
     "controller/ports.py": "Protocols; plugged in tests/controller/test_loop.py",
     "service/jobs/preloaded.py": "loads what it names; tests/service/jobs/test_runner.py",
     "service/rest/views.py": "shapes; answers are held against them in rest/test_openapi.py",
+    "service/rest/monitor_views.py": "held against the document in rest/test_monitors.py",
     "service/contents_output.py": "printed in test_plan_output.py and test_output_json.py",
     "service/library_output.py": "printed in test_plan_output.py and test_output_json.py",
     "service/requests/advice.py": "fields only; read in rest/test_bodies.py and storage",

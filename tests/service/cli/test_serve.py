@@ -35,6 +35,9 @@ def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (("--tls-cert", "x.crt"), "--tls-cert and --tls-key must be given together"),
         (("--host", "0.0.0.0"), "requires keys, but none exists"),
         (("--keys",), "requires keys, but none exists"),
+        (("--agent", "vmc15"), "--agent vmc15: expected NAME=URL"),
+        (("--agent", "vmc15=ftp://x"), "--agent vmc15: ftp://x: expected http://HOST:PORT"),
+        (("--agent", "x=http://x"), "--agent x=http://x: unknown machine 'x'; known:"),
     ],
 )
 def test_what_cannot_be_is_refused(

@@ -13,6 +13,7 @@ from service.storage.keys import Key, Role
     [
         ("GET", "/v1/trials", Role.VIEWER),
         ("HEAD", "/v1/programs", Role.VIEWER),
+        ("GET", "/v1/monitors/vmc15/events", Role.VIEWER),
         ("POST", "/v1/evaluations", Role.VIEWER),
         ("POST", "/v1/programs", Role.PLANNER),
         ("DELETE", "/v1/jobs/x", None),

@@ -5,6 +5,7 @@ import json
 import pytest
 
 from service.errors import Unavailable
+from service.monitor.source import MonitorSource
 from service.rest.settings import VARIABLE, Settings, handed_on
 
 
@@ -15,8 +16,9 @@ def _own_environment(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_what_is_handed_on_arrives() -> None:
     told = Settings(
-        data="/srv/ü", host="0.0.0.0", port=1, names=("a", "b"), needs_keys=True, rate=2.5
-    )
+        data="/srv/ü", host="0.0.0.0", port=1, names=("a", "b"), needs_keys=True, rate=2.5,
+        agents=(MonitorSource(name="vmc15", url="http://127.0.0.1:5000/vmc15"),),
+    )  # fmt: skip
     told.hand_on()
     assert handed_on() == told
 

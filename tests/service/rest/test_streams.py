@@ -6,6 +6,7 @@ import socket
 import time
 from collections.abc import AsyncGenerator
 from contextlib import aclosing, suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,15 @@ from service.live.folder import LiveFolder
 from service.live.journal import append
 from service.live.series import SeriesWriter
 from service.rest import streams
-from service.rest.streams import END_OF_STREAM, ROWS, WAITING, StreamClient, StreamHub, event
+from service.rest.streams import (
+    END_OF_STREAM,
+    ROWS,
+    WAITING,
+    RunReader,
+    StreamClient,
+    StreamHub,
+    event,
+)
 from service.storage import jobs
 from service.storage.folder import DataFolder, open_data_folder
 from service.storage.jobs import Job, JobKind, JobRequest, JobState
@@ -151,7 +160,7 @@ def test_nobody_joins_a_reader_that_has_ended(data_folder: DataFolder, job: Job)
         await heard(hub, job.id, at_least="job")
         [reader] = [hub._readers[job.id]]
         reader.is_finished = True
-        other = hub._joined(job.id, StreamClient())
+        other = hub._joined(job.id, StreamClient(), partial(RunReader, data_folder, job.id))
         assert other is not reader
         await hub.close()
 

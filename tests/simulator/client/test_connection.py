@@ -2,6 +2,7 @@
 
 import http.server
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import islice
@@ -181,3 +182,28 @@ def test_an_address_that_is_none_is_told(url: str) -> None:
         AgentClient(url)
     with pytest.raises(AgentError, match=r"127\.0\.0\.1:9"):
         AgentClient("127.0.0.1:9").items()
+
+
+def test_another_thread_ends_what_a_client_waits_for(serve: Serve) -> None:
+    client = AgentClient(serve().url)
+    client.state()
+    found: list[StreamPart] = []
+    thread = threading.Thread(target=lambda: found.append(next(client.stream())))
+    thread.start()
+    deadline = time.monotonic() + 10.0
+    while thread.is_alive() and time.monotonic() < deadline:
+        client.interrupt()
+        thread.join(0.05)
+    assert [part.fault for part in found] == ["the stream has ended"]
+    client.interrupt()
+
+
+def test_the_oldest_state_is_followed_by_all_that_the_agent_keeps(serve: Serve) -> None:
+    served = serve(size=1000)
+    served.add("vmc15_ypos", [7.5])
+    served.add("vmc15_xpos", [float(n) for n in range(5000)])
+    client = AgentClient(served.url, wait=no_wait)
+    state = {each.id: each.value for each in client.oldest_state()}
+    assert (state["vmc15_xpos"], state["vmc15_ypos"]) == ("4000", "7.5")
+    parts = until(client.stream(), has("vmc15_xpos", "4999"))
+    assert values(parts, "vmc15_xpos") == [f"{n}" for n in range(4001, 5000)]

@@ -1,0 +1,1 @@
+"""Monitors of real machines: what their MTConnect agents tell, beside a prediction."""
