@@ -7,7 +7,8 @@ from functools import cache
 import httpx
 import uvicorn
 
-from service.agent.run import PublishedRun, listening, new_agent, play
+from service.agent.play import begun, play
+from service.agent.run import PublishedRun, listening
 from service.requests.agent import AgentRequest
 from simulator.agent.http import application
 from tests.service.agent.test_run import run_of
@@ -38,7 +39,7 @@ class PlayedAgent:
         """Listen on a free port, or on the one that it had before."""
         listener = listening("127.0.0.1", self.port)
         self.port = listener.getsockname()[1]
-        agent = new_agent(self._request, self._run)
+        agent = begun(self._run, speed=self._request.speed, size=self._request.buffer)
         config = uvicorn.Config(
             application(agent), log_config=None, lifespan="off", ws="none",
             timeout_graceful_shutdown=1,
