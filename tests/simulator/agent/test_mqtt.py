@@ -83,7 +83,7 @@ class Reader:
         self._client = mqtt.Client(CallbackAPIVersion.VERSION2)
         self._client.on_connect = lambda client, *_: client.subscribe("MTConnect/#", qos=1)
         self._client.on_message = lambda _, __, message: self.seen.append((
-            message.topic, message.payload, message.retain
+            message.topic, bytes(message.payload), message.retain
         ))  # fmt: skip
         self._client.reconnect_delay_set(1, 1)
         self._client.connect("127.0.0.1", port)
