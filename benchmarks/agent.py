@@ -1,5 +1,7 @@
-"""The MTConnect agent: requests a second beside a bare uvicorn route, and observations taken.
+"""The MTConnect agent: requests a second beside a bare uvicorn route, and what is taken in.
 
+SHDR lines come from an adapter in a process of its own: positions of three axes, line numbers
+and conditions.
 Agent and bare route are one process each and are asked in turn by the same four connections;
 the route answers with the bytes of the agent's own answer. With ``--streams`` as many clients
 listen to the agent meanwhile, which takes observations at 10 Hz.
@@ -11,7 +13,8 @@ import multiprocessing
 import resource
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from datetime import UTC, datetime, timedelta
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -20,6 +23,7 @@ import uvicorn
 import uvloop
 
 from service.agent.run import listening
+from simulator.agent.adapters import AdapterAddress, AdapterIntake, listen_to
 from simulator.agent.agent import Agent
 from simulator.agent.http import application
 from simulator.agent.machine_model import machine_model
@@ -30,6 +34,7 @@ CONNECTIONS = 4
 PATHS = ("/probe", "/current", "/sample?count=100", "/sample?count=1000")
 FILL = 1 << 17
 BATCH = 5000
+LINES = 200_000
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -40,6 +45,8 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     rate, memory = _ingest()
     print(f"observations taken: {rate:.3g} a second; {memory:.0f} MiB at {FILL} observations")
+    lines, observations = asyncio.run(_shdr())
+    print(f"SHDR lines taken: {lines:.3g} a second; {observations:.3g} observations a second")
     print(f"{'':24}{'bytes':>8}{'requests/s':>12}{'p99 ms':>8}{'bare/s':>9}{'ratio':>7}")
     with _process(_agent) as ours:
         for streams in (0, options.streams):
@@ -77,6 +84,50 @@ def _ingest() -> tuple[float, float]:
         agent.buffer.rendered(start, agent.writer.observation)
     after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return rate, (after - before) / 1024.0
+
+
+async def _shdr() -> tuple[float, float]:
+    """Lines, and observations in them, a second through a connection on loopback."""
+    agent = Agent(model=_model(), clock=lambda: time.time_ns() // 1000, size=1 << 20)
+    last = agent.model.index["vmc15_block"]
+    with _process(_adapter) as port:
+        address = AdapterAddress(host="127.0.0.1", port=port)
+        begin, before = time.perf_counter(), agent.buffer.next
+        task = asyncio.create_task(listen_to(address, AdapterIntake(agent=agent)))
+        while not _is_told(agent, last):
+            await asyncio.sleep(0.001)
+        seconds = time.perf_counter() - begin
+        task.cancel()
+    return LINES / seconds, (agent.buffer.next - before) / seconds
+
+
+def _is_told(agent: Agent, item: int) -> bool:
+    return agent.buffer.state[item][0].value == "end"
+
+
+def _adapter(pipe: Connection) -> None:
+    listener = listening("127.0.0.1", 0)
+    text = "".join(f"{line}\n" for line in _lines()).encode()
+    pipe.send(listener.getsockname()[1])
+    connection, _ = listener.accept()
+    with connection, suppress(OSError):
+        connection.sendall(text)
+        while connection.recv(1000):
+            pass
+
+
+def _lines() -> Iterator[str]:
+    begin = datetime.now(UTC)
+    for at in range(LINES - 1):
+        stamp = f"{begin + timedelta(microseconds=100 * at):%Y-%m-%dT%H:%M:%S.%fZ}"
+        if at % 20 == 19:
+            level = "NORMAL||||" if at % 40 == 19 else "WARNING|7||HIGH|hot"
+            yield f"{stamp}|cload_cond|{level}"
+        elif at % 3 == 2:
+            yield f"{stamp}|line|{at}"
+        else:
+            yield f"{stamp}|xpos|{0.001 * at:.4f}|ypos|{-0.002 * at:.4f}|zpos|{0.01 * at:.3f}"
+    yield f"{stamp}|block|end"
 
 
 def _fill(agent: Agent, count: int) -> int:
@@ -127,7 +178,10 @@ async def _serve(app: Any, pipe: Connection, work: Any) -> None:
     listener = listening("127.0.0.1", 0)
     pipe.send(listener.getsockname()[1])
     task = None if work is None else asyncio.create_task(work)
-    config = uvicorn.Config(app, log_config=None, access_log=False, lifespan="off", ws="none")
+    config = uvicorn.Config(
+        app, log_config=None, access_log=False, lifespan="off", ws="none",
+        timeout_graceful_shutdown=1,
+    )  # fmt: skip
     await uvicorn.Server(config).serve(sockets=[listener])
     if task is not None:
         task.cancel()

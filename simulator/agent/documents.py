@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from math import isfinite
 from typing import Any
 from xml.sax.saxutils import escape, quoteattr
 
@@ -399,6 +400,8 @@ def _number(text: str) -> Any:
     try:
         numbers = [float(each) for each in text.split()]
     except ValueError:
+        return text
+    if not all(map(isfinite, numbers)):
         return text
     whole = [int(each) if each.is_integer() else each for each in numbers]
     return whole[0] if len(whole) == 1 else whole or text

@@ -113,8 +113,9 @@ class MqttPublisher:
     async def _session(self) -> None:
         """Publish all that holds, then what is new, until the connection is lost."""
         agent = self.agent
-        self._assets.clear()
         await self._publish(self._availability, b"AVAILABLE", is_kept=True)
+        await self._clear_assets()
+        self._assets.clear()
         for at, device in enumerate(agent.model.devices):
             await self._publish(
                 _topic("Probe", device.uuid), as_json(agent.probe(at)), is_kept=True
@@ -141,7 +142,8 @@ class MqttPublisher:
             await self._publish(_topic("Current", device.uuid), document, is_kept=True)
 
     async def _publish_assets(self) -> None:
-        """Publish assets that are new or changed; clear the topics of those that are gone."""
+        """Publish assets that are new or changed."""
+        await self._clear_assets()
         agent = self.agent
         for id, asset in list(agent.assets.items()):
             if self._assets.get(id) is not asset:
@@ -149,7 +151,10 @@ class MqttPublisher:
                     self._asset_topic(asset), as_json(agent.assets_by_id([id])), is_kept=True
                 )
                 self._assets[id] = asset
-        for id in [id for id in self._assets if id not in agent.assets]:
+
+    async def _clear_assets(self) -> None:
+        """Clear the topics of assets that are gone."""
+        for id in [id for id in self._assets if id not in self.agent.assets]:
             await self._publish(self._asset_topic(self._assets[id]), b"", is_kept=True)
             del self._assets[id]
 

@@ -49,7 +49,8 @@ def broker(port: int, folder: Path) -> Iterator[None]:
     with (folder / "mosquitto.log").open("ab") as log:
         process = subprocess.Popen([PROGRAM, "-p", str(port)], stdout=log, stderr=log)
         try:
-            until(lambda: is_open(port))
+            until(lambda: process.poll() is not None or is_open(port))
+            assert process.poll() is None, (folder / "mosquitto.log").read_text("utf-8")
             yield
         finally:
             process.kill()

@@ -153,6 +153,15 @@ def test_an_asset_that_cannot_be_kept_is_refused(
     assert served.agent.buffer.next == before
 
 
+def test_json_has_no_numbers_that_json_does_not_know(serve: Serve) -> None:
+    served = serve(allows_put=True)
+    text = '<File count="1e999" sequence="nan"><Entry key="a">inf</Entry></File>'
+    write(served, "PUT", "/asset/F1", text)
+    assert "Infinity" not in served.get("/assets?format=json").text
+    (file,) = served.get("/assets?format=json").json()["MTConnectAssets"]["Assets"]["File"]
+    assert (file["count"], file["sequence"], file["value"]) == ("1e999", "nan", {"a": "inf"})
+
+
 def test_assets_together_are_bounded(serve: Serve) -> None:
     served = serve(allows_put=True)
     body = f"<File><!--{'x' * 1_000_000}--></File>"
