@@ -16,11 +16,11 @@ from service.agent.replay import LOGS, read_log
 from service.agent.run_routes import Application, with_runs
 from service.agent.runs import RunKeeper, RunRepository, plain_name
 from service.files import require_place, write_atomically
+from service.http_protocol import BoundedHttpProtocol
 from service.reading import Tell, silent
 from service.requests.agent import AgentRequest
 from service.requests.fields import require_bounds
 from service.requests.runs import SimulationRequest
-from service.rest.http_protocol import BoundedHttpProtocol
 from service.simulation.run import RunFiles, Simulation, simulate
 from simulator.agent.adapters import AdapterAddress, AdapterIntake, ShdrServer, listen_to
 from simulator.agent.agent import Agent

@@ -43,6 +43,8 @@ def require_changes(changes: ControlChanges) -> None:
 class ControlStatus(SessionStatus):
     """Status snapshot of a controlled run."""
 
+    machine: str
+    program: str
     progress: float
     """Completed share of the program, 0 to 1."""
     workingstep: str
@@ -135,6 +137,8 @@ class LiveControl:
         programmed = 0.0 if row is None else row.feed_programmed
         return ControlStatus(
             time=machine.time,
+            machine=session.virtual.name,
+            program=session.program.name,
             progress=machine.share,
             workingstep="" if row is None else row.workingstep,
             feed_programmed_mm_min=mm_min_from_speed(programmed),

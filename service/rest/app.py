@@ -1,7 +1,8 @@
 """ASGI application of the service: routes, access check, problem replies, OpenAPI document."""
 
+import asyncio
 from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from typing import Any
 
 from fastapi import FastAPI, Request, Response
@@ -11,12 +12,14 @@ from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
 from kbe.store import open_store
+from service.agent.shop import ShopAgent
 from service.errors import TooMany
 from service.lifeline import end_with_parent
 from service.monitor.monitor import MonitorSet
 from service.problem import plain_problem, problem_of
 from service.rest import (
     advice,
+    agent,
     health,
     jobs,
     knowledge,
@@ -71,6 +74,8 @@ def _on(data_folder: DataFolder, settings: Settings) -> FastAPI:
     )
     app.state.advice = advice.AdviceCache()
     app.state.monitors = MonitorSet(settings.agents)
+    app.state.shop = ShopAgent(data_folder, base=agent.BASE) if settings.has_agent else None
+    agent.mount(app, app.state.shop)
     app.add_middleware(AccessMiddleware, settings=settings, data_folder=data_folder)
     return app
 
@@ -112,9 +117,15 @@ def _routed() -> FastAPI:
 async def _living(app: FastAPI) -> AsyncIterator[None]:
     """Monitor machines while the service runs; close all streams when it stops."""
     app.state.monitors.start()
+    shop = app.state.shop
+    publishing = None if shop is None else asyncio.create_task(shop.run())
     try:
         yield
     finally:
+        if publishing is not None:
+            publishing.cancel()
+            with suppress(asyncio.CancelledError):
+                await publishing
         await app.state.hub.close()
         await run_in_threadpool(app.state.monitors.stop)
 

@@ -15,7 +15,7 @@ JOBS = "/v1/jobs/"
 
 LOOKING = frozenset({"GET", "HEAD", "OPTIONS"})
 
-KEPT = ("/v1/", "/metrics")
+KEPT = ("/v1/", "/metrics", "/mtconnect")
 """Paths that need a key; the dashboard's files and the health checks are public."""
 
 DOCUMENT = "/v1/openapi.json"

@@ -6,7 +6,7 @@ import shutil
 import signal
 import socket
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing.context import SpawnProcess
 from pathlib import Path
 from types import FrameType
@@ -15,10 +15,10 @@ import structlog
 import uvicorn
 
 from service.errors import Forbidden
+from service.http_protocol import BoundedHttpProtocol
 from service.jobs import runner
 from service.monitor.source import MonitorSource
 from service.rest import logs
-from service.rest.http_protocol import BoundedHttpProtocol
 from service.rest.metrics import SHARED
 from service.rest.settings import Settings
 from service.storage import keys, library
@@ -80,7 +80,7 @@ def serve(start: ServerOptions) -> None:
 
 
 def _serve(start: ServerOptions, data_folder: DataFolder) -> None:
-    settings = start.settings
+    settings = replace(start.settings, has_agent=start.workers == 1)
     settings.hand_on()
     logs.configure(settings.level)
     if start.workers > 1:

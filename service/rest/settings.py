@@ -41,6 +41,8 @@ class Settings:
     """Time within which a request body must arrive, in s."""
     level: str = "info"
     """Level of the log."""
+    has_agent: bool = True
+    """Whether the MTConnect agent is mounted, which needs a single web process."""
 
     @property
     def has_request_log(self) -> bool:

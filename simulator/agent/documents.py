@@ -108,6 +108,8 @@ class DocumentWriter:
     changed: str
     """time of the last change of the device model, ISO 8601"""
     asset_size: int = 1024
+    base: str = ""
+    """path under which the agent is mounted"""
     has_quirk: bool = False
     """``errorCode`` in error documents from 2.6 on too, as the reference agent writes it"""
     schemas: SchemaFiles = field(default_factory=SchemaFiles)
@@ -325,7 +327,7 @@ class DocumentWriter:
         space = f"urn:mtconnect.org:MTConnect{kind}:{version}"
         start = (
             '<?xml version="1.0" encoding="UTF-8"?>\n'
-            f'<?xml-stylesheet type="text/xsl" href="{STYLE}"?>\n'
+            f'<?xml-stylesheet type="text/xsl" href="{self.base}{STYLE}"?>\n'
             f'<MTConnect{kind} xmlns="{space}" xmlns:xsi="{XSI}" xsi:schemaLocation="{space} '
             f'{escape(self.schemas.location(kind, version))}">{header}'
         )

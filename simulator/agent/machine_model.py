@@ -1,6 +1,7 @@
 """The device model of a machine of the library, by its file."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from copy import deepcopy
 from dataclasses import dataclass
 from functools import cache
 from math import isfinite
@@ -304,6 +305,24 @@ def machine_model(
             if item.id not in present and not item.is_sum
         ),
     )
+
+
+def shop_model(machines: Iterable[MachineModel]) -> DeviceModel:
+    """Return one model of the devices of several machines, with one agent device.
+
+    Parameters
+    ----------
+    machines : iterable of MachineModel
+        Of one schema version, with different names.
+    """
+    root = etree.Element("Devices")
+    version = ""
+    for shown in machines:
+        version = shown.model.version
+        for device in shown.model.root:
+            if device.tag != "Agent" or root.find("Agent") is None:
+                root.append(deepcopy(device))
+    return model_of(root, version)
 
 
 def device_uuid(machine: Machine) -> str:

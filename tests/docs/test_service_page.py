@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from service.cli.serve import USUAL_RATE
+from service.http_protocol import HEAD_S
 from service.jobs.runner import LONGEST, LONGEST_PACED, MOST_PACED
 from service.live.series import MOST_BYTES
-from service.rest.http_protocol import HEAD_S
 from service.rest.settings import Settings
 from service.session.runner import FORGOTTEN_AFTER, MOST_ROWS
 from service.simulation.live import MOST_SAMPLES

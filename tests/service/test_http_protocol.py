@@ -9,8 +9,8 @@ import pytest
 import uvicorn
 from starlette.types import Receive, Scope, Send
 
-from service.rest import http_protocol
-from service.rest.http_protocol import HEAD_BYTES, BoundedHttpProtocol
+from service import http_protocol
+from service.http_protocol import HEAD_BYTES, BoundedHttpProtocol
 
 Talk = Callable[[asyncio.StreamReader, asyncio.StreamWriter], Awaitable[None]]
 

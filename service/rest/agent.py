@@ -1,0 +1,41 @@
+"""The MTConnect agent of the service, mounted under ``/mtconnect``."""
+
+from collections.abc import Awaitable, Callable, Mapping
+from typing import Any
+
+from fastapi import FastAPI
+
+from service.agent.run_routes import with_runs
+from service.agent.shop import ShopAgent
+from service.problem import plain_problem
+from service.rest.replies import problem_reply
+from simulator.agent.http import application
+
+BASE = "/mtconnect"
+
+Receive = Callable[[], Awaitable[Mapping[str, Any]]]
+Send = Callable[[Mapping[str, Any]], Awaitable[None]]
+
+
+def mount(app: FastAPI, shop: ShopAgent | None) -> None:
+    """Mount the agent; without one, say why there is none.
+
+    Several web processes would give different sequence numbers, so only a single one has the
+    agent.
+    """
+    served = None if shop is None else with_runs(application(shop.agent), shop.repository)
+
+    async def serve(scope: Mapping[str, Any], receive: Receive, send: Send) -> None:
+        if served is None:
+            problem = plain_problem(
+                503,
+                "Unavailable",
+                "the agent needs a single web process: start the service with --workers 1",
+            )
+            await problem_reply(problem)(scope, receive, send)  # type: ignore[arg-type]
+            return
+        path = scope["path"].removeprefix(BASE) or "/"
+        raw = (scope.get("raw_path") or b"").removeprefix(BASE.encode()) or b"/"
+        await served({**scope, "path": path, "raw_path": raw, "root_path": ""}, receive, send)
+
+    app.mount(BASE, serve)  # type: ignore[arg-type]
