@@ -7,6 +7,7 @@ from benchmarks import (
     closed_loop,
     control_step,
     knowledge,
+    monitored,
     part21,
     pockets,
     post,
@@ -38,6 +39,7 @@ for title, bench in (
     ("The knowledge base", knowledge),
     ("REST", rest),
     ("MTConnect", agent),
+    ("A client's energy and time", monitored),
 ):
     print(f"\n== {title}: {(bench.__doc__ or '').splitlines()[0]}")
     bench.main([])
