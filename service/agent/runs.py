@@ -34,6 +34,7 @@ from simulator.agent.buffer import (
 )
 from simulator.agent.documents import timestamp
 from simulator.agent.model import devices_text, model_of, parsed
+from simulator.client.columns import RUNNING
 from simulator.motion.segments import Ints
 from stepnc_model.errors import StepNcError, WriteError
 
@@ -43,9 +44,8 @@ ROWS = 8192
 MOST = 1 << 22
 """Most observations of a run that can be served."""
 
-RUNNING = frozenset({"ACTIVE", "WAIT", "FEED_HOLD", "INTERRUPTED"})
 ENDED = frozenset({"PROGRAM_COMPLETED", "PROGRAM_STOPPED", "STOPPED", "READY", "UNAVAILABLE"})
-"""Words of EXECUTION between which a run takes place."""
+"""Words of EXECUTION with which a run ends."""
 
 NAMING = ("PART_UNIQUE_ID", "PART_ID", "PROGRAM")
 """Types whose value names the part, the best first."""

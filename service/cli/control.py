@@ -69,9 +69,9 @@ def _options(parser: argparse.ArgumentParser) -> None:
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
     add(
         "--recorded",
-        type=Path,
-        metavar="FILE",
-        help="evaluate a recorded run of the program instead (.parquet, .csv of `record`)",
+        metavar="FILE|URL",
+        help="evaluate a recorded run of the program instead: a .parquet or .csv file of "
+        "`record`, or the next run that an MTConnect agent publishes",
     )
     add_knowledge(parser, "records the outcomes and supplies accepted corrections")
     add(
@@ -96,7 +96,7 @@ def _control(options: argparse.Namespace) -> int:
     with interruptible():
         run = control_recorded(
             _request(options),
-            replace(run_files(options, options.file), recorded=options.recorded),
+            replace(run_files(options, options.file), recorded=_recorded(options)),
             knowledge=options.kb,
             by=options.by,
             tell=tell,
@@ -118,6 +118,26 @@ def _control(options: argparse.Namespace) -> int:
 
         print_control(run)
     return LIMIT_EXCEEDED if exceeded(run, rows(run)) else OK
+
+
+def _recorded(options: argparse.Namespace) -> Path | None:
+    """Return the file of the recorded run; the next run of an agent is recorded first."""
+    if options.recorded is None:
+        return None
+    if "://" not in options.recorded:
+        return Path(options.recorded)
+    from service.recording.run import record
+    from service.requests.recording import RecordingRequest
+    from service.terminal import tell
+    from stepnc_model.errors import StepNcError
+
+    if options.file is None:
+        raise StepNcError("--recorded needs a STEP-NC program: it is compared with its plan")
+    file = Path(f"{options.file.stem}.recorded.parquet")
+    tell(f"{options.recorded}: waiting for the next run of the program")
+    record(options.recorded, file, RecordingRequest(is_next_run=True), tell=tell)
+    tell(f"recorded: {file}")
+    return file
 
 
 def _request(options: argparse.Namespace) -> "ControlRequest":

@@ -12,7 +12,15 @@ from service.reading import Tell, silent
 from service.requests.fields import require_bounds
 from service.requests.recording import RecordingRequest
 from service.run_file import WORDS, RunFile, require_suffix
-from simulator.client.columns import TIME, Cell, RecordedColumn, RowMaker, columns_of
+from simulator.client.columns import (
+    EXECUTION,
+    RUNNING,
+    TIME,
+    Cell,
+    RecordedColumn,
+    RowMaker,
+    columns_of,
+)
 from simulator.client.connection import AgentClient, ClientObservation, StreamPart
 from stepnc_model.errors import StepNcError
 
@@ -68,7 +76,16 @@ def record(
         rows.rows(client.state())
         rows.last()
     file = RunFile(output, _schema(columns))
-    keeper = _Keeper(file=file, columns=columns, rows=rows, tell=tell, clock=clock)
+    keeper = _Keeper(
+        file=file,
+        columns=columns,
+        rows=rows,
+        tell=tell,
+        clock=clock,
+        is_next_run=request.is_next_run,
+        is_on=not request.is_next_run,
+        was_running=rows.held(EXECUTION) in {*RUNNING, None},
+    )
     with file.closing(is_whole=True):
         try:
             with closing(client.stream()) as parts:
@@ -96,6 +113,11 @@ class _Keeper:
     rows: RowMaker
     tell: Tell
     clock: Callable[[], float]
+    is_next_run: bool
+    is_on: bool
+    """Whether rows are kept: not before the run that is waited for."""
+    was_running: bool
+    """Whether a program ran at the last observation, or may have run."""
     count: int = 0
     lost: int = 0
     restarts: int = 0
@@ -104,10 +126,10 @@ class _Keeper:
     def __post_init__(self) -> None:
         self._waiting: list[Mapping[str, Cell]] = []
         self._told = self.clock()
-        self._execution = next(
-            (each.id for each in self.columns if each.name == "execution"), ""
-        )
+        self._execution = next((each.id for each in self.columns if each.name == EXECUTION), "")
         self._is_running = False
+        self.is_over = False
+        self._was_running_in_row = self.was_running
 
     def run(self, parts: Iterator[StreamPart], request: RecordingRequest) -> None:
         """Take parts until the recording is over."""
@@ -117,12 +139,13 @@ class _Keeper:
             self._progress()
             if request.duration_s is not None and self.clock() - begin >= request.duration_s:
                 return
-            if request.is_until_completed and self._is_completed(part.observations):
+            is_ending = request.is_until_completed or request.is_next_run
+            if is_ending and self._is_completed(part.observations):
                 return
 
     def end(self) -> None:
         """Write what waits."""
-        self._waiting += self.rows.last()
+        self._keep(self.rows.last())
         self._flush()
 
     def _take(self, part: StreamPart) -> None:
@@ -138,16 +161,36 @@ class _Keeper:
         if part.fault or part.lost or part.is_restarted:
             self.rows.interrupt()
         self.count += len(part.observations)
-        self._waiting += self.rows.rows(part.observations)
+        self._keep(self.rows.rows(part.observations))
         if len(self._waiting) >= ROWS:
             self._flush()
 
+    def _keep(self, rows: Sequence[Mapping[str, Cell]]) -> None:
+        """Keep rows; where the next run is waited for, from its start until it ends."""
+        for row in rows:
+            word = row.get(EXECUTION)
+            if self.is_over:
+                return
+            if word is not None:
+                is_running = word in RUNNING
+                has_begun = is_running and not self._was_running_in_row
+                self.is_over = self.is_next_run and self.is_on and not is_running
+                self.is_on = self.is_on or has_begun
+                self._was_running_in_row = is_running
+            if self.is_on:
+                self._waiting.append(row)
+
     def _is_completed(self, observations: Sequence[ClientObservation]) -> bool:
+        """Whether a program is completed of which some was seen, or its start."""
         for each in observations:
-            if each.id == self._execution:
-                if each.value == COMPLETED and self._is_running:
-                    return True
-                self._is_running = self._is_running or each.value == "ACTIVE"
+            if each.id != self._execution or each.value is None:
+                continue
+            if each.value == COMPLETED and self._is_running:
+                return True
+            is_running = each.value in RUNNING
+            if is_running and not (self.is_next_run and self.was_running):
+                self._is_running = True
+            self.was_running = is_running
         return False
 
     def _progress(self) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pyarrow as pa
 
 from service.recording.table import TABLES, batches, headings
-from simulator.client.columns import TIME
+from simulator.client.columns import EXECUTION, RUNNING, TIME
 from simulator.motion.segments import Floats
 from simulator.plant.recorded import RecordedSignals
 from stepnc_model.errors import StepNcError
@@ -16,10 +16,6 @@ FEED = ("path_feedrate_actual",)
 FORCE = ("cutting_force", "force_measured")
 POWER = ("c_axis_wattage", "spindle_power")
 """Columns as ``simulate`` and ``record`` name them, and as ``control`` does."""
-
-EXECUTION = "execution"
-RUNNING = frozenset({"ACTIVE", "WAIT", "FEED_HOLD", "INTERRUPTED"})
-"""Words of ``execution`` while a program runs; a tool change is a wait."""
 
 
 def read_signals(path: Path) -> RecordedSignals:

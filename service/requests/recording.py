@@ -24,3 +24,8 @@ class RecordingRequest(Request):
     is_buffered: Annotated[
         bool, About("begin with the oldest observation that the agent keeps", flag="--buffered")
     ] = False
+    is_next_run: Annotated[
+        bool,
+        About("record the next run of a program, from its start until it is completed",
+              flag="--next-run"),
+    ] = False  # fmt: skip

@@ -60,6 +60,10 @@ BY_TYPE = {
 """columns by component, type and sub type"""
 
 TIME = "time_s"
+EXECUTION = "execution"
+RUNNING = frozenset({"ACTIVE", "WAIT", "FEED_HOLD", "INTERRUPTED"})
+"""words of ``execution`` while a program runs; a tool change is a wait"""
+
 WORDS = frozenset({"execution", "program", "workingstep"})
 """columns of texts"""
 
@@ -137,6 +141,11 @@ class RowMaker:
         found = [] if self._open is None else [self._row(self._open)]
         self._open = None
         return found
+
+    def held(self, name: str) -> Cell:
+        """Last value of a column; None where there is none."""
+        id = next((each.id for each in self.columns if each.name == name), "")
+        return self._held.get(id)
 
     def interrupt(self) -> None:
         """Nothing is known any more of what holds."""

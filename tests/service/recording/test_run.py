@@ -1,5 +1,6 @@
 """Recording of a machine: of our own agent, over HTTP."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from service.simulation.run import RunFiles, simulate
 from simulator.calibration.features import Parameter
 from stepnc_model.errors import StepNcError
 from tests.service.agent.test_run import PARTS, run_of, served
+from tests.simulator.agent.conftest import BEGIN, ServedAgent
 
 WHOLE = RecordingRequest(is_buffered=True, is_until_completed=True)
 
@@ -71,3 +73,27 @@ def test_what_cannot_be_recorded_is_told(tmp_path: Path) -> None:
     with pytest.raises(StepNcError, match="duration -1 s"):
         record("http://x", tmp_path / "run.csv", RecordingRequest(duration_s=-1.0))
     assert not list(tmp_path.iterdir())
+
+
+def test_the_next_run_is_recorded_whole(
+    serve: Callable[..., ServedAgent], tmp_path: Path
+) -> None:
+    served = serve()
+    words = (
+        # In the middle of a run, with a lost adapter; a whole run with a hold; another one.
+        "ACTIVE", None, "ACTIVE", "PROGRAM_COMPLETED", "READY",
+        "WAIT", "ACTIVE", "FEED_HOLD", "ACTIVE", "PROGRAM_COMPLETED", "READY", "ACTIVE",
+    )  # fmt: skip
+    for number, word in enumerate(words):
+        begin = BEGIN + 1_000_000 * number
+        served.add("vmc15_exec", [word], begin=begin)
+        served.add("vmc15_xpos", [float(number)], begin=begin)
+    found = record(
+        served.url,
+        tmp_path / "run.parquet",
+        RecordingRequest(is_next_run=True, is_buffered=True, duration_s=20.0),
+    )
+    table = parquet.read_table(tmp_path / "run.parquet").to_pydict()
+    assert table["x_axis_position_actual"] == [5.0, 6.0, 7.0, 8.0, 9.0]
+    assert table["execution"] == list(words[5:10])
+    assert found.rows == 5
