@@ -11,8 +11,8 @@ th,td{text-align:left;padding:.2rem .7rem;border-bottom:1px solid #8884}
 td.v{font-variant-numeric:tabular-nums;font-weight:600}
 nav a{margin-right:1rem} small,th{color:#777;font-weight:400}
 </style></head><body>
-<nav><a href="/probe">probe</a><a href="/current">current</a><a href="/sample">sample</a>
-<a href="/assets">assets</a></nav>
+<nav><a href="probe">probe</a><a href="current">current</a><a href="sample">sample</a>
+<a href="assets">assets</a></nav>
 <xsl:apply-templates select="*/*[local-name()!='Header']"/>
 </body></html></xsl:template>
 <xsl:template match="*[local-name()='Devices']">

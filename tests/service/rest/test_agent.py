@@ -26,8 +26,10 @@ def test_each_machine_is_a_device(client: httpx.Client) -> None:
     assert {"vmc15", "lathe22", "paper000", "paper002", "paper003"} <= names
     state = values(client, "vmc15/current")
     assert (state["vmc15_avail"], state["vmc15_exec"]) == ("AVAILABLE", "READY")
-    page = client.get("/mtconnect/current").text
-    (style,) = [word for word in page.split('"') if word.endswith(".xsl")]
+    page = client.get("/mtconnect/current")
+    # Browsers take a style sheet for a script.
+    assert "script-src 'self'" in page.headers["content-security-policy"]
+    (style,) = [word for word in page.text.split('"') if word.endswith(".xsl")]
     assert "xsl:stylesheet" in client.get(style).text
     unknown = client.get("/mtconnect/nobody/current")
     require_valid(unknown.content, "2.7")
