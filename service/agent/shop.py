@@ -85,11 +85,9 @@ class ShopAgent:
     Parameters
     ----------
     data_folder : DataFolder
-    base : str
-        Path under which the agent is mounted.
     """
 
-    def __init__(self, data_folder: DataFolder, *, base: str = "") -> None:
+    def __init__(self, data_folder: DataFolder) -> None:
         self._data_folder = data_folder
         machines = list(_machines(data_folder))
         self._shown: dict[str, MachineModel] = {
@@ -97,7 +95,6 @@ class ShopAgent:
         }
         model = shop_model(self._shown.values())
         self.agent = Agent(model=model, clock=now)
-        self.agent.writer.base = base
         self.repository = RunRepository(data_folder.root / "runs")
         self._keeper = RunKeeper(self.agent, self.repository, tell=_warn)
         self._tails: dict[str, _Tail] = {}

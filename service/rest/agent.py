@@ -13,13 +13,6 @@ from simulator.agent.http import application
 
 BASE = "/mtconnect"
 
-POLICY = (
-    b"content-security-policy",
-    b"default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
-    b"base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
-)
-"""Browsers may load the style sheet of a document, which counts as a script."""
-
 Receive = Callable[[], Awaitable[Mapping[str, Any]]]
 Send = Callable[[Mapping[str, Any]], Awaitable[None]]
 
@@ -42,15 +35,7 @@ def mount(app: FastAPI, shop: ShopAgent | None) -> None:
             await problem_reply(problem)(scope, receive, send)  # type: ignore[arg-type]
             return
         path = scope["path"].removeprefix(BASE) or "/"
-
-        async def send_page(message: Mapping[str, Any]) -> None:
-            if message["type"] == "http.response.start":
-                message = {**message, "headers": [*message["headers"], POLICY]}
-            await send(message)
-
         raw = (scope.get("raw_path") or b"").removeprefix(BASE.encode()) or b"/"
-        await served(
-            {**scope, "path": path, "raw_path": raw, "root_path": ""}, receive, send_page
-        )
+        await served({**scope, "path": path, "raw_path": raw, "root_path": ""}, receive, send)
 
     app.mount(BASE, serve)  # type: ignore[arg-type]

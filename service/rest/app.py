@@ -74,7 +74,7 @@ def _on(data_folder: DataFolder, settings: Settings) -> FastAPI:
     )
     app.state.advice = advice.AdviceCache()
     app.state.monitors = MonitorSet(settings.agents)
-    app.state.shop = ShopAgent(data_folder, base=agent.BASE) if settings.has_agent else None
+    app.state.shop = ShopAgent(data_folder) if settings.has_agent else None
     agent.mount(app, app.state.shop)
     app.add_middleware(AccessMiddleware, settings=settings, data_folder=data_folder)
     return app

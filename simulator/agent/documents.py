@@ -10,7 +10,9 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import cache
 from math import isfinite
+from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import escape, quoteattr
 
@@ -28,7 +30,8 @@ from simulator.agent.model import DeviceModel
 from simulator.agent.schemas import SchemaFiles
 
 XSI = "http://www.w3.org/2001/XMLSchema-instance"
-STYLE = "/styles/mtconnect.xsl"
+PAGE = Path(__file__).with_name("mtconnect.xsl")
+"""rules by which a document becomes a page"""
 
 CATEGORIES = (("SAMPLE", "Samples"), ("EVENT", "Events"), ("CONDITION", "Condition"))
 
@@ -108,8 +111,6 @@ class DocumentWriter:
     changed: str
     """time of the last change of the device model, ISO 8601"""
     asset_size: int = 1024
-    base: str = ""
-    """path under which the agent is mounted"""
     has_quirk: bool = False
     """``errorCode`` in error documents from 2.6 on too, as the reference agent writes it"""
     schemas: SchemaFiles = field(default_factory=SchemaFiles)
@@ -327,7 +328,6 @@ class DocumentWriter:
         space = f"urn:mtconnect.org:MTConnect{kind}:{version}"
         start = (
             '<?xml version="1.0" encoding="UTF-8"?>\n'
-            f'<?xml-stylesheet type="text/xsl" href="{self.base}{STYLE}"?>\n'
             f'<MTConnect{kind} xmlns="{space}" xmlns:xsi="{XSI}" xsi:schemaLocation="{space} '
             f'{escape(self.schemas.location(kind, version))}">{header}'
         )
@@ -353,6 +353,16 @@ def indented(document: bytes) -> bytes:
     etree.indent(root)
     tree = root.getroottree()
     return etree.tostring(tree, xml_declaration=True, encoding="UTF-8") + b"\n"
+
+
+@cache
+def _page_rules() -> etree.XSLT:
+    return etree.XSLT(etree.parse(PAGE))
+
+
+def as_page(document: bytes) -> bytes:
+    """Return a document as a page for people."""
+    return bytes(_page_rules()(etree.fromstring(document)))
 
 
 def as_json(document: bytes, *, is_pretty: bool = False) -> bytes:

@@ -7,16 +7,15 @@ client that does not read is dropped; the machine never waits for one.
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, unquote
 from uuid import uuid4
 
 from simulator.agent.agent import Agent
 from simulator.agent.documents import (
-    STYLE,
     RequestFault,
     as_json,
+    as_page,
     has_observations,
     indented,
     packed,
@@ -36,9 +35,6 @@ from simulator.agent.requests import (
 )
 from simulator.agent.schemas import PLACE
 
-STYLESHEET = Path(__file__).with_name("mtconnect.xsl").read_bytes()
-"""makes documents readable in a browser"""
-
 LONGEST_URI = 8192
 """bytes of a path with its query"""
 
@@ -49,6 +45,9 @@ PATIENCE = 15.0
 
 LEAST_PACKED = 1024
 """bytes of a document that is worth compressing"""
+
+BROWSER = frozenset({"text/html", "application/xhtml+xml"})
+"""kinds that every browser accepts, and no client that reads MTConnect"""
 
 READS = ("GET", "HEAD", "OPTIONS")
 ASSET_WRITES = ("PUT", "POST", "DELETE")
@@ -84,6 +83,8 @@ class HttpRequest:
     uri: str
     values: Mapping[str, str]
     is_json: bool
+    is_page: bool
+    """from a browser's address line"""
     takes_gzip: bool
     origin: str
     """of the page whose script asks; empty: none"""
@@ -132,10 +133,15 @@ def _request(scope: Mapping[str, Any]) -> HttpRequest:
         uri=uri[:LONGEST_URI],
         values=values,
         is_json=wanted == "json" or ("application/json" in accept and wanted != "xml"),
+        is_page=wanted == "html" or (_kinds(accept) >= BROWSER and not wanted),
         takes_gzip="gzip" in headers.get("accept-encoding", ""),
         origin=headers.get("origin", ""),
         host=headers.get("host", ""),
     )
+
+
+def _kinds(accept: str) -> set[str]:
+    return {each.partition(";")[0].strip() for each in accept.split(",")}
 
 
 async def _answer(agent: Agent, request: HttpRequest, receive: Receive, send: Send) -> None:
@@ -153,9 +159,8 @@ async def _answer(agent: Agent, request: HttpRequest, receive: Receive, send: Se
         await _write(agent, request, parts, receive, send)
         return
     if (text := _file(agent, request.path)) is not None:
-        kind = b"text/xsl" if request.path == STYLE else b"text/xml"
         body = b"" if request.method == "HEAD" else text
-        await _send(send, 200, [*COMMON, (b"content-type", kind)], body)
+        await _send(send, 200, [*COMMON, (b"content-type", b"text/xml")], body)
         return
     device, verb, rest = _place(agent, parts)
     match verb:
@@ -178,9 +183,7 @@ async def _answer(agent: Agent, request: HttpRequest, receive: Receive, send: Se
 
 
 def _file(agent: Agent, path: str) -> bytes | None:
-    """Style sheet or schema at an address; None: there is none."""
-    if path == STYLE:
-        return STYLESHEET
+    """Schema at an address; None: there is none."""
     if not path.startswith(PLACE):
         return None
     return agent.writer.schemas.files.get(path.removeprefix(PLACE))
@@ -342,6 +345,8 @@ async def _document(
     kind = b"text/xml; charset=utf-8"
     if request.is_json:
         kind, document = b"application/json", as_json(document, is_pretty=request.is_pretty)
+    elif request.is_page:
+        kind, document = b"text/html; charset=utf-8", as_page(document)
     elif request.is_pretty:
         document = indented(document)
     head = [*COMMON, *more, (b"content-type", kind), (b"vary", b"accept, accept-encoding")]

@@ -485,13 +485,37 @@ def test_one_connection_serves_many_requests_and_packs_them(serve: Serve) -> Non
     assert int(answer.headers["content-length"]) < len(answer.content) / 3
 
 
-def test_a_browser_is_given_a_style(serve: Serve) -> None:
+BROWSER = "text/html,application/xhtml+xml,application/xml;q=0.9,image/avif,*/*;q=0.8"
+
+
+@pytest.mark.parametrize("path", ["/current", "/probe", "/sample?count=20", "/smell"])
+def test_a_browser_is_given_a_page(serve: Serve, path: str) -> None:
     served = serve()
-    document = etree.fromstring(served.get("/current").content)
-    style = etree.fromstring(served.get("/styles/mtconnect.xsl").content)
-    page = str(etree.XSLT(style)(document))
+    page = served.get(path, accept=BROWSER)
+    assert page.headers["content-type"] == "text/html; charset=utf-8"
+    assert page.text.startswith("<!DOCTYPE html")
+    # Of the same address, each client has what it asks for.
+    for accept, kind in (
+        ("text/html", "text/xml; charset=utf-8"),
+        ("*/*", "text/xml; charset=utf-8"),
+        ("application/json", "application/json"),
+    ):
+        assert served.get(path, accept=accept).headers["content-type"] == kind
+    join = "&" if "?" in path else "?"
+    xml = served.get(f"{path}{join}format=xml", accept=BROWSER)
+    assert xml.headers["content-type"] == "text/xml; charset=utf-8"
+
+
+def test_a_page_shows_what_a_document_holds(serve: Serve) -> None:
+    served = serve()
+    served.add("vmc15_program", ["<script>alert(1)</script>"])
+    page = served.get("/current?format=html").text
     assert "vmc15_xpos" in page
     assert "UNAVAILABLE" in page
+    assert "<script>" not in page
+    assert "&lt;script&gt;" in page
+    for word in ("probe", "current", "sample"):
+        assert f'href="{word}"' in page
 
 
 def asset(id: str, *, is_removed: bool = False) -> Asset:
