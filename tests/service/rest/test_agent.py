@@ -26,8 +26,8 @@ def test_each_machine_is_a_device(client: httpx.Client) -> None:
     root = require_valid(client.get("/mtconnect/probe").content, "2.7")
     names = {each.get("name") for each in root.iter() if str(each.tag).endswith("}Device")}
     assert {"vmc15", "lathe22", "paper000", "paper002", "paper003"} <= names
-    state = values(client, "vmc15/current")
-    assert (state["vmc15_avail"], state["vmc15_exec"]) == ("AVAILABLE", "READY")
+    state = values(client, "paper002/current")
+    assert (state["paper002_avail"], state["paper002_exec"]) == ("AVAILABLE", "READY")
     page = client.get("/mtconnect/current", headers={"accept": BROWSER})
     assert page.headers["content-type"] == "text/html; charset=utf-8"
     assert "vmc15_exec" in page.text
