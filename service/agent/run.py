@@ -178,6 +178,7 @@ def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent
         As :func:`published_run`; for a device model, an address or schemas that cannot be
         used, and when a port is not free.
     """
+    require_bounds(request)
     with ExitStack() as stack:
         listener = stack.enter_context(listening(request.host, request.port))
         schemas = SchemaFiles() if files.schemas is None else read_schemas(files.schemas)
@@ -239,7 +240,6 @@ def replayed(
     """Return an agent, and the recorded run that it publishes again."""
     if request.adapters:
         raise StepNcError("--adapter: a recorded run and adapters exclude each other")
-    require_bounds(request)
     require_possible(request)
     if files.device is not None:
         model = read_model(files.device)
@@ -266,7 +266,6 @@ def adapted(
         raise StepNcError("--device serves what adapters tell: name no program beside it")
     if not request.adapters or files.device is None:
         raise StepNcError("--device: name its adapters with --adapter HOST:PORT")
-    require_bounds(request)
     addresses = [_address(each, "adapter", "192.168.0.7:7878") for each in request.adapters]
     model = read_model(files.device)
     tell(f"device model: {files.device}, schema {model.version}, {len(model.items)} data items")

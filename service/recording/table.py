@@ -41,6 +41,8 @@ def headings(path: Path) -> list[str]:
     StepNcError
         When the file cannot be read.
     """
+    if not path.is_file():
+        raise StepNcError(f"{path}: no such file")
     try:
         if path.suffix.lower() == ".parquet":
             return list(parquet.read_schema(path).names)

@@ -31,7 +31,7 @@ class StreamsDocument:
 
 
 def read_streams(path: Path, model: DeviceModel) -> StreamsDocument:
-    """Read the observations of a document of streams.
+    """Read the observations of devices in a document of streams.
 
     Raises
     ------
@@ -49,13 +49,20 @@ def read_streams(path: Path, model: DeviceModel) -> StreamsDocument:
         raise AgentError(f"{path}: root element {name}; expected MTConnectStreams")
     found: list[tuple[int, int, int, Value]] = []
     unknown: dict[str, None] = {}
+    # What an agent tells of itself is not part of a run.
+    own = {
+        item
+        for at, device in enumerate(model.devices)
+        if device.is_agent
+        for item in model.items_of(at)
+    }
     for element in root.iter():
         if isinstance(element.tag, str) and element.get("sequence") is not None:
             id = element.get("dataItemId", "")
             item = model.index.get(id)
             if item is None:
                 unknown[id] = None
-            else:
+            elif item not in own:
                 found.append(_observation(element, item, model.items[item], path))
     found.sort(key=lambda each: each[0])
     times = np.array([time for _, time, _, _ in found], dtype=np.int64)

@@ -181,8 +181,8 @@ def test_what_the_model_does_not_have_is_told(tmp_path: Path, model: DeviceModel
         ("a.csv", "time_s,x_axis_position_actual\n0,butter\n", "cannot be read: .*butter"),
         ("a.csv", b"\xff\xfe\x00", "cannot be read"),
         ("a.parquet", "PAR1", "cannot be read"),
-        ("missing.parquet", None, "cannot be read: "),
-        ("missing.csv", None, "cannot be read: .*No such file"),
+        ("missing.parquet", None, "no such file"),
+        ("missing.csv", None, "no such file"),
         ("missing.xml", None, "cannot be read: No such file"),
         ("missing.shdr", None, "cannot be read: .*No such file"),
         ("a.xml", "<MTConnectDevices/>", "expected MTConnectStreams"),
@@ -198,6 +198,12 @@ def test_what_the_model_does_not_have_is_told(tmp_path: Path, model: DeviceModel
             '<MTConnectStreams><a dataItemId="paper003_xpos" sequence="x" '
             'timestamp="2026-01-01T00:00:00Z">1</a></MTConnectStreams>',
             "line 1: paper003_xpos: invalid literal",
+        ),
+        (
+            "a.xml",
+            '<MTConnectStreams><a dataItemId="agent_avail" sequence="1" '
+            'timestamp="2026-01-01T00:00:00Z">AVAILABLE</a></MTConnectStreams>',
+            "nothing in it belongs",
         ),
         ("a.shdr", "no line of it\n", "nothing in it belongs .*the file is empty"),
         ("a.shdr", "2026-01-01T00:00:00Z|smell|7\n", r"belongs .*\(smell\)"),

@@ -80,6 +80,7 @@ def test_bad_words_are_refused_before_anything_listens(
 ) -> None:
     for words in (
         [str(PART), "--machine", "nope", "--port", "0"],
+        [str(PART), "--port", "99999"],
         [str(PART), "--schema", "1.9", "--port", "0"],
         [str(PART), "--speed", "-1", "--port", "0"],
         [str(PART), "--schema-files", "absent", "--port", "0"],
