@@ -97,6 +97,9 @@ def _machine_facts(machine: Machine) -> list[Fact]:
         ("base power kW", kw_from_watts(machine.base_power)),
     ):
         facts.append((name, "not limited" if value is None else f"{value:g}"))
+    if machine.block_time is not None:
+        of = f" ({machine.block_time_source})" if machine.block_time_source else ""
+        facts.append(("block time ms", f"{1e3 * machine.block_time:g}{of}"))
     for mode in machine.modes:
         of = mode.tool or (f"{mode.tool_diameter:g} mm" if mode.tool_diameter else "")
         facts.append((

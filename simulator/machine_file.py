@@ -269,6 +269,7 @@ class MachineFile(FileTable, frozen=True, kw_only=True):
     max_cutting_force_n: CuttingForce | None = None
     max_axial_depth_mm: AxialDepth | None = None
     block_time_s: BlockTime | None = None
+    block_time_source: str = ""
     base_power_w: AuxiliaryPower = 0.0
     coolant_power_w: AuxiliaryPower = 0.0
     tool_change_s: ToolChange = 0.0
@@ -297,6 +298,7 @@ class MachineFile(FileTable, frozen=True, kw_only=True):
             max_cutting_force=self.max_cutting_force_n,
             max_axial_depth=self.max_axial_depth_mm,
             block_time=self.block_time_s,
+            block_time_source=self.block_time_source,
             base_power=self.base_power_w,
             coolant_power=self.coolant_power_w,
             tool_change=self.tool_change_s,
@@ -345,6 +347,7 @@ def machine_toml(machine: Machine, *, notes: Sequence[str] = ()) -> str:
         max_cutting_force_n=machine.max_cutting_force,
         max_axial_depth_mm=machine.max_axial_depth,
         block_time_s=machine.block_time,
+        block_time_source=machine.block_time_source,
         base_power_w=machine.base_power,
         coolant_power_w=machine.coolant_power,
         tool_change_s=machine.tool_change,

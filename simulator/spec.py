@@ -195,6 +195,8 @@ class Machine:
     """Whether only the limits stated by the source apply, as for machines from papers: no
     safety factor, stability, tolerance, helix, engagement or work-holding limits in
     addition."""
+    block_time_source: str = ""
+    """Source of the block time, where it is another than that of the machine."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

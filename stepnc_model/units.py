@@ -18,6 +18,7 @@ MM_PER_M = 1000.0
 SECONDS_PER_MINUTE = 60.0
 WATTS_PER_KILOWATT = 1000.0
 MM_PER_MICROMETRE = 1e-3
+MM_PER_INCH = 25.4
 UM_PER_MM = 1000.0
 NEWTONS_PER_KILONEWTON = 1000.0
 NMM_PER_NM = 1000.0
@@ -101,6 +102,16 @@ def mm_from_um(value: float) -> float:
 def um_from_mm(length: float) -> float:
     """Length in µm from mm."""
     return length / MM_PER_MICROMETRE
+
+
+def mm_from_inches(length: float) -> float:
+    """Length in mm from inches."""
+    return length * MM_PER_INCH
+
+
+def inches_from_mm(length: float) -> float:
+    """Length in inches from mm."""
+    return length / MM_PER_INCH
 
 
 def n_mm_from_n_um(value: float) -> float:

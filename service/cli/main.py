@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from service.cli.agent import add_agent_command
+from service.cli.blocks import add_block_commands
 from service.cli.control import add_control_command
 from service.cli.kbe import add_knowledge_commands
 from service.cli.machine import add_machine_commands
@@ -74,6 +75,7 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     _add_convert(commands)
     add_path_commands(commands)
     add_machine_commands(commands)
+    add_block_commands(commands)
     add_agent_command(commands)
     add_record_command(commands)
     add_knowledge_commands(commands)

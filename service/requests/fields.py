@@ -28,6 +28,8 @@ from stepnc_model.errors import StepNcError
 E = TypeVar("E", bound=StrEnum)
 R = TypeVar("R", bound="Request")
 
+NUMBERS = frozenset({int, float})
+
 LONGEST_NAME = 200
 """Largest number of characters in a name."""
 
@@ -135,7 +137,7 @@ def add_options(
             continue
         if field.kind is bool:
             parser.add_argument(flag, dest=field.name, action="store_true", help=_help(field))
-        elif field.is_sequence and not field.default:
+        elif field.is_sequence and not field.default and not field.is_optional:
             parser.add_argument(
                 flag, dest=field.name, action="append", default=[], metavar=about.metavar,
                 help=_help(field),
@@ -143,7 +145,7 @@ def add_options(
         else:
             parser.add_argument(
                 flag, dest=field.name, default=None, metavar=about.metavar, help=_help(field),
-                type=field.kind if field.kind in {int, float} else str,
+                type=field.kind if not field.is_sequence and field.kind in NUMBERS else str,
             )  # fmt: skip
 
 
@@ -154,7 +156,7 @@ def _help(field: RequestField) -> str:
     if field.kind is bool or shown is None or shown == () or not str(shown):
         return text
     if isinstance(shown, tuple):
-        shown = ",".join(shown)
+        shown = ",".join(map(str, shown))
     return f"{text} (default: {shown})"
 
 
@@ -192,6 +194,11 @@ def _read(field: RequestField, typed: Any) -> Any:
 def _member(field: RequestField, typed: Any) -> Any:
     if isinstance(field.kind, type) and issubclass(field.kind, StrEnum):
         return member_of(field.kind, typed, field.label)
+    if field.kind is float and isinstance(typed, str):
+        try:
+            return float(typed)
+        except ValueError:
+            raise StepNcError(f"{field.label} '{typed}': expected a number") from None
     return typed
 
 

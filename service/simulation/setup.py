@@ -266,7 +266,7 @@ def _read(
     kind = (
         post.MachineType.LATHE if machine.kind is MachineKind.LATHE else post.MachineType.MILL
     )
-    dialect = _dialect(request)
+    dialect = dialect_of(request.code, request.dialect)
     try:
         for block in read_blocks(lines, dialect, machine=kind):
             if isinstance(block, post.Comment) and _plain(block.text) in ids:
@@ -278,14 +278,21 @@ def _read(
         raise StepNcError(f"{request.code.name}: {error}") from error
 
 
-def _dialect(request: CodeRequest) -> Dialect:
-    if request.dialect:
-        return one_of(Dialect, request.dialect.lower(), "dialect")
+def dialect_of(code: Path, named: str) -> Dialect:
+    """Dialect of NC code: as named, or by the file extension.
+
+    Raises
+    ------
+    StepNcError
+        When the name or the extension is unknown.
+    """
+    if named:
+        return one_of(Dialect, named.lower(), "dialect")
     for control, suffix in SUFFIXES.items():
-        if request.code.name.lower().endswith(suffix):
+        if code.name.lower().endswith(suffix):
             return control
     known = ", ".join(control.value for control in Dialect)
-    raise StepNcError(f"{request.code}: unknown file extension; add --dialect: {known}")
+    raise StepNcError(f"{code}: unknown file extension; add --dialect: {known}")
 
 
 def _plain(text: str) -> str:

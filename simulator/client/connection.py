@@ -300,7 +300,9 @@ def _page(root: Any) -> _Page:
         raise AgentError("a document of streams without a header")
     try:
         first, following = int(header.get("firstSequence")), int(header.get("nextSequence"))
-        found = [_observation(each) for each in root.iter() if each.get("sequence") is not None]
+        found = [
+            observation_of(each) for each in root.iter() if each.get("sequence") is not None
+        ]
     except (TypeError, ValueError) as error:
         raise AgentError(
             f"a document of streams with a faulty number or time: {error}"
@@ -314,7 +316,14 @@ def _page(root: Any) -> _Page:
     )
 
 
-def _observation(element: Any) -> ClientObservation:
+def observation_of(element: Any) -> ClientObservation:
+    """Observation of an element of a document of streams.
+
+    Raises
+    ------
+    TypeError, ValueError
+        When its sequence or its time is missing or none.
+    """
     name = etree.QName(element).localname
     text: str | None = (element.text or "").strip()
     if etree.QName(element.getparent()).localname == "Condition":

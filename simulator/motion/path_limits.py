@@ -12,7 +12,8 @@ Units mm, s.
 References
 ----------
 .. [1] A. Vijayaraghavan et al., "Addressing process planning and verification issues with
-   MTConnect", 2009: a control takes a time for each block, ``v ≤ s/t_block``.
+   MTConnect", 2009: a control takes a time for each block, ``v ≤ s/t_block``. ``stepnc
+   blockfit`` finds it.
 """
 
 from dataclasses import dataclass

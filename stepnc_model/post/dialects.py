@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Protocol
 
 from stepnc_model.errors import PostError
-from stepnc_model.post import canonical
+from stepnc_model.post import canonical, heidenhain
 from stepnc_model.post.blocks import Block, Cycles, MachineType
 from stepnc_model.post.canonical import Canonical, commands
 from stepnc_model.post.dialect import Dialect
@@ -46,6 +46,21 @@ READERS: dict[Dialect, Callable[[MachineType], NcReader]] = {
     Dialect.SINUMERIK: SinumerikReader,
     Dialect.HEIDENHAIN: HeidenhainReader,
 }
+
+PLACES: dict[Dialect, int] = {
+    Dialect.CANONICAL: canonical.PLACES,
+    Dialect.LINUXCNC: LinuxCnc.places,
+    Dialect.FANUC: Fanuc.places,
+    Dialect.HAAS: Fanuc.places,
+    Dialect.SINUMERIK: Sinumerik.places,
+    Dialect.HEIDENHAIN: heidenhain.PLACES,
+}
+"""Decimal places of a written coordinate in mm."""
+
+
+def coordinate_increment(control: Dialect) -> float:
+    """Smallest step of a written coordinate, mm."""
+    return float(10.0 ** -PLACES[control])
 
 
 def write(

@@ -38,6 +38,7 @@ TOGETHER = {
     "service/contents_output.py": "printed in test_plan_output.py and test_output_json.py",
     "service/library_output.py": "printed in test_plan_output.py and test_output_json.py",
     "service/requests/advice.py": "fields only; read in rest/test_bodies.py and storage",
+    "service/requests/blocks.py": "fields only; read in tests/service/blocks",
     "service/requests/recording.py": "fields only; read in tests/service/recording",
     "service/cli/record.py": "run in tests/service/cli/test_agent.py",
     "service/agent/shop.py": "its runs are read in tests/service/rest/test_agent.py",

@@ -1,0 +1,1 @@
+"""Time of blocks: the test of the block rate, its fit, and cycle times that follow."""

@@ -1,0 +1,261 @@
+"""Block time of a control, fitted to a log of the test program or to a table: ``blockfit``."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+
+from service.blocks.block_program import SPACINGS_IN
+from service.files import open_lines, require_place, write_atomically
+from service.numbers import numbers_in
+from service.reading import Tell, silent
+from service.recording.logged_run import read_logged_run
+from service.recording.table import TABLES, batches, headings
+from service.requests.blocks import LengthUnit
+from service.simulation.setup import dialect_of
+from simulator.calibration.block_circles import BlockCircle, circles_of
+from simulator.calibration.block_feed import (
+    CircleFeed,
+    MissedCircle,
+    PositionLog,
+    circle_feeds,
+)
+from simulator.calibration.block_fit import BlockFit, SpacingFeed, fitted_block_time
+from simulator.errors import CalibrationError
+from simulator.library import load_machine
+from simulator.machine_file import BlockTime, machine_toml
+from simulator.toml_file import complaint
+from stepnc_model.errors import Finding, PostError, Severity, StepNcError
+from stepnc_model.post.blocks import MachineType
+from stepnc_model.post.dialects import read_blocks
+from stepnc_model.units import mm_from_inches, speed_from_mm_min
+
+COLUMNS = {
+    LengthUnit.INCH: ("spacing_in", "feed_in_min", "radius_in", "commanded_in_min"),
+    LengthUnit.MILLIMETRE: ("spacing_mm", "feed_mm_min", "radius_mm", "commanded_mm_min"),
+}
+"""Columns of a table by unit; the first two are needed."""
+
+PAPER_FEEDS = (0.7, 3.6, 7.2, 10.5, 14.6, 35.6, 71.2, 106.7, 147.68)
+"""Feeds of Table 2 of paper 004 at its spacings, in/min."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BlockFitRequest:
+    """Request of ``blockfit``, as typed."""
+
+    log: str
+    """Table, recorded run, MTConnect document or address of an agent."""
+    program: Path | None = None
+    """Test program that was run; needed for positions."""
+    dialect: str = ""
+    zero: str = ""
+    """Position of the program's zero in the log, as x,y,z in mm; empty: 0,0,0."""
+    machine: str = ""
+    output: Path | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class BlockFitResult:
+    """Result of ``blockfit``."""
+
+    log: str
+    fit: BlockFit
+    circles: tuple[CircleFeed, ...]
+    """Circles found in a log, in order; empty for a table."""
+    findings: tuple[Finding, ...]
+
+
+def fit_blocks(request: BlockFitRequest, *, tell: Tell = silent) -> BlockFitResult:
+    """Fit the block time, and write it into a copy of a machine file if an output is named.
+
+    Raises
+    ------
+    StepNcError
+        When the log, the program or an option is invalid; nothing is written.
+    """
+    _require_machine(request)
+    path = Path(request.log)
+    is_table = "://" not in request.log and path.suffix.lower() in TABLES
+    unit = _unit(headings(path)) if is_table else None
+    feeds: tuple[CircleFeed, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    if unit is not None:
+        points = _table_points(path, unit)
+    else:
+        feeds, findings = _logged_circles(request, tell)
+        points = [_point(each) for each in feeds]
+    try:
+        fit = fitted_block_time(points)
+    except CalibrationError as error:
+        raise CalibrationError(str(error), path=request.log) from error
+    if request.output is not None:
+        _write_machine(request, fit, request.output, tell)
+    return BlockFitResult(log=request.log, fit=fit, circles=feeds, findings=findings)
+
+
+def paper_points() -> tuple[SpacingFeed, ...]:
+    """Greatest feeds of paper 004, Table 2."""
+    return tuple(
+        SpacingFeed(
+            spacing=mm_from_inches(spacing),
+            feed=speed_from_mm_min(mm_from_inches(feed)),
+            radius=mm_from_inches(1.0),
+        )
+        for spacing, feed in zip(SPACINGS_IN, PAPER_FEEDS, strict=True)
+    )
+
+
+def _require_machine(request: BlockFitRequest) -> None:
+    """Require a machine and a place for its file together."""
+    if request.output is None:
+        if request.machine:
+            raise StepNcError("--machine is written with its block time: name a file with -o")
+        return
+    if not request.machine:
+        raise StepNcError("-o writes a machine file: name the machine with --machine")
+    if "://" not in request.log:
+        require_place(request.output, apart_from=Path(request.log))
+
+
+# Tables
+
+
+def _unit(names: Sequence[str]) -> LengthUnit | None:
+    """Unit of a table of spacings; None if it is no such table."""
+    return next((unit for unit, each in COLUMNS.items() if each[0] in names), None)
+
+
+def _table_points(path: Path, unit: LengthUnit) -> list[SpacingFeed]:
+    """Points of a table of spacings and feeds."""
+    names = headings(path)
+    if COLUMNS[unit][1] not in names:
+        raise StepNcError(f"{path}: no column {COLUMNS[unit][1]} beside {COLUMNS[unit][0]}")
+    kinds = {name: pa.float64() for name in COLUMNS[unit] if name in names}
+    rows = [row for batch in batches(path, kinds) for row in batch.to_pylist()]
+    points = []
+    for number, row in enumerate(rows, start=2):
+        for name, value in row.items():
+            if value is None or not 0.0 < value < 1e6:
+                shown = "empty" if value is None else f"{value:g}"
+                raise StepNcError(
+                    f"{path}: row {number}: {name} {shown}: it must be above 0 and below 1e6"
+                )
+        spacing, feed, radius, commanded = (row.get(name) for name in COLUMNS[unit])
+        points.append(
+            SpacingFeed(
+                spacing=unit.to_mm(spacing),
+                feed=speed_from_mm_min(unit.to_mm(feed)),
+                radius=None if radius is None else unit.to_mm(radius),
+                commanded=None
+                if commanded is None
+                else speed_from_mm_min(unit.to_mm(commanded)),
+            )
+        )
+    return points
+
+
+# Logs
+
+
+def _logged_circles(
+    request: BlockFitRequest, tell: Tell
+) -> tuple[tuple[CircleFeed, ...], tuple[Finding, ...]]:
+    """Circles of the test program with their feeds in the log, and what the log lacks."""
+    if request.program is None:
+        raise StepNcError(
+            f"{request.log}: name the test program that was run with --program; a table needs "
+            f"the columns {' and '.join(COLUMNS[LengthUnit.INCH][:2])}, or "
+            f"{' and '.join(COLUMNS[LengthUnit.MILLIMETRE][:2])}"
+        )
+    circles = _circles(request.program, request.dialect)
+    run = read_logged_run(request.log, tell=tell)
+    zero = numbers_in(request.zero, "zero", counts=(3,)) if request.zero else (0.0, 0.0, 0.0)
+    log = PositionLog(time=run.time, position=run.position - np.array(zero))
+    found = list(circle_feeds(log, circles))
+    feeds = tuple(each for each in found if isinstance(each, CircleFeed))
+    if not feeds:
+        raise StepNcError(_nothing(request, log, circles, found))
+    missed = [each for each in found if isinstance(each, MissedCircle)]
+    return feeds, tuple(_missing(each) for each in missed)
+
+
+def _circles(program: Path, dialect: str) -> tuple[BlockCircle, ...]:
+    """Circles of a test program; read as lathe code, with diameters, if that shows more."""
+    control = dialect_of(program, dialect)
+    found: list[tuple[BlockCircle, ...]] = []
+    faults: list[PostError] = []
+    for machine in (MachineType.MILL, MachineType.LATHE):
+        try:
+            found.append(circles_of(read_blocks(open_lines(program), control, machine=machine)))
+        except PostError as error:
+            faults.append(error)
+    circles = max(found, key=len, default=())
+    if not circles and faults:
+        raise StepNcError(f"{program.name}: {faults[0]}") from faults[0]
+    if not circles:
+        raise StepNcError(
+            f"{program}: no circles of short lines; make one with `stepnc blocktest`"
+        )
+    return circles
+
+
+def _nothing(
+    request: BlockFitRequest,
+    log: PositionLog,
+    circles: Sequence[BlockCircle],
+    found: Sequence[CircleFeed | MissedCircle],
+) -> str:
+    """Why no circle was found, with a guess."""
+    in_mm = replace(log, position=mm_from_inches(1.0) * log.position)
+    if any(isinstance(each, CircleFeed) for each in circle_feeds(in_mm, circles)):
+        return f"{request.log}: its positions are in inches; they must be in mm"
+    reason = next((each.reason for each in found if isinstance(each, MissedCircle)), "")
+    low, high = log.position.min(axis=0), log.position.max(axis=0)
+    spans = ", ".join(
+        f"{axis} {a:g} to {b:g}" for axis, a, b in zip("XYZ", low, high, strict=True)
+    )
+    return (
+        f"{request.log}: none of the {len(circles)} circles of {request.program} is in it "
+        f"({reason}); its positions are {spans} mm: was this program run, and where is its "
+        "zero (--zero)?"
+    )
+
+
+def _missing(missed: MissedCircle) -> Finding:
+    circle = missed.circle
+    text = (
+        f"circle of radius {circle.radius:.4g} mm, spacing {circle.spacing:.4g} mm left out: "
+        f"{missed.reason}"
+    )
+    return Finding(severity=Severity.WARNING, message=text)
+
+
+def _point(found: CircleFeed) -> SpacingFeed:
+    circle = found.circle
+    return SpacingFeed(
+        spacing=circle.spacing,
+        feed=found.feed,
+        radius=circle.radius,
+        commanded=circle.feed,
+    )
+
+
+# Machine file
+
+
+def _write_machine(request: BlockFitRequest, fit: BlockFit, output: Path, tell: Tell) -> None:
+    """Write a copy of the machine with the block time and its source."""
+    time = fit.block_time
+    value = float(f"{time.value:.4g}")
+    if refused := complaint(value, BlockTime):
+        raise CalibrationError(f"block time: {refused}; check the unit", path=request.log)
+    source = (
+        f"stepnc blockfit of {Path(request.log).name}: {len(fit.points)} points, "
+        f"{1e3 * time.low:.4g} to {1e3 * time.high:.4g} ms (95 %)"
+    )
+    machine = replace(load_machine(request.machine), block_time=value, block_time_source=source)
+    write_atomically(output, machine_toml(machine).encode())
+    tell(f"machine file: {output}")

@@ -1,0 +1,69 @@
+"""The command ``blocktest``: NC code for a machine, and what it leaves out."""
+
+from pathlib import Path
+
+import pytest
+
+from service.blocks.block_program import write_test
+from service.requests.blocks import BlockTestRequest, LengthUnit
+from simulator.calibration.block_circles import circles_of
+from stepnc_model.errors import StepNcError
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.dialects import read_blocks
+
+
+def test_paper_s_circles_are_written(tmp_path: Path) -> None:
+    output = tmp_path / "test.ngc"
+    told: list[str] = []
+    request = BlockTestRequest(machine="vmc15", lines=50)
+    written = write_test(request, output, tell=told.append)
+    circles = circles_of(read_blocks(output.read_text().splitlines(), Dialect.LINUXCNC))
+    assert len(circles) == 27
+    assert written.left_out == ()
+    assert circles[0].spacing == pytest.approx(0.00254, rel=0.01)
+    assert circles[-1].radius == pytest.approx(50.8, rel=1e-4)
+    assert circles[0].feed * 60.0 == pytest.approx(20_000.0)
+    assert told[-1].startswith(f"written: {output} (")
+
+
+def test_coarse_controls_leave_fine_spacings_out_and_say_so(tmp_path: Path) -> None:
+    told: list[str] = []
+    request = BlockTestRequest(machine="vmc15", lines=50)
+    written = write_test(request, tmp_path / "test.mpf", tell=told.append)
+    assert len(written.left_out) == 4
+    assert told[0] == (
+        "left out: spacing 2.54 µm: sinumerik writes steps of 1 µm, "
+        "and 20 of them are the least"
+    )
+
+
+def test_lists_units_and_feed_are_options(tmp_path: Path) -> None:
+    output = tmp_path / "test.nc"
+    request = BlockTestRequest(
+        machine="lathe22", unit=LengthUnit.MILLIMETRE, spacing=(0.2, 0.05), radius=(10.0,),
+        feed=3000.0, lines=60, dialect="haas",
+    )  # fmt: skip
+    test = write_test(request, output).test
+    assert (test.spacings, test.radii, test.feed) == ((0.05, 0.2), (10.0,), 50.0)
+    assert "G18" in output.read_text()
+
+
+@pytest.mark.parametrize(
+    ("request_", "name", "message"),
+    [
+        (BlockTestRequest(), "a.ngc", "--machine"),
+        (BlockTestRequest(machine="vmc15"), "a.txt", "unknown file extension"),
+        (BlockTestRequest(machine="vmc15", spacing=(-1.0,)), "a.ngc", "spacing -1 in: must be"),
+        (BlockTestRequest(machine="vmc15", spacing=(0.4,)), "a.ngc", "at most half"),
+        (BlockTestRequest(machine="vmc15", radius=(50.0,)), "a.ngc", "at most 39.3701 in"),
+        (BlockTestRequest(machine="vmc15", spacing=(0.0001,)), "a.nc", "no spacing is left"),
+        (BlockTestRequest(machine="vmc15", feed=0.0), "a.ngc", "feed 0: it must be"),
+        (BlockTestRequest(machine="paper002"), "a.ngc", "--feed"),
+    ],
+)
+def test_what_cannot_be_written_is_told(
+    tmp_path: Path, request_: BlockTestRequest, name: str, message: str
+) -> None:
+    with pytest.raises(StepNcError, match=message):
+        write_test(request_, tmp_path / name)
+    assert not list(tmp_path.iterdir())

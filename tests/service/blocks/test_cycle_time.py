@@ -1,0 +1,114 @@
+"""The command ``cycletime``: predicted beside logged, and the modified program."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from service.blocks.cycle_time import CycleTimeRequest, cycle_time
+from service.requests.runs import SimulationRequest
+from service.simulation.run import RunFiles, simulate
+from service.simulation.setup import CodeRequest
+from simulator.errors import SimulationError
+from simulator.library import load_machine
+from simulator.machine.block_times import LossCause
+from simulator.machine_file import machine_toml
+from stepnc_model.errors import StepNcError
+
+PARTS = Path(__file__).parents[3] / "examples" / "parts"
+COUNT, SPACING = 1000, 0.1
+
+
+def code(folder: Path) -> Path:
+    """A straight of short lines at 6000 mm/min, which 4.2 ms a block do not allow."""
+    path = folder / "part.ngc"
+    lines = [f"G1 X{SPACING * (row + 1):.4f} F6000" for row in range(COUNT)]
+    path.write_text("\n".join(["G21 G90", "G0 X0 Y0 Z0", *lines, "M2"]), encoding="utf-8")
+    return path
+
+
+def test_short_blocks_lose_time_and_a_hint_says_what_helps(tmp_path: Path) -> None:
+    result = cycle_time(CycleTimeRequest(file=code(tmp_path), machine="vmc15"))
+    assert result.total.programmed == pytest.approx(COUNT * SPACING / 100.0)
+    assert result.total.by_rate == pytest.approx(COUNT * 0.0042)
+    assert result.total.predicted == pytest.approx(COUNT * 0.0042, rel=0.05)
+    worst = result.stretches[0]
+    assert worst.cause is LossCause.BLOCK_RATE
+    assert worst.spacing == pytest.approx(SPACING)
+    assert "points 0.42 mm apart would give it back" in result.hints[0]
+
+
+def test_the_modified_program_has_reachable_feeds_and_takes_as_long(tmp_path: Path) -> None:
+    part, modified = code(tmp_path), tmp_path / "modified.ngc"
+    told: list[str] = []
+    result = cycle_time(
+        CycleTimeRequest(file=part, machine="vmc15", output=modified), tell=told.append
+    )
+    assert "F1428.571" in modified.read_text()
+    assert told[-1].endswith(f"feed lowered in {COUNT} blocks)")
+    again = cycle_time(CycleTimeRequest(file=modified, machine="vmc15"))
+    assert again.total.programmed == pytest.approx(result.total.by_rate, rel=1e-4)
+    assert again.total.predicted == pytest.approx(result.total.predicted, rel=0.01)
+
+
+def test_a_log_of_the_same_machine_agrees_by_workingstep_and_tool(tmp_path: Path) -> None:
+    log = tmp_path / "run.parquet"
+    part = PARTS / "paper003_case1.stpnc"
+    simulate(
+        SimulationRequest(machine="paper003", rate_hz=20.0),
+        RunFiles(file=part, output=log),
+    )
+    result = cycle_time(CycleTimeRequest(file=part, machine="paper003", log=str(log)))
+    assert result.total.actual == pytest.approx(result.total.predicted, abs=0.1)
+    for row in result.rows:
+        assert row.actual == pytest.approx(row.predicted, abs=0.15)
+    assert sum(row.predicted for row in result.rows) == pytest.approx(result.total.predicted)
+
+
+def test_nc_code_of_a_lathe_and_a_log_without_names(tmp_path: Path) -> None:
+    part, log = code(tmp_path), tmp_path / "run.csv"
+    simulate(
+        SimulationRequest(machine="vmc15", rate_hz=50.0),
+        RunFiles(code=CodeRequest(code=part), output=log),
+    )
+    result = cycle_time(CycleTimeRequest(file=part, machine="vmc15", log=str(log)))
+    assert result.total.actual == pytest.approx(result.total.predicted, rel=0.01)
+
+
+def test_doubts_are_told(tmp_path: Path) -> None:
+    plain = tmp_path / "plain.toml"
+    machine = replace(load_machine("vmc15"), block_time=None, block_time_source="")
+    plain.write_text(machine_toml(machine), encoding="utf-8")
+    log = tmp_path / "other.csv"
+    log.write_text(
+        "time_s,x_axis_position_actual,z_axis_position_actual,workingstep\n0,1,2,A\n1,1,2,A\n",
+        encoding="utf-8",
+    )
+    part = PARTS / "paper003_case1.stpnc"
+    request = CycleTimeRequest(file=part, machine=str(plain), log=str(log))
+    told = [each.message for each in cycle_time(request).findings]
+    assert "has no block_time_s" in told[0]
+    assert told[1].startswith("the log is of another program: it has workingsteps A,")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"machine": ""}, "--machine"),
+        ({"file": Path("none.ngc")}, "none.ngc"),
+        ({"output": Path("x.txt")}, "unknown file extension"),
+        ({"machine": "paper002"}, "no data for its axes"),
+        ({"log": "none.csv"}, "cannot be read"),
+    ],
+)
+def test_bad_input_is_told(tmp_path: Path, change: dict[str, object], message: str) -> None:
+    request = CycleTimeRequest(file=code(tmp_path), machine="vmc15")
+    with pytest.raises(StepNcError, match=message):
+        cycle_time(replace(request, **change))  # type: ignore[arg-type]
+
+
+def test_a_program_that_the_machine_cannot_run_names_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "bad.ngc"
+    path.write_text("G21 G90\nG0 X0 Y0 Z0\nG95 G1 X10 F0.1\nM2\n", encoding="utf-8")
+    with pytest.raises(SimulationError, match=r"bad\.ngc: line 3"):
+        cycle_time(CycleTimeRequest(file=path, machine="vmc15"))
