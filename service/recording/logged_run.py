@@ -14,10 +14,10 @@ import pyarrow as pa
 
 from service.reading import Tell, silent
 from service.recording.run import record
-from service.recording.signals import EXECUTION, POSITIONS, RUNNING
+from service.recording.signals import POSITIONS
 from service.recording.table import TABLES, batches, headings
 from service.requests.recording import RecordingRequest
-from simulator.client.columns import TIME, Cell
+from simulator.client.columns import EXECUTION, RUNNING, TIME, Cell
 from simulator.client.document import read_document
 from simulator.motion.segments import Floats
 from stepnc_model.errors import StepNcError
