@@ -16,6 +16,7 @@ from benchmarks import (
     rest,
     safety,
     simulation,
+    spiral,
     umich,
     workingsteps,
 )
@@ -30,6 +31,7 @@ for title, bench in (
     ("Removal", removal),
     ("Virtual machine", simulation),
     ("A real mill", umich),
+    ("A spiral", spiral),
     ("Advice", advice),
     ("Safety", safety),
     ("Closed loop", closed_loop),

@@ -185,11 +185,12 @@ def _logged_circles(
 def _circles(program: Path, dialect: str) -> tuple[BlockCircle, ...]:
     """Circles of a test program; read as lathe code, with diameters, if that shows more."""
     control = dialect_of(program, dialect)
+    lines = list(open_lines(program))
     found: list[tuple[BlockCircle, ...]] = []
     faults: list[PostError] = []
     for machine in (MachineType.MILL, MachineType.LATHE):
         try:
-            found.append(circles_of(read_blocks(open_lines(program), control, machine=machine)))
+            found.append(circles_of(read_blocks(lines, control, machine=machine)))
         except PostError as error:
             faults.append(error)
     circles = max(found, key=len, default=())
