@@ -17,6 +17,7 @@ from benchmarks import (
     rest,
     safety,
     simulation,
+    spiral,
     umich,
     workingsteps,
 )
@@ -31,6 +32,7 @@ for title, bench in (
     ("Removal", removal),
     ("Virtual machine", simulation),
     ("A real mill", umich),
+    ("A spiral", spiral),
     ("Advice", advice),
     ("Safety", safety),
     ("Closed loop", closed_loop),

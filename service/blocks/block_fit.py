@@ -21,6 +21,7 @@ from simulator.calibration.block_feed import (
     MissedCircle,
     PositionLog,
     circle_feeds,
+    zero_of_log,
 )
 from simulator.calibration.block_fit import BlockFit, SpacingFeed, fitted_block_time
 from simulator.errors import CalibrationError
@@ -52,7 +53,7 @@ class BlockFitRequest:
     """Test program that was run; needed for positions."""
     dialect: str = ""
     zero: str = ""
-    """Position of the program's zero in the log, as x,y,z in mm; empty: 0,0,0."""
+    """Position of the program's zero in the log, as x,y,z in mm; empty: 0,0,0 or searched."""
     machine: str = ""
     output: Path | None = None
 
@@ -172,8 +173,7 @@ def _logged_circles(
         )
     circles = _circles(request.program, request.dialect)
     run = read_logged_run(request.log, tell=tell)
-    zero = numbers_in(request.zero, "zero", counts=(3,)) if request.zero else (0.0, 0.0, 0.0)
-    log = PositionLog(time=run.time, position=run.position - np.array(zero))
+    log = _from_zero(request, PositionLog(time=run.time, position=run.position), circles, tell)
     found = list(circle_feeds(log, circles))
     feeds = tuple(each for each in found if isinstance(each, CircleFeed))
     if not feeds:
@@ -182,14 +182,31 @@ def _logged_circles(
     return feeds, tuple(_missing(each) for each in missed)
 
 
+def _from_zero(
+    request: BlockFitRequest, log: PositionLog, circles: Sequence[BlockCircle], tell: Tell
+) -> PositionLog:
+    """The log with positions from the program's zero: as typed, 0,0,0, or found and told."""
+    if request.zero:
+        zero = np.array(numbers_in(request.zero, "zero", counts=(3,)))
+        return replace(log, position=log.position - zero)
+    if any(isinstance(each, CircleFeed) for each in circle_feeds(log, circles)):
+        return log
+    found = zero_of_log(log, circles)
+    if found is None:
+        return log
+    tell(f"zero of the program found at {', '.join(f'{each:.3f}' for each in found)} mm")
+    return replace(log, position=log.position - found)
+
+
 def _circles(program: Path, dialect: str) -> tuple[BlockCircle, ...]:
     """Circles of a test program; read as lathe code, with diameters, if that shows more."""
     control = dialect_of(program, dialect)
+    lines = list(open_lines(program))
     found: list[tuple[BlockCircle, ...]] = []
     faults: list[PostError] = []
     for machine in (MachineType.MILL, MachineType.LATHE):
         try:
-            found.append(circles_of(read_blocks(open_lines(program), control, machine=machine)))
+            found.append(circles_of(read_blocks(lines, control, machine=machine)))
         except PostError as error:
             faults.append(error)
     circles = max(found, key=len, default=())

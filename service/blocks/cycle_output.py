@@ -20,7 +20,7 @@ ROWS: tuple[Column[CycleRow], ...] = (
         key="workingstep", heading="workingstep", is_key=True, is_words=True,
         value=lambda row: row.workingstep,
     ),
-    Column(key="tool", heading="tool", form=".0f", value=lambda row: row.tool),
+    Column(key="tool", heading="tool", form=".0f", value=lambda row: row.tool or None),
     Column(key="blocks", heading="blocks", form=".0f", value=lambda row: row.blocks),
     Column(
         key="theoretical_s", heading="theoretical s", form=".2f", help="length over feed",

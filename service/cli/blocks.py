@@ -38,7 +38,7 @@ def _add_fit(commands: Commands) -> None:
         "--zero",
         default="",
         metavar="X,Y,Z",
-        help="position of the program's zero in the log, in mm (default: 0,0,0)",
+        help="position of the program's zero in the log, in mm (default: 0,0,0, or searched)",
     )
     add("--machine", default="", help="one of `stepnc machines`, or your own file")
     add("-o", "--output", type=Path, metavar="TOML",

@@ -46,6 +46,9 @@ MOST_SAMPLES = 600
 CLOSED = 0.2
 """Greatest difference between the followed and the programmed angle, rad."""
 
+MOST_RESTS = 8
+"""Places where the machine stands that are tried as the start of the first circle."""
+
 TRIES = (1.0, 1.05, 1.1, 1.15, 1.2, 0.95, 0.9)
 """Ratios of the feed with which turns are counted to the mean feed over the whole circle."""
 
@@ -106,6 +109,43 @@ def circle_feeds(
         at = span[1]
         part = PositionLog(time=log.time[slice(*span)], position=log.position[slice(*span)])
         yield _feed(part, circle)
+
+
+def zero_of_log(log: PositionLog, circles: Sequence[BlockCircle]) -> Floats | None:
+    """Position of the program's zero in a log, where machine coordinates are logged.
+
+    The first places where the machine stands are taken for the start of the first circle in
+    turn; that with which most circles are found is it. Circles differ in the angle that they
+    turn, so that none is taken for another.
+
+    Returns
+    -------
+    (3,) array, mm, or None
+        None where no place shows a circle.
+    """
+    best, most = None, 0
+    for place in _rests(log):
+        zero = place - circles[0].points[0]
+        moved = replace(log, position=log.position - zero)
+        found = sum(isinstance(each, CircleFeed) for each in circle_feeds(moved, circles))
+        if found > most:
+            best, most = zero, found
+    return best
+
+
+def _rests(log: PositionLog) -> list[Floats]:
+    """First places where the machine stands as long as before a circle, each (3,), mm."""
+    places: list[Floats] = []
+    row, count = 0, len(log)
+    while row < count and len(places) < MOST_RESTS:
+        after = row + 1
+        while after < count and np.linalg.norm(log.position[after] - log.position[row]) <= NEAR:
+            after += 1
+        is_long = after < count and log.time[after] - log.time[row] >= STANDING
+        if is_long:
+            places.append(log.position[row])
+        row = after if is_long else row + 1
+    return places
 
 
 def _span(log: PositionLog, circle: BlockCircle, begin: int) -> tuple[int, int] | None:

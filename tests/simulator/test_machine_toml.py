@@ -147,6 +147,7 @@ MACHINES = st.builds(
     source=TEXTS,
     remarks=st.lists(TEXTS, max_size=3).map(tuple),
     modes=st.lists(MODES, max_size=3).map(tuple),
+    block_time_source=st.just("") | TEXTS,
 )
 
 

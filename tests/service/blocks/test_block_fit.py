@@ -93,16 +93,31 @@ def test_the_block_time_of_a_hidden_machine_is_found(
     assert found.source == load_machine(machine).source
 
 
+def test_the_zero_of_machine_coordinates_is_searched_and_told(tmp_path: Path) -> None:
+    code, log = run(tmp_path, "a.ngc")
+    _moved(log, scale=1.0, shift={"x": 312.5, "y": -40.0, "z": 88.25})
+    told: list[str] = []
+    result = fit_blocks(BlockFitRequest(log=str(log), program=code), tell=told.append)
+    assert told == ["zero of the program found at 312.500, -40.000, 88.250 mm"]
+    assert result.findings == ()
+    assert result.fit.block_time.value == pytest.approx(BLOCK_TIME, rel=0.01)
+
+
+def _moved(log: Path, *, scale: float, shift: dict[str, float]) -> None:
+    """Write a log with positions in another unit or from another zero."""
+    table = csv.read_csv(log).to_pydict()
+    for axis, by in shift.items():
+        name = f"{axis}_axis_position_actual"
+        table[name] = [scale * each + by for each in table[name]]
+    csv.write_csv(pa.table(table), log)
+
+
 def test_another_zero_and_inches_are_told(tmp_path: Path) -> None:
     code, log = run(tmp_path, "a.ngc")
     request = BlockFitRequest(log=str(log), program=code)
     with pytest.raises(StepNcError, match=r"none of the 6 circles .* where is its zero"):
         fit_blocks(replace(request, zero="100,0,0"))
-    table = csv.read_csv(log).to_pydict()
-    for axis in "xyz":
-        name = f"{axis}_axis_position_actual"
-        table[name] = [each / 25.4 for each in table[name]]
-    csv.write_csv(pa.table(table), log)
+    _moved(log, scale=1.0 / 25.4, shift={"x": 0.0, "y": 0.0, "z": 0.0})
     with pytest.raises(StepNcError, match="its positions are in inches"):
         fit_blocks(request)
 

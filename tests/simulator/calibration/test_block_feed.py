@@ -15,6 +15,7 @@ from simulator.calibration.block_feed import (
     MissedCircle,
     PositionLog,
     circle_feeds,
+    zero_of_log,
 )
 from simulator.motion.segments import Floats
 
@@ -127,3 +128,14 @@ def test_circles_that_the_log_does_not_show_are_said() -> None:
     assert told[-1].reason == "no samples at its start and its end"
     rare = PositionLog(time=log.time[::40], position=log.position[::40])
     assert all(isinstance(each, MissedCircle) for each in circle_feeds(rare, found))
+
+
+def test_the_zero_of_a_log_is_found_by_its_rests() -> None:
+    found = circles()
+    log = truth(found, block_time=0.004, rate=20.0)
+    shift = np.array([300.0, -20.0, 41.5])
+    moved = PositionLog(time=log.time, position=log.position + shift)
+    zero = zero_of_log(moved, found)
+    assert zero == pytest.approx(shift, abs=1e-6)
+    still = PositionLog(time=log.time, position=np.zeros_like(log.position))
+    assert zero_of_log(still, found) is None
