@@ -17,6 +17,7 @@ from benchmarks import (
     safety,
     simulation,
     umich,
+    verification,
     workingsteps,
 )
 
@@ -36,6 +37,7 @@ for title, bench in (
     ("Broken teeth", breakage),
     ("A control step", control_step),
     ("The knowledge base", knowledge),
+    ("Verification of positions", verification),
     ("REST", rest),
     ("MTConnect", agent),
 ):

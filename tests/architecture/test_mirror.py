@@ -39,6 +39,7 @@ TOGETHER = {
     "service/library_output.py": "printed in test_plan_output.py and test_output_json.py",
     "service/requests/advice.py": "fields only; read in rest/test_bodies.py and storage",
     "service/requests/recording.py": "fields only; read in tests/service/recording",
+    "service/requests/verification.py": "fields only; read in tests/service/verification",
     "service/cli/record.py": "run in tests/service/cli/test_agent.py",
     "service/agent/play.py": "played in tests/service/agent/test_run.py and test_replay.py",
     "service/requests/agent.py": "fields only; read in tests/service/agent",
