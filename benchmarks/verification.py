@@ -23,9 +23,12 @@ from service.verification.run import PreparedProgram, Verification, prepared, ve
 from simulator.motion.control import control_model
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import Bools, Floats, Ints, axis_limits
+from simulator.removal.cutter import Cutter
 from simulator.verification.sweep import FAR
 
 BRACKET = Path(__file__).parents[1] / "examples" / "parts" / "bracket.stpnc"
+SHAFT = BRACKET.with_name("shaft.stpnc")
+SHAFT_REQUEST = VerificationRequest(machine="lathe22")
 REQUEST = VerificationRequest(machine="vmc15")
 SLOW, FAST = 250.0 / 60.0, 1000.0 / 60.0
 """Feeds of the two logs, mm/s."""
@@ -112,16 +115,19 @@ class InjectedError:
     """Whether the size must be found within the uncertainty."""
 
 
-def offset(size: float, workingstep: str = "FINISH POCKET") -> InjectedError:
-    """One workingstep moved along X."""
+def offset(size: float, workingstep: str = "FINISH POCKET", *, axis: int = 0) -> InjectedError:
+    """One workingstep moved along an axis, X by default."""
 
     def make(log: RunLog, program: PreparedProgram) -> RunLog:
         position = log.position.copy()
-        position[log.within(program, workingstep), 0] += size
+        position[log.within(program, workingstep), axis] += size
         return replace(log, position=position)
 
     return InjectedError(
-        name=f"offset of {workingstep}", size=size, workingstep=workingstep, make=make
+        name=f"offset of {workingstep} in {'XYZ'[axis]}",
+        size=size,
+        workingstep=workingstep,
+        make=make,
     )
 
 
@@ -189,6 +195,14 @@ ERRORS = (
 )  # fmt: skip
 
 
+SHAFT_ERRORS = (
+    CLEAN,
+    *(offset(size, "FINISH CONTOUR") for size in (0.3, 0.15, 0.0254)),
+    offset(0.0254, "FINISH FACE", axis=2),
+    offset(0.15, "THREAD RELIEF"),
+)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FoundError:
     """What a verification says of an injected error."""
@@ -228,7 +242,7 @@ def found(
     path = error.make(log, program).write(folder / "log.parquet", program)
     if error.radius:
         four = program.cutters[4]
-        assert four is not None
+        assert isinstance(four, Cutter)
         wide = replace(four, diameter=four.diameter + 2.0 * error.radius)
         program = replace(program, cutters=program.cutters | {4: wide})
     result = verified(path, program, request)
@@ -258,18 +272,28 @@ def shown(case: FoundError) -> str:
 
 
 def errors(folder: Path) -> None:
-    """Print the table of injected errors."""
-    program = prepared(BRACKET, REQUEST)
-    for title, rate, feed, cases in (
-        ("100 Hz, at most 250 mm/min", 100.0, lambda speed: np.minimum(speed, SLOW), ERRORS),
-        ("10 Hz, 1000 mm/min", 10.0, lambda speed: np.full_like(speed, FAST),
-         (CLEAN, *OFFSETS[:2])),
-    ):  # fmt: skip
-        log = run_log(program, rate=rate, feed=feed)
-        print(f"{title}: {len(log.time)} positions")
+    """Print the tables of injected errors."""
+    bracket, shaft = prepared(BRACKET, REQUEST), prepared(SHAFT, SHAFT_REQUEST)
+    for program, request, rate, cases in (
+        (bracket, REQUEST, 100.0, ERRORS),
+        (shaft, SHAFT_REQUEST, 100.0, SHAFT_ERRORS),
+        (bracket, REQUEST, 10.0, (CLEAN, *OFFSETS[:2])),
+    ):
+        is_fast = rate < 50.0
+        log = run_log(program, rate=rate, feed=_fast if is_fast else _slow)
+        feeds = "1000 mm/min" if is_fast else "at most 250 mm/min"
+        print(f"{program.name}, {rate:g} Hz, {feeds}: {len(log.time)} positions")
         print("| error | mm | found mm | on | at mm | |\n|---|---|---|---|---|---|")
         for error in cases:
-            print(shown(found(error, log, program, folder=folder)))
+            print(shown(found(error, log, program, folder=folder, request=request)))
+
+
+def _slow(speed: Floats) -> Floats:
+    return np.minimum(speed, SLOW)
+
+
+def _fast(speed: Floats) -> Floats:
+    return np.full_like(speed, FAST)
 
 
 def lengths(folder: Path, most: int) -> None:

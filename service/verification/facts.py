@@ -118,12 +118,18 @@ def _surface(
     return SurfaceDeviation(
         workingstep=step.workingstep if step else RAW,
         feature=step.feature if step else "",
-        kind=SurfaceKind.WALL if is_wall else SurfaceKind.FLOOR,
+        kind=_kind(found, is_wall),
         gouge=_spot(found, places, -1.0),
         excess=_spot(found, places, 1.0),
         area=whole,
         beyond=float(places.area[places.is_beyond].sum()) / whole,
     )
+
+
+def _kind(found: Verification, is_wall: bool) -> SurfaceKind:
+    if found.is_turned:
+        return SurfaceKind.FACE if is_wall else SurfaceKind.DIAMETER
+    return SurfaceKind.WALL if is_wall else SurfaceKind.FLOOR
 
 
 def _spot(found: Verification, places: SurfacePlaces, sign: float) -> DeviationSpot:
@@ -157,9 +163,9 @@ def log_resolution(found: Verification) -> LogResolution:
     facts = found.facts
     rounding, radius = rounding_uncertainty(facts), smallest_arc(found.path)
     return LogResolution(
-        step=facts.step,
+        step=found.step,
         straight=rounding,
-        arc=rounding + arc_uncertainty(facts.step, radius),
+        arc=rounding + arc_uncertainty(found.step, radius),
         radius=radius,
-        corner=rounding + corner_uncertainty(facts.step),
+        corner=rounding + corner_uncertainty(found.step),
     )

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from service.chosen import machine_for
 from service.numbers import numbers_in
 from service.reading import Tell, silent
 from service.requests.fields import require_bounds
@@ -15,7 +14,7 @@ from service.verification.log import LogFile, ProgramNames, thinned
 from simulator.machine.acts import MoveStretch, ToolTo, WorkingstepTo
 from simulator.machine.interpreter import interpret
 from simulator.motion.segments import Floats
-from simulator.removal.cutter import Cutter
+from simulator.removal.cutter import Cutter, Insert
 from simulator.spec import Machine, MachineKind
 from simulator.tool_table import read_tool_table
 from simulator.verification.deviation import (
@@ -24,9 +23,15 @@ from simulator.verification.deviation import (
     compared_volumes,
     surface_places,
 )
-from simulator.verification.logged import LogFacts, LoggedPart
+from simulator.verification.logged import LogFacts, LoggedPart, NearestSamples
 from simulator.verification.path import ProgrammedPath, ProgrammedRun, programmed_path
-from simulator.verification.surface import ProgrammedPart, programmed_part
+from simulator.verification.surface import programmed_part
+from simulator.verification.turned import (
+    LoggedBar,
+    turned_part,
+    turned_places,
+    turned_volumes,
+)
 from simulator.verification.zero import distance_from, fitted_zero
 from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.program import Stock
@@ -64,13 +69,17 @@ class Verification:
     machine: Machine
     log: str
     facts: LogFacts
+    step: float
+    """Way of the tool between samples where it made the surface, mm; 95 % are shorter."""
     steps: tuple[StepName, ...]
     """Workingsteps in order of execution."""
     path: ProgrammedPath
     places: SurfacePlaces
     volumes: ComparedVolumes
     cell: float
-    """Size of the cells of the height map, mm."""
+    """Size of the cells of the height map or of the bar, mm."""
+    is_turned: bool
+    """Whether the part is turned: positions are radius, 0 and z."""
     zero: tuple[float, float, float]
     """Position of the program's zero on the axes, mm."""
     tolerance: float
@@ -93,8 +102,13 @@ class PreparedProgram:
     stock: Stock
     path: ProgrammedPath
     steps: tuple[StepName, ...]
-    cutters: dict[int, Cutter | None]
+    cutters: dict[int, Cutter | Insert | None]
     """Shapes of the tools by number."""
+
+    @property
+    def is_turned(self) -> bool:
+        """Whether the part is turned."""
+        return self.machine.kind is MachineKind.LATHE
 
     @property
     def names(self) -> ProgramNames:
@@ -147,8 +161,6 @@ def prepared(
         raise StepNcError(f"{program}: the program has no stock")
     if len({step.setup for step in run.program.workingsteps}) > 1:
         raise StepNcError(f"{program}: several setups: only one can be verified at a time")
-    if machine_for(request.machine, run.program).kind is MachineKind.LATHE:
-        raise StepNcError(f"{program}: verification of turned parts is not supported yet")
     features = {step.id: _feature(run, step.features) for step in run.program.workingsteps}
     runs, names = _runs(run)
     return PreparedProgram(
@@ -177,40 +189,96 @@ def verified(
     """
     file = LogFile(path=log, names=program.names)
     file.zero, findings = _zero(request.zero, file, program)
-    part = programmed_part(program.path, program.stock, cell=request.cell_mm)
-    left = LoggedPart(part, program.stock, program.cutters)
-    for piece in file.pieces():
-        left.add(piece)
-        tell(f"{left.facts.samples} samples, {left.facts.end:.0f} s of the log")
+    compared = _turned if program.is_turned else _milled
+    found = compared(program, file, request.cell_mm, tell)
     return Verification(
         program=program.name,
         machine=program.machine,
         log=log.name,
-        facts=left.facts,
+        facts=found.facts,
+        step=found.step,
         steps=program.steps,
         path=program.path,
-        places=surface_places(part, left),
-        volumes=compared_volumes(part, left),
-        cell=part.map.cell,
+        places=found.places,
+        volumes=found.volumes,
+        cell=found.cell,
+        is_turned=program.is_turned,
         zero=file.zero,
         tolerance=request.tolerance_mm,
-        findings=(*findings, *_findings(file, left.facts, part)),
+        findings=(*findings, *_findings(file, found.facts, program)),
     )
 
 
-def _measured_tools(path: Path, program: PreparedProgram) -> dict[int, Cutter | None]:
+def _measured_tools(path: Path, program: PreparedProgram) -> dict[int, Cutter | Insert | None]:
     """Read the tools that were really used from a tool table, by their numbers."""
-    found: dict[int, Cutter | None] = {}
+    found: dict[int, Cutter | Insert | None] = {}
     for tool in read_tool_table(path):
         if tool.number not in program.cutters:
             known = ", ".join(f"T{number}" for number in sorted(program.cutters))
             raise StepNcError(
                 f"{path}: T{tool.number} is not in the program, which has {known}"
             )
-        if not isinstance(tool.shape, Cutter):
-            raise StepNcError(f"{path}: T{tool.number} is a turning tool")
+        if type(tool.shape) is not type(program.cutters[tool.number]):
+            raise StepNcError(f"{path}: T{tool.number} is another kind of tool in the program")
         found[tool.number] = tool.shape
     return found
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ComparedParts:
+    """Comparison of two parts."""
+
+    places: SurfacePlaces
+    volumes: ComparedVolumes
+    facts: LogFacts
+    step: float
+    cell: float
+
+
+def _milled(
+    program: PreparedProgram, file: LogFile, cell: float | None, tell: Tell
+) -> ComparedParts:
+    """Compare milled parts."""
+    part = programmed_part(program.path, program.stock, cell=cell)
+    cutters = {
+        number: shape if isinstance(shape, Cutter) else None
+        for number, shape in program.cutters.items()
+    }
+    left = LoggedPart(part, program.stock, cutters)
+    for piece in file.pieces():
+        left.add(piece)
+        tell(f"{left.facts.samples} samples, {left.facts.end:.0f} s of the log")
+    return ComparedParts(
+        places=surface_places(part, left),
+        volumes=compared_volumes(part, left),
+        facts=left.facts,
+        step=_usual(left.walls, left.floors),
+        cell=part.map.cell,
+    )
+
+
+def _turned(
+    program: PreparedProgram, file: LogFile, cell: float | None, tell: Tell
+) -> ComparedParts:
+    """Compare turned parts."""
+    part = turned_part(program.path, program.stock, cell=cell)
+    left = LoggedBar(part, program.stock, program.cutters)
+    for piece in file.pieces():
+        left.add(piece)
+        tell(f"{left.facts.samples} samples, {left.facts.end:.0f} s of the log")
+    return ComparedParts(
+        places=turned_places(part, left),
+        volumes=turned_volumes(part, left, program.stock),
+        facts=left.facts,
+        step=_usual(left.nearest),
+        cell=part.bar.cell,
+    )
+
+
+def _usual(*places: NearestSamples) -> float:
+    """Way between samples that 95 % of the samples at a surface do not exceed, mm."""
+    steps = np.concatenate([each.step[np.isfinite(each.time)] for each in places])
+    return float(np.quantile(steps, 0.95)) if len(steps) else 0.0
 
 
 def _runs(run: PreparedRun) -> tuple[list[ProgrammedRun], list[str]]:
@@ -236,9 +304,9 @@ def _runs(run: PreparedRun) -> tuple[list[ProgrammedRun], list[str]]:
     return runs, names
 
 
-def _cutter(run: PreparedRun, number: int) -> Cutter | None:
+def _cutter(run: PreparedRun, number: int) -> Cutter | Insert | None:
     tool = (run.tools or {}).get(number)
-    return tool.shape if tool is not None and isinstance(tool.shape, Cutter) else None
+    return None if tool is None else tool.shape
 
 
 def _feature(run: PreparedRun, refs: tuple[object, ...]) -> str:
@@ -292,7 +360,7 @@ def _require_millimetres(file: LogFile, survey: Floats, points: Floats) -> None:
         )
 
 
-def _findings(file: LogFile, facts: LogFacts, part: ProgrammedPart) -> list[Finding]:
+def _findings(file: LogFile, facts: LogFacts, program: PreparedProgram) -> list[Finding]:
     """Say what the log lacks."""
     found = []
     if file.equal_times:
@@ -304,7 +372,7 @@ def _findings(file: LogFile, facts: LogFacts, part: ProgrammedPart) -> list[Find
             f"{facts.gaps} gaps of up to {facts.longest_gap:.3g} s in which the tool moved: "
             "what it did there is not known"
         )
-    seen = {run.tool for run in part.path.runs}
+    seen = {run.tool for run in program.path.runs}
     missing = sorted(seen - facts.tools)
     if missing:
         tools = ", ".join(f"T{each}" for each in missing)

@@ -13,6 +13,7 @@ way s that the tool goes between samples,
 A bound counts wherever the programmed path turns within s of the place. Units mm, s and rad.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from enum import StrEnum
 from math import pi, sqrt
@@ -43,6 +44,10 @@ class SurfaceKind(StrEnum):
 
     WALL = "wall"
     FLOOR = "floor"
+    FACE = "face"
+    """Surface of a turned part across its axis, or steeper than 45°."""
+    DIAMETER = "diameter"
+    """Surface of a turned part along its axis."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -76,6 +81,14 @@ class SurfacePlaces:
             each.name: getattr(self, each.name)[rows] for each in fields(SurfacePlaces)
         })
 
+    @staticmethod
+    def joined(parts: "Sequence[SurfacePlaces]") -> "SurfacePlaces":
+        """Places of several parts in one."""
+        return SurfacePlaces(**{
+            each.name: np.concatenate([getattr(part, each.name) for part in parts])
+            for each in fields(SurfacePlaces)
+        })
+
     @property
     def is_beyond(self) -> Bools:
         """Whether a deviation is greater than its uncertainty, (N,)."""
@@ -98,11 +111,7 @@ class ComparedVolumes:
 
 def surface_places(part: ProgrammedPart, logged: LoggedPart) -> SurfacePlaces:
     """Compare the logged part with the programmed one at walls and floors."""
-    walls, floors = _wall_places(part, logged), _floor_places(part, logged)
-    return SurfacePlaces(**{
-        each.name: np.concatenate([getattr(walls, each.name), getattr(floors, each.name)])
-        for each in fields(SurfacePlaces)
-    })
+    return SurfacePlaces.joined([_wall_places(part, logged), _floor_places(part, logged)])
 
 
 def compared_volumes(part: ProgrammedPart, logged: LoggedPart) -> ComparedVolumes:
@@ -146,7 +155,7 @@ def _wall_places(part: ProgrammedPart, logged: LoggedPart) -> SurfacePlaces:
     start = path.chord_station[walls.chord]
     station = start + np.hypot(*(walls.foot - walls.chord_start).T)
     bend = np.where(
-        path.is_plunge[segment], 0.0, _path_uncertainty(path, station, logged.walls.step)
+        path.is_plunge[segment], 0.0, path_uncertainty(path, station, logged.walls.step)
     )
     steps = path.workingstep[segment]
     return SurfacePlaces(
@@ -162,12 +171,14 @@ def _wall_places(part: ProgrammedPart, logged: LoggedPart) -> SurfacePlaces:
     )
 
 
-def _path_uncertainty(path: ProgrammedPath, station: Floats, step: Floats) -> Floats:
-    """Uncertainty by the way between samples, at stations of the programmed path, mm.
+def path_uncertainty(
+    path: ProgrammedPath, station: Floats, step: Floats, *, reach: float = 0.0
+) -> Floats:
+    """Return the uncertainty by the way between samples at stations of a path, mm.
 
-    Corners and arcs count within a step before and behind.
+    Corners and arcs count within a step, and a further reach in mm, before and behind.
     """
-    low, high = station - step, station + step
+    low, high = station - step - reach, station + step + reach
     turned = np.concatenate(([0.0], np.cumsum(path.turn)))
     first, last = path.station.searchsorted(low), path.station.searchsorted(high, "right")
     turn = np.minimum(turned[last] - turned[first], pi)

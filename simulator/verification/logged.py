@@ -5,7 +5,7 @@ point on a wall and each cell it is kept which sample came nearest, and how far 
 between samples there. Units mm and s.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -90,47 +90,25 @@ class NearestSamples:
     """Index of the workingstep of the log; -1 where it is unknown."""
 
 
-class LoggedPart:
-    """Part that logged positions leave. Running state.
+class SampleSteps:
+    """Samples of a log piece by piece, with the way between them. Running state.
 
     Parameters
     ----------
-    part : ProgrammedPart
-        What it is compared with.
-    stock : Stock
-    cutters : mapping
-        Shapes of tools by number; other tools remove nothing.
+    top : float, mm
+        Height below which the tool may cut.
     """
 
-    def __init__(
-        self, part: ProgrammedPart, stock: Stock, cutters: Mapping[int, Cutter | None]
-    ) -> None:
+    def __init__(self, top: float) -> None:
         self.facts = LogFacts()
-        self.targets = renewed(part.walls.targets)
-        self._left = PartSweep(stock, cell=part.map.cell)
-        self._cutters = cutters
         self._last: LoggedSamples | None = None
-        self._walls = _unmet(self.targets.away.shape)
-        self._floors = _unmet(part.map.grid.heights.shape)
-        self._top = stock.high[2]
+        self._top = top
 
-    @property
-    def map(self) -> ZMap:
-        """Height map of what is left."""
-        return self._left.map
+    def pieces(self, samples: LoggedSamples) -> Iterator[tuple[LoggedSamples, Floats]]:
+        """Yield samples of one tool each, with the greatest way around each in mm, (N,).
 
-    @property
-    def walls(self) -> NearestSamples:
-        """Samples nearest to the points on walls."""
-        return self._walls
-
-    @property
-    def floors(self) -> NearestSamples:
-        """Samples that cut the cells of the map last."""
-        return self._floors
-
-    def add(self, samples: LoggedSamples) -> None:
-        """Remove the sweep of more samples, which are later than those before."""
+        The last sample before them is the first one of these.
+        """
         if not len(samples):
             return
         if not self.facts.samples:
@@ -145,9 +123,7 @@ class LoggedPart:
         edges = np.flatnonzero(np.diff(samples.tool)) + 1
         for part in np.split(np.arange(len(samples)), edges):
             rows = slice(int(part[0]), int(part[-1]) + 1)
-            cutter = self._cutters.get(int(samples.tool[part[0]]))
-            if cutter is not None:
-                self._cut(samples[rows], cutter, steps[rows])
+            yield samples[rows], steps[rows]
 
     def _begin(self, samples: LoggedSamples) -> None:
         """Find interval and rounding of the log from its first piece."""
@@ -173,6 +149,56 @@ class LoggedPart:
             self.facts.step = max(self.facts.step, usual)
         around = _greatest_around(way)
         return np.concatenate((around[:1], around)) if len(around) else np.zeros(len(samples))
+
+
+class LoggedPart:
+    """Part that logged positions leave. Running state.
+
+    Parameters
+    ----------
+    part : ProgrammedPart
+        What it is compared with.
+    stock : Stock
+    cutters : mapping
+        Shapes of tools by number; other tools remove nothing.
+    """
+
+    def __init__(
+        self, part: ProgrammedPart, stock: Stock, cutters: Mapping[int, Cutter | None]
+    ) -> None:
+        self.targets = renewed(part.walls.targets)
+        self._left = PartSweep(stock, cell=part.map.cell)
+        self._cutters = cutters
+        self._steps = SampleSteps(stock.high[2])
+        self._walls = unmet(self.targets.away.shape)
+        self._floors = unmet(part.map.grid.heights.shape)
+
+    @property
+    def facts(self) -> LogFacts:
+        """What the log can resolve."""
+        return self._steps.facts
+
+    @property
+    def map(self) -> ZMap:
+        """Height map of what is left."""
+        return self._left.map
+
+    @property
+    def walls(self) -> NearestSamples:
+        """Samples nearest to the points on walls."""
+        return self._walls
+
+    @property
+    def floors(self) -> NearestSamples:
+        """Samples that cut the cells of the map last."""
+        return self._floors
+
+    def add(self, samples: LoggedSamples) -> None:
+        """Remove the sweep of more samples, which are later than those before."""
+        for part, steps in self._steps.pieces(samples):
+            cutter = self._cutters.get(int(part.tool[0]))
+            if cutter is not None:
+                self._cut(part, cutter, steps)
 
     def _cut(self, samples: LoggedSamples, cutter: Cutter, steps: Floats) -> None:
         """Remove the sweep of consecutive samples with one tool."""
@@ -214,7 +240,8 @@ def rounding_of(position: Floats) -> float:
     return 0.0
 
 
-def _unmet(shape: tuple[int, ...]) -> NearestSamples:
+def unmet(shape: tuple[int, ...]) -> NearestSamples:
+    """Places to which no sample came near yet."""
     return NearestSamples(
         time=np.full(shape, np.nan),
         step=np.zeros(shape),

@@ -11,7 +11,7 @@ from math import pi
 import numpy as np
 
 from simulator.motion.segments import Bools, Floats, Ints, Segments, chained
-from simulator.removal.cutter import Cutter
+from simulator.removal.cutter import Cutter, Insert
 
 SAGITTA = 1e-4
 """Greatest deviation of a chord from its arc, mm."""
@@ -27,7 +27,7 @@ ROWS = 13
 class ProgrammedRun:
     """Consecutive moves of one tool in one workingstep."""
 
-    cutter: Cutter | None
+    cutter: Cutter | Insert | None
     """Shape of the tool; None if it removes nothing that is modelled."""
     tool: int
     workingstep: int

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from simulator.motion.segments import Bools, Floats, Ints
-from simulator.removal.cutter import Cutter
+from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.profile import CutterProfile, profile_of
 from simulator.removal.zmap import ZMap, cell_size, zmap_of
 from simulator.verification.path import ProgrammedPath, rows_between
@@ -90,10 +90,10 @@ class PartSweep:
         """Profile of a cutter over the height of the stock."""
         return profile_of(cutter, reach=self.map.grid.top - self.map.grid.bottom)
 
-    def cut(self, cutter: Cutter | None, points: Floats) -> None:
+    def cut(self, cutter: Cutter | Insert | None, points: Floats) -> None:
         """Remove the sweep of a tool along the lines through points, (N, 3), mm."""
         rows = rows_between(points)
-        if cutter is not None:
+        if isinstance(cutter, Cutter):
             sweep(self.map.grid, self.profile(cutter), rows, self.number)
         self.number += len(rows)
 
@@ -199,6 +199,6 @@ def _approached(path: ProgrammedPath, targets: WallTargets, left: PartSweep) -> 
     number = 0
     for run, points in zip(path.runs, path.chords, strict=True):
         rows = rows_between(points)
-        if run.cutter is not None:
+        if isinstance(run.cutter, Cutter):
             approach(targets, left.profile(run.cutter), rows, number)
         number += len(rows)

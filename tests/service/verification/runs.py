@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.verification import BRACKET, FAST, SLOW, RunLog, run_log
+from benchmarks.verification import BRACKET, FAST, SHAFT, SHAFT_REQUEST, SLOW, RunLog, run_log
 from service.requests.verification import VerificationRequest
 from service.verification.run import PreparedProgram, Verification, prepared, verified
 
@@ -27,6 +27,16 @@ def slow_log() -> RunLog:
 def fast_log() -> RunLog:
     """10 Hz, 1000 mm/min."""
     return run_log(program(), rate=10.0, feed=lambda speed: np.full_like(speed, FAST))
+
+
+@cache
+def shaft() -> PreparedProgram:
+    return prepared(SHAFT, SHAFT_REQUEST)
+
+
+@cache
+def shaft_log() -> RunLog:
+    return run_log(shaft(), rate=100.0, feed=lambda speed: np.minimum(speed, SLOW))
 
 
 def clean(folder: Path) -> Verification:

@@ -6,10 +6,26 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.verification import CLEAN, ERRORS, OFFSETS, RunLog, found, offset
+from benchmarks.verification import (
+    CLEAN,
+    ERRORS,
+    OFFSETS,
+    SHAFT_ERRORS,
+    SHAFT_REQUEST,
+    RunLog,
+    found,
+    offset,
+)
 from service.verification.run import verified, verify
 from stepnc_model.errors import StepNcError
-from tests.service.verification.runs import REQUEST, fast_log, program, slow_log
+from tests.service.verification.runs import (
+    REQUEST,
+    fast_log,
+    program,
+    shaft,
+    shaft_log,
+    slow_log,
+)
 
 BRACKET = Path(__file__).parents[3] / "examples" / "parts" / "bracket.stpnc"
 NAMED = {error.name: error for error in ERRORS}
@@ -83,7 +99,7 @@ def test_measured_tools_must_be_of_the_program(tmp_path: Path) -> None:
         verify(tmp_path / "log.parquet", BRACKET, REQUEST, tools=table)
 
 
-def test_turned_parts_are_refused(tmp_path: Path) -> None:
-    shaft = BRACKET.with_name("shaft.stpnc")
-    with pytest.raises(StepNcError, match="turned parts"):
-        verify(tmp_path / "log.parquet", shaft, replace(REQUEST, machine="lathe22"))
+@pytest.mark.parametrize("error", SHAFT_ERRORS, ids=lambda error: f"{error.name} {error.size}")
+def test_errors_on_a_turned_part(error: object, tmp_path: Path) -> None:
+    case = next(each for each in SHAFT_ERRORS if each is error)
+    assert found(case, shaft_log(), shaft(), folder=tmp_path, request=SHAFT_REQUEST).is_right

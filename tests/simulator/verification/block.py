@@ -55,6 +55,8 @@ def sampled(points: tuple[tuple[float, float, float], ...], step: float) -> Floa
 
 
 def logged(part: ProgrammedPart, samples: LoggedSamples) -> LoggedPart:
-    left = LoggedPart(part, STOCK, {1: part.path.runs[0].cutter})
+    cutter = part.path.runs[0].cutter
+    assert isinstance(cutter, Cutter)
+    left = LoggedPart(part, STOCK, {1: cutter})
     left.add(samples)
     return left
