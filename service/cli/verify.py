@@ -31,6 +31,14 @@ def _verify_options(parser: argparse.ArgumentParser) -> None:
         metavar="TOML",
         help="tool table with the measured tools, by the program's numbers",
     )
+    add(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="FILE",
+        help="write the deviations of places on the surface, .parquet or .csv",
+    )
+    add("--report", type=Path, metavar="HTML", help="write a self-contained page with pictures")
     add_json(parser)
     parser.set_defaults(run=_verify)
 
@@ -38,14 +46,31 @@ def _verify_options(parser: argparse.ArgumentParser) -> None:
 def _verify(options: argparse.Namespace) -> int:
     """``stepnc verify``."""
     from service.cli.machine import interruptible
+    from service.files import require_place, write_atomically
     from service.requests.fields import from_options
     from service.requests.verification import VerificationRequest
+    from service.run_file import require_suffix
     from service.terminal import tell
     from service.verification.run import verify
 
     request = from_options(VerificationRequest, options)
+    outputs = [each for each in (options.output, options.report) if each is not None]
+    for each in outputs:
+        require_place(each, apart_from=options.log)
+        require_place(each, apart_from=options.program)
+    if options.output is not None:
+        require_suffix(options.output)
     with interruptible():
         found = verify(options.log, options.program, request, tools=options.tools, tell=tell)
+    if options.report is not None:
+        from service.verification.output import verification_page
+
+        write_atomically(options.report, verification_page(found).encode())
+        tell(f"report: {options.report}")
+    if options.output is not None:
+        from service.verification.output import write_places
+
+        tell(f"written: {options.output} ({write_places(options.output, found)} places)")
     if options.json:
         from service.terminal import write_out
         from service.verification.output import verification_json

@@ -1,11 +1,16 @@
-"""Result of a verification as text and JSON."""
+"""Result of a verification as text, JSON, HTML page, and file of places."""
 
 from math import isfinite, isnan
+from pathlib import Path
+
+import pyarrow as pa
 
 from service.rendering.columns import Column
 from service.rendering.records import dump, finding_record, records
 from service.rendering.text import RED, print_findings, print_line, screen_width, table
+from service.run_file import RunFile
 from service.verification.facts import (
+    RAW,
     UNSEEN,
     DeviationSpot,
     LogResolution,
@@ -120,6 +125,59 @@ def verification_json(found: Verification) -> str:
         "not_seen": UNSEEN,
         "findings": [finding_record(finding) for finding in found.findings],
     })
+
+
+def verification_page(found: Verification) -> str:
+    """Return the HTML report of a verification."""
+    from service.rendering.pages import plot, rendered  # noqa: PLC0415 (Jinja)
+    from service.verification.figures import (  # noqa: PLC0415 (plotly)
+        plan_figure,
+        space_figure,
+    )
+
+    rows = list(surface_deviations(found))
+    return rendered(
+        "verification.html.jinja",
+        found=found,
+        verdict=verdict(found, rows),
+        plan=plot(plan_figure(found), "plan"),
+        space=plot(space_figure(found), "space"),
+        surfaces=SURFACES,
+        rows=rows,
+        band_columns=BAND_COLUMNS,
+        bands=tolerance_bands(found),
+        resolution=resolution_text(found),
+        unseen=UNSEEN,
+    )
+
+
+def write_places(path: Path, found: Verification) -> int:
+    """Write places as Parquet or CSV: all on walls, others beyond their uncertainty.
+
+    Raises
+    ------
+    WriteError
+        When the suffix is another, or the file cannot be written.
+    """
+    places = found.places[found.places.is_wall | found.places.is_beyond]
+    names = [*(step.workingstep for step in found.steps), RAW]
+    numbers = {
+        **{f"{axis}_mm": places.position[:, row] for row, axis in enumerate("xyz")},
+        "deviation_mm": places.deviation,
+        "uncertainty_mm": places.uncertainty,
+        "time_s": places.time,
+        "block": places.block,
+    }
+    arrays = [pa.array(values) for values in numbers.values()]
+    arrays.append(pa.array([names[step] for step in places.workingstep.tolist()]))
+    schema = pa.schema([
+        pa.field(name, array.type)
+        for name, array in zip((*numbers, "workingstep"), arrays, strict=True)
+    ])
+    file = RunFile(path, schema)
+    with file.closing(is_whole=True):
+        file.write(arrays)
+    return file.rows
 
 
 def verdict(found: Verification, rows: list[SurfaceDeviation]) -> str:
