@@ -19,7 +19,8 @@ from pyarrow import parquet
 
 from service.requests.verification import VerificationRequest
 from service.verification.facts import DeviationSpot, surface_deviations
-from service.verification.run import PreparedProgram, Verification, prepared, verified
+from service.verification.prepared import PreparedProgram, prepared
+from service.verification.run import Verification, verified
 from simulator.motion.control import control_model
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import Bools, Floats, Ints, axis_limits

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from service.verification.run import Verification
+from simulator.motion.segments import Bools
 from simulator.verification.deviation import (
     SurfaceKind,
     SurfacePlaces,
@@ -69,6 +70,10 @@ class SurfaceDeviation:
     beyond: float
     """Share of the area whose deviation exceeds its uncertainty."""
 
+    nominal: tuple[float, float] | None
+    """Least and greatest deviation of the logged surface from the nominal feature, mm: excess
+    positive. None without a feature."""
+
     @property
     def worse(self) -> DeviationSpot:
         """The one of both that exceeds its uncertainty by more."""
@@ -107,12 +112,12 @@ def surface_deviations(found: Verification) -> Iterator[SurfaceDeviation]:
         for is_wall in (True, False):
             rows = (places.workingstep == index) & (places.is_wall == is_wall)
             if rows.any():
-                yield _surface(found, index, is_wall, places[rows])
+                yield _surface(found, index, is_wall, rows)
 
 
-def _surface(
-    found: Verification, index: int, is_wall: bool, places: SurfacePlaces
-) -> SurfaceDeviation:
+def _surface(found: Verification, index: int, is_wall: bool, rows: Bools) -> SurfaceDeviation:
+    places, nominal = found.places[rows], found.nominal[rows]
+    against = (places.deviation + nominal)[np.isfinite(nominal)]
     whole = float(places.area.sum())
     step = found.steps[index] if index >= 0 else None
     return SurfaceDeviation(
@@ -122,6 +127,7 @@ def _surface(
         gouge=_spot(found, places, -1.0),
         excess=_spot(found, places, 1.0),
         area=whole,
+        nominal=(float(against.min()), float(against.max())) if len(against) else None,
         beyond=float(places.area[places.is_beyond].sum()) / whole,
     )
 

@@ -29,6 +29,13 @@ def _time(spot: DeviationSpot) -> float | None:
     return None if isnan(spot.time) else spot.time
 
 
+def _nominal(row: SurfaceDeviation) -> str | None:
+    """Least and greatest deviation from the nominal feature."""
+    if row.nominal is None:
+        return None
+    return " to ".join(f"{each + 0.0:+.4f}" for each in row.nominal)
+
+
 SURFACES: tuple[Column[Row], ...] = (
     Column(key="workingstep", heading="workingstep", is_key=True, kind=str,
            value=lambda row: row.workingstep),
@@ -48,6 +55,8 @@ SURFACES: tuple[Column[Row], ...] = (
     Column(key="excess_block", value=lambda row: row.excess.block),
     Column(key="excess_time_s", value=lambda row: _time(row.excess)),
     Column(key="excess_cut_by", value=lambda row: row.excess.cut_by),
+    Column(key="nominal_mm", value=lambda row: row.nominal),
+    Column(heading="to nominal mm", is_optional=True, value=_nominal),
     Column(key="area_mm2", value=lambda row: row.area),
     Column(key="beyond", heading="beyond ±", form=".1%", value=lambda row: row.beyond),
     Column(heading="worse at mm", value=lambda row: _place(row.worse)),

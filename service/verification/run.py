@@ -1,6 +1,6 @@
 """Verification of logged positions, for the command ``verify``."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -9,14 +9,12 @@ from service.numbers import numbers_in
 from service.reading import Tell, silent
 from service.requests.fields import require_bounds
 from service.requests.verification import VerificationRequest
-from service.simulation.setup import PreparedRun, from_program
-from service.verification.log import LogFile, ProgramNames, thinned
-from simulator.machine.acts import MoveStretch, ToolTo, WorkingstepTo
-from simulator.machine.interpreter import interpret
+from service.verification.log import LogFile, thinned
+from service.verification.nominal import nominal_deviation
+from service.verification.prepared import PreparedProgram, StepName, prepared, with_tools
 from simulator.motion.segments import Floats
-from simulator.removal.cutter import Cutter, Insert
-from simulator.spec import Machine, MachineKind
-from simulator.tool_table import read_tool_table
+from simulator.removal.cutter import Cutter
+from simulator.spec import Machine
 from simulator.verification.deviation import (
     ComparedVolumes,
     SurfacePlaces,
@@ -24,7 +22,7 @@ from simulator.verification.deviation import (
     surface_places,
 )
 from simulator.verification.logged import LogFacts, LoggedPart, NearestSamples
-from simulator.verification.path import ProgrammedPath, ProgrammedRun, programmed_path
+from simulator.verification.path import ProgrammedPath
 from simulator.verification.surface import programmed_part
 from simulator.verification.turned import (
     LoggedBar,
@@ -34,7 +32,6 @@ from simulator.verification.turned import (
 )
 from simulator.verification.zero import distance_from, fitted_zero
 from stepnc_model.errors import Finding, Severity, StepNcError
-from stepnc_model.program import Stock
 
 FAR = 5.0
 """Distance from the programmed path at which a position is not of this program, mm."""
@@ -53,14 +50,6 @@ LIKE = 0.1
 FIT = "fit"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StepName:
-    """Workingstep with the feature that it makes."""
-
-    workingstep: str
-    feature: str
-
-
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Verification:
     """Result of ``verify``."""
@@ -75,6 +64,9 @@ class Verification:
     """Workingsteps in order of execution."""
     path: ProgrammedPath
     places: SurfacePlaces
+    nominal: Floats
+    """Deviation of the programmed surface from the nominal features at each place, (N,), mm:
+    excess positive; NaN where there is no feature."""
     volumes: ComparedVolumes
     cell: float
     """Size of the cells of the height map or of the bar, mm."""
@@ -91,34 +83,6 @@ class Verification:
         """Whether a deviation exceeds both its uncertainty and the tolerance."""
         size = np.abs(self.places.deviation)
         return bool((self.places.is_beyond & (size >= self.tolerance - 1e-9)).any())
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PreparedProgram:
-    """Program whose log is verified."""
-
-    name: str
-    machine: Machine
-    stock: Stock
-    path: ProgrammedPath
-    steps: tuple[StepName, ...]
-    cutters: dict[int, Cutter | Insert | None]
-    """Shapes of the tools by number."""
-
-    @property
-    def is_turned(self) -> bool:
-        """Whether the part is turned."""
-        return self.machine.kind is MachineKind.LATHE
-
-    @property
-    def names(self) -> ProgramNames:
-        """Names that a log may use."""
-        tool_of = {run.workingstep: run.tool for run in self.path.runs}
-        return ProgramNames(
-            workingsteps={each.workingstep: row for row, each in enumerate(self.steps)},
-            tool_of=tool_of,
-            tools=frozenset(tool_of.values()),
-        )
 
 
 def verify(
@@ -139,38 +103,8 @@ def verify(
     require_bounds(request)
     ready = prepared(program, request, tell=tell)
     if tools is not None:
-        ready = replace(ready, cutters=ready.cutters | _measured_tools(tools, ready))
+        ready = with_tools(ready, tools)
     return verified(log, ready, request, tell=tell)
-
-
-def prepared(
-    program: Path, request: VerificationRequest, *, tell: Tell = silent
-) -> PreparedProgram:
-    """Prepare a program for verification.
-
-    Raises
-    ------
-    StepNcError
-        When the program cannot be run, has several setups, or has no stock.
-    """
-    run = from_program(
-        program, units=request.units, machine=request.machine, material=request.material,
-        tell=tell,
-    )  # fmt: skip
-    if run.program is None or run.raw is None:
-        raise StepNcError(f"{program}: the program has no stock")
-    if len({step.setup for step in run.program.workingsteps}) > 1:
-        raise StepNcError(f"{program}: several setups: only one can be verified at a time")
-    features = {step.id: _feature(run, step.features) for step in run.program.workingsteps}
-    runs, names = _runs(run)
-    return PreparedProgram(
-        name=run.name,
-        machine=run.machine,
-        stock=run.raw,
-        path=programmed_path(runs),
-        steps=tuple(StepName(workingstep=name, feature=features[name]) for name in names),
-        cutters={number: _cutter(run, number) for number in run.tools or {}},
-    )
 
 
 def verified(
@@ -200,6 +134,7 @@ def verified(
         steps=program.steps,
         path=program.path,
         places=found.places,
+        nominal=found.nominal,
         volumes=found.volumes,
         cell=found.cell,
         is_turned=program.is_turned,
@@ -209,26 +144,12 @@ def verified(
     )
 
 
-def _measured_tools(path: Path, program: PreparedProgram) -> dict[int, Cutter | Insert | None]:
-    """Read the tools that were really used from a tool table, by their numbers."""
-    found: dict[int, Cutter | Insert | None] = {}
-    for tool in read_tool_table(path):
-        if tool.number not in program.cutters:
-            known = ", ".join(f"T{number}" for number in sorted(program.cutters))
-            raise StepNcError(
-                f"{path}: T{tool.number} is not in the program, which has {known}"
-            )
-        if type(tool.shape) is not type(program.cutters[tool.number]):
-            raise StepNcError(f"{path}: T{tool.number} is another kind of tool in the program")
-        found[tool.number] = tool.shape
-    return found
-
-
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ComparedParts:
     """Comparison of two parts."""
 
     places: SurfacePlaces
+    nominal: Floats
     volumes: ComparedVolumes
     facts: LogFacts
     step: float
@@ -248,8 +169,10 @@ def _milled(
     for piece in file.pieces():
         left.add(piece)
         tell(f"{left.facts.samples} samples, {left.facts.end:.0f} s of the log")
+    places = surface_places(part, left)
     return ComparedParts(
-        places=surface_places(part, left),
+        places=places,
+        nominal=nominal_deviation(program, places, part.walls.normal),
         volumes=compared_volumes(part, left),
         facts=left.facts,
         step=_usual(left.walls, left.floors),
@@ -266,8 +189,10 @@ def _turned(
     for piece in file.pieces():
         left.add(piece)
         tell(f"{left.facts.samples} samples, {left.facts.end:.0f} s of the log")
+    places = turned_places(part, left)
     return ComparedParts(
-        places=turned_places(part, left),
+        places=places,
+        nominal=np.full(len(places), np.nan),
         volumes=turned_volumes(part, left, program.stock),
         facts=left.facts,
         step=_usual(left.nearest),
@@ -279,41 +204,6 @@ def _usual(*places: NearestSamples) -> float:
     """Way between samples that 95 % of the samples at a surface do not exceed, mm."""
     steps = np.concatenate([each.step[np.isfinite(each.time)] for each in places])
     return float(np.quantile(steps, 0.95)) if len(steps) else 0.0
-
-
-def _runs(run: PreparedRun) -> tuple[list[ProgrammedRun], list[str]]:
-    """Moves of the program by tool and workingstep, and the ids of the workingsteps."""
-    runs: list[ProgrammedRun] = []
-    names: list[str] = []
-    tool = 0
-    for step in interpret(run.blocks, run.machine):
-        match step.act:
-            case WorkingstepTo(id=name):
-                names.append(name)
-            case ToolTo(number=number):
-                tool = number
-            case MoveStretch(segments=segments):
-                runs.append(
-                    ProgrammedRun(
-                        cutter=_cutter(run, tool),
-                        tool=tool,
-                        workingstep=len(names) - 1,
-                        segments=segments,
-                    )
-                )
-    return runs, names
-
-
-def _cutter(run: PreparedRun, number: int) -> Cutter | Insert | None:
-    tool = (run.tools or {}).get(number)
-    return None if tool is None else tool.shape
-
-
-def _feature(run: PreparedRun, refs: tuple[object, ...]) -> str:
-    """Name of the first feature of a workingstep."""
-    if run.program is None or not refs:
-        return ""
-    return str(getattr(run.program.get(refs[0]), "its_id", ""))  # type: ignore[arg-type]
 
 
 def _zero(

@@ -114,6 +114,33 @@ def rows_between(points: Floats) -> Floats:
     return rows
 
 
+def pieces_of(points: Floats, longest: float) -> tuple[Floats, Floats, Ints, Floats]:
+    """Divide the lines through points into pieces.
+
+    Parameters
+    ----------
+    points : (N, D) array, mm
+    longest : float, mm
+        Greatest length of a piece.
+
+    Returns
+    -------
+    start, piece : (M, D) array, mm
+        Start and vector of each piece.
+    line : (M,) array of int
+    way : (M,) array, mm
+        Way from the start of the line to the middle of the piece.
+    """
+    along = np.diff(points, axis=0)
+    way = np.linalg.norm(along, axis=1)
+    counts = np.maximum(np.ceil(way / longest), 1.0).astype(np.int64)
+    rows = np.repeat(np.arange(len(along)), counts)
+    index = np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)
+    piece = along[rows] / counts[rows, None]
+    start = points[rows] + index[:, None] * piece
+    return start, piece, rows, (index + 0.5) * (way / counts)[rows]
+
+
 def _turns(segments: Segments) -> Floats:
     """Angle between each segment and the one before, (S,), rad; half a turn at the start."""
     rows = np.arange(len(segments))

@@ -30,7 +30,7 @@ from simulator.verification.logged import (
     SampleSteps,
     unmet,
 )
-from simulator.verification.path import ProgrammedPath
+from simulator.verification.path import ProgrammedPath, pieces_of
 from simulator.verification.sweep import FAR
 from stepnc_model.program import Stock
 
@@ -86,7 +86,7 @@ def turned_part(path: ProgrammedPath, stock: Stock, *, cell: float | None = None
     for run, points in zip(path.runs, path.chords, strict=True):
         cut = _cut(bar, run.segments, run.cutter)
         if cut.any():
-            starts, pieces, rows, along = _pieces(points, PIECE)
+            starts, pieces, rows, along = pieces_of(points, PIECE)
             nearest = _nearest(starts + 0.5 * pieces, bar, cut)
             chord[cut] = first + rows[nearest]
             station[cut] = path.chord_station[chord[cut]] + along[nearest]
@@ -268,7 +268,7 @@ def _steps(radius: Floats, other: Floats, bar: TurningStock) -> ProfilePoints:
 
 def _distance(points: Floats, profile: Floats, cell: float) -> Floats:
     """Distance of points from a profile of lines, (C,), mm; at most ``FAR``."""
-    start, piece, _, _ = _pieces(profile, cell)
+    start, piece, _, _ = pieces_of(profile, cell)
     best = cKDTree(start + 0.5 * piece).query(points, k=3)[1]
     start, piece = start[best], piece[best]
     square = np.maximum(np.sum(piece * piece, axis=2), 1e-18)
@@ -276,15 +276,3 @@ def _distance(points: Floats, profile: Floats, cell: float) -> Floats:
     near = start + share[:, :, None] * piece
     away = np.linalg.norm(points[:, None] - near, axis=2).min(axis=1)
     return np.asarray(np.minimum(away, FAR))
-
-
-def _pieces(points: Floats, longest: float) -> tuple[Floats, Floats, Ints, Floats]:
-    """Divide lines into pieces: their starts, vectors, lines, ways in their lines."""
-    along = np.diff(points, axis=0)
-    way = np.linalg.norm(along, axis=1)
-    counts = np.maximum(np.ceil(way / longest), 1.0).astype(np.int64)
-    rows = np.repeat(np.arange(len(along)), counts)
-    index = np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)
-    piece = along[rows] / counts[rows, None]
-    start = points[rows] + index[:, None] * piece
-    return start, piece, rows, (index + 0.5) * (way / counts)[rows]

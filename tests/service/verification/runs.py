@@ -7,7 +7,8 @@ import numpy as np
 
 from benchmarks.verification import BRACKET, FAST, SHAFT, SHAFT_REQUEST, SLOW, RunLog, run_log
 from service.requests.verification import VerificationRequest
-from service.verification.run import PreparedProgram, Verification, prepared, verified
+from service.verification.prepared import PreparedProgram, prepared
+from service.verification.run import Verification, verified
 
 REQUEST = VerificationRequest(machine="vmc15", cell_mm=0.5)
 
