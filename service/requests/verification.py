@@ -39,3 +39,8 @@ class VerificationRequest(Request):
         About("cells of the height map, mm (default: by the stock, a million cells)",
               unit="mm", name="cell", flag="--cell-mm", metavar="MM"),
     ] = None  # fmt: skip
+    has_deflection: Annotated[
+        bool,
+        About("simulate the program, and add the predicted deflection of its tools",
+              flag="--with-deflection"),
+    ] = False  # fmt: skip

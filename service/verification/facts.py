@@ -23,8 +23,8 @@ RAW = "raw part"
 """Name of the surface that the program does not cut."""
 
 UNSEEN = (
-    "deflection of tool, holder and workpiece: the scales do not see the tool (add the "
-    "predicted deflection with --with-deflection)",
+    "deflection of tool, holder and workpiece: --with-deflection adds the predicted deflection "
+    "of the tool",
     "the true radius, length, runout and wear of tools",
     "thermal growth of spindle and workpiece, and geometric errors beyond the scales",
     "backlash and lag that the scales do not measure, and chatter between samples",
@@ -73,6 +73,10 @@ class SurfaceDeviation:
     nominal: tuple[float, float] | None
     """Least and greatest deviation of the logged surface from the nominal feature, mm: excess
     positive. None without a feature."""
+
+    bent: float | None
+    """Predicted deflection of the tool away from the wall, mm, which the log does not see: it
+    comes on top of the excess. None where it is unknown."""
 
     @property
     def worse(self) -> DeviationSpot:
@@ -128,6 +132,7 @@ def _surface(found: Verification, index: int, is_wall: bool, rows: Bools) -> Sur
         excess=_spot(found, places, 1.0),
         area=whole,
         nominal=(float(against.min()), float(against.max())) if len(against) else None,
+        bent=found.bent.get(step.workingstep) if step and is_wall else None,
         beyond=float(places.area[places.is_beyond].sum()) / whole,
     )
 

@@ -14,6 +14,7 @@ import pyarrow as pa
 
 from service.recording.signals import POSITIONS
 from service.recording.table import TABLES, batches, headings
+from service.verification.axes import without_held
 from simulator.client.columns import TIME
 from simulator.motion.segments import Floats, Ints
 from simulator.verification.logged import LoggedSamples, joined
@@ -153,6 +154,7 @@ class LogFile:
 
     def _known(self, samples: LoggedSamples) -> tuple[LoggedSamples, LoggedSamples]:
         """Samples with interpolated positions, and those that wait for a value."""
+        samples = replace(samples, position=without_held(samples.position))
         is_known = np.isfinite(samples.position)
         if is_known.all():
             return samples, samples[len(samples) :]

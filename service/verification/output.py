@@ -57,6 +57,8 @@ SURFACES: tuple[Column[Row], ...] = (
     Column(key="excess_cut_by", value=lambda row: row.excess.cut_by),
     Column(key="nominal_mm", value=lambda row: row.nominal),
     Column(heading="to nominal mm", is_optional=True, value=_nominal),
+    Column(key="predicted_deflection_mm", heading="bent mm", form=".4f", is_optional=True,
+           value=lambda row: row.bent),
     Column(key="area_mm2", value=lambda row: row.area),
     Column(key="beyond", heading="beyond ±", form=".1%", value=lambda row: row.beyond),
     Column(heading="worse at mm", value=lambda row: _place(row.worse)),
@@ -79,6 +81,12 @@ RESOLUTION: tuple[Column[LogResolution], ...] = (
 )
 
 
+BENT = (
+    "bent: predicted deflection of the tool away from the wall, which the log does not see; "
+    "material of up to this thickness is left on top of the excess"
+)
+
+
 def print_verification(found: Verification) -> None:
     """Print deviations, volumes, tolerance bands and what the log can resolve."""
     print_line(f"{found.log}: positions of {found.program} on {found.machine.name}")
@@ -95,6 +103,8 @@ def print_verification(found: Verification) -> None:
     bands = ", ".join(f"±{band.width:g} mm {band.share:.2%}" for band in tolerance_bands(found))
     print_line(f"share of the surface within {bands}")
     print_line(f"verdict: {verdict(found, rows)}")
+    if found.bent:
+        print_line(BENT)
     print_line(f"this log: {resolution_text(found)}")
     print_line("position feedback does not see:")
     for text in UNSEEN:

@@ -10,7 +10,7 @@ from service.verification.log import ProgramNames
 from simulator.machine.acts import MoveStretch, ToolTo, WorkingstepTo
 from simulator.machine.interpreter import interpret
 from simulator.removal.cutter import Cutter, Insert
-from simulator.spec import Machine, MachineKind
+from simulator.spec import Machine, MachineKind, MaterialMatch
 from simulator.tool_table import read_tool_table
 from simulator.verification.path import ProgrammedPath, ProgrammedRun, programmed_path
 from stepnc_model.errors import StepNcError
@@ -32,6 +32,7 @@ class PreparedProgram:
     program: Program
     name: str
     machine: Machine
+    material: MaterialMatch
     stock: Stock
     path: ProgrammedPath
     steps: tuple[StepName, ...]
@@ -68,7 +69,7 @@ def prepared(
         program, units=request.units, machine=request.machine, material=request.material,
         tell=tell,
     )  # fmt: skip
-    if run.program is None or run.raw is None:
+    if run.program is None or run.raw is None or run.material is None:
         raise StepNcError(f"{program}: the program has no stock")
     if len({step.setup for step in run.program.workingsteps}) > 1:
         raise StepNcError(f"{program}: several setups: only one can be verified at a time")
@@ -78,6 +79,7 @@ def prepared(
         program=run.program,
         name=run.name,
         machine=run.machine,
+        material=run.material,
         stock=run.raw,
         path=programmed_path(runs),
         steps=tuple(StepName(workingstep=name, feature=features[name]) for name in names),

@@ -1,6 +1,7 @@
 """Verification of logged positions, for the command ``verify``."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from service.numbers import numbers_in
 from service.reading import Tell, silent
 from service.requests.fields import require_bounds
 from service.requests.verification import VerificationRequest
+from service.simulation.run import run_of_program
 from service.verification.log import LogFile, thinned
 from service.verification.nominal import nominal_deviation
 from service.verification.prepared import PreparedProgram, StepName, prepared, with_tools
@@ -77,6 +79,9 @@ class Verification:
     tolerance: float
     """Deviation that is an error, mm."""
     findings: tuple[Finding, ...]
+    bent: Mapping[str, float] = field(default_factory=dict)
+    """Predicted greatest deflection of the tool as it makes a wall, by workingstep, mm; empty
+    if it was not requested."""
 
     @property
     def has_errors(self) -> bool:
@@ -125,6 +130,10 @@ def verified(
     file.zero, findings = _zero(request.zero, file, program)
     compared = _turned if program.is_turned else _milled
     found = compared(program, file, request.cell_mm, tell)
+    bent: dict[str, float] = {}
+    if request.has_deflection:
+        totals = run_of_program(program.program, program.machine, program.material, tell=tell)
+        bent = {name: total.deflection.value for name, total in totals}
     return Verification(
         program=program.name,
         machine=program.machine,
@@ -140,6 +149,7 @@ def verified(
         is_turned=program.is_turned,
         zero=file.zero,
         tolerance=request.tolerance_mm,
+        bent=bent,
         findings=(*findings, *_findings(file, found.facts, program)),
     )
 

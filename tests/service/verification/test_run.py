@@ -16,7 +16,9 @@ from benchmarks.verification import (
     found,
     offset,
 )
+from service.verification.facts import surface_deviations
 from service.verification.run import verified, verify
+from simulator.verification.deviation import SurfaceKind
 from stepnc_model.errors import StepNcError
 from tests.service.verification.runs import (
     REQUEST,
@@ -103,3 +105,13 @@ def test_measured_tools_must_be_of_the_program(tmp_path: Path) -> None:
 def test_errors_on_a_turned_part(error: object, tmp_path: Path) -> None:
     case = next(each for each in SHAFT_ERRORS if each is error)
     assert found(case, shaft_log(), shaft(), folder=tmp_path, request=SHAFT_REQUEST).is_right
+
+
+def test_the_predicted_deflection_is_added_to_walls(tmp_path: Path) -> None:
+    path = fast_log().write(tmp_path / "log.parquet", program())
+    answer = verified(path, program(), replace(REQUEST, has_deflection=True))
+    bent = {(row.workingstep, row.kind): row.bent for row in surface_deviations(answer)}
+    assert bent["FINISH POCKET", SurfaceKind.FLOOR] is None
+    found_bent = bent["FINISH POCKET", SurfaceKind.WALL]
+    assert found_bent is not None
+    assert 0.001 < found_bent < 0.1
