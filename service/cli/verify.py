@@ -22,7 +22,12 @@ def _verify_options(parser: argparse.ArgumentParser) -> None:
     # Coordinates may be negative: "-3,-3,-40" is not an option.
     parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
-    add("log", type=Path, metavar="LOG", help="positions as logged: .parquet or .csv")
+    add(
+        "log",
+        type=Path,
+        metavar="LOG",
+        help="positions as logged: .parquet, .csv, MTConnect .xml or SHDR",
+    )
     add("--program", type=Path, required=True, metavar="FILE", help="a STEP-NC program")
     add_options(parser, VerificationRequest)
     add(

@@ -1,4 +1,4 @@
-"""Log of positions in pieces: columns of a table as samples in program coordinates.
+"""Log of positions in pieces: columns of a log as samples in program coordinates.
 
 Axes that have no value at a time are interpolated over time between their own values. Pieces
 are bounded, so that logs of any length need the memory of one piece.
@@ -15,8 +15,10 @@ import pyarrow as pa
 from service.recording.signals import POSITIONS
 from service.recording.table import TABLES, batches, headings
 from service.verification.axes import without_held
+from service.verification.document import SUFFIXES, table_of
 from simulator.client.columns import TIME
 from simulator.motion.segments import Floats, Ints
+from simulator.spec import Machine
 from simulator.verification.logged import LoggedSamples, joined
 from stepnc_model.errors import StepNcError
 
@@ -47,6 +49,8 @@ class LogFile:
 
     path: Path
     names: ProgramNames
+    machine: Machine | None = None
+    """Machine whose data items a document has."""
     zero: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Position of the program's zero on the axes, mm."""
     rows: int = 0
@@ -56,9 +60,10 @@ class LogFile:
     """Rows in which a position was missing."""
 
     def __post_init__(self) -> None:
-        if self.path.suffix.lower() not in TABLES:
-            raise StepNcError(f"{self.path}: expected a .parquet or .csv file of positions")
-        self._names = headings(self.path)
+        self._document = self._read_document()
+        self._names = (
+            headings(self.path) if self._document is None else self._document.column_names
+        )
         for needed in (TIME, *POSITIONS):
             if needed not in self._names:
                 raise StepNcError(f"{self.path}: no column {needed}")
@@ -68,6 +73,22 @@ class LogFile:
                 f"{self.path}: no column {TOOL} or {WORKINGSTEP}: the program uses "
                 f"{len(self.names.tools)} tools, and the log does not show when they change"
             )
+
+    def _read_document(self) -> pa.Table | None:
+        """Read a document whole; None for a table, which is read in pieces."""
+        suffix = self.path.suffix.lower()
+        if suffix in TABLES:
+            return None
+        if suffix not in SUFFIXES or self.machine is None:
+            known = ", ".join(sorted(TABLES | SUFFIXES))
+            raise StepNcError(f"{self.path}: expected positions in a file of {known}")
+        return table_of(self.path, self.machine, (*POSITIONS, TOOL, WORKINGSTEP))
+
+    def _batches(self) -> Iterator[pa.RecordBatch]:
+        kinds = self._kinds()
+        if self._document is None:
+            return batches(self.path, kinds)
+        return iter(self._document.select(list(kinds)).to_batches(max_chunksize=PIECE))
 
     def pieces(self) -> Iterator[LoggedSamples]:
         """Yield the samples in order.
@@ -80,7 +101,7 @@ class LogFile:
         self.rows = self.equal_times = self.unknown = 0
         waiting: list[LoggedSamples] = []
         last = -inf
-        for batch in batches(self.path, self._kinds()):
+        for batch in self._batches():
             part = self._samples(batch)
             self._require_ascending(part.time, last)
             last = float(part.time[-1])

@@ -126,7 +126,7 @@ def verified(
     StepNcError
         When the log cannot be read, or is not of this program.
     """
-    file = LogFile(path=log, names=program.names)
+    file = LogFile(path=log, names=program.names, machine=program.machine)
     file.zero, findings = _zero(request.zero, file, program)
     compared = _turned if program.is_turned else _milled
     found = compared(program, file, request.cell_mm, tell)
