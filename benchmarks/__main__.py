@@ -19,6 +19,7 @@ from benchmarks import (
     simulation,
     spiral,
     umich,
+    verification,
     workingsteps,
 )
 
@@ -39,6 +40,7 @@ for title, bench in (
     ("Broken teeth", breakage),
     ("A control step", control_step),
     ("The knowledge base", knowledge),
+    ("Verification of positions", verification),
     ("REST", rest),
     ("MTConnect", agent),
     ("A client's energy and time", monitored),

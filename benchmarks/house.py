@@ -31,7 +31,6 @@ ALLOWED = {
     "simulator.machine.samples.Rotation": "codes of a column, for readers of samples",
     "simulator.machine.samples.TravelDirection": "codes of columns, for readers of samples",
     "simulator.motion.segments.arc": "paths made by hand, beside lines",
-    "simulator.motion.segments.lines": "paths made by hand, as in examples/07_paper004_feed.py",
     "stepnc_model.writeback.records": "reads what is written, for scripts",
 }
 """public names that nothing reaches, with the reason why they stay; 20 at most"""

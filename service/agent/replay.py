@@ -102,7 +102,7 @@ def _table(path: Path, model: DeviceModel, tell: Tell) -> RecordedRun:
     names = headings(path)
     if TIME not in names:
         raise StepNcError(f"{path}: no column {TIME}")
-    items = _items_by_column(model)
+    items = items_by_column(model)
     for name, usual in CONTROLLED.items():
         if usual in items and usual not in names:
             items.setdefault(name, items[usual])
@@ -197,7 +197,7 @@ def _kinds(model: DeviceModel, found: Mapping[str, int]) -> dict[str, pa.DataTyp
     return {TIME: pa.float64(), **kinds}
 
 
-def _items_by_column(model: DeviceModel) -> dict[str, int]:
+def items_by_column(model: DeviceModel) -> dict[str, int]:
     """Return the data item of each column name; conditions and data sets have no column."""
     found: dict[str, int] = {}
     for each in items_of(model.root):

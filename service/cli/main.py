@@ -31,6 +31,7 @@ from service.cli.options import (
 from service.cli.paths import add_path_commands
 from service.cli.record import add_record_command
 from service.cli.serve import add_service_commands
+from service.cli.verify import add_verify_command
 
 EXAMPLES = """examples:
   optimise part.stpnc --mode TC --machine vmc15
@@ -78,6 +79,7 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     add_block_commands(commands)
     add_agent_command(commands)
     add_record_command(commands)
+    add_verify_command(commands)
     add_knowledge_commands(commands)
     add_control_command(commands)
     add_service_commands(commands)

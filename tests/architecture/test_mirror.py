@@ -40,6 +40,7 @@ TOGETHER = {
     "service/requests/advice.py": "fields only; read in rest/test_bodies.py and storage",
     "service/requests/blocks.py": "fields only; read in tests/service/blocks",
     "service/requests/recording.py": "fields only; read in tests/service/recording",
+    "service/requests/verification.py": "fields only; read in tests/service/verification",
     "service/cli/record.py": "run in tests/service/cli/test_agent.py",
     "service/agent/shop.py": "its runs are read in tests/service/rest/test_agent.py",
     "service/agent/play.py": "played in tests/service/agent/test_run.py and test_replay.py",

@@ -1,0 +1,88 @@
+"""``stepnc verify``: the part that logged positions left, against the programmed one."""
+
+import argparse
+import re
+from pathlib import Path
+
+from service.cli.options import LIMIT_EXCEEDED, OK, Commands, add_json
+
+
+def add_verify_command(commands: Commands) -> None:
+    """Add it to ``stepnc``."""
+    parser = commands.add_parser(
+        "verify", help="compare the part that logged positions left with the programmed one"
+    )
+    parser.fill = _verify_options
+
+
+def _verify_options(parser: argparse.ArgumentParser) -> None:
+    from service.requests.fields import add_options
+    from service.requests.verification import VerificationRequest
+
+    # Coordinates may be negative: "-3,-3,-40" is not an option.
+    parser._negative_number_matcher = re.compile(r"-[.\d]")
+    add = parser.add_argument
+    add(
+        "log",
+        type=Path,
+        metavar="LOG",
+        help="positions as logged: .parquet, .csv, MTConnect .xml or SHDR",
+    )
+    add("--program", type=Path, required=True, metavar="FILE", help="a STEP-NC program")
+    add_options(parser, VerificationRequest)
+    add(
+        "--tools",
+        type=Path,
+        metavar="TOML",
+        help="tool table with the measured tools, by the program's numbers",
+    )
+    add(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="FILE",
+        help="write the deviations of places on the surface, .parquet or .csv",
+    )
+    add("--report", type=Path, metavar="HTML", help="write a self-contained page with pictures")
+    add_json(parser)
+    parser.set_defaults(run=_verify)
+
+
+def _verify(options: argparse.Namespace) -> int:
+    """``stepnc verify``."""
+    from service.cli.machine import interruptible
+    from service.files import require_place, write_atomically
+    from service.requests.fields import from_options
+    from service.requests.verification import VerificationRequest
+    from service.run_file import require_suffix
+    from service.terminal import tell
+    from service.verification.run import verify
+
+    request = from_options(VerificationRequest, options)
+    outputs = [each for each in (options.output, options.report) if each is not None]
+    for each in outputs:
+        require_place(each, apart_from=options.log)
+        require_place(each, apart_from=options.program)
+    if options.output is not None:
+        require_suffix(options.output)
+    with interruptible():
+        found = verify(options.log, options.program, request, tools=options.tools, tell=tell)
+    if options.report is not None:
+        from service.verification.output import verification_page
+
+        write_atomically(options.report, verification_page(found).encode())
+        tell(f"report: {options.report}")
+    if options.output is not None:
+        from service.verification.output import write_places
+
+        tell(f"written: {options.output} ({write_places(options.output, found)} places)")
+    if options.json:
+        from service.terminal import write_out
+        from service.verification.output import verification_json
+
+        write_out(verification_json(found))
+    else:
+        from service.verification.output import print_verification
+
+        print_verification(found)
+    return LIMIT_EXCEEDED if found.has_errors else OK

@@ -1,0 +1,46 @@
+"""Request of a verification."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import Interval
+
+from service.requests.advice import ISO, FileUnits, MachineName, MaterialName, Name
+from service.requests.fields import About, Request
+
+INCH_THOUSANDTH = 0.0254
+"""0.001 inch in mm, which paper 004 resolves."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VerificationRequest(Request):
+    """Request to compare the part that logged positions left with the programmed one."""
+
+    machine: MachineName = ""
+    material: MaterialName = ""
+    units: FileUnits = ISO
+    zero: Annotated[
+        Name,
+        About(
+            "position of the program's zero on the axes in mm, x,y,z (default: 0,0,0: the log "
+            "has positions of the program); fit: to the program, in whole millimetres",
+            flag="--zero", metavar="X,Y,Z",
+        ),
+    ] = ""  # fmt: skip
+    tolerance_mm: Annotated[
+        float,
+        Interval(gt=0.0, le=10.0),
+        About("deviation that is reported as an error, mm; exit code 5 if there is one",
+              unit="mm", name="tolerance", flag="--tolerance-mm", metavar="MM"),
+    ] = INCH_THOUSANDTH  # fmt: skip
+    cell_mm: Annotated[
+        float | None,
+        Interval(ge=0.02, le=5.0),
+        About("cells of the height map, mm (default: by the stock, a million cells)",
+              unit="mm", name="cell", flag="--cell-mm", metavar="MM"),
+    ] = None  # fmt: skip
+    has_deflection: Annotated[
+        bool,
+        About("simulate the program, and add the predicted deflection of its tools",
+              flag="--with-deflection"),
+    ] = False  # fmt: skip

@@ -1,0 +1,1 @@
+"""The verb ``verify``: the part that logged positions left, against the programmed one."""

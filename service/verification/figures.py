@@ -1,0 +1,119 @@
+"""Plotly figures of a verification: the part in plan and in space, coloured by deviation."""
+
+import numpy as np
+import plotly.graph_objects as go
+
+from service.verification.run import Verification
+from simulator.motion.segments import Floats, Ints
+from simulator.verification.deviation import SurfacePlaces
+
+MOST_POINTS = 12_000
+"""Most points of a figure; the greatest deviations are always among them."""
+
+PIXELS = 300
+"""Pixels of the plan along its longer side; each shows the greatest deviation in it."""
+
+SCALE = ((0.0, "#b2182b"), (0.5, "#cfcfcf"), (1.0, "#2166ac"))
+"""Colours from red (gouge) over grey to blue (excess)."""
+
+ROOM = 2.0
+"""End of the colour scale, as a multiple of the tolerance, if no deviation is greater."""
+
+
+def plan_figure(found: Verification) -> go.Figure:
+    """Figure of the surface seen along the tool, or of the profile of a turned part."""
+    places, limit = found.places, _limit(found)
+    figure = go.Figure()
+    if found.is_turned:
+        rows = _chosen(places)
+        figure.add_trace(_points(found, rows, limit, across=2, up=0))
+        figure.update_layout(xaxis_title="z, mm", yaxis_title="radius, mm")
+    else:
+        figure.add_trace(_floors(places[~places.is_wall], limit))
+        walls = places[places.is_wall]
+        rows = _chosen(walls)
+        figure.add_trace(_points(found, rows, limit, across=0, up=1, places=walls))
+        figure.update_layout(xaxis_title="x, mm", yaxis_title="y, mm")
+    figure.update_yaxes(scaleanchor="x")
+    figure.update_layout(height=560, template="plotly_white", showlegend=False)
+    return figure
+
+
+def space_figure(found: Verification) -> go.Figure:
+    """Figure of the surface in space."""
+    places, limit = found.places, _limit(found)
+    shown = places[_chosen(places)]
+    x, y, z = shown.position.T
+    trace = go.Scatter3d(
+        x=x, y=y, z=z, mode="markers", marker=_marker(shown.deviation, limit, 2.0),
+        hovertemplate="%{x:.2f}, %{y:.2f}, %{z:.2f} mm: %{marker.color:.4f} mm<extra></extra>",
+    )  # fmt: skip
+    figure = go.Figure(trace)
+    figure.update_layout(height=560, template="plotly_white", scene_aspectmode="data")
+    return figure
+
+
+def _limit(found: Verification) -> float:
+    """End of the colour scale, mm."""
+    size = np.abs(found.places.deviation[found.places.is_beyond])
+    return float(max(size.max(initial=0.0), ROOM * found.tolerance))
+
+
+def _chosen(places: SurfacePlaces) -> Ints:
+    """Rows of places to show: spread evenly, and those with the greatest deviations."""
+    count = len(places)
+    if count <= MOST_POINTS:
+        return np.arange(count)
+    even = np.linspace(0, count - 1, MOST_POINTS // 2).astype(np.int64)
+    size = np.abs(places.deviation)
+    most = np.argpartition(size, -(MOST_POINTS // 2))[-(MOST_POINTS // 2) :]
+    return np.unique(np.concatenate((even, most)))
+
+
+def _marker(deviation: Floats, limit: float, size: float) -> dict[str, object]:
+    return {
+        "color": deviation, "colorscale": SCALE, "cmin": -limit, "cmax": limit,
+        "size": size, "colorbar": {"title": "deviation, mm"},
+    }  # fmt: skip
+
+
+def _points(
+    found: Verification,
+    rows: Ints,
+    limit: float,
+    *,
+    across: int,
+    up: int,
+    places: SurfacePlaces | None = None,
+) -> go.Scattergl:
+    """Points in a plane, with the workingstep and block of each."""
+    shown = (found.places if places is None else places)[rows]
+    names = [step.workingstep for step in found.steps] + ["raw part"]
+    texts = [
+        f"{names[step]}, block {block}, ± {uncertainty:.4f} mm"
+        for step, block, uncertainty in zip(
+            shown.workingstep.tolist(), shown.block.tolist(), shown.uncertainty.tolist(),
+            strict=True,
+        )
+    ]  # fmt: skip
+    return go.Scattergl(
+        x=shown.position[:, across], y=shown.position[:, up], mode="markers", text=texts,
+        marker=_marker(shown.deviation, limit, 4.0),
+        hovertemplate="%{x:.2f}, %{y:.2f}: %{marker.color:.4f} mm<br>%{text}<extra></extra>",
+    )  # fmt: skip
+
+
+def _floors(places: SurfacePlaces, limit: float) -> go.Heatmap:
+    """Greatest deviation of the floors in each pixel."""
+    x, y = places.position[:, 0], places.position[:, 1]
+    size = max(float(np.ptp(x)), float(np.ptp(y)), 1e-9) / PIXELS
+    columns = np.floor((x - x.min()) / size).astype(np.int64)
+    rows = np.floor((y - y.min()) / size).astype(np.int64)
+    picture = np.full((int(rows.max()) + 1, int(columns.max()) + 1), np.nan)
+    order = np.argsort(np.abs(places.deviation))
+    picture[rows[order], columns[order]] = places.deviation[order]
+    return go.Heatmap(
+        z=picture, x0=x.min() + 0.5 * size, dx=size, y0=y.min() + 0.5 * size, dy=size,
+        colorscale=SCALE, zmin=-limit, zmax=limit, showscale=False, hoverongaps=False,
+        hovertemplate="%{x:.2f}, %{y:.2f}: %{z:.4f} mm<extra>floor</extra>",
+    )  # fmt: skip

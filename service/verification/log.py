@@ -1,0 +1,216 @@
+"""Log of positions in pieces: columns of a log as samples in program coordinates.
+
+Axes that have no value at a time are interpolated over time between their own values. Pieces
+are bounded, so that logs of any length need the memory of one piece.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import inf
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+
+from service.recording.signals import POSITIONS
+from service.recording.table import TABLES, batches, headings
+from service.verification.axes import without_held
+from service.verification.document import SUFFIXES, table_of
+from simulator.client.columns import TIME
+from simulator.motion.segments import Floats, Ints
+from simulator.spec import Machine
+from simulator.verification.logged import LoggedSamples, joined
+from stepnc_model.errors import StepNcError
+
+TOOL, WORKINGSTEP = "tool_number", "workingstep"
+
+PIECE = 65_536
+"""Samples that are taken together."""
+
+LONGEST_WAIT = 1_000_000
+"""Most samples that wait for the next value of an axis."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProgramNames:
+    """What a log may name: workingsteps of the program with their tools."""
+
+    workingsteps: Mapping[str, int]
+    """Index of each workingstep by its id."""
+    tool_of: Mapping[int, int]
+    """Number of the tool by the index of the workingstep."""
+    tools: frozenset[int]
+    """Numbers of all tools."""
+
+
+@dataclass(kw_only=True)
+class LogFile:
+    """Table of logged positions. Running state: what was found while it was read."""
+
+    path: Path
+    names: ProgramNames
+    machine: Machine | None = None
+    """Machine whose data items a document has."""
+    zero: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Position of the program's zero on the axes, mm."""
+    rows: int = 0
+    equal_times: int = 0
+    """Rows with the time of the row before."""
+    unknown: int = 0
+    """Rows in which a position was missing."""
+
+    def __post_init__(self) -> None:
+        self._document = self._read_document()
+        self._names = (
+            headings(self.path) if self._document is None else self._document.column_names
+        )
+        for needed in (TIME, *POSITIONS):
+            if needed not in self._names:
+                raise StepNcError(f"{self.path}: no column {needed}")
+        has_tools = TOOL in self._names or WORKINGSTEP in self._names
+        if not has_tools and len(self.names.tools) > 1:
+            raise StepNcError(
+                f"{self.path}: no column {TOOL} or {WORKINGSTEP}: the program uses "
+                f"{len(self.names.tools)} tools, and the log does not show when they change"
+            )
+
+    def _read_document(self) -> pa.Table | None:
+        """Read a document whole; None for a table, which is read in pieces."""
+        suffix = self.path.suffix.lower()
+        if suffix in TABLES:
+            return None
+        if suffix not in SUFFIXES or self.machine is None:
+            known = ", ".join(sorted(TABLES | SUFFIXES))
+            raise StepNcError(f"{self.path}: expected positions in a file of {known}")
+        return table_of(self.path, self.machine, (*POSITIONS, TOOL, WORKINGSTEP))
+
+    def _batches(self) -> Iterator[pa.RecordBatch]:
+        kinds = self._kinds()
+        if self._document is None:
+            return batches(self.path, kinds)
+        return iter(self._document.select(list(kinds)).to_batches(max_chunksize=PIECE))
+
+    def pieces(self) -> Iterator[LoggedSamples]:
+        """Yield the samples in order.
+
+        Raises
+        ------
+        StepNcError
+            When the file is damaged, a time goes back, or an axis has no values.
+        """
+        self.rows = self.equal_times = self.unknown = 0
+        waiting: list[LoggedSamples] = []
+        last = -inf
+        for batch in self._batches():
+            part = self._samples(batch)
+            self._require_ascending(part.time, last)
+            last = float(part.time[-1])
+            self.rows += len(part)
+            waiting.append(part)
+            if sum(map(len, waiting)) >= PIECE:
+                whole, rest = self._known(joined(waiting))
+                waiting = [rest] if len(rest) else []
+                if len(whole):
+                    yield whole
+        if not self.rows:
+            raise StepNcError(f"{self.path}: no rows")
+        if waiting:
+            whole, rest = self._known(joined(waiting))
+            if not len(whole) and len(rest) == self.rows:
+                raise StepNcError(f"{self.path}: {self._lacking(rest.position)} has no values")
+            if len(whole):
+                yield whole
+
+    def _kinds(self) -> dict[str, pa.DataType]:
+        kinds = dict.fromkeys((TIME, *POSITIONS), pa.float64())
+        if TOOL in self._names:
+            kinds[TOOL] = pa.float64()
+        if WORKINGSTEP in self._names:
+            kinds[WORKINGSTEP] = pa.string()
+        return kinds
+
+    def _samples(self, batch: pa.RecordBatch) -> LoggedSamples:
+        position = np.column_stack([
+            np.asarray(batch.column(name).to_numpy(zero_copy_only=False), dtype=np.float64)
+            for name in POSITIONS
+        ]) - np.array(self.zero)
+        steps = self._workingsteps(batch)
+        return LoggedSamples(
+            time=np.asarray(batch.column(TIME).to_numpy(zero_copy_only=False)),
+            position=position,
+            tool=self._tools(batch, steps),
+            workingstep=steps,
+        )
+
+    def _workingsteps(self, batch: pa.RecordBatch) -> Ints:
+        if WORKINGSTEP not in self._names:
+            return np.full(batch.num_rows, -1, dtype=np.int64)
+        words = batch.column(WORKINGSTEP).dictionary_encode()
+        known = [self.names.workingsteps.get(word, -1) for word in words.dictionary.to_pylist()]
+        indices = words.indices.fill_null(len(known)).to_numpy(zero_copy_only=False)
+        return np.asarray(np.array([*known, -1], dtype=np.int64)[indices])
+
+    def _tools(self, batch: pa.RecordBatch, steps: Ints) -> Ints:
+        """Numbers of the tools; where no column has them, those of the workingsteps."""
+        if TOOL in self._names:
+            numbers = batch.column(TOOL).to_numpy(zero_copy_only=False)
+            return np.where(np.isnan(numbers), 0.0, numbers).astype(np.int64)
+        if WORKINGSTEP not in self._names:
+            return np.full(batch.num_rows, next(iter(self.names.tools)), dtype=np.int64)
+        count = len(self.names.workingsteps)
+        numbers = np.array([*(self.names.tool_of.get(each, 0) for each in range(count)), 0])
+        return np.asarray(numbers[steps], dtype=np.int64)
+
+    def _require_ascending(self, time: Floats, last: float) -> None:
+        before = np.append(last, time[:-1])
+        # Also true of a time that is missing.
+        wrong = np.flatnonzero(~(time >= before))
+        if len(wrong):
+            at = int(wrong[0])
+            raise StepNcError(
+                f"{self.path}: row {self.rows + at + 1}: time {time[at]:g} s: it must not be "
+                f"before {before[at]:g} s"
+            )
+        self.equal_times += int(np.sum(time == before))
+
+    def _known(self, samples: LoggedSamples) -> tuple[LoggedSamples, LoggedSamples]:
+        """Samples with interpolated positions, and those that wait for a value."""
+        samples = replace(samples, position=without_held(samples.position))
+        is_known = np.isfinite(samples.position)
+        if is_known.all():
+            return samples, samples[len(samples) :]
+        self.unknown += int((~is_known).any(axis=1).sum())
+        if not is_known.any(axis=0).all():
+            if len(samples) > LONGEST_WAIT:
+                message = f"no values in {len(samples)} rows"
+                raise StepNcError(
+                    f"{self.path}: {self._lacking(samples.position)} has {message}"
+                )
+            return samples[:0], samples
+        first = int(is_known.argmax(axis=0).max())
+        end = len(samples) - int(is_known[::-1].argmax(axis=0).max())
+        position = samples.position.copy()
+        for axis in range(3):
+            rows = is_known[:, axis]
+            position[:, axis] = np.interp(
+                samples.time, samples.time[rows], samples.position[rows, axis]
+            )
+        # The last complete row stays for the interpolation of the next piece.
+        return replace(samples, position=position)[first:end], samples[end:]
+
+    def _lacking(self, position: Floats) -> str:
+        lacking = np.flatnonzero(~np.isfinite(position).any(axis=0))
+        return POSITIONS[int(lacking[0])] if len(lacking) else POSITIONS[0]
+
+
+def thinned(pieces: Iterator[LoggedSamples], *, most: int) -> Sequence[Floats]:
+    """Positions of every k-th sample that moved, at most a given number, (N, 3) each."""
+    kept: list[Floats] = []
+    stride, offset = 1, 0
+    for piece in pieces:
+        kept.append(piece.position[offset % stride :: stride])
+        offset = (offset - len(piece)) % stride
+        while sum(map(len, kept)) > most:
+            kept = [np.concatenate(kept)[::2]]
+            stride *= 2
+    return kept

@@ -1,0 +1,66 @@
+"""Deviations of the programmed surface from the features of the program."""
+
+from math import ceil
+
+import numpy as np
+
+from service.verification.prepared import PreparedProgram
+from simulator.motion.segments import Floats
+from simulator.verification.deviation import SurfacePlaces
+from simulator.verification.nominal import NominalOutline, floor_deviation, wall_deviation
+from stepnc_model.toolpath.milling.contour import Chain
+from stepnc_model.toolpath.milling.nominal import NominalWall, nominal_walls
+
+LONGEST = 0.01
+"""Greatest angle of one line of an arc, rad: 0.1 µm on a radius of 10 mm."""
+
+
+def nominal_deviation(
+    program: PreparedProgram, places: SurfacePlaces, normal: Floats
+) -> Floats:
+    """Deviation of the programmed surface from the nominal features, (N,), mm; NaN: unknown.
+
+    Parameters
+    ----------
+    program : PreparedProgram
+    places : SurfacePlaces
+        Those on walls first.
+    normal : (P, 2) array
+        Direction from the air into the material at the places on walls.
+    """
+    found = np.full(len(places), np.nan)
+    steps = {step.id: step for step in program.program.workingsteps}
+    for index, name in enumerate(program.steps):
+        walls = nominal_walls(program.program, steps[name.workingstep])
+        own = places.workingstep == index
+        floors = np.flatnonzero(own & ~places.is_wall)
+        heights = places.position[floors, 2]
+        found[floors] = floor_deviation(heights, sorted({wall.bottom for wall in walls}))
+        rows = np.flatnonzero(own & places.is_wall)
+        if len(rows):
+            found[rows] = _walls(places.position[rows], normal[rows], walls)
+    return found
+
+
+def _walls(position: Floats, normal: Floats, walls: tuple[NominalWall, ...]) -> Floats:
+    """Deviation from the nearest of some walls; NaN without any."""
+    found = np.full(len(position), np.nan)
+    for wall in walls:
+        outline = NominalOutline(points=_points(wall.chain))
+        away = wall_deviation(position[:, :2], normal, outline)
+        above = np.maximum(position[:, 2] - wall.bottom, 0.0)
+        heights, place = np.unique(above.round(6), return_inverse=True)
+        away = away - np.array([wall.inset(height) for height in heights.tolist()])[place]
+        is_nearer = np.isnan(found) | (np.abs(away) < np.abs(found))
+        found = np.where(is_nearer & ~np.isnan(away), away, found)
+    return found
+
+
+def _points(chain: Chain) -> tuple[Floats, ...]:
+    """Points of a chain, each edge by itself; none of an empty chain."""
+    parts = []
+    for edge in chain:
+        count = max(ceil(abs(edge.turn) / LONGEST), 1)
+        points = [edge.at(index / count) for index in range(count + 1)]
+        parts.append(np.array([[point.real, point.imag] for point in points]))
+    return tuple(parts)

@@ -1,0 +1,282 @@
+"""Verification of logged positions, for the command ``verify``."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from service.numbers import numbers_in
+from service.reading import Tell, silent
+from service.requests.fields import require_bounds
+from service.requests.verification import VerificationRequest
+from service.simulation.run import run_of_program
+from service.verification.log import LogFile, thinned
+from service.verification.nominal import nominal_deviation
+from service.verification.prepared import PreparedProgram, StepName, prepared, with_tools
+from simulator.motion.segments import Floats
+from simulator.removal.cutter import Cutter
+from simulator.spec import Machine
+from simulator.verification.deviation import (
+    ComparedVolumes,
+    SurfacePlaces,
+    compared_volumes,
+    surface_places,
+)
+from simulator.verification.logged import LogFacts, LoggedPart, NearestSamples
+from simulator.verification.path import ProgrammedPath
+from simulator.verification.surface import programmed_part
+from simulator.verification.turned import (
+    LoggedBar,
+    turned_part,
+    turned_places,
+    turned_volumes,
+)
+from simulator.verification.zero import distance_from, fitted_zero
+from stepnc_model.errors import Finding, Severity, StepNcError
+
+FAR = 5.0
+"""Distance from the programmed path at which a position is not of this program, mm."""
+
+MOST_FAR = 0.2
+"""Share of such positions in a log that is refused."""
+
+SURVEYED = 4096
+"""Most positions of a log that are compared with the path before it is verified."""
+
+MM_PER_INCH = 25.4
+
+LIKE = 0.1
+"""Relative difference of sizes that count as the same."""
+
+FIT = "fit"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Verification:
+    """Result of ``verify``."""
+
+    program: str
+    machine: Machine
+    log: str
+    facts: LogFacts
+    step: float
+    """Way of the tool between samples where it made the surface, mm; 95 % are shorter."""
+    steps: tuple[StepName, ...]
+    """Workingsteps in order of execution."""
+    path: ProgrammedPath
+    places: SurfacePlaces
+    nominal: Floats
+    """Deviation of the programmed surface from the nominal features at each place, (N,), mm:
+    excess positive; NaN where there is no feature."""
+    volumes: ComparedVolumes
+    cell: float
+    """Size of the cells of the height map or of the bar, mm."""
+    is_turned: bool
+    """Whether the part is turned: positions are radius, 0 and z."""
+    zero: tuple[float, float, float]
+    """Position of the program's zero on the axes, mm."""
+    tolerance: float
+    """Deviation that is an error, mm."""
+    findings: tuple[Finding, ...]
+    bent: Mapping[str, float] = field(default_factory=dict)
+    """Predicted greatest deflection of the tool as it makes a wall, by workingstep, mm; empty
+    if it was not requested."""
+
+    @property
+    def has_errors(self) -> bool:
+        """Whether a deviation exceeds both its uncertainty and the tolerance."""
+        size = np.abs(self.places.deviation)
+        return bool((self.places.is_beyond & (size >= self.tolerance - 1e-9)).any())
+
+
+def verify(
+    log: Path,
+    program: Path,
+    request: VerificationRequest,
+    *,
+    tools: Path | None = None,
+    tell: Tell = silent,
+) -> Verification:
+    """Compare the part that logged positions leave with the programmed one.
+
+    Raises
+    ------
+    StepNcError
+        When a file, a name or a number is invalid, or the log is not of this program.
+    """
+    require_bounds(request)
+    ready = prepared(program, request, tell=tell)
+    if tools is not None:
+        ready = with_tools(ready, tools)
+    return verified(log, ready, request, tell=tell)
+
+
+def verified(
+    log: Path,
+    program: PreparedProgram,
+    request: VerificationRequest,
+    *,
+    tell: Tell = silent,
+) -> Verification:
+    """Verify a log against a prepared program.
+
+    Raises
+    ------
+    StepNcError
+        When the log cannot be read, or is not of this program.
+    """
+    file = LogFile(path=log, names=program.names, machine=program.machine)
+    file.zero, findings = _zero(request.zero, file, program)
+    compared = _turned if program.is_turned else _milled
+    found = compared(program, file, request.cell_mm, tell)
+    bent: dict[str, float] = {}
+    if request.has_deflection:
+        totals = run_of_program(program.program, program.machine, program.material, tell=tell)
+        bent = {name: total.deflection.value for name, total in totals}
+    return Verification(
+        program=program.name,
+        machine=program.machine,
+        log=log.name,
+        facts=found.facts,
+        step=found.step,
+        steps=program.steps,
+        path=program.path,
+        places=found.places,
+        nominal=found.nominal,
+        volumes=found.volumes,
+        cell=found.cell,
+        is_turned=program.is_turned,
+        zero=file.zero,
+        tolerance=request.tolerance_mm,
+        bent=bent,
+        findings=(*findings, *_findings(file, found.facts, program)),
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ComparedParts:
+    """Comparison of two parts."""
+
+    places: SurfacePlaces
+    nominal: Floats
+    volumes: ComparedVolumes
+    facts: LogFacts
+    step: float
+    cell: float
+
+
+def _milled(
+    program: PreparedProgram, file: LogFile, cell: float | None, tell: Tell
+) -> ComparedParts:
+    """Compare milled parts."""
+    part = programmed_part(program.path, program.stock, cell=cell)
+    cutters = {
+        number: shape if isinstance(shape, Cutter) else None
+        for number, shape in program.cutters.items()
+    }
+    left = LoggedPart(part, program.stock, cutters)
+    for piece in file.pieces():
+        left.add(piece)
+        tell(f"{left.facts.samples} samples, {left.facts.end:.0f} s of the log")
+    places = surface_places(part, left)
+    return ComparedParts(
+        places=places,
+        nominal=nominal_deviation(program, places, part.walls.normal),
+        volumes=compared_volumes(part, left),
+        facts=left.facts,
+        step=_usual(left.walls, left.floors),
+        cell=part.map.cell,
+    )
+
+
+def _turned(
+    program: PreparedProgram, file: LogFile, cell: float | None, tell: Tell
+) -> ComparedParts:
+    """Compare turned parts."""
+    part = turned_part(program.path, program.stock, cell=cell)
+    left = LoggedBar(part, program.stock, program.cutters)
+    for piece in file.pieces():
+        left.add(piece)
+        tell(f"{left.facts.samples} samples, {left.facts.end:.0f} s of the log")
+    places = turned_places(part, left)
+    return ComparedParts(
+        places=places,
+        nominal=np.full(len(places), np.nan),
+        volumes=turned_volumes(part, left, program.stock),
+        facts=left.facts,
+        step=_usual(left.nearest),
+        cell=part.bar.cell,
+    )
+
+
+def _usual(*places: NearestSamples) -> float:
+    """Way between samples that 95 % of the samples at a surface do not exceed, mm."""
+    steps = np.concatenate([each.step[np.isfinite(each.time)] for each in places])
+    return float(np.quantile(steps, 0.95)) if len(steps) else 0.0
+
+
+def _zero(
+    text: str, file: LogFile, program: PreparedProgram
+) -> tuple[tuple[float, float, float], list[Finding]]:
+    """Find where the program's zero is, and check that the log is of this program."""
+    findings: list[Finding] = []
+    if text and text != FIT:
+        x, y, z = numbers_in(text, "zero", counts=(3,))
+        file.zero = (x, y, z)
+    survey = np.concatenate(thinned(file.pieces(), most=SURVEYED))
+    points = np.concatenate(program.path.chords)
+    _require_millimetres(file, survey, points)
+    if text == FIT:
+        fitted, rest = fitted_zero(survey, program.path)
+        shown = ", ".join(f"{each:g}" for each in fitted)
+        beside = ", ".join(f"{each:.4f}" for each in rest)
+        message = (
+            f"zero fitted to whole millimetres: ({shown}) mm; the positions lie "
+            f"({beside}) mm from it in the median, which the fit leaves in the deviations"
+        )
+        findings.append(Finding(severity=Severity.NOTE, message=message))
+        file.zero = fitted
+        survey = survey - np.array(fitted)
+    far = distance_from(survey, program.path) > FAR
+    if far.mean() > MOST_FAR:
+        raise StepNcError(
+            f"{file.path}: {far.mean():.0%} of the positions are more than {FAR:g} mm from the "
+            f"path of {program.name}: is it a run of this program? Where is its zero (--zero)?"
+        )
+    return file.zero, findings
+
+
+def _require_millimetres(file: LogFile, survey: Floats, points: Floats) -> None:
+    """Refuse positions whose extent is that of the program in inches."""
+    logged, programmed = np.ptp(survey, axis=0), np.ptp(points, axis=0)
+    has_extent = programmed > 1.0
+    ratio = logged[has_extent] * MM_PER_INCH / programmed[has_extent]
+    if len(ratio) and (np.abs(ratio - 1.0) < LIKE).all():
+        shown = " × ".join(f"{each:.3g}" for each in logged)
+        raise StepNcError(
+            f"{file.path}: positions span {shown}, {MM_PER_INCH:g} times less than the "
+            "program: they are in inches; millimetres are expected"
+        )
+
+
+def _findings(file: LogFile, facts: LogFacts, program: PreparedProgram) -> list[Finding]:
+    """Say what the log lacks."""
+    found = []
+    if file.equal_times:
+        found.append(f"{file.equal_times} rows have the time of the row before")
+    if file.unknown:
+        found.append(f"{file.unknown} rows lack a position: interpolated over time")
+    if facts.gaps:
+        found.append(
+            f"{facts.gaps} gaps of up to {facts.longest_gap:.3g} s in which the tool moved: "
+            "what it did there is not known"
+        )
+    seen = {run.tool for run in program.path.runs}
+    missing = sorted(seen - facts.tools)
+    if missing:
+        tools = ", ".join(f"T{each}" for each in missing)
+        found.append(
+            f"the log never shows {tools}: its tool changes or workingsteps are missing"
+        )
+    return [Finding(severity=Severity.WARNING, message=text) for text in found]

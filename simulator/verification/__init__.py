@@ -1,0 +1,1 @@
+"""Verification of logged positions: the part they left, compared with the programmed one."""

@@ -1,0 +1,244 @@
+"""Deviations of the logged part from the programmed one, with the uncertainty of each.
+
+On walls a deviation is the difference of the two signed distances in the plane; on floors it
+is the difference of heights, along the normal of the surface. Excess is positive, a gouge
+negative. A log knows the path only at its samples; normal to the surface this leaves, for the
+way s that the tool goes between samples,
+
+* on straights, the rounding of positions;
+* on arcs of radius R, ``s²/8R``;
+* at corners that turn by α, ``s/2 · sin(α/2)``: ``s/(2·√2)`` at square corners, and ``s/2``
+  where the tool turns back, as at the bottom of a hole.
+
+A bound counts wherever the programmed path turns within s of the place. Units mm, s and rad.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from enum import StrEnum
+from math import pi, sqrt
+
+import numpy as np
+from scipy import ndimage
+
+from simulator.motion.segments import Bools, Floats, Ints
+from simulator.removal.zmap import OUTSIDE
+from simulator.verification.logged import LogFacts, LoggedPart
+from simulator.verification.path import SAGITTA, ProgrammedPath
+from simulator.verification.surface import EXACT, ProgrammedPart
+from simulator.verification.sweep import FAR
+
+BESIDE_WALLS = 0.5
+"""Width of the strip along walls where floors are not compared, mm: there a height says
+nothing about where the wall is."""
+
+MOST_SEGMENTS = 12
+"""Most segments within a step whose radii are looked at."""
+
+EQUAL = 1e-6
+"""Difference of heights that counts as none, mm."""
+
+
+class SurfaceKind(StrEnum):
+    """Kind of a place on the surface."""
+
+    WALL = "wall"
+    FLOOR = "floor"
+    FACE = "face"
+    """Surface of a turned part across its axis, or steeper than 45°."""
+    DIAMETER = "diameter"
+    """Surface of a turned part along its axis."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SurfacePlaces:
+    """N places on the surface of the programmed part."""
+
+    is_wall: Bools
+    """Whether a place is on a wall, (N,), or else on a floor."""
+    position: Floats
+    """(N, 3), mm."""
+    deviation: Floats
+    """Deviation along the normal, (N,), mm: excess positive, gouge negative."""
+    uncertainty: Floats
+    """Uncertainty of the deviation, (N,), mm."""
+    area: Floats
+    """Area that a place stands for, (N,), mm²."""
+    workingstep: Ints
+    """Index of the workingstep whose surface it is, (N,); -1 for the raw part."""
+    block: Ints
+    """Block of the program that makes the surface, (N,); 0 for the raw part."""
+    time: Floats
+    """Time of the sample that came nearest, (N,), s; NaN for none."""
+    cut_by: Ints
+    """Index of the workingstep that the log shows then, (N,); -1 where it is unknown."""
+
+    def __len__(self) -> int:
+        return len(self.deviation)
+
+    def __getitem__(self, rows: Bools | Ints) -> "SurfacePlaces":
+        return SurfacePlaces(**{
+            each.name: getattr(self, each.name)[rows] for each in fields(SurfacePlaces)
+        })
+
+    @staticmethod
+    def joined(parts: "Sequence[SurfacePlaces]") -> "SurfacePlaces":
+        """Places of several parts in one."""
+        return SurfacePlaces(**{
+            each.name: np.concatenate([getattr(part, each.name) for part in parts])
+            for each in fields(SurfacePlaces)
+        })
+
+    @property
+    def is_beyond(self) -> Bools:
+        """Whether a deviation is greater than its uncertainty, (N,)."""
+        return np.abs(self.deviation) > self.uncertainty
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ComparedVolumes:
+    """Volumes of the two parts, mm³."""
+
+    programmed: float
+    """Volume removed by the programmed path."""
+    logged: float
+    """Volume removed by the logged positions."""
+    gouge: float
+    """Volume that only the logged positions remove."""
+    excess: float
+    """Volume that only the programmed path removes."""
+
+
+def surface_places(part: ProgrammedPart, logged: LoggedPart) -> SurfacePlaces:
+    """Compare the logged part with the programmed one at walls and floors."""
+    return SurfacePlaces.joined([_wall_places(part, logged), _floor_places(part, logged)])
+
+
+def compared_volumes(part: ProgrammedPart, logged: LoggedPart) -> ComparedVolumes:
+    """Compare the volumes that the two paths remove, by the height maps."""
+    grid = part.map.grid
+    cell = grid.dx * grid.dy
+    more = (logged.map.grid.heights - grid.heights) * cell
+    raw = float(np.sum(np.where(grid.owner == OUTSIDE, 0.0, grid.top - grid.bottom))) * cell
+    return ComparedVolumes(
+        programmed=raw - part.map.volume,
+        logged=raw - logged.map.volume,
+        gouge=float(-np.minimum(more, 0.0).sum()),
+        excess=float(np.maximum(more, 0.0).sum()),
+    )
+
+
+def smallest_arc(path: ProgrammedPath) -> float:
+    """Radius of the smallest arc of a programmed path, mm; infinite without an arc."""
+    return float(path.radius.min())
+
+
+def arc_uncertainty(step: float, radius: float) -> float:
+    """Greatest distance of an arc from its chord, mm: ``s²/8R``, at most half the step."""
+    return min(step * step / (8.0 * radius), 0.5 * step)
+
+
+def corner_uncertainty(step: float, turn: float = 0.5 * pi) -> float:
+    """Greatest distance of a corner from the line that cuts it, mm: ``s/2 · sin(α/2)``."""
+    return float(0.5 * step * np.sin(0.5 * turn))
+
+
+def rounding_uncertainty(facts: LogFacts) -> float:
+    """Greatest error normal to a surface by the rounding of both coordinates, mm."""
+    return facts.rounding / sqrt(2.0)
+
+
+def _wall_places(part: ProgrammedPart, logged: LoggedPart) -> SurfacePlaces:
+    path, walls = part.path, part.walls
+    position = np.column_stack([walls.targets.x, walls.targets.y, walls.targets.z])
+    segment = path.segment[walls.chord]
+    start = path.chord_station[walls.chord]
+    station = start + np.hypot(*(walls.foot - walls.chord_start).T)
+    bend = np.where(
+        path.is_plunge[segment], 0.0, path_uncertainty(path, station, logged.walls.step)
+    )
+    steps = path.workingstep[segment]
+    return SurfacePlaces(
+        is_wall=np.ones(len(position), dtype=np.bool_),
+        position=position,
+        deviation=logged.targets.away - walls.rest,
+        uncertainty=bend + rounding_uncertainty(logged.facts) + EXACT,
+        area=walls.area,
+        workingstep=steps,
+        block=path.block[segment],
+        time=logged.walls.time,
+        cut_by=logged.walls.workingstep,
+    )
+
+
+def path_uncertainty(
+    path: ProgrammedPath, station: Floats, step: Floats, *, reach: float = 0.0
+) -> Floats:
+    """Return the uncertainty by the way between samples at stations of a path, mm.
+
+    Corners and arcs count within a step, and a further reach in mm, before and behind.
+    """
+    low, high = station - step - reach, station + step + reach
+    turned = np.concatenate(([0.0], np.cumsum(path.turn)))
+    first, last = path.station.searchsorted(low), path.station.searchsorted(high, "right")
+    turn = np.minimum(turned[last] - turned[first], pi)
+    tightest = path.radius[np.maximum(last - 1, 0)].copy()
+    for back in range(2, MOST_SEGMENTS + 1):
+        row = np.maximum(last - back, 0)
+        is_near = row >= first - 1
+        tightest = np.where(is_near, np.minimum(tightest, path.radius[row]), tightest)
+    arc = np.minimum(step * step / (8.0 * tightest), 0.5 * step)
+    return np.asarray(0.5 * step * np.sin(0.5 * turn) + arc)
+
+
+def _floor_places(part: ProgrammedPart, logged: LoggedPart) -> SurfacePlaces:
+    grid, path = part.map.grid, part.path
+    distance = ndimage.distance_transform_edt(~part.is_wall, sampling=(grid.dx, grid.dy))
+    is_floor = (distance > BESIDE_WALLS) & (grid.owner != OUTSIDE)
+    column, row = np.nonzero(is_floor)
+    lean = _lean(grid.heights, grid.dx, grid.dy)[column, row]
+    deviation, is_lateral = _floor_deviation(part, logged)
+    owner = grid.owner[column, row]
+    segment = path.segment[np.maximum(owner, 0)]
+    is_cut = owner >= 0
+    step = logged.floors.step[column, row]
+    # A height is as certain as the positions; the bottom of a plunge may lie between samples.
+    height = np.where(path.is_plunge[segment] & is_cut, 0.5 * step, 0.0)
+    beside = np.where(is_lateral[column, row], part.map.cell + 0.5 * logged.facts.step, 0.0)
+    return SurfacePlaces(
+        is_wall=np.zeros(len(column), dtype=np.bool_),
+        position=np.column_stack([
+            grid.x + (column + 0.5) * grid.dx,
+            grid.y + (row + 0.5) * grid.dy,
+            grid.heights[column, row],
+        ]),
+        deviation=deviation[column, row] * lean,
+        uncertainty=height + beside + rounding_uncertainty(logged.facts) + 10.0 * SAGITTA,
+        area=grid.dx * grid.dy / lean,
+        workingstep=np.where(is_cut, path.workingstep[segment], -1),
+        block=np.where(is_cut, path.block[segment], 0),
+        time=logged.floors.time[column, row],
+        cut_by=logged.floors.workingstep[column, row],
+    )
+
+
+def _floor_deviation(part: ProgrammedPart, logged: LoggedPart) -> tuple[Floats, Bools]:
+    """Differences of heights, (X, Y), mm, and where the way to the side is shorter.
+
+    A sliver that is high but narrow deviates by its width, not by its height.
+    """
+    grid = part.map.grid
+    more = logged.map.grid.heights - grid.heights
+    is_other = np.abs(more) > EQUAL
+    if is_other.all():
+        return np.clip(more, -FAR, FAR), np.zeros_like(is_other)
+    beside = ndimage.distance_transform_edt(is_other, sampling=(grid.dx, grid.dy))
+    size = np.minimum(np.minimum(np.abs(more), beside), FAR)
+    is_lateral = is_other & (beside < np.abs(more))
+    return np.asarray(np.sign(more) * size), np.asarray(is_lateral)
+
+
+def _lean(heights: Floats, dx: float, dy: float) -> Floats:
+    """Cosine of the angle between the normal of a surface and the axis of the tool, (X, Y)."""
+    along, across = np.gradient(heights, dx, dy)
+    return np.asarray(1.0 / np.sqrt(1.0 + along * along + across * across))

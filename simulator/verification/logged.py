@@ -1,0 +1,258 @@
+"""Part that logged positions leave: the sweep of the tools from sample to sample.
+
+Samples are taken in pieces, so that logs of any length need the memory of one piece. For each
+point on a wall and each cell it is kept which sample came nearest, and how far the tool moved
+between samples there. Units mm and s.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from simulator.motion.segments import Floats, Ints
+from simulator.removal.cutter import Cutter
+from simulator.removal.zmap import ZMap
+from simulator.verification.path import rows_between
+from simulator.verification.surface import PartSweep, ProgrammedPart
+from simulator.verification.sweep import approach, renewed
+from stepnc_model.program import Stock
+
+GAP = 3.0
+"""Multiple of the usual time between samples from which samples are missing."""
+
+AROUND = 2
+"""Samples before and after one whose steps count for its uncertainty."""
+
+FINEST = 6
+"""Decimals of a millimetre up to which the rounding of positions is looked for."""
+
+STILL = 1e-9
+"""Movement, mm, below which a tool stands still."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LoggedSamples:
+    """N samples of a log, ascending in time, in the coordinates of the program."""
+
+    time: Floats
+    """Time, (N,), s."""
+    position: Floats
+    """Position of the tip of the tool, (N, 3), mm; no NaN."""
+    tool: Ints
+    """Number of the tool, (N,)."""
+    workingstep: Ints
+    """Index of the workingstep of the program, (N,); -1 where it is unknown."""
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def __getitem__(self, rows: slice) -> "LoggedSamples":
+        return LoggedSamples(
+            time=self.time[rows],
+            position=self.position[rows],
+            tool=self.tool[rows],
+            workingstep=self.workingstep[rows],
+        )
+
+
+@dataclass(kw_only=True)
+class LogFacts:
+    """What a log can resolve. Running state."""
+
+    samples: int = 0
+    interval: float = 0.0
+    """Usual time between samples, s."""
+    rounding: float = 0.0
+    """Step to which positions are rounded, mm; 0 if finer than a nanometre."""
+    step: float = 0.0
+    """Greatest usual distance between samples below the top of the stock, mm."""
+    begin: float = 0.0
+    """Time of the first sample, s."""
+    end: float = 0.0
+    gaps: int = 0
+    """Number of gaps in which the tool moved."""
+    longest_gap: float = 0.0
+    """Longest time between samples in which the tool moved, s."""
+    tools: set[int] = field(default_factory=set)
+    """Numbers of the tools that the log shows."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class NearestSamples:
+    """Which sample came nearest, and how far the tool moved around it; arrays of a shape."""
+
+    time: Floats
+    """Time, s; NaN where no tool came near."""
+    step: Floats
+    """Greatest distance between samples around it, mm."""
+    workingstep: Ints
+    """Index of the workingstep of the log; -1 where it is unknown."""
+
+
+class SampleSteps:
+    """Samples of a log piece by piece, with the way between them. Running state.
+
+    Parameters
+    ----------
+    top : float, mm
+        Height below which the tool may cut.
+    """
+
+    def __init__(self, top: float) -> None:
+        self.facts = LogFacts()
+        self._last: LoggedSamples | None = None
+        self._top = top
+
+    def pieces(self, samples: LoggedSamples) -> Iterator[tuple[LoggedSamples, Floats]]:
+        """Yield samples of one tool each, with the greatest way around each in mm, (N,).
+
+        The last sample before them is the first one of these.
+        """
+        if not len(samples):
+            return
+        if not self.facts.samples:
+            self._begin(samples)
+        self.facts.samples += len(samples)
+        self.facts.end = float(samples.time[-1])
+        self.facts.tools.update(np.unique(samples.tool).tolist())
+        if self._last is not None:
+            samples = joined((self._last, samples))
+        self._last = samples[-1:]
+        steps = self._steps(samples)
+        edges = np.flatnonzero(np.diff(samples.tool)) + 1
+        for part in np.split(np.arange(len(samples)), edges):
+            rows = slice(int(part[0]), int(part[-1]) + 1)
+            yield samples[rows], steps[rows]
+
+    def _begin(self, samples: LoggedSamples) -> None:
+        """Find interval and rounding of the log from its first piece."""
+        self.facts.begin = float(samples.time[0])
+        self.facts.interval = float(np.median(np.diff(samples.time))) if len(samples) > 1 else 0
+        self.facts.rounding = rounding_of(samples.position)
+
+    def _steps(self, samples: LoggedSamples) -> Floats:
+        """Greatest way between samples around each, (N,), mm."""
+        way = np.linalg.norm(np.diff(samples.position, axis=0), axis=1)
+        seconds = np.diff(samples.time)
+        speed = np.divide(way, seconds, out=np.zeros(len(way)), where=seconds > 0.0)
+        is_gap = (seconds > GAP * self.facts.interval) & (way > STILL)
+        if is_gap.any():
+            self.facts.gaps += int(is_gap.sum())
+            longest = float(seconds[is_gap].max())
+            self.facts.longest_gap = max(self.facts.longest_gap, longest)
+            fast = _greatest_around(np.where(is_gap, 0.0, speed))
+            way = np.where(is_gap, np.maximum(way, fast * seconds), way)
+        is_usual = (samples.position[1:, 2] < self._top) & ~is_gap
+        if is_usual.any():
+            usual = float(np.quantile(way[is_usual], 0.99))
+            self.facts.step = max(self.facts.step, usual)
+        around = _greatest_around(way)
+        return np.concatenate((around[:1], around)) if len(around) else np.zeros(len(samples))
+
+
+class LoggedPart:
+    """Part that logged positions leave. Running state.
+
+    Parameters
+    ----------
+    part : ProgrammedPart
+        What it is compared with.
+    stock : Stock
+    cutters : mapping
+        Shapes of tools by number; other tools remove nothing.
+    """
+
+    def __init__(
+        self, part: ProgrammedPart, stock: Stock, cutters: Mapping[int, Cutter | None]
+    ) -> None:
+        self.targets = renewed(part.walls.targets)
+        self._left = PartSweep(stock, cell=part.map.cell)
+        self._cutters = cutters
+        self._steps = SampleSteps(stock.high[2])
+        self._walls = unmet(self.targets.away.shape)
+        self._floors = unmet(part.map.grid.heights.shape)
+
+    @property
+    def facts(self) -> LogFacts:
+        """What the log can resolve."""
+        return self._steps.facts
+
+    @property
+    def map(self) -> ZMap:
+        """Height map of what is left."""
+        return self._left.map
+
+    @property
+    def walls(self) -> NearestSamples:
+        """Samples nearest to the points on walls."""
+        return self._walls
+
+    @property
+    def floors(self) -> NearestSamples:
+        """Samples that cut the cells of the map last."""
+        return self._floors
+
+    def add(self, samples: LoggedSamples) -> None:
+        """Remove the sweep of more samples, which are later than those before."""
+        for part, steps in self._steps.pieces(samples):
+            cutter = self._cutters.get(int(part.tool[0]))
+            if cutter is not None:
+                self._cut(part, cutter, steps)
+
+    def _cut(self, samples: LoggedSamples, cutter: Cutter, steps: Floats) -> None:
+        """Remove the sweep of consecutive samples with one tool."""
+        moves = np.linalg.norm(np.diff(samples.position, axis=0), axis=1) > STILL
+        kept = np.concatenate(([True], moves))
+        points = samples.position[kept]
+        if len(points) < 2:
+            return
+        first = self._left.number
+        self._left.cut(cutter, points)
+        approach(self.targets, self._left.profile(cutter), rows_between(points), first)
+        ends = np.flatnonzero(kept)[1:]
+        for row, nearest in (
+            (self.targets.row, self._walls),
+            (self._left.map.grid.owner, self._floors),
+        ):
+            where = np.nonzero(row >= first)
+            index = ends[row[where] - first]
+            nearest.time[where] = samples.time[index]
+            nearest.step[where] = steps[index]
+            nearest.workingstep[where] = samples.workingstep[index]
+
+
+def joined(parts: Sequence[LoggedSamples]) -> LoggedSamples:
+    """Samples of several parts in one."""
+    return LoggedSamples(
+        time=np.concatenate([part.time for part in parts]),
+        position=np.concatenate([part.position for part in parts]),
+        tool=np.concatenate([part.tool for part in parts]),
+        workingstep=np.concatenate([part.workingstep for part in parts]),
+    )
+
+
+def rounding_of(position: Floats) -> float:
+    """Step to which positions are rounded, mm; 0 if it is finer than ``FINEST`` decimals."""
+    for decimals in range(FINEST + 1):
+        if np.abs(position - np.round(position, decimals)).max(initial=0.0) < 1e-9:
+            return float(10.0**-decimals)
+    return 0.0
+
+
+def unmet(shape: tuple[int, ...]) -> NearestSamples:
+    """Places to which no sample came near yet."""
+    return NearestSamples(
+        time=np.full(shape, np.nan),
+        step=np.zeros(shape),
+        workingstep=np.full(shape, -1, dtype=np.int64),
+    )
+
+
+def _greatest_around(values: Floats) -> Floats:
+    """Greatest of each value and its neighbours, (N,)."""
+    found = values.copy()
+    for shift in range(1, AROUND + 1):
+        found[shift:] = np.maximum(found[shift:], values[:-shift])
+        found[:-shift] = np.maximum(found[:-shift], values[shift:])
+    return found

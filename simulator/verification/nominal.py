@@ -1,0 +1,73 @@
+"""Deviation of the programmed part from the nominal walls and floors of its features.
+
+A wall of the programmed part is compared in the plane with the nearest line of the nominal
+outline; a floor by its height. Excess is positive, a gouge negative. Units mm.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from simulator.motion.segments import Floats
+from simulator.verification.path import pieces_of
+from simulator.verification.sweep import FAR
+
+PIECE = 0.05
+"""Longest piece of an outline whose middle stands for it, mm."""
+
+NEAR_FLOOR = 1.0
+"""Greatest difference of heights, mm, at which a floor is that of the feature."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class NominalOutline:
+    """Outline of nominal walls at one height, as the lines between points."""
+
+    points: tuple[Floats, ...]
+    """Points of each chain, (N, 2), mm."""
+
+
+def wall_deviation(points: Floats, normal: Floats, outline: NominalOutline) -> Floats:
+    """Deviation of points on programmed walls from a nominal outline.
+
+    Parameters
+    ----------
+    points : (P, 2) array, mm
+    normal : (P, 2) array
+        Direction from the air into the material.
+    outline : NominalOutline
+
+    Returns
+    -------
+    (P,) array, mm
+        NaN where the outline is farther away than 5 mm.
+    """
+    starts, vectors = [], []
+    for chain in outline.points:
+        start, vector, _, _ = pieces_of(chain, PIECE)
+        starts.append(start)
+        vectors.append(vector)
+    if not starts:
+        return np.full(len(points), np.nan)
+    start, vector = np.concatenate(starts), np.concatenate(vectors)
+    best = cKDTree(start + 0.5 * vector).query(points)[1]
+    start, vector = start[best], vector[best]
+    square = np.maximum(np.sum(vector * vector, axis=1), 1e-18)
+    share = np.clip(np.sum((points - start) * vector, axis=1) / square, 0.0, 1.0)
+    away = start + share[:, None] * vector - points
+    size = np.hypot(*away.T)
+    # Material is too much where the nominal wall lies deeper in it.
+    deviation = np.sum(away * normal, axis=1)
+    return np.where(size <= FAR, deviation, np.nan)
+
+
+def floor_deviation(heights: Floats, floors: Sequence[float]) -> Floats:
+    """Deviation of programmed floors from the nearest nominal floor, (P,), mm; NaN: none."""
+    if not floors:
+        return np.full(len(heights), np.nan)
+    differences = heights[:, None] - np.array(floors, dtype=np.float64)
+    best = np.abs(differences).argmin(axis=1)
+    nearest = differences[np.arange(len(heights)), best]
+    return np.where(np.abs(nearest) <= NEAR_FLOOR, nearest, np.nan)

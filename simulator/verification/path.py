@@ -1,0 +1,150 @@
+"""Programmed path as chords, each with its segment, for the sweep of a tool.
+
+Arcs become chords that deviate by at most ``SAGITTA``, so that programmed and logged positions
+are removed by the same code. Units mm and rad.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from simulator.motion.segments import Bools, Floats, Ints, Segments, chained
+from simulator.removal.cutter import Cutter, Insert
+
+SAGITTA = 1e-4
+"""Greatest deviation of a chord from its arc, mm."""
+
+COARSEST = 0.1
+"""Greatest angle of one chord of an arc, rad."""
+
+ROWS = 13
+"""Columns of the rows that removal takes; lines use the first six and the last."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ProgrammedRun:
+    """Consecutive moves of one tool in one workingstep."""
+
+    cutter: Cutter | Insert | None
+    """Shape of the tool; None if it removes nothing that is modelled."""
+    tool: int
+    workingstep: int
+    """Index of the workingstep, from 0."""
+    segments: Segments
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ProgrammedPath:
+    """Path of a program: S segments as N chords."""
+
+    runs: tuple[ProgrammedRun, ...]
+    chords: tuple[Floats, ...]
+    """Corner points of the chords of each run, (K + 1, 3), mm."""
+    segment: Ints
+    """Segment of each chord, (N,)."""
+    workingstep: Ints
+    """Workingstep of each segment, (S,)."""
+    block: Ints
+    """Block of each segment, (S,)."""
+    radius: Floats
+    """Radius of each segment, (S,), mm; infinite for a line."""
+    turn: Floats
+    """Angle by which the path turns at the start of each segment, (S,), rad."""
+    station: Floats
+    """Way along the path to the start of each segment, (S,), mm."""
+    chord_station: Floats
+    """Way along the path to the start of each chord, (N,), mm."""
+    is_plunge: Bools
+    """Whether a segment is parallel to the axis of the tool, (S,)."""
+
+
+def programmed_path(runs: Iterable[ProgrammedRun]) -> ProgrammedPath:
+    """Prepare the path of a program for its sweep.
+
+    Parameters
+    ----------
+    runs : iterable of ProgrammedRun
+        In order of execution; at least one.
+    """
+    kept = tuple(run for run in runs if len(run.segments))
+    chords, owners, first = [], [], 0
+    for run in kept:
+        points, owner = chorded(run.segments)
+        chords.append(points)
+        owners.append(owner + first)
+        first += len(run.segments)
+    whole = chained([run.segments for run in kept])
+    counts = [len(run.segments) for run in kept]
+    segment = np.concatenate(owners)
+    way = np.linalg.norm(np.concatenate([np.diff(each, axis=0) for each in chords]), axis=1)
+    chord_station = np.cumsum(way) - way
+    flat = np.hypot(*(whole.end - whole.start)[:, :2].T)
+    return ProgrammedPath(
+        runs=kept,
+        chords=tuple(chords),
+        segment=segment,
+        workingstep=np.repeat([run.workingstep for run in kept], counts),
+        block=np.concatenate([run.segments.block for run in kept]),
+        radius=np.where(whole.turn == 0.0, np.inf, whole.radius),
+        turn=_turns(whole),
+        station=chord_station[np.searchsorted(segment, np.arange(len(whole)))],
+        chord_station=chord_station,
+        is_plunge=(flat < 1e-6) & (whole.turn == 0.0),
+    )
+
+
+def chorded(segments: Segments) -> tuple[Floats, Ints]:
+    """Corner points of segments as chords, (K + 1, 3) in mm, and the segment of each chord."""
+    radius = np.maximum(segments.radius, SAGITTA)
+    step = np.minimum(np.sqrt(8.0 * SAGITTA / radius), COARSEST)
+    counts = np.maximum(np.ceil(np.abs(segments.turn) / step), 1.0).astype(np.int64)
+    rows = np.repeat(np.arange(len(segments)), counts)
+    index = np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)
+    share = (index + 1.0) / counts[rows]
+    points = segments.position(rows, share * segments.length[rows])
+    return np.concatenate((segments.start[:1], points)), rows
+
+
+def rows_between(points: Floats) -> Floats:
+    """Rows of the lines through points, as removal takes them, (N - 1, 13)."""
+    rows = np.zeros((max(len(points) - 1, 0), ROWS))
+    rows[:, 0:3], rows[:, 3:6], rows[:, 12] = points[:-1], points[1:], 2.0
+    return rows
+
+
+def pieces_of(points: Floats, longest: float) -> tuple[Floats, Floats, Ints, Floats]:
+    """Divide the lines through points into pieces.
+
+    Parameters
+    ----------
+    points : (N, D) array, mm
+    longest : float, mm
+        Greatest length of a piece.
+
+    Returns
+    -------
+    start, piece : (M, D) array, mm
+        Start and vector of each piece.
+    line : (M,) array of int
+    way : (M,) array, mm
+        Way from the start of the line to the middle of the piece.
+    """
+    along = np.diff(points, axis=0)
+    way = np.linalg.norm(along, axis=1)
+    counts = np.maximum(np.ceil(way / longest), 1.0).astype(np.int64)
+    rows = np.repeat(np.arange(len(along)), counts)
+    index = np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)
+    piece = along[rows] / counts[rows, None]
+    start = points[rows] + index[:, None] * piece
+    return start, piece, rows, (index + 0.5) * (way / counts)[rows]
+
+
+def _turns(segments: Segments) -> Floats:
+    """Angle between each segment and the one before, (S,), rad; half a turn at the start."""
+    rows = np.arange(len(segments))
+    begin = segments.direction(rows, np.zeros(len(rows)))
+    end = segments.direction(rows, segments.length)
+    cosine = np.clip(np.sum(end[:-1] * begin[1:], axis=1), -1.0, 1.0)
+    return np.concatenate(([pi], np.arccos(cosine)))

@@ -1,0 +1,278 @@
+"""Verification of turned parts: outer and inner radii over the axis, r(z).
+
+The programmed path and the logged positions cut the same bar. A deviation is the distance of a
+point of the programmed profile from the logged profile. Profiles are lines through the middles
+of cells, so that on cylinders, cones and arcs the size of cells has no effect; faces are known
+to a cell. Positions are radius, 0 and z. Units mm and s.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from simulator.motion.segments import Bools, Floats, Ints, Segments, lines
+from simulator.removal.cutter import Cutter, Insert
+from simulator.removal.lathe import TurningStock
+from simulator.verification.deviation import (
+    ComparedVolumes,
+    SurfacePlaces,
+    path_uncertainty,
+    rounding_uncertainty,
+)
+from simulator.verification.logged import (
+    STILL,
+    LogFacts,
+    LoggedSamples,
+    NearestSamples,
+    SampleSteps,
+    unmet,
+)
+from simulator.verification.path import ProgrammedPath, pieces_of
+from simulator.verification.sweep import FAR
+from stepnc_model.program import Stock
+
+CELL = 0.01
+"""Length of a cell along the axis, mm."""
+
+CHANGED = 1e-7
+"""Change of a radius, mm, above which a cell was cut."""
+
+PIECE = 0.1
+"""Longest piece of the path whose middle stands for it, mm."""
+
+STEEP = 1.0
+"""Slope of the profile above which a surface is a face."""
+
+LIMIT = 1e-3
+"""Uncertainty of the comparison itself, mm."""
+
+Shape = Cutter | Insert
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TurnedPart:
+    """Bar of C cells that the programmed path leaves."""
+
+    path: ProgrammedPath
+    bar: TurningStock
+    chord: Ints
+    """Chord of the path nearest to the surface of each cell, (C,); -1 for the raw bar."""
+    station: Floats
+    """Way along the path to that place, (C,), mm."""
+
+
+def turned_part(path: ProgrammedPath, stock: Stock, *, cell: float | None = None) -> TurnedPart:
+    """Cut a bar along a programmed path.
+
+    Parameters
+    ----------
+    path : ProgrammedPath
+    stock : Stock
+    cell : float, mm
+        Length of a cell along the axis.
+
+    Raises
+    ------
+    ValueError
+        If the stock has no radius, or needs too many cells.
+    """
+    bar = TurningStock(stock, CELL if cell is None else cell)
+    chord = np.full(len(bar.outer), -1, dtype=np.int64)
+    station = np.zeros(len(bar.outer))
+    first = 0
+    for run, points in zip(path.runs, path.chords, strict=True):
+        cut = _cut(bar, run.segments, run.cutter)
+        if cut.any():
+            starts, pieces, rows, along = pieces_of(points, PIECE)
+            nearest = _nearest(starts + 0.5 * pieces, bar, cut)
+            chord[cut] = first + rows[nearest]
+            station[cut] = path.chord_station[chord[cut]] + along[nearest]
+        first += len(points) - 1
+    return TurnedPart(path=path, bar=bar, chord=chord, station=station)
+
+
+class LoggedBar:
+    """Bar that logged positions leave. Running state.
+
+    Parameters
+    ----------
+    part : TurnedPart
+        What it is compared with.
+    stock : Stock
+    shapes : mapping
+        Shapes of tools by number; other tools remove nothing.
+    """
+
+    def __init__(
+        self, part: TurnedPart, stock: Stock, shapes: Mapping[int, Shape | None]
+    ) -> None:
+        self.bar = TurningStock(stock, part.bar.cell)
+        self._shapes = shapes
+        self._steps = SampleSteps(stock.high[2])
+        self._nearest = unmet(self.bar.outer.shape)
+
+    @property
+    def facts(self) -> LogFacts:
+        """What the log can resolve."""
+        return self._steps.facts
+
+    @property
+    def nearest(self) -> NearestSamples:
+        """Samples nearest to the surface of each cell."""
+        return self._nearest
+
+    def add(self, samples: LoggedSamples) -> None:
+        """Cut along more samples, which are later than those before."""
+        for part, steps in self._steps.pieces(samples):
+            moves = np.linalg.norm(np.diff(part.position, axis=0), axis=1) > STILL
+            kept = np.flatnonzero(np.concatenate(([True], moves)))
+            if len(kept) < 2:
+                continue
+            points = part.position[kept]
+            shape = self._shapes.get(int(part.tool[0]))
+            cut = _cut(self.bar, lines(list(points), speed=1.0), shape)
+            if cut.any():
+                index = kept[_nearest(points, self.bar, cut)]
+                self._nearest.time[cut] = part.time[index]
+                self._nearest.step[cut] = steps[index]
+                self._nearest.workingstep[cut] = part.workingstep[index]
+
+
+def turned_places(part: TurnedPart, logged: LoggedBar) -> SurfacePlaces:
+    """Compare the profiles of outside and bore."""
+    sides = [_side(part, logged, is_bore=False)]
+    if (part.bar.inner > 0.0).any() or (logged.bar.inner > 0.0).any():
+        sides.append(_side(part, logged, is_bore=True))
+    return SurfacePlaces.joined(sides)
+
+
+def turned_volumes(part: TurnedPart, logged: LoggedBar, stock: Stock) -> ComparedVolumes:
+    """Compare the volumes that the two paths remove."""
+    raw = TurningStock(stock, part.bar.cell).volume
+    area, other = (
+        np.maximum(bar.outer**2 - bar.inner**2, 0.0) for bar in (part.bar, logged.bar)
+    )
+    more = pi * part.bar.cell * (other - area)
+    return ComparedVolumes(
+        programmed=raw - part.bar.volume,
+        logged=raw - logged.bar.volume,
+        gouge=float(-np.minimum(more, 0.0).sum()),
+        excess=float(np.maximum(more, 0.0).sum()),
+    )
+
+
+def _cut(bar: TurningStock, segments: Segments, shape: Shape | None) -> Bools:
+    """Cut a bar, and return which cells have changed, (C,)."""
+    if shape is None:
+        return np.zeros(len(bar.outer), dtype=np.bool_)
+    outer, inner = bar.outer.copy(), bar.inner.copy()
+    bar.cut(segments, shape)
+    return np.asarray((outer - bar.outer > CHANGED) | (bar.inner - inner > CHANGED))
+
+
+def _nearest(points: Floats, bar: TurningStock, cut: Bools) -> Ints:
+    """Index of the point of a path nearest to the surface of each of some cells."""
+    surface = np.column_stack([bar.outer[cut], bar.z[cut]])
+    return np.asarray(cKDTree(points[:, [0, 2]]).query(surface)[1], dtype=np.int64)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ProfilePoints:
+    """P points on a programmed profile."""
+
+    radius: Floats
+    """(P,), mm"""
+    z: Floats
+    """(P,), mm"""
+    cell: Ints
+    """Cell whose cut made the surface there, (P,)."""
+    is_face: Bools
+    """(P,)"""
+    area: Floats
+    """Area that a point stands for, (P,), mm²."""
+    sign: Floats
+    """Whether there is material beyond (1), less (-1) or neither (0) in the log, (P,)."""
+
+
+def _side(part: TurnedPart, logged: LoggedBar, *, is_bore: bool) -> SurfacePlaces:
+    """Compare one profile; in a bore material lies outside."""
+    bar, path = part.bar, part.path
+    radius = bar.inner if is_bore else bar.outer
+    other = logged.bar.inner if is_bore else logged.bar.outer
+    parts = (_along(radius, other, bar), _steps(radius, other, bar))
+    points = ProfilePoints(**{
+        name: np.concatenate([getattr(each, name) for each in parts])
+        for name in ProfilePoints.__slots__
+    })
+    place = np.column_stack([points.radius, points.z])
+    away = _distance(place, np.column_stack([other, bar.z]), bar.cell)
+    chord = part.chord[points.cell]
+    segment, is_cut = path.segment[np.maximum(chord, 0)], chord >= 0
+    noses = [run.cutter.nose_radius for run in path.runs if isinstance(run.cutter, Insert)]
+    reach = PIECE + max(noses, default=0.0)
+    step = logged.nearest.step[points.cell]
+    bend = path_uncertainty(path, part.station[points.cell], step, reach=reach)
+    limit = rounding_uncertainty(logged.facts) + LIMIT + bar.cell * points.is_face
+    return SurfacePlaces(
+        is_wall=points.is_face,
+        position=np.column_stack([points.radius, np.zeros(len(place)), points.z]),
+        deviation=(-points.sign if is_bore else points.sign) * away,
+        uncertainty=np.where(is_cut, bend, 0.0) + limit,
+        area=points.area,
+        workingstep=np.where(is_cut, path.workingstep[segment], -1),
+        block=np.where(is_cut, path.block[segment], 0),
+        time=logged.nearest.time[points.cell],
+        cut_by=logged.nearest.workingstep[points.cell],
+    )
+
+
+def _along(radius: Floats, other: Floats, bar: TurningStock) -> ProfilePoints:
+    """Points in the middles of cells, where anything is left."""
+    slope = np.abs(np.gradient(radius, bar.cell))
+    kept = np.flatnonzero(radius > 0.0)
+    area = 2.0 * pi * radius * bar.cell * np.sqrt(1.0 + np.minimum(slope, STEEP) ** 2)
+    return ProfilePoints(
+        radius=radius[kept],
+        z=bar.z[kept],
+        cell=kept,
+        is_face=(slope > STEEP)[kept],
+        area=area[kept],
+        sign=np.sign(other - radius)[kept],
+    )
+
+
+def _steps(radius: Floats, other: Floats, bar: TurningStock) -> ProfilePoints:
+    """Points on faces, between cells whose radii differ by more than their length."""
+    step = np.diff(radius)
+    rows = np.flatnonzero(np.abs(step) > 2.0 * STEEP * bar.cell)
+    counts = np.ceil(np.abs(step[rows]) / PIECE).astype(np.int64)
+    cell = np.repeat(rows, counts)
+    index = np.arange(len(cell)) - np.repeat(np.cumsum(counts) - counts, counts)
+    wide = step[cell] / np.repeat(counts, counts)
+    level = radius[cell] + (index + 0.5) * wide
+    low = np.minimum(other[cell], other[cell + 1])
+    high = np.maximum(other[cell], other[cell + 1])
+    return ProfilePoints(
+        radius=level,
+        z=bar.z[cell] + 0.5 * bar.cell,
+        # The cell with the smaller radius was cut.
+        cell=np.where(wide > 0.0, cell, cell + 1),
+        is_face=np.ones(len(cell), dtype=np.bool_),
+        area=2.0 * pi * level * np.abs(wide),
+        sign=np.where(level < low, 1.0, np.where(level > high, -1.0, 0.0)),
+    )
+
+
+def _distance(points: Floats, profile: Floats, cell: float) -> Floats:
+    """Distance of points from a profile of lines, (C,), mm; at most ``FAR``."""
+    start, piece, _, _ = pieces_of(profile, cell)
+    best = cKDTree(start + 0.5 * piece).query(points, k=3)[1]
+    start, piece = start[best], piece[best]
+    square = np.maximum(np.sum(piece * piece, axis=2), 1e-18)
+    share = np.clip(np.sum((points[:, None] - start) * piece, axis=2) / square, 0.0, 1.0)
+    near = start + share[:, :, None] * piece
+    away = np.linalg.norm(points[:, None] - near, axis=2).min(axis=1)
+    return np.asarray(np.minimum(away, FAR))

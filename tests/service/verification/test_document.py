@@ -1,0 +1,56 @@
+"""Documents and SHDR lines as tables."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from service.recording.signals import POSITIONS
+from service.verification.document import table_of
+from service.verification.log import LogFile
+from simulator.library import load_machine
+from stepnc_model.errors import StepNcError
+from tests.service.verification.test_log import ONE
+
+VMC15 = load_machine("vmc15")
+LINES = """\
+2026-01-01T00:00:00.000Z|xpos|1.0|ypos|2.0|zpos|3.0
+2026-01-01T00:00:00.100Z|xpos|1.5
+2026-01-01T00:00:00.200Z|ypos|2.5
+2026-01-01T00:00:00.300Z|xpos|UNAVAILABLE
+2026-01-01T00:00:00.400Z|xpos|2.5|ypos|2.5
+"""
+
+
+def lines_of(folder: Path, text: str = LINES) -> Path:
+    path = folder / "run.log"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_values_are_held_until_the_next_one(tmp_path: Path) -> None:
+    table = table_of(lines_of(tmp_path), VMC15, POSITIONS)
+    assert table.column("time_s").to_pylist() == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.4])
+    x, y, z = (table.column(name).to_numpy() for name in POSITIONS)
+    assert x[[0, 1, 2, 4]].tolist() == [1.0, 1.5, 1.5, 2.5]
+    assert np.isnan(x[3])
+    assert y.tolist() == [2.0, 2.0, 2.5, 2.5, 2.5]
+    assert z.tolist() == [3.0] * 5
+
+
+def test_a_log_of_lines_is_read_like_a_table(tmp_path: Path) -> None:
+    (samples,) = LogFile(path=lines_of(tmp_path), names=ONE, machine=VMC15).pieces()
+    assert samples.position[:, 0].tolist() == pytest.approx([1.0, 1.5, 1.5, 2.0, 2.5])
+
+
+def test_a_log_without_positions_says_so(tmp_path: Path) -> None:
+    path = lines_of(tmp_path, "2026-01-01T00:00:00.000Z|exec|ACTIVE\n")
+    with pytest.raises(StepNcError):
+        list(LogFile(path=path, names=ONE, machine=VMC15).pieces())
+
+
+def test_a_damaged_document_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "run.xml"
+    path.write_text("<a>", encoding="utf-8")
+    with pytest.raises(StepNcError, match=r"run\.xml"):
+        table_of(path, VMC15, POSITIONS)

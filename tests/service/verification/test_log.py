@@ -1,0 +1,78 @@
+"""Logs that cannot be read say where and why; those that can lack values are completed."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from service.verification.log import LogFile, ProgramNames, thinned
+from stepnc_model.errors import StepNcError
+
+HEAD = "time_s,x_axis_position_actual,y_axis_position_actual,z_axis_position_actual"
+NAMES = ProgramNames(
+    workingsteps={"A": 0, "B": 1}, tool_of={0: 3, 1: 4}, tools=frozenset({3, 4})
+)
+ONE = ProgramNames(workingsteps={"A": 0}, tool_of={0: 3}, tools=frozenset({3}))
+
+
+def log_of(folder: Path, text: str, names: ProgramNames = ONE) -> LogFile:
+    path = folder / "log.csv"
+    path.write_text(text, encoding="utf-8")
+    return LogFile(path=path, names=names)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (f"{HEAD}\n", "no rows"),
+        ("time_s,x_axis_position_actual\n0,1\n", "no column y_axis_position_actual"),
+        (f"{HEAD}\n0,1,1,1\n2,1,1,1\n1,1,1,1\n", r"row 3: time 1 s: it must not be before 2 s"),
+        (f"{HEAD}\n0,1,1,\n1,1,1,\n", "z_axis_position_actual has no values"),
+        (f"{HEAD}\n0,1,one,1\n", "cannot be read"),
+    ],
+)
+def test_a_bad_log_is_refused(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(StepNcError, match=message):
+        list(log_of(tmp_path, text).pieces())
+
+
+def test_a_log_that_does_not_show_tool_changes_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(StepNcError, match="the program uses 2 tools"):
+        log_of(tmp_path, f"{HEAD}\n0,1,1,1\n", NAMES)
+
+
+def test_a_file_of_another_kind_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(StepNcError, match="expected positions in a file of"):
+        LogFile(path=tmp_path / "log.txt", names=ONE)
+
+
+def test_axes_stamped_separately_are_interpolated(tmp_path: Path) -> None:
+    rows = ("0,0,0,5", "1,,2,", "2,4,,5", "3,,6,", "4,8,8,5")
+    file = log_of(tmp_path, "\n".join((HEAD, *rows)))
+    (samples,) = file.pieces()
+    assert samples.position[:, 0].tolist() == [0.0, 2.0, 4.0, 6.0, 8.0]
+    assert samples.position[:, 1].tolist() == [0.0, 2.0, 4.0, 6.0, 8.0]
+    assert file.unknown == 3
+
+
+def test_tools_follow_from_workingsteps(tmp_path: Path) -> None:
+    rows = ("0,0,0,5,", "1,1,2,5,A", "1,2,2,5,B")
+    file = log_of(tmp_path, "\n".join((f"{HEAD},workingstep", *rows)), NAMES)
+    (samples,) = file.pieces()
+    assert samples.tool.tolist() == [0, 3, 4]
+    assert samples.workingstep.tolist() == [-1, 0, 1]
+    assert file.equal_times == 1
+
+
+def test_the_zero_is_taken_off(tmp_path: Path) -> None:
+    file = log_of(tmp_path, f"{HEAD}\n0,1,2,3\n1,2,2,3\n")
+    file.zero = (1.0, 2.0, -3.0)
+    (samples,) = file.pieces()
+    assert samples.position[0].tolist() == [0.0, 0.0, 6.0]
+
+
+def test_a_survey_is_bounded_and_spread(tmp_path: Path) -> None:
+    rows = "\n".join(f"{row},{row},0,0" for row in range(5000))
+    kept = np.concatenate(thinned(log_of(tmp_path, f"{HEAD}\n{rows}").pieces(), most=100))
+    assert 50 <= len(kept) <= 100
+    assert np.ptp(kept[:, 0]) > 4800.0

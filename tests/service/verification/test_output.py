@@ -1,0 +1,45 @@
+"""Text and JSON of a verification."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from service.recording.table import headings
+from service.verification.output import (
+    print_verification,
+    verification_json,
+    verification_page,
+    write_places,
+)
+from tests.service.verification.runs import clean
+
+
+def test_text_and_json_say_the_same(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found = clean(tmp_path)
+    print_verification(found)
+    text = capsys.readouterr().out
+    assert "verdict: nothing beyond the uncertainty of the log" in text
+    assert "position feedback does not see" in text
+    assert "at 10 Hz" in text
+    body = json.loads(verification_json(found))
+    assert body["verdict"] == "nothing beyond the uncertainty of the log"
+    assert not body["has_errors"]
+    assert {"gouge_mm", "excess_mm", "gouge_at_mm"} <= set(body["surfaces"][0])
+    assert body["resolution"]["square_corner_mm"] == pytest.approx(0.5893, abs=1e-3)
+
+
+def test_the_page_has_both_pictures_and_loads_nothing(tmp_path: Path) -> None:
+    page = verification_page(clean(tmp_path))
+    assert 'id="plan"' in page
+    assert 'id="space"' in page
+    assert "nothing beyond the uncertainty of the log" in page
+    assert "<script src=" not in page
+
+
+def test_places_are_written_with_their_units(tmp_path: Path) -> None:
+    found = clean(tmp_path)
+    count = write_places(tmp_path / "places.csv", found)
+    assert count == int(found.places.is_wall.sum())
+    names = headings(tmp_path / "places.csv")
+    assert names[:5] == ["x_mm", "y_mm", "z_mm", "deviation_mm", "uncertainty_mm"]

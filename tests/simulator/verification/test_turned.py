@@ -1,0 +1,62 @@
+"""Turned parts: a shoulder, by a sharp right-hand insert."""
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from simulator.motion.segments import Floats, lines
+from simulator.removal.cutter import Insert
+from simulator.verification.deviation import SurfacePlaces
+from simulator.verification.path import ProgrammedRun, programmed_path
+from simulator.verification.turned import LoggedBar, turned_part, turned_places, turned_volumes
+from stepnc_model.program import Stock
+from tests.simulator.verification.block import sampled, samples_at
+
+BAR = Stock(low=(-20.0, -20.0, -50.0), high=(20.0, 20.0, 0.0), radius=20.0)
+INSERT = Insert(nose_radius=0.0)
+WAY = ((15.0, 0.0, 2.0), (15.0, 0.0, -30.0), (25.0, 0.0, -30.0))
+RUN = ProgrammedRun(
+    cutter=INSERT,
+    tool=1,
+    workingstep=0,
+    segments=lines([list(each) for each in WAY], speed=5.0),
+)
+PART = turned_part(programmed_path([RUN]), BAR)
+
+
+def logged(points: Floats) -> LoggedBar:
+    left = LoggedBar(PART, BAR, {1: INSERT})
+    left.add(samples_at(points))
+    return left
+
+
+def places_of(points: Floats) -> SurfacePlaces:
+    return turned_places(PART, logged(points))
+
+
+def test_a_log_without_errors_stays_within_its_uncertainty() -> None:
+    assert not places_of(sampled(WAY, 0.4371)).is_beyond.any()
+
+
+@pytest.mark.parametrize("size", [0.15, 0.0254])
+def test_an_offset_in_radius_is_an_excess_on_the_diameter(size: float) -> None:
+    places = places_of(sampled(WAY, 0.0437123) + np.array([size, 0.0, 0.0]))
+    own = places[~places.is_wall & (places.workingstep == 0) & (places.position[:, 2] > -29.0)]
+    assert own.deviation == pytest.approx(size, abs=1e-6)
+    assert own.is_beyond.all()
+
+
+def test_an_offset_along_the_axis_is_a_gouge_on_the_face_to_a_cell() -> None:
+    places = places_of(sampled(WAY, 0.0437123) + np.array([0.0, 0.0, -0.15]))
+    face = places[places.is_wall & places.is_beyond]
+    assert len(face)
+    assert -face.deviation.min() == pytest.approx(0.15, abs=PART.bar.cell)
+
+
+def test_volumes_are_those_of_rings() -> None:
+    found = turned_volumes(PART, logged(sampled(WAY, 0.4) + np.array([0.5, 0.0, 0.0])), BAR)
+    assert found.programmed == pytest.approx(pi * (20.0**2 - 15.0**2) * 30.0, rel=1e-6)
+    ring = pi * (15.5**2 - 15.0**2) * 30.0
+    assert found.excess == pytest.approx(ring, rel=1e-3)
+    assert found.gouge == pytest.approx(0.0, abs=1e-6)
