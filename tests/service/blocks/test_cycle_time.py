@@ -98,7 +98,7 @@ def test_doubts_are_told(tmp_path: Path) -> None:
         ({"file": Path("none.ngc")}, "none.ngc"),
         ({"output": Path("x.txt")}, "unknown file extension"),
         ({"machine": "paper002"}, "no data for its axes"),
-        ({"log": "none.csv"}, "cannot be read"),
+        ({"log": "none.csv"}, "no such file"),
     ],
 )
 def test_bad_input_is_told(tmp_path: Path, change: dict[str, object], message: str) -> None:
