@@ -17,7 +17,7 @@ from benchmarks.verification import (
     offset,
 )
 from service.verification.facts import surface_deviations
-from service.verification.run import verified, verify
+from service.verification.run import VerificationInputs, verified, verify
 from simulator.verification.deviation import SurfaceKind
 from stepnc_model.errors import StepNcError
 from tests.service.verification.runs import (
@@ -98,7 +98,12 @@ def test_measured_tools_must_be_of_the_program(tmp_path: Path) -> None:
     table = tmp_path / "tools.toml"
     table.write_text('[[tool]]\nnumber = 40\nkind = "endmill"\ndiameter_mm = 10\n', "utf-8")
     with pytest.raises(StepNcError, match="T40 is not in the program"):
-        verify(tmp_path / "log.parquet", BRACKET, REQUEST, tools=table)
+        verify(
+            tmp_path / "log.parquet",
+            BRACKET,
+            REQUEST,
+            inputs=VerificationInputs(tools=table),
+        )
 
 
 @pytest.mark.parametrize("error", SHAFT_ERRORS, ids=lambda error: f"{error.name} {error.size}")
