@@ -145,7 +145,10 @@ def verified(
     file = LogFile(path=log, names=program.names, machine=program.machine)
     file.zero, findings = _zero(request.zero, file, program)
     compared = _turned if program.is_turned else _milled
-    found = compared(program, file, request.cell_mm, tell)
+    try:
+        found = compared(program, file, request.cell_mm, tell)
+    except ValueError as error:
+        raise StepNcError(f"{program.name}: {error}") from error
     bent: dict[str, float] = {}
     if request.has_deflection:
         totals = run_of_program(program.program, program.machine, program.material, tell=tell)

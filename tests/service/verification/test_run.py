@@ -20,6 +20,7 @@ from service.verification.facts import surface_deviations
 from service.verification.run import VerificationInputs, verified, verify
 from simulator.verification.deviation import SurfaceKind
 from stepnc_model.errors import StepNcError
+from stepnc_model.program import Stock
 from tests.service.verification.runs import (
     REQUEST,
     fast_log,
@@ -120,3 +121,10 @@ def test_the_predicted_deflection_is_added_to_walls(tmp_path: Path) -> None:
     found_bent = bent["FINISH POCKET", SurfaceKind.WALL]
     assert found_bent is not None
     assert 0.001 < found_bent < 0.1
+
+
+def test_a_stock_beside_the_path_is_refused(tmp_path: Path) -> None:
+    path = fast_log().write(tmp_path / "log.parquet", program())
+    beside = Stock(low=(1000.0, 0.0, -40.0), high=(1100.0, 90.0, 0.0))
+    with pytest.raises(StepNcError, match="leaves no wall"):
+        verified(path, replace(program(), stock=beside), REQUEST)
