@@ -50,6 +50,7 @@ SLOW = (
     "service/test_terminal.py",
     "service/test_usecases.py",
     "service/trial/test_run.py",
+    "service/verification/test_run.py",
     "simulator/calibration/test_fit.py",
     "simulator/removal/test_lathe_carve.py",
     "simulator/test_matching.py",

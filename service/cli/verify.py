@@ -37,6 +37,12 @@ def _verify_options(parser: argparse.ArgumentParser) -> None:
         help="tool table with the measured tools, by the program's numbers",
     )
     add(
+        "--required",
+        type=Path,
+        metavar="STL",
+        help="required part in coordinates of the setup, mm, in place of the features",
+    )
+    add(
         "-o",
         "--output",
         type=Path,
@@ -56,7 +62,7 @@ def _verify(options: argparse.Namespace) -> int:
     from service.requests.verification import VerificationRequest
     from service.run_file import require_suffix
     from service.terminal import tell
-    from service.verification.run import verify
+    from service.verification.run import VerificationInputs, verify
 
     request = from_options(VerificationRequest, options)
     outputs = [each for each in (options.output, options.report) if each is not None]
@@ -66,7 +72,13 @@ def _verify(options: argparse.Namespace) -> int:
     if options.output is not None:
         require_suffix(options.output)
     with interruptible():
-        found = verify(options.log, options.program, request, tools=options.tools, tell=tell)
+        found = verify(
+            options.log,
+            options.program,
+            request,
+            inputs=VerificationInputs(tools=options.tools, required=options.required),
+            tell=tell,
+        )
     if options.report is not None:
         from service.verification.output import verification_page
 

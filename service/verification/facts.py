@@ -15,6 +15,7 @@ from simulator.verification.deviation import (
     rounding_uncertainty,
     smallest_arc,
 )
+from simulator.verification.surface import EXACT
 
 BANDS = (0.005, 0.01, 0.0254, 0.05, 0.1, 0.2, 0.5)
 """Half widths of the tolerance bands, mm."""
@@ -170,9 +171,9 @@ def tolerance_bands(found: Verification) -> tuple[ToleranceBand, ...]:
 
 
 def log_resolution(found: Verification) -> LogResolution:
-    """What the log can resolve, by its usual step and its rounding."""
+    """What the log can resolve, by its usual step, its rounding and the limit of the method."""
     facts = found.facts
-    rounding, radius = rounding_uncertainty(facts), smallest_arc(found.path)
+    rounding, radius = rounding_uncertainty(facts) + EXACT, smallest_arc(found.path)
     return LogResolution(
         step=found.step,
         straight=rounding,

@@ -17,7 +17,7 @@ from service.recording.table import TABLES, batches, headings
 from service.verification.axes import without_held
 from service.verification.document import SUFFIXES, table_of
 from simulator.client.columns import TIME
-from simulator.motion.segments import Floats, Ints
+from simulator.motion.segments import AXES, Floats, Ints
 from simulator.spec import Machine
 from simulator.verification.logged import LoggedSamples, joined
 from stepnc_model.errors import StepNcError
@@ -64,7 +64,7 @@ class LogFile:
         self._names = (
             headings(self.path) if self._document is None else self._document.column_names
         )
-        for needed in (TIME, *POSITIONS):
+        for needed in (TIME, *self._positions):
             if needed not in self._names:
                 raise StepNcError(f"{self.path}: no column {needed}")
         has_tools = TOOL in self._names or WORKINGSTEP in self._names
@@ -73,6 +73,14 @@ class LogFile:
                 f"{self.path}: no column {TOOL} or {WORKINGSTEP}: the program uses "
                 f"{len(self.names.tools)} tools, and the log does not show when they change"
             )
+
+    @property
+    def _positions(self) -> tuple[str, ...]:
+        """Columns of the axes; a lathe without Y stays at 0."""
+        axes = None if self.machine is None else {axis.name for axis in self.machine.axes}
+        if axes is None or not axes:
+            return POSITIONS
+        return tuple(name for axis, name in zip(AXES, POSITIONS, strict=True) if axis in axes)
 
     def _read_document(self) -> pa.Table | None:
         """Read a document whole; None for a table, which is read in pieces."""
@@ -122,7 +130,7 @@ class LogFile:
                 yield whole
 
     def _kinds(self) -> dict[str, pa.DataType]:
-        kinds = dict.fromkeys((TIME, *POSITIONS), pa.float64())
+        kinds = dict.fromkeys((TIME, *self._positions), pa.float64())
         if TOOL in self._names:
             kinds[TOOL] = pa.float64()
         if WORKINGSTEP in self._names:
@@ -130,10 +138,11 @@ class LogFile:
         return kinds
 
     def _samples(self, batch: pa.RecordBatch) -> LoggedSamples:
-        position = np.column_stack([
-            np.asarray(batch.column(name).to_numpy(zero_copy_only=False), dtype=np.float64)
-            for name in POSITIONS
-        ]) - np.array(self.zero)
+        position = np.zeros((batch.num_rows, len(POSITIONS)))
+        for axis, name in enumerate(POSITIONS):
+            if name in self._positions:
+                position[:, axis] = batch.column(name).to_numpy(zero_copy_only=False)
+        position -= np.array(self.zero)
         steps = self._workingsteps(batch)
         return LoggedSamples(
             time=np.asarray(batch.column(TIME).to_numpy(zero_copy_only=False)),

@@ -7,9 +7,13 @@ import numpy as np
 from service.verification.prepared import PreparedProgram
 from simulator.motion.segments import Floats
 from simulator.verification.deviation import SurfacePlaces
+from simulator.verification.mesh import height_deviation, outline_at
 from simulator.verification.nominal import NominalOutline, floor_deviation, wall_deviation
 from stepnc_model.toolpath.milling.contour import Chain
 from stepnc_model.toolpath.milling.nominal import NominalWall, nominal_walls
+
+LEVEL = 3
+"""Decimals of a millimetre to which the levels of walls are rounded."""
 
 LONGEST = 0.01
 """Greatest angle of one line of an arc, rad: 0.1 µm on a radius of 10 mm."""
@@ -39,6 +43,30 @@ def nominal_deviation(
         rows = np.flatnonzero(own & places.is_wall)
         if len(rows):
             found[rows] = _walls(places.position[rows], normal[rows], walls)
+    return found
+
+
+def required_deviation(triangles: Floats, places: SurfacePlaces, normal: Floats) -> Floats:
+    """Deviation of the programmed surface from a required part, (N,), mm; NaN: none near.
+
+    Parameters
+    ----------
+    triangles : (T, 3, 3) array, mm
+        Required part in the coordinates of the setup.
+    places : SurfacePlaces
+        Those on walls first.
+    normal : (P, 2) array
+        Direction from the air into the material at the places on walls.
+    """
+    found = np.full(len(places), np.nan)
+    floors = np.flatnonzero(~places.is_wall & (places.workingstep >= 0))
+    found[floors] = height_deviation(places.position[floors], triangles)
+    walls = np.flatnonzero(places.is_wall)
+    levels, level = np.unique(places.position[walls, 2].round(LEVEL), return_inverse=True)
+    for index, height in enumerate(levels.tolist()):
+        rows = walls[level == index]
+        outline = outline_at(triangles, height)
+        found[rows] = wall_deviation(places.position[rows, :2], normal[rows], outline)
     return found
 
 

@@ -9,6 +9,7 @@ from service.simulation.setup import PreparedRun, from_program
 from service.verification.log import ProgramNames
 from simulator.machine.acts import MoveStretch, ToolTo, WorkingstepTo
 from simulator.machine.interpreter import interpret
+from simulator.motion.segments import Floats
 from simulator.removal.cutter import Cutter, Insert
 from simulator.spec import Machine, MachineKind, MaterialMatch
 from simulator.tool_table import read_tool_table
@@ -38,6 +39,8 @@ class PreparedProgram:
     steps: tuple[StepName, ...]
     cutters: dict[int, Cutter | Insert | None]
     """Shapes of the tools by number."""
+    required: Floats | None = None
+    """Triangles of the required part, (T, 3, 3), mm; None: the nominal features count."""
 
     @property
     def is_turned(self) -> bool:

@@ -1,7 +1,7 @@
 """Verification of logged positions, for the command ``verify``."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +12,9 @@ from service.requests.fields import require_bounds
 from service.requests.verification import VerificationRequest
 from service.simulation.run import run_of_program
 from service.verification.log import LogFile, thinned
-from service.verification.nominal import nominal_deviation
+from service.verification.nominal import nominal_deviation, required_deviation
 from service.verification.prepared import PreparedProgram, StepName, prepared, with_tools
+from service.verification.stl import read_stl
 from simulator.motion.segments import Floats
 from simulator.removal.cutter import Cutter
 from simulator.spec import Machine
@@ -90,12 +91,22 @@ class Verification:
         return bool((self.places.is_beyond & (size >= self.tolerance - 1e-9)).any())
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VerificationInputs:
+    """Files besides log and program."""
+
+    tools: Path | None = None
+    """Tool table with measured tools."""
+    required: Path | None = None
+    """STL file of the required part, in the coordinates of the setup."""
+
+
 def verify(
     log: Path,
     program: Path,
     request: VerificationRequest,
     *,
-    tools: Path | None = None,
+    inputs: VerificationInputs | None = None,
     tell: Tell = silent,
 ) -> Verification:
     """Compare the part that logged positions leave with the programmed one.
@@ -107,8 +118,13 @@ def verify(
     """
     require_bounds(request)
     ready = prepared(program, request, tell=tell)
-    if tools is not None:
-        ready = with_tools(ready, tools)
+    given = inputs or VerificationInputs()
+    if given.tools is not None:
+        ready = with_tools(ready, given.tools)
+    if given.required is not None:
+        if ready.is_turned:
+            raise StepNcError(f"{given.required}: a turned part has no required part yet")
+        ready = replace(ready, required=read_stl(given.required))
     return verified(log, ready, request, tell=tell)
 
 
@@ -129,7 +145,10 @@ def verified(
     file = LogFile(path=log, names=program.names, machine=program.machine)
     file.zero, findings = _zero(request.zero, file, program)
     compared = _turned if program.is_turned else _milled
-    found = compared(program, file, request.cell_mm, tell)
+    try:
+        found = compared(program, file, request.cell_mm, tell)
+    except ValueError as error:
+        raise StepNcError(f"{program.name}: {error}") from error
     bent: dict[str, float] = {}
     if request.has_deflection:
         totals = run_of_program(program.program, program.machine, program.material, tell=tell)
@@ -182,7 +201,11 @@ def _milled(
     places = surface_places(part, left)
     return ComparedParts(
         places=places,
-        nominal=nominal_deviation(program, places, part.walls.normal),
+        nominal=(
+            nominal_deviation(program, places, part.walls.normal)
+            if program.required is None
+            else required_deviation(program.required, places, part.walls.normal)
+        ),
         volumes=compared_volumes(part, left),
         facts=left.facts,
         step=_usual(left.walls, left.floors),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from service.verification.log import LogFile, ProgramNames, thinned
+from simulator.library import load_machine
 from stepnc_model.errors import StepNcError
 
 HEAD = "time_s,x_axis_position_actual,y_axis_position_actual,z_axis_position_actual"
@@ -76,3 +77,11 @@ def test_a_survey_is_bounded_and_spread(tmp_path: Path) -> None:
     kept = np.concatenate(thinned(log_of(tmp_path, f"{HEAD}\n{rows}").pieces(), most=100))
     assert 50 <= len(kept) <= 100
     assert np.ptp(kept[:, 0]) > 4800.0
+
+
+def test_a_lathe_without_y_stays_in_its_plane(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(f"{HEAD.replace('y_axis_position_actual,', '')}\n0,1,3\n1,2,3\n", "utf-8")
+    file = LogFile(path=path, names=ONE, machine=load_machine("lathe22"))
+    (samples,) = file.pieces()
+    assert samples.position.tolist() == [[1.0, 0.0, 3.0], [2.0, 0.0, 3.0]]

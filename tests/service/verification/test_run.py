@@ -17,9 +17,10 @@ from benchmarks.verification import (
     offset,
 )
 from service.verification.facts import surface_deviations
-from service.verification.run import verified, verify
+from service.verification.run import VerificationInputs, verified, verify
 from simulator.verification.deviation import SurfaceKind
 from stepnc_model.errors import StepNcError
+from stepnc_model.program import Stock
 from tests.service.verification.runs import (
     REQUEST,
     fast_log,
@@ -98,7 +99,12 @@ def test_measured_tools_must_be_of_the_program(tmp_path: Path) -> None:
     table = tmp_path / "tools.toml"
     table.write_text('[[tool]]\nnumber = 40\nkind = "endmill"\ndiameter_mm = 10\n', "utf-8")
     with pytest.raises(StepNcError, match="T40 is not in the program"):
-        verify(tmp_path / "log.parquet", BRACKET, REQUEST, tools=table)
+        verify(
+            tmp_path / "log.parquet",
+            BRACKET,
+            REQUEST,
+            inputs=VerificationInputs(tools=table),
+        )
 
 
 @pytest.mark.parametrize("error", SHAFT_ERRORS, ids=lambda error: f"{error.name} {error.size}")
@@ -115,3 +121,10 @@ def test_the_predicted_deflection_is_added_to_walls(tmp_path: Path) -> None:
     found_bent = bent["FINISH POCKET", SurfaceKind.WALL]
     assert found_bent is not None
     assert 0.001 < found_bent < 0.1
+
+
+def test_a_stock_beside_the_path_is_refused(tmp_path: Path) -> None:
+    path = fast_log().write(tmp_path / "log.parquet", program())
+    beside = Stock(low=(1000.0, 0.0, -40.0), high=(1100.0, 90.0, 0.0))
+    with pytest.raises(StepNcError, match="leaves no wall"):
+        verified(path, replace(program(), stock=beside), REQUEST)

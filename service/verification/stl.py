@@ -1,0 +1,61 @@
+"""Triangles of an STL file, binary or text, in mm."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from service.files import read_bytes
+from simulator.motion.segments import Floats
+from stepnc_model.errors import StepNcError
+
+HEADER, RECORD = 84, 50
+"""Bytes before the first triangle of a binary file, and of each triangle."""
+
+MOST_TRIANGLES = 200_000
+
+VERTEX = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)")
+
+
+def read_stl(path: Path) -> Floats:
+    """Read the corners of the triangles, (T, 3, 3), mm.
+
+    Raises
+    ------
+    StepNcError
+        When the file cannot be read, is damaged, or has too many triangles.
+    """
+    content = read_bytes(path)
+    triangles = _binary(content) if _is_binary(content) else _text(path, content)
+    if not len(triangles):
+        raise StepNcError(f"{path}: no triangles: expected an STL file")
+    if len(triangles) > MOST_TRIANGLES:
+        raise StepNcError(
+            f"{path}: {len(triangles)} triangles; at most {MOST_TRIANGLES} are accepted"
+        )
+    if not np.isfinite(triangles).all():
+        raise StepNcError(f"{path}: a corner of a triangle is not finite")
+    return triangles
+
+
+def _is_binary(content: bytes) -> bool:
+    if len(content) < HEADER:
+        return False
+    count = int.from_bytes(content[HEADER - 4 : HEADER], "little")
+    return len(content) == HEADER + RECORD * count
+
+
+def _binary(content: bytes) -> Floats:
+    kind = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")])
+    records = np.frombuffer(content, dtype=kind, offset=HEADER)
+    return np.asarray(records["corners"], dtype=np.float64)
+
+
+def _text(path: Path, content: bytes) -> Floats:
+    try:
+        found = [[float(each) for each in match] for match in VERTEX.findall(content)]
+    except ValueError as error:
+        raise StepNcError(f"{path}: damaged vertex: {error}") from error
+    if len(found) % 3:
+        raise StepNcError(f"{path}: {len(found)} vertices: triangles have three each")
+    return np.array(found, dtype=np.float64).reshape(-1, 3, 3)

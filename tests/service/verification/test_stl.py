@@ -1,0 +1,53 @@
+"""STL files, binary and text."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from service.verification.stl import read_stl
+from stepnc_model.errors import StepNcError
+from tests.simulator.verification.box import box
+
+BOX = box((0.0, 0.0, -10.0), (40.0, 20.0, 0.0))
+
+
+def text_of(triangles: np.ndarray) -> str:
+    facets = "".join(
+        "facet normal 0 0 1\nouter loop\n"
+        + "".join(f"vertex {x} {y} {z}\n" for x, y, z in triangle)
+        + "endloop\nendfacet\n"
+        for triangle in triangles.tolist()
+    )
+    return f"solid box\n{facets}endsolid box\n"
+
+
+def test_text_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "box.stl"
+    path.write_text(text_of(BOX), encoding="utf-8")
+    assert np.array_equal(read_stl(path), BOX)
+
+
+def test_binary_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "box.stl"
+    kind = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")])
+    records = np.zeros(len(BOX), dtype=kind)
+    records["corners"] = BOX
+    path.write_bytes(bytes(80) + len(BOX).to_bytes(4, "little") + records.tobytes())
+    assert np.array_equal(read_stl(path), BOX)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "no triangles"),
+        ("vertex 1 2 3\nvertex 1 2 3\n", "triangles have three"),
+        ("vertex 1 2 x\n", "damaged vertex"),
+        ("vertex 1 2 nan\n" * 3, "not finite"),
+    ],
+)
+def test_damaged_files_are_refused(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "box.stl"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(StepNcError, match=message):
+        read_stl(path)
