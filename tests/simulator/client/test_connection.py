@@ -194,9 +194,8 @@ def test_another_thread_ends_what_a_client_waits_for(serve: Serve) -> None:
     while thread.is_alive() and time.monotonic() < deadline:
         client.interrupt()
         thread.join(0.05)
-    # The other end may have reset the connection in the meantime.
-    assert len(found) == 1
-    assert found[0].fault in {"the stream has ended", "Connection reset by peer"}
+    # In words of the place where the connection was just then.
+    assert [bool(part.fault) for part in found] == [True]
     client.interrupt()
 
 
