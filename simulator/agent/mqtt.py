@@ -232,9 +232,9 @@ class MqttPublisher:
             last = self._client.publish(
                 self._availability, b"UNAVAILABLE", qos=AT_LEAST_ONCE, retain=True
             )
-            with suppress(RuntimeError, ValueError):
+            with suppress(RuntimeError, ValueError):  # the broker has gone just now
                 last.wait_for_publish(FAREWELL)
-            is_stuck = not last.is_published()
+                is_stuck = not last.is_published()
         self._client.disconnect()
         if not is_stuck:  # else its thread would wait for the broker; it ends with the process
             self._client.loop_stop()
