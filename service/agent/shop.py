@@ -71,12 +71,8 @@ class _Tail:
     held: dict[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _News:
-    """Observations of one data item each, in the order of time."""
-
-    rows: Sequence[tuple[str, int, Value]]
-    """Id of the data item, stamp and value."""
+_News = Sequence[tuple[str, int, Value]]
+"""Id of the data item, stamp and value of observations, in the order of time."""
 
 
 class ShopAgent:
@@ -118,7 +114,7 @@ class ShopAgent:
 
     def _add(self, news: _News) -> None:
         index = self.agent.model.index
-        known = [row for row in news.rows if row[0] in index]
+        known = [row for row in news if row[0] in index]
         self.agent.add(
             np.array([index[id] for id, _, _ in known], dtype=np.int64),
             np.array([stamp for _, stamp, _ in known], dtype=np.int64),
@@ -148,14 +144,14 @@ class ShopAgent:
             self._tails[tail.machine] = tail
             yield self._begun(tail, status)
         if tail.job == job.id:
-            yield _News(rows=self._rows(tail, folder, status))
+            yield self._rows(tail, folder, status)
 
     def _begun(self, tail: _Tail, status: Mapping[str, Any]) -> _News:
         first = beginning(
             self._shown[tail.machine], program=str(status.get("program", "")), part_count=0
         )
         first |= {f"{tail.machine}_exec": "ACTIVE"}
-        return _News(rows=[(id, tail.stamp, value) for id, value in first.items()])
+        return [(id, tail.stamp, value) for id, value in first.items()]
 
     def _rows(
         self, tail: _Tail, folder: LiveFolder, status: Mapping[str, Any]
@@ -197,9 +193,7 @@ class ShopAgent:
             "feed": 0,
         }
         stamp = max(now(), tail.stamp)
-        return _News(
-            rows=[(f"{tail.machine}_{short}", stamp, value) for short, value in words.items()]
-        )
+        return [(f"{tail.machine}_{short}", stamp, value) for short, value in words.items()]
 
 
 def _name(shown: MachineModel) -> str:

@@ -178,11 +178,11 @@ def prepare(
     bench = replace(
         found.bench, efficiency=virtual.machine.spindle.efficiency, seed=request.seed
     )
-    machine: ControlledMachine | RecordedMachine
-    if signals is None:
-        machine = ControlledMachine(course, found.hidden, bench)
-    else:
-        machine = RecordedMachine(course, signals)
+    machine = (
+        ControlledMachine(course, found.hidden, bench)
+        if signals is None
+        else RecordedMachine(course, signals)
+    )
     planned = planned_steps(course)
     by_id = {advice.workingstep.id: advice for advice in plan.advices}
     advices = tuple(by_id.get(name) for name in virtual.workingsteps)

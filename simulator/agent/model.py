@@ -22,6 +22,9 @@ from simulator.errors import AgentError
 MOST_BYTES = 1 << 22
 """of a device model"""
 
+MOST_STREAMS = 1 << 28
+"""of a document of streams in a file"""
+
 DEEPEST = 40
 """elements within one another"""
 
@@ -240,6 +243,26 @@ def read_model(path: Path) -> DeviceModel:
     if devices is None or not len(devices):
         raise AgentError(f"{path}: no Devices element")
     return model_of(devices, found[1])
+
+
+def read_streams_root(path: Path) -> Any:
+    """Return the root element of a file that is a document of streams.
+
+    Raises
+    ------
+    AgentError
+        When the file cannot be read or is not a document of streams.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(MOST_STREAMS + 1)
+    except OSError as error:
+        raise AgentError(f"{path}: cannot be read: {error.strerror}") from error
+    root = parsed(data, what=str(path), most=MOST_STREAMS)
+    name = etree.QName(root).localname
+    if name != "MTConnectStreams":
+        raise AgentError(f"{path}: root element {name}; expected MTConnectStreams")
+    return root
 
 
 def devices_text(model: DeviceModel) -> str:

@@ -8,13 +8,10 @@ import numpy as np
 from lxml import etree
 
 from simulator.agent.buffer import ConditionValue, TimeSeriesValue, Value
-from simulator.agent.model import DeviceModel, ObservedItem, parsed
+from simulator.agent.model import DeviceModel, ObservedItem, read_streams_root
 from simulator.agent.shdr import UNAVAILABLE, read_time
 from simulator.errors import AgentError
 from simulator.motion.segments import Ints
-
-MOST_BYTES = 1 << 27
-"""Largest size of a file."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -38,15 +35,6 @@ def read_streams(path: Path, model: DeviceModel) -> StreamsDocument:
     AgentError
         When the file cannot be read or is not a document of streams.
     """
-    try:
-        with path.open("rb") as file:
-            data = file.read(MOST_BYTES + 1)
-    except OSError as error:
-        raise AgentError(f"{path}: cannot be read: {error.strerror}") from error
-    root = parsed(data, what=str(path), most=MOST_BYTES)
-    name = etree.QName(root).localname
-    if name != "MTConnectStreams":
-        raise AgentError(f"{path}: root element {name}; expected MTConnectStreams")
     found: list[tuple[int, int, int, Value]] = []
     unknown: dict[str, None] = {}
     # What an agent tells of itself is not part of a run.
@@ -56,7 +44,7 @@ def read_streams(path: Path, model: DeviceModel) -> StreamsDocument:
         if device.is_agent
         for item in model.items_of(at)
     }
-    for element in root.iter():
+    for element in read_streams_root(path).iter():
         if isinstance(element.tag, str) and element.get("sequence") is not None:
             id = element.get("dataItemId", "")
             item = model.index.get(id)

@@ -12,13 +12,10 @@ from typing import Any
 
 from lxml import etree
 
-from simulator.agent.model import parsed
+from simulator.agent.model import read_streams_root
 from simulator.client.columns import Cell, RowMaker, columns_of
 from simulator.client.connection import ClientItem, ClientObservation, observation_of
 from simulator.errors import AgentError
-
-MOST_BYTES = 1 << 28
-"""Largest size of a file."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,18 +39,9 @@ def read_document(path: Path) -> ReadDocument:
     AgentError
         When the file cannot be read, is no document of streams, or has a faulty stamp.
     """
-    try:
-        with path.open("rb") as file:
-            data = file.read(MOST_BYTES + 1)
-    except OSError as error:
-        raise AgentError(f"{path}: cannot be read: {error.strerror}") from error
-    root = parsed(data, what=str(path), most=MOST_BYTES)
-    name = etree.QName(root).localname
-    if name != "MTConnectStreams":
-        raise AgentError(f"{path}: root element {name}; expected MTConnectStreams")
     items: dict[str, ClientItem] = {}
     found: list[ClientObservation] = []
-    for element in root.iter():
+    for element in read_streams_root(path).iter():
         if not isinstance(element.tag, str) or element.get("sequence") is None:
             continue
         try:

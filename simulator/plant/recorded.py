@@ -7,13 +7,12 @@ recorded run is what it was; commands have no effect. Units mm, s, N, W.
 """
 
 from dataclasses import dataclass
-from math import nan, pi
 
 import numpy as np
 
 from simulator.errors import CalibrationError
 from simulator.motion.segments import Bools, Floats
-from simulator.plant.controlled import LONGEST, NMM_S_PER_WATT, SLOWEST, TrueState
+from simulator.plant.controlled import LONGEST, SLOWEST, TrueState
 from simulator.plant.course import NominalCourse
 from simulator.plant.hidden import HiddenChange
 from simulator.reading import Reading
@@ -238,11 +237,15 @@ class RecordedMachine:
         """Return the program time at which feed or its absence ends, at most the given one."""
         course = self.course
         is_feed, step = course.can_override[cell], course.workingstep[cell]
-        while cell < len(course) and course.can_override[cell] == is_feed:
-            if course.workingstep[cell] != step or self._ends[cell] >= end:
-                break
+        while (
+            cell < len(course)
+            and course.can_override[cell] == is_feed
+            and course.workingstep[cell] == step
+        ):
+            if self._ends[cell] >= end:
+                return end
             cell += 1
-        return min(self._ends[min(cell, len(course) - 1)], end) if cell < len(course) else end
+        return self._ends[cell - 1]
 
     def _time_at(self, progress: float) -> float:
         """Return the time at which a program time is reached, in s."""
@@ -270,14 +273,15 @@ class RecordedMachine:
         teeth = int(course.teeth[cell])
         tooth = self._turned % teeth
         self._turned += is_feed
-        idle = float(course.idle_power[cell])
+        # What was removed is known as far as the depth is that of the program.
         self.truth = TrueState(
-            force=force, peak=force, power=power, removal_rate=nan,
-            axial_depth=float(course.axial_depth[cell]), cell=cell,
-        )  # fmt: skip
-        if np.isnan(force) and power > idle and course.diameter[cell] > 0.0:
-            around = pi * float(course.diameter[cell]) * float(course.spindle_speed[cell])
-            self.truth = TrueState(force=(power - idle) * NMM_S_PER_WATT / around, cell=cell)
+            force=force,
+            peak=force,
+            power=power,
+            removal_rate=override * float(course.removal_rate[cell]),
+            axial_depth=float(course.axial_depth[cell]),
+            cell=cell,
+        )
         return Reading(
             time=self.time,
             period=period,

@@ -2,6 +2,7 @@
 
 from dataclasses import fields
 from datetime import UTC, datetime
+from math import log
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +86,10 @@ def test_an_outcome_over_http_is_that_of_the_run(
     assert near.roughness.measured is far.roughness.measured is None
 
 
+TOLERANCES = {SensorChoice.DYNAMOMETER: 0.002, SensorChoice.POWER: 0.02}
+"""Of ln k_c: the idle power of the drive is an estimate."""
+
+
 @pytest.mark.parametrize("sensor", list(SensorChoice))
 def test_a_slow_recording_tells_the_same_material(
     folder: Path, when: RecordingContext, sensor: SensorChoice
@@ -96,7 +101,7 @@ def test_a_slow_recording_tells_the_same_material(
     run = control(ControlRequest(**WORDS, sensor=sensor), RunFiles(file=PART, recorded=file))
     found = outcome(run, when)
     assert found.force_ratio is not None
-    assert found.force_ratio.log_mean == pytest.approx(0.2624, abs=0.02)
+    assert found.force_ratio.log_mean == pytest.approx(log(1.3), abs=TOLERANCES[sensor])
     assert found.time.measured == pytest.approx(found.time.predicted, abs=0.5)
     assert run.law.value == "none"
     assert run.recorded == "slow.csv"

@@ -84,6 +84,10 @@ def test_readings_tell_times_forces_and_overrides() -> None:
     for before, after in pairwise(found):
         assert after.time - after.period == pytest.approx(before.time)
         assert after.progress >= before.progress
+    # Readings end where feed and rapids do.
+    turns = [before.progress for before, after in pairwise(found)
+             if before.can_override != after.can_override]  # fmt: skip
+    assert turns == pytest.approx([3.0, 3.2, 6.2])
     slow = [each for each in found if 2.5 < each.time < 3.8]
     assert all(each.override == pytest.approx(0.5, abs=0.02) for each in slow)
     assert all(each.force[0] == pytest.approx(260.0) for each in slow)
