@@ -99,6 +99,7 @@ def asked_simulation(
     force: str = "mean",
     runout_um: float = 0.0,
     kc_factor: float = 1.0,
+    has_power_deviation: bool = False,
     seed: int = 0,
     output: Path | None = None,
     report: Path | None = None,
@@ -120,6 +121,7 @@ def asked_simulation(
         force=member_of(ForceView, force, "force"),
         runout_um=runout_um,
         kc_factor=kc_factor,
+        has_power_deviation=has_power_deviation,
         seed=seed,
     )
     return request, RunFiles(file=file, code=code, output=output, report=report)

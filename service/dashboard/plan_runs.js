@@ -7,7 +7,8 @@ import { showSimulated } from "/dashboard/plan_result.js";
 
 const NAMES = { before: "as programmed", after: "as advised" };
 /** Options of simulations started by this page; runs with other options are not reused. */
-const PLAIN = { control: "fir", noise: "none", has_lag: false, has_wear: false, kc_factor: 1, pace: 0 };
+const PLAIN = { control: "fir", noise: "none", has_lag: false, has_wear: false, has_power_deviation: false, kc_factor: 1,
+  pace: 0 };
 
 let turn = 0;
 

@@ -72,7 +72,7 @@ OptionalId = Annotated[str | None, IdPattern()]
 Seed = Annotated[
     int,
     Interval(ge=0, le=GREATEST_SEED),
-    About("seed of noise, scatter and missing samples", flag="--seed"),
+    About("seed of noise, power deviation, scatter and missing samples", flag="--seed"),
 ]
 
 Percent = Interval(gt=0.0, le=1000.0)
@@ -146,6 +146,11 @@ class SimulationRequest(RunRequest):
     has_lag: Annotated[
         bool, About("simulate delay and overshoot of the main drive", flag="--lag")
     ] = False
+    has_power_deviation: Annotated[
+        bool,
+        About("motor power of each movement deviates at random, by the machine's [deviation]",
+              flag="--power-deviation"),
+    ] = False  # fmt: skip
     noise: Annotated[
         NoiseKind, About("sensor noise: none, normal or uniform", flag="--noise")
     ] = NoiseKind.NONE

@@ -17,6 +17,7 @@ from service.simulation.carbon import WORLD, CarbonFactor, kilowatt_hours
 from service.simulation.facts import COMPONENTS as NAMES
 from service.simulation.facts import SimulationRow, exceeded, ratio, rows
 from service.simulation.run import Simulation
+from simulator.machine.deviation import SeededDeviation
 from simulator.machine.totals import Peak, Total
 from simulator.spec import MaterialMatch
 from stepnc_model.units import kw_from_watts, rpm_from_rev_s
@@ -187,9 +188,20 @@ def print_simulation(simulation: Simulation, *, carbon: CarbonFactor = WORLD) ->
             f"{ratio(energy, whole.volume):.3g} J/mm³ from the mains, "
             f"{ratio(whole.cutting_energy, whole.volume):.3g} J/mm³ at the edge"
         )
+    if simulation.deviation is not None:
+        print_line(_deviation(simulation.deviation))
     for text in exceeded(simulation, found):
         print_line(f"limit exceeded: {text}", RED)
     print_findings(simulation.findings)
+
+
+def _deviation(seeded: SeededDeviation) -> str:
+    """Describe the random deviation of a run."""
+    feed, traverse = seeded.deviation.feed, seeded.deviation.traverse
+    return (
+        f"motor power of each movement deviates by up to ±{100.0 * feed:g} % in feed and "
+        f"±{100.0 * traverse:g} % in rapid, seed {seeded.seed}"
+    )
 
 
 def simulation_json(simulation: Simulation, *, carbon: CarbonFactor = WORLD) -> str:
@@ -201,6 +213,13 @@ def simulation_json(simulation: Simulation, *, carbon: CarbonFactor = WORLD) -> 
         "samples": simulation.samples,
         "workingsteps": records((ID, BEGIN, *TOTALS), rows(simulation)),
         "total": record(TOTALS, whole_row(simulation)),
+        "power_deviation": None
+        if simulation.deviation is None
+        else {
+            "feed": simulation.deviation.deviation.feed,
+            "traverse": simulation.deviation.deviation.traverse,
+            "seed": simulation.deviation.seed,
+        },
         "carbon": {
             "factor_g_kwh": carbon.grams_per_kwh,
             "source": carbon.source,

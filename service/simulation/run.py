@@ -25,6 +25,7 @@ from service.simulation.setup import (
 from service.simulation.timeline_file import TimelineFile
 from service.simulation.trace import TraceKeeper
 from simulator.errors import SimulationError
+from simulator.machine.deviation import SeededDeviation
 from simulator.machine.disturbance import Disturbance
 from simulator.machine.interpreter import interpret
 from simulator.machine.tooth_loads import ToothOptions
@@ -78,6 +79,8 @@ class Simulation:
     """Tools by number."""
     trace: BucketedRun | None = None
     """Signals for a report, if one was requested."""
+    deviation: SeededDeviation | None = None
+    """Random deviation of motor powers, if one was requested."""
 
     @property
     def whole(self) -> Total:
@@ -124,6 +127,7 @@ def simulate(
         tools=virtual.setup.tools or {},
         samples=0 if run.file is None else run.file.rows,
         trace=None if run.trace is None else run.trace.trace(),
+        deviation=virtual.setup.deviation,
     )
 
 
@@ -225,6 +229,7 @@ def _machine(
             stock=prepared.stock,
             teeth=teeth,
             zero=_zero(request.zero, prepared),
+            deviation=_deviation(request, prepared.machine),
         )
     )
 
@@ -302,6 +307,18 @@ def _disturbance(request: SimulationRequest, machine: Machine) -> Disturbance:
         response=response if request.has_lag else None,
         seed=request.seed,
     )
+
+
+def _deviation(request: SimulationRequest, machine: Machine) -> SeededDeviation | None:
+    """Return the deviation of motor powers, if requested."""
+    if not request.has_power_deviation:
+        return None
+    if machine.deviation is None:
+        raise StepNcError(
+            f"machine '{machine.name}' states no power deviation: omit --power-deviation, or "
+            "add a [deviation] table to its file"
+        )
+    return SeededDeviation(deviation=machine.deviation, seed=request.seed)
 
 
 def _zero(text: str, prepared: PreparedRun) -> Zero | None:

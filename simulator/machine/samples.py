@@ -205,6 +205,8 @@ class EpisodeCourse:
     """Number of segments at the beginning that lead to the path of the workingstep."""
     back: int = 0
     """Number of segments at the end that lead away from the path of the workingstep."""
+    power_factor: Floats | None = None
+    """Factor on the power of the motors in each segment, (N,); None: 1 everywhere."""
 
     @cached_property
     def passing(self) -> Passing:
@@ -251,7 +253,8 @@ class EpisodeCourse:
     def nodes(self) -> Floats:
         """Times between which all powers are smooth, as far as known, (K,), s."""
         places = np.sort(np.concatenate((self.station_ends, self._arc_places())))
-        return np.unique(np.concatenate((self.motion.knots, self.passing.times(places))))
+        known = (self.motion.knots, self.motion.ends, self.passing.times(places))
+        return np.unique(np.concatenate(known))
 
     def _arc_places(self) -> Floats:
         """Path lengths at which the direction of arcs has changed noticeably, mm."""
@@ -304,3 +307,23 @@ class Episode:
     """Position at rest or at the start of the stretch, (3,), mm."""
     course: EpisodeCourse | None = None
     """Motion along a stretch; None while the axes stand still."""
+
+    def kinematics(self, times: Floats) -> Kinematics:
+        """State of the axes at (M,) times, s from the start of the program."""
+        if self.course is not None:
+            since = np.clip(times - self.begin, 0.0, self.course.motion.duration)
+            return self.course.motion.at(since)
+        count = len(times)
+        return Kinematics(
+            position=np.tile(self.position, (count, 1)),
+            velocity=np.zeros((count, 3)),
+            acceleration=np.zeros((count, 3)),
+            segment=np.zeros(count, dtype=np.int64),
+            station=np.zeros(count),
+        )
+
+    def power_factor(self, kinematics: Kinematics) -> Floats:
+        """Factor on the power of the motors at M times, (M,)."""
+        if self.course is None or self.course.power_factor is None:
+            return np.ones(len(kinematics.segment))
+        return self.course.power_factor[kinematics.segment]

@@ -132,12 +132,13 @@ class Sampler:
 
 def sensed(episode: Episode, machine: Machine, times: Floats) -> Samples:
     """Samples at given times of an episode, (M,), s from the start of the program."""
-    kinematics = _kinematics(episode, times)
+    kinematics = episode.kinematics(times)
     rows = None if episode.course is None else episode.course.stations_at(kinematics)
     state, spindle = episode.state, episode.spindle
     speed = spindle.speed(times)
     loads = _loads(episode, kinematics, rows, speed=speed, times=times)
     power = main_power(machine, speed, spindle.acceleration(times), cutting_power=loads.power)
+    factor = episode.power_factor(kinematics)
     count = len(times)
     programmed, mode, line = _programmed(episode, kinematics, count)
     return Samples(
@@ -147,13 +148,14 @@ def sensed(episode: Episode, machine: Machine, times: Floats) -> Samples:
         feed_programmed=programmed,
         spindle_programmed=_wanted(episode, kinematics),
         spindle_speed=speed,
-        axis_power=axes_power(
+        axis_power=factor[:, None]
+        * axes_power(
             machine,
             kinematics.velocity,
             kinematics.acceleration,
             feed_force=loads.feed_force,
         ),
-        spindle_power=power,
+        spindle_power=factor * power,
         coolant_power=np.full(count, machine.coolant_power * state.coolant_on),
         base_power=np.full(count, machine.base_power),
         cutting_power=loads.power,
@@ -177,20 +179,6 @@ def sensed(episode: Episode, machine: Machine, times: Floats) -> Samples:
         line=line,
         tool=np.full(count, state.tool),
         workingstep=np.full(count, state.workingstep),
-    )
-
-
-def _kinematics(episode: Episode, times: Floats) -> Kinematics:
-    if episode.course is not None:
-        since = np.clip(times - episode.begin, 0.0, episode.course.motion.duration)
-        return episode.course.motion.at(since)
-    count = len(times)
-    return Kinematics(
-        position=np.tile(episode.position, (count, 1)),
-        velocity=np.zeros((count, 3)),
-        acceleration=np.zeros((count, 3)),
-        segment=np.zeros(count, dtype=np.int64),
-        station=np.zeros(count),
     )
 
 

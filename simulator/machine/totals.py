@@ -143,16 +143,36 @@ def _value(peak: Peak) -> float:
     return peak.value
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Quadrature:
+    """Times and weights with which powers of an episode are integrated over K spans."""
+
+    nodes: Floats
+    """Times between which all powers are smooth, (K + 1,), s."""
+    times: Floats
+    """Times within each span, (K, 4), s from the start of the program; the first and the last
+    have no weight and are for peaks."""
+    weights: Floats
+    """Weights of these times, (K, 4), s."""
+
+
+def quadrature(episode: Episode) -> Quadrature:
+    """Quadrature of an episode; without spans if the episode takes no time."""
+    nodes = _nodes(episode)
+    spans = np.diff(nodes)[:, None]
+    return Quadrature(
+        nodes=nodes, times=nodes[:-1, None] + spans * PLACES, weights=spans * WEIGHTS
+    )
+
+
 def added(total: Total, episode: Episode, machine: Machine) -> Total:
     """Add an episode to a total."""
-    nodes = _nodes(episode)
-    spans = np.diff(nodes)
     total = replace(total, duration=total.duration + episode.end - episode.begin)
-    if not len(spans):
+    places = quadrature(episode)
+    if not len(places.times):
         return total
-    times = (nodes[:-1, None] + spans[:, None] * PLACES).ravel()
-    weights = (spans[:, None] * WEIGHTS).ravel()
-    samples = sensed(episode, machine, times)
+    weights = places.weights.ravel()
+    samples = sensed(episode, machine, places.times.ravel())
     axes = weights @ samples.axis_power
     energy = Energy(
         x_axis=float(axes[0]),
@@ -177,7 +197,7 @@ def added(total: Total, episode: Episode, machine: Machine) -> Total:
         power=total.power.or_greater(samples.spindle_power, samples),
         cutting_power=total.cutting_power.or_greater(feeds * samples.cutting_power, samples),
         drive_power=total.drive_power.or_greater(
-            np.where(samples.removal_rate > 0.0, feeds * _steady(samples, machine), 0.0),
+            np.where(samples.removal_rate > 0.0, feeds * _steady(samples, episode, machine), 0),
             samples,
         ),
         force=total.force.or_greater(feeds * _across(samples, episode), samples),
@@ -188,13 +208,15 @@ def added(total: Total, episode: Episode, machine: Machine) -> Total:
     )
 
 
-def _steady(samples: Samples, machine: Machine) -> Floats:
+def _steady(samples: Samples, episode: Episode, machine: Machine) -> Floats:
     """Power of the spindle drive at constant speed, W."""
     still = np.zeros(len(samples.time))
     power: Floats = main_power(
         machine, samples.spindle_speed, still, cutting_power=samples.cutting_power
     )
-    return power
+    if episode.course is None or episode.course.power_factor is None:
+        return power
+    return episode.power_factor(episode.kinematics(samples.time)) * power
 
 
 def _way(episode: Episode) -> float:

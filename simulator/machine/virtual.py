@@ -32,6 +32,7 @@ from simulator.machine.acts import (
     WorkingstepTo,
 )
 from simulator.machine.cutting import CuttingEdge
+from simulator.machine.deviation import SeededDeviation, movement_factors, movement_of
 from simulator.machine.samples import Episode, EpisodeCourse, EpisodeState, Execution
 from simulator.machine.spindle_course import SpindleCourse, following, ramped, standing
 from simulator.machine.tooth_loads import ToothOptions
@@ -221,6 +222,8 @@ class MachineSetup:
     """Options for forces of single teeth; None for mean forces over a revolution."""
     zero: Zero | None = None
     """Position of the program zero; None: travel is not checked."""
+    deviation: SeededDeviation | None = None
+    """Random deviation of motor powers; None: powers are those of the model."""
 
 
 class VirtualMachine:
@@ -245,6 +248,8 @@ class VirtualMachine:
         """Whether a feed move has occurred in this workingstep."""
         self._flank: dict[int, float] = {}
         """Flank wear by tool number, mm."""
+        self._movements = 0
+        """Number of movements that have been drawn."""
         self._said: set[str] = set()
 
     def run(self, steps: Iterable[ProgramAct]) -> Iterator[Episode]:
@@ -373,6 +378,7 @@ class VirtualMachine:
             teeth=self.setup.teeth,
             way=stretch.way,
             back=stretch.back,
+            power_factor=self._drawn(segments),
         )
         self._has_fed = self._has_fed or not bool(segments.is_rapid.all())
         self._worn(course)
@@ -417,6 +423,18 @@ class VirtualMachine:
             line = int(segments.block[stations.segment[cuts[0]]])
             self._say("cut with a stopped spindle: its force is not modelled", line)
         return stations
+
+    def _drawn(self, segments: Segments) -> Floats | None:
+        """Factors on the motor powers of the segments of a stretch, (N,)."""
+        if self.setup.deviation is None:
+            return None
+        movement = movement_of(segments)
+        _, begins = np.unique(movement, return_index=True)
+        factors = movement_factors(
+            self.setup.deviation, segments.is_rapid[begins], first=self._movements
+        )
+        self._movements += len(factors)
+        return factors[movement]
 
     def _wear(self, stretch: MoveStretch, segments: Segments, stations: Stations) -> Wear:
         """Wear of the edge at the beginning of a stretch, with its rate there."""
