@@ -1,0 +1,1 @@
+"""Virtual factory: machines that live in states, batches, buffers, crews and energy."""
