@@ -6,7 +6,7 @@ from dataclasses import asdict
 from service.rendering.columns import Column
 from service.rendering.records import dump, plain
 from service.rendering.text import print_line, print_table
-from simulator.spec import Machine, WorkMaterial
+from simulator.spec import Handling, Machine, WorkMaterial
 from simulator.work_holding import Clamp, Holding
 from stepnc_model.units import (
     kn_from_newtons,
@@ -108,7 +108,29 @@ def _machine_facts(machine: Machine) -> list[Fact]:
             f"{n_um_from_n_mm(mode.stiffness):g} N/µm",
         ))
     facts += [_held(holding) for holding in machine.holdings]
+    if machine.handling is not None:
+        facts += _handled(machine.handling)
+    if machine.deviation is not None:
+        feed, traverse = machine.deviation.feed, machine.deviation.traverse
+        shown = f"±{100.0 * feed:g} % in feed, ±{100.0 * traverse:g} % in rapid, uniform"
+        facts.append(("power deviation", f"{shown} ({machine.deviation.source})"))
     return facts
+
+
+def _handled(handling: Handling) -> list[Fact]:
+    """Describe the states between parts and batches, as name and value."""
+    states = {
+        "batch setup": handling.batch_setup,
+        "part setup": handling.part_setup,
+        "part ejection": handling.part_ejection,
+        "batch ejection": handling.batch_ejection,
+    }
+    facts = [
+        (name, f"{state.time:g} s, {kw_from_watts(state.power):g} kW")
+        for name, state in states.items()
+    ]
+    scatter = f"±{100.0 * handling.time_scatter:g} % of these times, uniform"
+    return [*facts, ("handling scatter", f"{scatter} ({handling.source})")]
 
 
 def _held(holding: Holding) -> Fact:

@@ -2,8 +2,8 @@
 
 Ranges are those of any machine tool that cuts metal, from watchmaking to heavy lathes; a
 number outside is a slip of the unit. A limit whose key is absent does not limit. The machine's
-source stands in each table that needs one, as only the sources of the machine, its modes and
-its work-holding are kept.
+source stands in each table that needs one, as only the sources of the machine, its handling
+states, power deviation, modes and work-holding are kept.
 """
 
 from collections.abc import Sequence
@@ -12,6 +12,12 @@ from math import inf, isinf
 from pathlib import Path
 from typing import Annotated
 
+from simulator.handling_file import (
+    DeviationTable,
+    HandlingTable,
+    deviation_table,
+    handling_table,
+)
 from simulator.holding_file import HoldingRow, holding_row, require_kind, require_one_each
 from simulator.physics.spindle import curve_segments
 from simulator.spec import (
@@ -277,6 +283,8 @@ class MachineFile(FileTable, frozen=True, kw_only=True):
     remarks: tuple[str, ...] = ()
     spindle: SpindleTable
     axis: tuple[AxisRow, ...] = ()
+    handling: HandlingTable | None = None
+    deviation: DeviationTable | None = None
     holding: tuple[HoldingRow, ...] = ()
     mode: tuple[ModeRow, ...] = ()
 
@@ -306,6 +314,8 @@ class MachineFile(FileTable, frozen=True, kw_only=True):
             remarks=self.remarks,
             modes=tuple(row.mode for row in self.mode),
             holdings=tuple(row.holding for row in self.holding),
+            handling=None if self.handling is None else self.handling.handling,
+            deviation=None if self.deviation is None else self.deviation.deviation,
             only_stated_limits=self.only_stated_limits,
         )
 
@@ -355,6 +365,8 @@ def machine_toml(machine: Machine, *, notes: Sequence[str] = ()) -> str:
         remarks=machine.remarks,
         spindle=_spindle_table(machine.spindle, machine.source),
         axis=tuple(_axis_row(axis, machine.source) for axis in machine.axes),
+        handling=None if machine.handling is None else handling_table(machine.handling),
+        deviation=None if machine.deviation is None else deviation_table(machine.deviation),
         holding=tuple(map(holding_row, machine.holdings)),
     )
     lines = [f"# {_comment(line)}".rstrip() for note in notes for line in note.splitlines()]

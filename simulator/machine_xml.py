@@ -6,13 +6,16 @@ minute, the spindle's acceleration in rev/s², the pitch of the feed screw in me
 revolution, its diameter in metres, times in ms. Each assumption is a remark of the machine. The
 names are kept as printed, slips included; the corrected spelling is read too.
 
+``randomProperty`` holds two half-widths of the deviation of motor powers, in traverse and in
+feed, as §4.1 orders them; ``randomType`` can only be ``Uniform``, the one distribution of §4.2.
+
 References
 ----------
 Lechevalier, Shin, Rachuri, Foufou, Lee, Bouras (2018), "Simulating a virtual machining model
 in an agent-based model for advanced analytics", Fig. 5 and Table 1.
 """
 
-from math import inf
+from math import inf, nan
 from pathlib import Path
 from typing import Annotated
 
@@ -31,9 +34,25 @@ from simulator.machine_file import (
     SpindleAcceleration,
     Viscous,
 )
-from simulator.spec import Axis, AxisDrive, Machine, MachineKind, Spindle, SpindlePoint
-from simulator.toml_file import FileTable, converted, quantity, read_bounded
-from stepnc_model.units import MM_PER_M, nmm_from_nm, speed_from_m_min, speed_from_m_s
+from simulator.spec import (
+    Axis,
+    AxisDrive,
+    Handling,
+    HandlingState,
+    Machine,
+    MachineKind,
+    PowerDeviation,
+    Spindle,
+    SpindlePoint,
+)
+from simulator.toml_file import FileTable, KeyFault, converted, quantity, read_bounded
+from stepnc_model.units import (
+    MM_PER_M,
+    nmm_from_nm,
+    seconds_from_ms,
+    speed_from_m_min,
+    speed_from_m_s,
+)
 
 StateTime = Annotated[float, quantity(0, 1e8, "ms")]
 RotorSize = Annotated[float, quantity(0, 1e4, "mm")]
@@ -67,6 +86,20 @@ DRIVE = (
 )
 """what the feed drive needs: all of it, or there is none"""
 
+STATES = (
+    "batch_setup_time",
+    "batch_setup_energy",
+    "part_setup_time",
+    "part_estup_energy",
+    "part_ejection_time",
+    "part_ejection_energy",
+    "batch_ejection_time",
+    "batch_ejection_energy",
+)
+"""what the handling states need: all of it, or there are none"""
+
+UNIFORM = "Uniform"
+
 REMARKS = (
     "basicRapidSpeed is read in hundredths of a metre per minute; the form gives no unit.",
     "angularAcceleration is read in rev/s²; the form gives no unit, Table 1 says rad/s².",
@@ -81,12 +114,21 @@ REMARKS = (
     "tool change time: these do not limit; 1000 kW stands for the motor power.",
     "rotorDiameter, rotorLength and frictionCoefficient are checked but not used: 0.2 N·s/mm² "
     "is no viscosity of air or oil and the gap is missing, so they give no running torque.",
-    "gravity, setup and ejection are checked but not used.",
+    "gravity is checked but not used.",
+)
+
+RANDOM_REMARKS = (
+    "randomProperty is read as half-widths of a uniform deviation of motor powers, in traverse "
+    "and in feed movements: section 4.1 calls them standard deviations, section 4.2 says "
+    "uniform.",
+    "The form gives no scatter of setup and ejection times; the greater half-width of "
+    "randomProperty is taken, as the times of Fig. 11 differ by up to 9 % from those of "
+    "Fig. 5.",
 )
 
 
 class MachineElement(FileTable, rename="camel", frozen=True, kw_only=True):
-    """The ``Machine`` element; what a part or batch takes, and gravity, no model uses yet."""
+    """The ``Machine`` element; no model uses gravity."""
 
     id: str
     random_property: str | None = None
@@ -124,6 +166,34 @@ class MachineElement(FileTable, rename="camel", frozen=True, kw_only=True):
     gear_reduction_ratio: GearRatio | None = None
     axis_servo_motor_efficent: Efficiency | None = None
 
+    def __post_init__(self) -> None:
+        if self.random_type not in {None, UNIFORM}:
+            raise KeyFault("randomType", f"'{self.random_type}' is not one of {UNIFORM}")
+        if (self.random_type is None) is not (self.random_property is None):
+            absent = "randomType" if self.random_type is None else "randomProperty"
+            present = "randomProperty" if self.random_type is None else "randomType"
+            raise KeyFault(absent, f"missing; expected together with {present}")
+        if self.random_property is not None:
+            half_widths(self.random_property)
+
+
+def half_widths(text: str) -> tuple[float, float]:
+    """Half-widths of the deviation in traverse and in feed of ``randomProperty``.
+
+    Raises
+    ------
+    KeyFault
+        The text is not two numbers between 0 and 1.
+    """
+    try:
+        traverse, feed = (float(part) for part in text.split(";"))
+    except ValueError:
+        traverse = feed = nan
+    if not (0.0 <= traverse <= 1.0 and 0.0 <= feed <= 1.0):
+        expected = "two half-widths, in traverse;feed, each 0 to 1"
+        raise KeyFault("randomProperty", f"'{text}' is not {expected}") from None
+    return traverse, feed
+
 
 def read_machine_xml(path: Path) -> Machine:
     """Machine of an XML file, in canonical units.
@@ -137,6 +207,8 @@ def read_machine_xml(path: Path) -> Machine:
     acceleration = speed_from_m_s(element.axis_accelation)
     rapid = speed_from_m_min(element.basic_rapid_speed / RAPID_UNITS_PER_M_MIN)
     drive, lacking = _drive(element)
+    handling, stateless = _handling(element, path.name)
+    deviation = _deviation(element, path.name)
     return Machine(
         name=path.stem,
         title=element.id,
@@ -154,7 +226,15 @@ def read_machine_xml(path: Path) -> Machine:
         coolant_power=element.p_default_cool,
         tool_change=0.0,
         source=f"{path.name}, in the XML form of paper 003, Fig. 5",
-        remarks=(*_kind_remark(element.id), *lacking, *REMARKS),
+        remarks=(
+            *_kind_remark(element.id),
+            *lacking,
+            *stateless,
+            *REMARKS,
+            *(RANDOM_REMARKS if deviation is not None else ()),
+        ),
+        handling=handling,
+        deviation=deviation,
     )
 
 
@@ -172,12 +252,8 @@ def _spindle(element: MachineElement) -> Spindle:
 
 def _drive(element: MachineElement) -> tuple[AxisDrive | None, tuple[str, ...]]:
     """Feed drive of every axis, or none and the remark that says why."""
-    printed = dict(
-        zip(element.__struct_fields__, element.__struct_encode_fields__, strict=True)
-    )
-    given = {key: value for key in DRIVE if (value := getattr(element, key)) is not None}
-    if len(given) < len(DRIVE):
-        absent = ", ".join(printed[key] for key in DRIVE if key not in given)
+    given, absent = _given(element, DRIVE)
+    if absent:
         return None, (f"Without {absent} the feed drives are unknown: axes draw no power.",)
     drive = AxisDrive(
         lead=MM_PER_M * given["pitch_feed_screw"],
@@ -194,6 +270,42 @@ def _drive(element: MachineElement) -> tuple[AxisDrive | None, tuple[str, ...]]:
         efficiency=given["axis_servo_motor_efficent"],
     )
     return drive, ()
+
+
+def _given(element: MachineElement, keys: tuple[str, ...]) -> tuple[dict[str, float], str]:
+    """Values of the keys that are given, and the printed names of those that are absent."""
+    printed = dict(
+        zip(element.__struct_fields__, element.__struct_encode_fields__, strict=True)
+    )
+    given = {key: value for key in keys if (value := getattr(element, key)) is not None}
+    return given, ", ".join(printed[key] for key in keys if key not in given)
+
+
+def _handling(element: MachineElement, name: str) -> tuple[Handling | None, tuple[str, ...]]:
+    """Handling states, or none and the remark that says why."""
+    given, absent = _given(element, STATES)
+    if absent:
+        return None, (f"Without {absent} the times between parts are unknown.",)
+    states = [
+        HandlingState(time=seconds_from_ms(given[time]), power=given[power])
+        for time, power in zip(STATES[::2], STATES[1::2], strict=True)
+    ]
+    random = element.random_property
+    return Handling(
+        batch_setup=states[0],
+        part_setup=states[1],
+        part_ejection=states[2],
+        batch_ejection=states[3],
+        time_scatter=0.0 if random is None else max(half_widths(random)),
+        source=f"{name}, read as powers in W and times in ms",
+    ), ()
+
+
+def _deviation(element: MachineElement, name: str) -> PowerDeviation | None:
+    if element.random_property is None:
+        return None
+    traverse, feed = half_widths(element.random_property)
+    return PowerDeviation(feed=feed, traverse=traverse, source=f"{name}, randomProperty")
 
 
 def _axis(name: str, *, rapid: float, acceleration: float, drive: AxisDrive | None) -> Axis:

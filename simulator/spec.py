@@ -161,6 +161,44 @@ class VibrationMode:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class HandlingState:
+    """State of the machine in which a batch or a part is set up or ejected."""
+
+    time: float
+    """Mean time in the state, s."""
+    power: float
+    """Total electrical power of the machine in the state, W."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Handling:
+    """States of the machine between batches and between parts."""
+
+    batch_setup: HandlingState
+    part_setup: HandlingState
+    part_ejection: HandlingState
+    batch_ejection: HandlingState
+    time_scatter: float = 0.0
+    """Half-width of the uniform relative scatter of the times, 0 to 1."""
+    source: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PowerDeviation:
+    """Random deviation of the power that the motors draw, drawn once for each movement.
+
+    A movement is the motion of one NC block. Its power is multiplied by 1 plus a uniform random
+    number between minus and plus the half-width.
+    """
+
+    feed: float
+    """Half-width in feed movements, 0 to 1."""
+    traverse: float
+    """Half-width in rapid movements, 0 to 1."""
+    source: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Machine:
     """Machine tool with its drives, limits and powers."""
 
@@ -197,6 +235,10 @@ class Machine:
     addition."""
     block_time_source: str = ""
     """Source of the block time, where it is another than that of the machine."""
+    handling: Handling | None = None
+    """States between parts and batches; ``None``: unknown."""
+    deviation: PowerDeviation | None = None
+    """Random deviation of motor powers; ``None``: unknown."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -16,12 +16,18 @@ from math import pi
 
 MM_PER_M = 1000.0
 SECONDS_PER_MINUTE = 60.0
+MS_PER_SECOND = 1000.0
 WATTS_PER_KILOWATT = 1000.0
 MM_PER_MICROMETRE = 1e-3
 MM_PER_INCH = 25.4
 UM_PER_MM = 1000.0
 NEWTONS_PER_KILONEWTON = 1000.0
 NMM_PER_NM = 1000.0
+
+
+def seconds_from_ms(value: float) -> float:
+    """Time in s from ms."""
+    return value / MS_PER_SECOND
 
 
 def speed_from_m_s(value: float) -> float:

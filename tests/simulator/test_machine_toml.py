@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from simulator import handling_file as between
 from simulator import holding_file as read_as
 from simulator import machine_file as allowed
 from simulator.library import load_machine, machine_names
@@ -17,9 +18,12 @@ from simulator.material_file import MaterialHead
 from simulator.spec import (
     Axis,
     AxisDrive,
+    Handling,
+    HandlingState,
     Machine,
     MachineKind,
     ModeDirection,
+    PowerDeviation,
     Spindle,
     SpindlePoint,
     VibratingPart,
@@ -129,6 +133,26 @@ def spindles(draw: st.DrawFn) -> Spindle:
     )
 
 
+STATES = st.builds(
+    HandlingState, time=within(between.StateTime), power=within(between.StatePower)
+)
+HANDLINGS = st.builds(
+    Handling,
+    batch_setup=STATES,
+    part_setup=STATES,
+    part_ejection=STATES,
+    batch_ejection=STATES,
+    time_scatter=within(between.HalfWidth),
+    source=TEXTS,
+)
+DEVIATIONS = st.builds(
+    PowerDeviation,
+    feed=within(between.HalfWidth),
+    traverse=within(between.HalfWidth),
+    source=TEXTS,
+)
+
+
 MACHINES = st.builds(
     Machine,
     name=st.just("my"),
@@ -148,6 +172,8 @@ MACHINES = st.builds(
     remarks=st.lists(TEXTS, max_size=3).map(tuple),
     modes=st.lists(MODES, max_size=3).map(tuple),
     block_time_source=st.just("") | TEXTS,
+    handling=st.none() | HANDLINGS,
+    deviation=st.none() | DEVIATIONS,
 )
 
 

@@ -8,6 +8,7 @@ import pytest
 from simulator.errors import LibraryError
 from simulator.library import load_machine
 from simulator.machine_xml import read_machine_xml
+from simulator.spec import Handling, HandlingState, PowerDeviation
 
 EXAMPLE = Path(__file__).parent / "data" / "paper003.xml"
 
@@ -34,10 +35,53 @@ def test_the_audited_reading_of_figure_5() -> None:
 def test_the_xml_and_the_library_say_the_same_of_paper_003() -> None:
     xml, toml = load_machine(str(EXAMPLE)), load_machine("paper003")
     one, other = (
-        replace(each, title="", source="", remarks=(), only_stated_limits=False)
+        replace(
+            each,
+            title="",
+            source="",
+            remarks=(),
+            only_stated_limits=False,
+            handling=each.handling and replace(each.handling, source=""),
+            deviation=each.deviation and replace(each.deviation, source=""),
+        )
         for each in (xml, toml)
     )
+    assert one.handling is not None
+    assert one.deviation is not None
     assert one == other
+
+
+def test_states_and_deviation_of_figure_5() -> None:
+    machine = read_machine_xml(EXAMPLE)
+    assert machine.handling == Handling(
+        batch_setup=HandlingState(time=60.0, power=4400.0),
+        part_setup=HandlingState(time=30.0, power=1206.0),
+        part_ejection=HandlingState(time=20.0, power=976.0),
+        batch_ejection=HandlingState(time=30.0, power=3400.0),
+        time_scatter=0.1,
+        source="paper003.xml, read as powers in W and times in ms",
+    )
+    assert machine.deviation == PowerDeviation(
+        feed=0.1, traverse=0.05, source="paper003.xml, randomProperty"
+    )
+    remarks = " ".join(machine.remarks)
+    assert "section 4.2 says uniform" in remarks
+    assert "no scatter of setup and ejection times" in remarks
+
+
+def test_without_random_property_nothing_deviates(tmp_path: Path) -> None:
+    path = with_change(tmp_path, 'randomProperty="0.05;0.1" randomType="Uniform"', "")
+    machine = read_machine_xml(path)
+    assert machine.deviation is None
+    assert machine.handling is not None
+    assert machine.handling.time_scatter == 0.0
+    assert "randomProperty" not in " ".join(machine.remarks)
+
+
+def test_states_that_are_half_given_are_none_and_say_so(tmp_path: Path) -> None:
+    machine = read_machine_xml(with_change(tmp_path, 'partSetupTime="30000"', ""))
+    assert machine.handling is None
+    assert any("Without partSetupTime" in remark for remark in machine.remarks)
 
 
 def test_every_assumed_unit_is_a_remark() -> None:
@@ -95,6 +139,31 @@ def test_an_id_that_looks_like_a_number_is_a_name(tmp_path: Path) -> None:
             'pitchFeedScrew="0.015"',
             'pitchFeedScrew="15"',
             "Machine.pitchFeedScrew: 15 m/rev exceeds 0.5 m/rev",
+        ),
+        (
+            'randomType="Uniform"',
+            'randomType="Normal"',
+            "Machine.randomType: 'Normal' is not one of Uniform",
+        ),
+        (
+            'randomType="Uniform"',
+            "",
+            "Machine.randomType: missing; expected together with randomProperty",
+        ),
+        (
+            'randomProperty="0.05;0.1"',
+            "",
+            "Machine.randomProperty: missing; expected together with randomType",
+        ),
+        (
+            'randomProperty="0.05;0.1"',
+            'randomProperty="0.05"',
+            "Machine.randomProperty: '0.05' is not two half-widths, in traverse;feed, each 0 ",
+        ),
+        (
+            'randomProperty="0.05;0.1"',
+            'randomProperty="0.05;10"',
+            "Machine.randomProperty: '0.05;10' is not two half-widths",
         ),
         ("<Machines>", "<Machines", "is not XML"),
         ("<Machine\n", "<Robot\n", "has no Machine element"),
