@@ -1,1 +1,1 @@
-"""Virtual factory: machining cycles of parts, and the flow of batches through machines."""
+"""Virtual factory: machines that live in states, batches, buffers, crews and energy."""

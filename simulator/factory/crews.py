@@ -1,0 +1,53 @@
+"""Crews while a shop runs: free members, and tasks that wait for one. Running state."""
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from simpy import Environment, Event
+
+from simulator.factory.shop import Crew
+
+
+@dataclass(slots=True, eq=False)
+class CrewOnDuty:
+    """Crew with its free members. Running state."""
+
+    env: Environment
+    crew: Crew
+    start: float
+    """Time of the week at which the run begins, s."""
+    busy: int = 0
+    waiting: deque[Event] = field(default_factory=deque)
+
+    @property
+    def _is_open(self) -> bool:
+        calendar = self.crew.calendar
+        return calendar is None or calendar.is_open(self.start + self.env.now)
+
+    def claim(self) -> Event | None:
+        """Ask for a member; the event comes with one, None: one is free at once."""
+        if self.busy < self.crew.members and self._is_open and not self.waiting:
+            self.busy += 1
+            return None
+        event = self.env.event()
+        self.waiting.append(event)
+        return event
+
+    def release(self) -> None:
+        """Give a member back."""
+        self.busy -= 1
+        self._serve()
+
+    def _serve(self) -> None:
+        while self.waiting and self.busy < self.crew.members and self._is_open:
+            self.busy += 1
+            self.waiting.popleft().succeed()
+
+    def hours(self) -> Iterator[Event]:
+        """SimPy process that begins work when the shift does."""
+        calendar = self.crew.calendar
+        while calendar is not None:
+            now = self.start + self.env.now
+            yield self.env.timeout(calendar.next_change(now) - now)
+            self._serve()

@@ -1,0 +1,209 @@
+"""A running shop: its machines, buffers and crews on one SimPy clock. Running state."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import count
+from math import inf
+
+from simpy import Environment, Event
+
+from simulator.errors import Deadlock
+from simulator.factory.crews import CrewOnDuty
+from simulator.factory.machining import Machining
+from simulator.factory.records import Recorder
+from simulator.factory.shop import Shop
+from simulator.factory.states import MachineState
+from simulator.factory.station import PowerMeter, Station, Steps, Surroundings
+from simulator.factory.store import Batch, BatchBuffer, RawStock
+from simulator.factory.streams import Streams
+
+MachiningOf = Callable[[int, int, int, Streams], Iterator[Machining]]
+"""Function from product, step and machine to the machining of one part after another."""
+
+
+@dataclass(slots=True, eq=False)
+class Floor:
+    """Shop in operation."""
+
+    shop: Shop
+    machining: MachiningOf
+    streams: Streams
+    recorders: Sequence[Recorder] = ()
+    env: Environment = field(default_factory=Environment)
+    stations: list[Station] = field(default_factory=list)
+    buffers: dict[str, BatchBuffer] = field(default_factory=dict)
+    raw: list[RawStock] = field(default_factory=list)
+    meter: PowerMeter = field(default_factory=PowerMeter)
+    in_shop: int = 0
+    """Batches between raw stock and the end of their routes."""
+    _takers: dict[int, list[Station]] = field(default_factory=dict)
+    """Machines that take from a buffer, by its identity."""
+    _is_done: Event | None = None
+
+    def __post_init__(self) -> None:
+        shop = self.shop
+        for each in shop.buffers:
+            capacity = inf if each.capacity is None else each.capacity
+            self.buffers[each.name] = self._buffer(each.name, capacity)
+        numbers = count()
+        for row, product in enumerate(shop.products):
+            buffer = self._buffer(f"raw stock of {product.name}", inf)
+            self.raw.append(
+                RawStock(buffer=buffer, product=product, index=row, numbers=numbers)
+            )
+        crews = [CrewOnDuty(self.env, crew, shop.start) for crew in shop.crews]
+        for on_duty in crews:
+            self.env.process(on_duty.hours())
+        for index in range(len(shop.machines)):
+            self.stations.append(self._station(index, crews))
+        for stock in self.raw:
+            if stock.product.arrival is not None:
+                intervals = self.streams.numbers(
+                    stock.product.arrival, stock.product.name, "arrival"
+                )
+                self.env.process(stock.arrivals(intervals))
+        self._is_done = self.env.event()
+
+    def run(self, until: float) -> None:
+        """Run until a time in s, or until all orders are finished.
+
+        Raises
+        ------
+        Deadlock
+            If machines wait for each other.
+        """
+        if self.is_finished or until <= self.env.now:
+            return
+        end = self.env.timeout(until - self.env.now)
+        self.env.run(until=self._is_done | end if self._is_done is not None else end)
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether all orders are finished."""
+        return self._is_done is not None and self._is_done.triggered
+
+    def close(self) -> None:
+        """Record the states so far."""
+        for station in self.stations:
+            station.close()
+        self.meter.change(0.0, self.env.now)
+
+    def _buffer(self, name: str, capacity: float) -> BatchBuffer:
+        return BatchBuffer(self.env, name, capacity, self._wake_taker)
+
+    def _station(self, index: int, crews: Sequence[CrewOnDuty]) -> Station:
+        shop, spec = self.shop, self.shop.machines[index]
+        behind: dict[tuple[int, int], BatchBuffer] = {}
+        machining: dict[tuple[int, int], Iterator[Machining]] = {}
+        steps: dict[str, set[tuple[int, int]]] = {}
+        raw: list[RawStock] = []
+        supplies: list[tuple[BatchBuffer, Steps]] = []
+        for row, product in enumerate(shop.products):
+            for at, step in enumerate(product.steps):
+                if spec.name not in step.machines:
+                    continue
+                machining[row, at] = self.machining(row, at, index, self.streams)
+                if step.into:
+                    behind[row, at] = self.buffers[step.into]
+                if at:
+                    steps.setdefault(product.steps[at - 1].into, set()).add((row, at))
+                else:
+                    supplies.append((self.raw[row].buffer, frozenset({(row, 0)})))
+                    if self.raw[row].is_endless:
+                        raw.append(self.raw[row])
+        supplies += [(self.buffers[name], frozenset(found)) for name, found in steps.items()]
+        station = Station(
+            self.env,
+            index,
+            spec,
+            Surroundings(
+                products=shop.products,
+                supplies=supplies,
+                raw=raw,
+                behind=behind,
+                machining=machining,
+                crews=_crews_of(spec.name, crews),
+                meter=self.meter,
+                started=self._started,
+                finished=self._finished,
+                stuck=self._require_movement,
+                recorders=self.recorders,
+            ),
+            self.streams,
+            shop.start,
+        )
+        for buffer, _ in supplies:
+            self._takers.setdefault(id(buffer), []).append(station)
+        return station
+
+    def _wake_taker(self, buffer: BatchBuffer) -> None:
+        """Wake the machine that has waited longest for a batch."""
+        takers = self._takers.get(id(buffer), ())
+        starved = [each for each in takers if each.state is MachineState.STARVED]
+        for each in sorted(starved, key=lambda station: station.since):
+            if each.wake():
+                return
+        for each in takers:
+            if each.wake():
+                return
+
+    def _started(self, batch: Batch) -> None:
+        self.in_shop += 1
+        if self.raw[batch.product].is_endless:
+            batch.released = self.env.now
+
+    def _finished(self, batch: Batch) -> None:
+        for each in self.recorders:
+            each.batch(batch, time=self.env.now)
+        self.in_shop -= 1
+        is_over = not self.in_shop and all(
+            not stock.left and not stock.buffer.items for stock in self.raw
+        )
+        if is_over and self._is_done is not None:
+            self._is_done.succeed()
+
+    def _require_movement(self, station: Station) -> None:
+        """Refuse a machine that can never hand over its batch."""
+        found: dict[int, Station] = {}
+        if not self._can_move(station, found):
+            raise Deadlock([self._waits(each) for each in found.values()], self.env.now)
+
+    def _can_move(self, station: Station, seen: dict[int, Station]) -> bool:
+        """Whether a machine will give its batch away, as others take what it waits for."""
+        buffer = station.holding_for
+        if buffer is None or station.held is None or station.held.offered is None:
+            return True
+        if station.index in seen:
+            return False
+        seen[station.index] = station
+        wanted = {(batch.product, batch.step) for batch in buffer.items}
+        takers = [
+            each
+            for each in self._takers.get(id(buffer), ())
+            if any(wanted & steps for store, steps in each.around.supplies if store is buffer)
+        ]
+        return any(self._can_move(each, seen) for each in takers)
+
+    def _waits(self, station: Station) -> str:
+        """What a blocked machine waits for."""
+        buffer, batch = station.holding_for, station.held
+        if buffer is None or batch is None:
+            return station.spec.name
+        product = self.shop.products[batch.product].name
+        takers = ", ".join(
+            each.spec.name for each in self._takers.get(id(buffer), ())
+        )
+        return (
+            f"{station.spec.name} holds batch {batch.number} of {product} for '{buffer.name}' "
+            f"({buffer.level} of {buffer.capacity:g} batches), which {takers} must empty"
+        )
+
+
+def _crews_of(name: str, crews: Sequence[CrewOnDuty]) -> Mapping[MachineState, CrewOnDuty]:
+    """Crews that serve a machine, by state."""
+    return {
+        state: each
+        for each in crews
+        if name in each.crew.machines
+        for state in each.crew.tasks
+    }

@@ -1,0 +1,143 @@
+"""Places of batches while a shop runs: buffers, and the sources of raw stock.
+
+Running state. A buffer keeps batches in the order of arrival; those beyond its capacity are
+still on the machines that offer them. So a buffer of capacity 0 hands over from machine to
+machine.
+"""
+
+from collections import deque
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import count
+from math import inf
+
+from simpy import Environment, Event
+
+from simulator.factory.shop import Product
+
+
+@dataclass(slots=True, eq=False)
+class Batch:
+    """Batch on its way. Running state."""
+
+    number: int
+    product: int
+    """Index of the product."""
+    released: float
+    """Time at which it entered the shop, s."""
+    parts: list[int]
+    """Numbers of the parts that are good so far."""
+    step: int = 0
+    """Index of the next step."""
+    arrived: float = 0.0
+    """Time at which it arrived at its buffer, s."""
+    offered: Event | None = None
+    """Event for the machine on which it waits for room; None once it is in the buffer."""
+
+
+Wake = Callable[["BatchBuffer"], None]
+"""Function that wakes a machine which waits for a buffer."""
+
+
+@dataclass(slots=True, eq=False)
+class BatchBuffer:
+    """Buffer with its batches. Running state."""
+
+    env: Environment
+    name: str
+    capacity: float
+    wake: Wake
+    """Called when a batch can be taken."""
+    items: deque[Batch] = field(default_factory=deque)
+    """Batches in the order of arrival; those beyond the capacity are offered."""
+
+    @property
+    def level(self) -> int:
+        """Batches in the buffer."""
+        return int(min(len(self.items), self.capacity))
+
+    def put(self, batch: Batch) -> Event | None:
+        """Put a batch; the event comes when there is room for it, None: at once."""
+        batch.arrived = self.env.now
+        batch.offered = None if len(self.items) < self.capacity else self.env.event()
+        self.items.append(batch)
+        offered = batch.offered
+        self.wake(self)
+        return offered
+
+    def first(self, steps: Collection[tuple[int, int]]) -> Batch | None:
+        """First batch for one of several steps, by index of product and step."""
+        for batch in self.items:
+            if (batch.product, batch.step) in steps:
+                return batch
+        return None
+
+    def take(self, batch: Batch) -> None:
+        """Take a batch; what waited for room moves in."""
+        if self.items[0] is batch:
+            self.items.popleft()
+        else:
+            self.items.remove(batch)
+        if batch.offered is not None:
+            batch.offered.succeed()
+            batch.offered = None
+        if self.capacity and len(self.items) >= self.capacity:
+            entering = self.items[int(self.capacity) - 1]
+            if entering.offered is not None:
+                entering.offered.succeed()
+                entering.offered = None
+
+
+@dataclass(slots=True, eq=False)
+class RawStock:
+    """Raw stock of a product. Running state."""
+
+    buffer: BatchBuffer
+    product: Product
+    index: int
+    numbers: "count[int]"
+    """Numbers of batches, shared by all products."""
+    released: int = 0
+
+    @property
+    def is_endless(self) -> bool:
+        """Whether batches come as machines ask for them."""
+        return self.product.arrival is None
+
+    @property
+    def left(self) -> float:
+        """Batches that have not been released."""
+        return inf if self.product.batches is None else self.product.batches - self.released
+
+    def release(self) -> None:
+        """Release the next batch."""
+        self.released += 1
+        batch = Batch(
+            number=next(self.numbers),
+            product=self.index,
+            released=self.buffer.env.now,
+            parts=list(range(self.product.batch)),
+        )
+        self.buffer.put(batch)
+
+    def arrivals(self, intervals: Iterator[float]) -> Iterator[Event]:
+        """SimPy process of arrivals."""
+        while self.left > 0:
+            yield self.buffer.env.timeout(next(intervals))
+            self.release()
+
+
+def oldest(
+    buffers: Sequence[tuple[BatchBuffer, Collection[tuple[int, int]]]],
+    priority: Callable[[int], float],
+) -> tuple[BatchBuffer, Batch] | None:
+    """Batch of the highest priority that has waited longest; None: there is none."""
+    best: tuple[BatchBuffer, Batch] | None = None
+    rank = (inf, inf)
+    for buffer, steps in buffers:
+        found = buffer.first(steps)
+        if found is not None:
+            own = (-priority(found.product), found.arrived)
+            if own < rank:
+                best, rank = (buffer, found), own
+    return best
