@@ -1,5 +1,7 @@
 """Errors of the simulator; the tree is drawn in :mod:`stepnc_model.errors`."""
 
+from collections.abc import Sequence
+
 from stepnc_model.errors import StepNcError
 
 
@@ -165,3 +167,22 @@ class CalibrationError(SimulationError):
         self.path = path
         self.line = line
         self.column = column
+
+
+class Deadlock(SimulationError):
+    """Machines of a shop wait for each other without end.
+
+    Parameters
+    ----------
+    waits : sequence of str
+        Sentence for each machine: what it holds and what it waits for.
+    time : float
+        Time of the run, in s.
+    """
+
+    def __init__(self, waits: Sequence[str], time: float) -> None:
+        super().__init__(
+            f"deadlock after {time / 3600.0:.2f} h: {'; '.join(waits)}; enlarge a buffer"
+        )
+        self.waits = tuple(waits)
+        self.time = time

@@ -11,6 +11,7 @@
     ├── SimulationError                    simulator.errors
     │   ├── UnknownMachine, UnknownMaterial, AgentError
     │   ├── LibraryError(path, key, line)
+    │   ├── Deadlock(waits, time)          machines of a shop wait for each other
     │   └── CalibrationError(path, line, column)
     ├── OptimisationError                  optimiser.errors
     │   ├── Infeasible(workingstep, limits)

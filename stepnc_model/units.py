@@ -16,6 +16,7 @@ from math import pi
 
 MM_PER_M = 1000.0
 SECONDS_PER_MINUTE = 60.0
+SECONDS_PER_HOUR = 3600.0
 MS_PER_SECOND = 1000.0
 WATTS_PER_KILOWATT = 1000.0
 MM_PER_MICROMETRE = 1e-3
@@ -23,6 +24,36 @@ MM_PER_INCH = 25.4
 UM_PER_MM = 1000.0
 NEWTONS_PER_KILONEWTON = 1000.0
 NMM_PER_NM = 1000.0
+
+
+def seconds_from_hours(value: float) -> float:
+    """Time in s from h."""
+    return value * SECONDS_PER_HOUR
+
+
+def hours_from_seconds(time: float) -> float:
+    """Time in h from s."""
+    return time / SECONDS_PER_HOUR
+
+
+def seconds_from_minutes(value: float) -> float:
+    """Time in s from min."""
+    return value * SECONDS_PER_MINUTE
+
+
+def ms_from_seconds(time: float) -> float:
+    """Time in ms from s."""
+    return time * MS_PER_SECOND
+
+
+def rev_s_from_rad_s(value: float) -> float:
+    """Speed in rev/s from rad/s."""
+    return value / (2.0 * pi)
+
+
+def kwh_from_joules(energy: float) -> float:
+    """Energy in kWh from J."""
+    return energy / (WATTS_PER_KILOWATT * SECONDS_PER_HOUR)
 
 
 def seconds_from_ms(value: float) -> float:

@@ -33,15 +33,16 @@ class Floor:
     stations: list[Station] = field(default_factory=list)
     buffers: dict[str, BatchBuffer] = field(default_factory=dict)
     raw: list[RawStock] = field(default_factory=list)
-    meter: PowerMeter = field(default_factory=PowerMeter)
+    meter: PowerMeter = field(init=False)
     in_shop: int = 0
-    """Batches between raw stock and the end of their routes."""
+    """Batches that entered the shop and have not left it."""
     _takers: dict[int, list[Station]] = field(default_factory=dict)
     """Machines that take from a buffer, by its identity."""
     _is_done: Event | None = None
 
     def __post_init__(self) -> None:
         shop = self.shop
+        self.meter = PowerMeter(begin=shop.warm_up)
         for each in shop.buffers:
             capacity = inf if each.capacity is None else each.capacity
             self.buffers[each.name] = self._buffer(each.name, capacity)
@@ -49,7 +50,7 @@ class Floor:
         for row, product in enumerate(shop.products):
             buffer = self._buffer(f"raw stock of {product.name}", inf)
             self.raw.append(
-                RawStock(buffer=buffer, product=product, index=row, numbers=numbers)
+                RawStock(buffer, product, row, numbers, entered=self._entered)
             )
         crews = [CrewOnDuty(self.env, crew, shop.start) for crew in shop.crews]
         for on_duty in crews:
@@ -86,10 +87,12 @@ class Floor:
         """Record the states so far."""
         for station in self.stations:
             station.close()
+        for buffer in self.buffers.values():
+            buffer.close()
         self.meter.change(0.0, self.env.now)
 
     def _buffer(self, name: str, capacity: float) -> BatchBuffer:
-        return BatchBuffer(self.env, name, capacity, self._wake_taker)
+        return BatchBuffer(self.env, name, capacity, self._wake_taker, self.shop.warm_up)
 
     def _station(self, index: int, crews: Sequence[CrewOnDuty]) -> Station:
         shop, spec = self.shop, self.shop.machines[index]
@@ -147,18 +150,22 @@ class Floor:
             if each.wake():
                 return
 
-    def _started(self, batch: Batch) -> None:
+    def _entered(self, batch: Batch) -> None:
         self.in_shop += 1
+        for each in self.recorders:
+            each.entered(batch)
+
+    def _started(self, batch: Batch) -> None:
+        """Let a batch of endless raw stock enter as a machine takes it."""
         if self.raw[batch.product].is_endless:
             batch.released = self.env.now
+            self._entered(batch)
 
     def _finished(self, batch: Batch) -> None:
         for each in self.recorders:
-            each.batch(batch, time=self.env.now)
+            each.left(batch, time=self.env.now)
         self.in_shop -= 1
-        is_over = not self.in_shop and all(
-            not stock.left and not stock.buffer.items for stock in self.raw
-        )
+        is_over = not self.in_shop and not any(stock.left for stock in self.raw)
         if is_over and self._is_done is not None:
             self._is_done.succeed()
 

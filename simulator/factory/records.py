@@ -53,5 +53,8 @@ class Recorder(Protocol):
     def state(self, spent: StateSpent) -> None:
         """A machine left a state."""
 
-    def batch(self, batch: Batch, *, time: float) -> None:
+    def entered(self, batch: Batch) -> None:
+        """A batch entered the shop at the time of its release."""
+
+    def left(self, batch: Batch, *, time: float) -> None:
         """A batch left the shop."""

@@ -56,6 +56,8 @@ class Surroundings:
 class PowerMeter:
     """Sum of the powers of all machines. Running state."""
 
+    begin: float
+    """Time from which the peak counts, s."""
     power: float = 0.0
     """W"""
     peak: float = 0.0
@@ -66,7 +68,8 @@ class PowerMeter:
     def change(self, difference: float, now: float) -> None:
         """Add a difference; changes at one time count as one."""
         if now > self.since:
-            self.peak = max(self.peak, self.power)
+            if now > self.begin:
+                self.peak = max(self.peak, self.power)
             self.since = now
         self.power += difference
 
@@ -123,6 +126,7 @@ class Station:
     _clock_failures: list[PendingFailure] = field(default_factory=list)
     _maintenance: list[DueMaintenance] = field(default_factory=list)
     _times: dict[MachineState, Iterator[float]] = field(default_factory=dict)
+    _scrap: Iterator[float] = iter(())
     _part_spoilt: bool = False
     _member_of: CrewOnDuty | None = None
     """Crew of which a member works at the machine."""

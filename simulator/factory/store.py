@@ -48,6 +48,12 @@ class BatchBuffer:
     capacity: float
     wake: Wake
     """Called when a batch can be taken."""
+    begin: float = 0.0
+    """Time from which the mean level counts, s."""
+    area: float = 0.0
+    """Level times time so far, batches·s."""
+    since: float = 0.0
+    """Time of the last change, s."""
     items: deque[Batch] = field(default_factory=deque)
     """Batches in the order of arrival; those beyond the capacity are offered."""
 
@@ -56,8 +62,16 @@ class BatchBuffer:
         """Batches in the buffer."""
         return int(min(len(self.items), self.capacity))
 
+    def close(self) -> None:
+        """Count the level so far."""
+        now = self.env.now
+        if now > self.since:
+            self.area += self.level * max(0.0, now - max(self.since, self.begin))
+            self.since = now
+
     def put(self, batch: Batch) -> Event | None:
         """Put a batch; the event comes when there is room for it, None: at once."""
+        self.close()
         batch.arrived = self.env.now
         batch.offered = None if len(self.items) < self.capacity else self.env.event()
         self.items.append(batch)
@@ -74,6 +88,7 @@ class BatchBuffer:
 
     def take(self, batch: Batch) -> None:
         """Take a batch; what waited for room moves in."""
+        self.close()
         if self.items[0] is batch:
             self.items.popleft()
         else:
@@ -97,6 +112,8 @@ class RawStock:
     index: int
     numbers: "count[int]"
     """Numbers of batches, shared by all products."""
+    entered: Callable[[Batch], None]
+    """Called with each batch that arrives."""
     released: int = 0
 
     @property
@@ -118,6 +135,8 @@ class RawStock:
             released=self.buffer.env.now,
             parts=list(range(self.product.batch)),
         )
+        if not self.is_endless:
+            self.entered(batch)
         self.buffer.put(batch)
 
     def arrivals(self, intervals: Iterator[float]) -> Iterator[Event]:
