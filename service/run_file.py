@@ -4,17 +4,16 @@ The file gets its name when it is whole. A run that is broken off leaves what it
 ``.partial``, closed and readable.
 """
 
-import os
 import re
-import tempfile
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 import pyarrow as pa
 from pyarrow import compute, csv, parquet
 
 from service.formula import FIRST
+from service.growing_file import GrowingFile
 from stepnc_model.errors import WriteError
 
 SUFFIXES = (".parquet", ".csv")
@@ -42,21 +41,23 @@ class RunFile:
     def __init__(self, path: Path, schema: pa.Schema) -> None:
         self.path = path
         self.rows = 0
-        self.place: Path | None = None
-        """where the file lies once it is closed"""
         self._is_text = require_suffix(path) == ".csv"
         self._names = schema.names
+        self._file = GrowingFile(path)
         try:
-            descriptor, self._name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-            self._file = os.fdopen(descriptor, "wb")
             self._writer = self._opened(schema)
         except OSError as error:
-            raise self._refused(error) from error
+            raise self._file.refused(error) from error
+
+    @property
+    def place(self) -> Path | None:
+        """Name of the file once it is closed."""
+        return self._file.place
 
     @property
     def partial(self) -> Path:
         """Name of the file that an interrupted run leaves."""
-        return self.path.with_suffix(f".partial{self.path.suffix}")
+        return self._file.partial
 
     def write(self, columns: Sequence[pa.Array]) -> None:
         """More rows, as columns in the order of the schema.
@@ -71,7 +72,7 @@ class RunFile:
         try:
             self._writer.write(batch)
         except OSError as error:
-            raise self._refused(error) from error
+            raise self._file.refused(error) from error
         self.rows += batch.num_rows
 
     @contextmanager
@@ -85,39 +86,22 @@ class RunFile:
         WriteError
             When the disk refuses; nothing is left.
         """
-        try:
+        with self._file.closing(is_whole=is_whole, has_content=lambda: bool(self.rows)):
             yield
             self._writer.close()
-            self._file.flush()
-            os.fsync(self._file.fileno())
-            if is_whole or self.rows:
-                place = self.path if is_whole else self.partial
-                os.chmod(self._name, _mode(place))
-                os.replace(self._name, place)
-                self.place = place
-        except OSError as failure:
-            raise self._refused(failure) from failure
-        finally:
-            # What the disk has refused once it refuses again.
-            with suppress(OSError):
-                self._file.close()
-            Path(self._name).unlink(missing_ok=True)
 
     def _opened(self, schema: pa.Schema) -> parquet.ParquetWriter | csv.CSVWriter:
         if self._is_text:
-            return csv.CSVWriter(self._file, _spelled_out(schema))
+            return csv.CSVWriter(self._file.stream, _spelled_out(schema))
         floats = [field.name for field in schema if pa.types.is_floating(field.type)]
         return parquet.ParquetWriter(
-            self._file,
+            self._file.stream,
             schema,
             compression="zstd",
             # Measured values hardly repeat; their bytes compress when each has its stream.
             use_dictionary=[name for name in schema.names if name not in floats],
             use_byte_stream_split=floats,
         )
-
-    def _refused(self, error: OSError) -> WriteError:
-        return WriteError(error.strerror or str(error), path=str(self.path))
 
 
 def require_suffix(path: Path) -> str:
@@ -149,12 +133,3 @@ def _plain(column: pa.Array) -> pa.Array:
     return compute.replace_substring_regex(
         column.dictionary_decode(), pattern=f"^([{re.escape(FIRST)}])", replacement=r"'\1"
     )
-
-
-def _mode(place: Path) -> int:
-    """Permissions of the file that is replaced, or what a new file gets."""
-    if place.exists():
-        return place.stat().st_mode & 0o777
-    umask = os.umask(0)
-    os.umask(umask)
-    return 0o666 & ~umask

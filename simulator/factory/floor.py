@@ -1,6 +1,6 @@
 """A running shop: its machines, buffers and crews on one SimPy clock. Running state."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 from math import inf
@@ -9,16 +9,13 @@ from simpy import Environment, Event
 
 from simulator.errors import Deadlock
 from simulator.factory.crews import CrewOnDuty
-from simulator.factory.machining import Machining
-from simulator.factory.records import Recorder
+from simulator.factory.machining import Machining, MachiningPlan
+from simulator.factory.records import Listeners
 from simulator.factory.shop import Shop
 from simulator.factory.states import MachineState
 from simulator.factory.station import PowerMeter, Station, Steps, Surroundings
 from simulator.factory.store import Batch, BatchBuffer, RawStock
 from simulator.factory.streams import Streams
-
-MachiningOf = Callable[[int, int, int, Streams], Iterator[Machining]]
-"""Function from product, step and machine to the machining of one part after another."""
 
 
 @dataclass(slots=True, eq=False)
@@ -26,9 +23,9 @@ class Floor:
     """Shop in operation."""
 
     shop: Shop
-    machining: MachiningOf
+    machining: MachiningPlan
     streams: Streams
-    recorders: Sequence[Recorder] = ()
+    listeners: Listeners
     env: Environment = field(default_factory=Environment)
     stations: list[Station] = field(default_factory=list)
     buffers: dict[str, BatchBuffer] = field(default_factory=dict)
@@ -49,9 +46,7 @@ class Floor:
         numbers = count()
         for row, product in enumerate(shop.products):
             buffer = self._buffer(f"raw stock of {product.name}", inf)
-            self.raw.append(
-                RawStock(buffer, product, row, numbers, entered=self._entered)
-            )
+            self.raw.append(RawStock(buffer, product, row, numbers, entered=self._entered))
         crews = [CrewOnDuty(self.env, crew, shop.start) for crew in shop.crews]
         for on_duty in crews:
             self.env.process(on_duty.hours())
@@ -105,7 +100,7 @@ class Floor:
             for at, step in enumerate(product.steps):
                 if spec.name not in step.machines:
                     continue
-                machining[row, at] = self.machining(row, at, index, self.streams)
+                machining[row, at] = self.machining.parts(shop, (row, at, index), self.streams)
                 if step.into:
                     behind[row, at] = self.buffers[step.into]
                 if at:
@@ -130,7 +125,7 @@ class Floor:
                 started=self._started,
                 finished=self._finished,
                 stuck=self._require_movement,
-                recorders=self.recorders,
+                listeners=self.listeners,
             ),
             self.streams,
             shop.start,
@@ -152,8 +147,8 @@ class Floor:
 
     def _entered(self, batch: Batch) -> None:
         self.in_shop += 1
-        for each in self.recorders:
-            each.entered(batch)
+        for tell in self.listeners.entered:
+            tell(batch)
 
     def _started(self, batch: Batch) -> None:
         """Let a batch of endless raw stock enter as a machine takes it."""
@@ -162,8 +157,8 @@ class Floor:
             self._entered(batch)
 
     def _finished(self, batch: Batch) -> None:
-        for each in self.recorders:
-            each.left(batch, time=self.env.now)
+        for tell in self.listeners.left:
+            tell(batch, self.env.now)
         self.in_shop -= 1
         is_over = not self.in_shop and not any(stock.left for stock in self.raw)
         if is_over and self._is_done is not None:
@@ -197,9 +192,7 @@ class Floor:
         if buffer is None or batch is None:
             return station.spec.name
         product = self.shop.products[batch.product].name
-        takers = ", ".join(
-            each.spec.name for each in self._takers.get(id(buffer), ())
-        )
+        takers = ", ".join(each.spec.name for each in self._takers.get(id(buffer), ()))
         return (
             f"{station.spec.name} holds batch {batch.number} of {product} for '{buffer.name}' "
             f"({buffer.level} of {buffer.capacity:g} batches), which {takers} must empty"
@@ -209,8 +202,5 @@ class Floor:
 def _crews_of(name: str, crews: Sequence[CrewOnDuty]) -> Mapping[MachineState, CrewOnDuty]:
     """Crews that serve a machine, by state."""
     return {
-        state: each
-        for each in crews
-        if name in each.crew.machines
-        for state in each.crew.tasks
+        state: each for each in crews if name in each.crew.machines for state in each.crew.tasks
     }

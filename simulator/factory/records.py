@@ -1,10 +1,12 @@
 """What a running shop tells: parts made, and times that machines spent in their states."""
 
-from typing import NamedTuple, Protocol
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
 
-from simulator.factory.machining import Settings
 from simulator.factory.states import MachineState
 from simulator.factory.store import Batch
+from stepnc_model.cut_settings import CutSettings
 
 
 class PartMade(NamedTuple):
@@ -27,7 +29,9 @@ class PartMade(NamedTuple):
     """0 for all parts but the last of a batch on this machine."""
     energy: float
     """Energy of machining, J."""
-    settings: Settings
+    peak_power: float
+    """W"""
+    settings: CutSettings
     is_good: bool
 
 
@@ -44,17 +48,24 @@ class StateSpent(NamedTuple):
     """J"""
 
 
-class Recorder(Protocol):
-    """Receiver of what a shop tells."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Listeners:
+    """Functions that are told what happens in a running shop."""
 
-    def part(self, part: PartMade) -> None:
-        """A part left a machine."""
+    part: tuple[Callable[[PartMade], None], ...] = ()
+    """Called with each part that leaves a machine."""
+    state: tuple[Callable[[StateSpent], None], ...] = ()
+    """Called when a machine leaves a state."""
+    entered: tuple[Callable[[Batch], None], ...] = ()
+    """Called with each batch that enters the shop, at its release."""
+    left: tuple[Callable[[Batch, float], None], ...] = ()
+    """Called with each batch that leaves the shop, and the time in s."""
 
-    def state(self, spent: StateSpent) -> None:
-        """A machine left a state."""
-
-    def entered(self, batch: Batch) -> None:
-        """A batch entered the shop at the time of its release."""
-
-    def left(self, batch: Batch, *, time: float) -> None:
-        """A batch left the shop."""
+    def plus(self, other: "Listeners") -> "Listeners":
+        """All functions of both."""
+        return Listeners(
+            part=self.part + other.part,
+            state=self.state + other.state,
+            entered=self.entered + other.entered,
+            left=self.left + other.left,
+        )

@@ -99,7 +99,7 @@ class Buffer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SettingRanges:
-    """Ranges of cutting settings that are drawn uniformly for each part; None: as programmed."""
+    """Ranges of settings drawn uniformly for each part; None: as programmed."""
 
     feed: tuple[float, float] | None = None
     """mm/s"""

@@ -8,6 +8,7 @@ anything runs.
 import json
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -94,7 +95,7 @@ class DistributionTable(FileTable, frozen=True, kw_only=True):
             if key not in needed and getattr(self, key) is not None:
                 raise KeyFault(key, f"kind {self.kind} has only {', '.join(needed)}")
         ends = [(key, getattr(self, key)) for key in ("low", "mode", "high") if key in needed]
-        for (key, value), (above, bound) in zip(ends, ends[1:], strict=False):
+        for (key, value), (above, bound) in pairwise(ends):
             if value > bound:
                 raise KeyFault(key, f"{value:g} exceeds {above} {bound:g}")
 
@@ -362,8 +363,8 @@ class ShopFile(FileTable, frozen=True, kw_only=True):
         capacity = {row.name: row.capacity for row in self.buffer}
         groups, onwards = self.groups, dict[str, set[str]]()
         for product in self.product:
-            for step, following in zip(product.step, product.step[1:], strict=False):
-                if capacity.get(step.into, None) != 0:
+            for step, following in pairwise(product.step):
+                if capacity.get(step.into) != 0:
                     continue
                 after = {name for group in following.machines for name in groups[group]}
                 for group in step.machines:
@@ -487,9 +488,7 @@ def _machines(
         )
 
 
-def _handling(
-    table: HandlingTable, machine: Machine | None
-) -> dict[MachineState, StateLoad]:
+def _handling(table: HandlingTable, machine: Machine | None) -> dict[MachineState, StateLoad]:
     """Times and powers of set-up and ejection: those of the shop, or of the machine file."""
     usual = None if machine is None else machine.handling
     loads = {}
@@ -540,7 +539,9 @@ def _product(
         material=row.material,
         batch=int(row.batch),
         batches=None if row.batches is None else int(row.batches),
-        arrival=None if arrival is None else _distribution(arrival).scaled(seconds_from_minutes(1.0)),
+        arrival=None
+        if arrival is None
+        else _distribution(arrival).scaled(seconds_from_minutes(1.0)),
         steps=tuple(steps),
         priority=row.priority,
     )
@@ -560,9 +561,7 @@ def _crew(
 
 
 def _buffer(row: BufferRow) -> Buffer:
-    return Buffer(
-        name=row.name, capacity=None if row.capacity is None else int(row.capacity)
-    )
+    return Buffer(name=row.name, capacity=None if row.capacity is None else int(row.capacity))
 
 
 def _distribution(time: float | DistributionTable) -> Distribution:

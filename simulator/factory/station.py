@@ -14,9 +14,9 @@ from typing import Any, TypeAlias
 from simpy import Environment, Event, Interrupt, Process
 
 from simulator.factory.crews import CrewOnDuty
-from simulator.factory.machining import NO_SETTINGS, Machining, Settings
-from simulator.factory.records import PartMade, Recorder, StateSpent
-from simulator.factory.shop import Counting, Failure, Product, ShopMachine, StateLoad
+from simulator.factory.machining import Machining
+from simulator.factory.records import Listeners, PartMade, StateSpent
+from simulator.factory.shop import Counting, Failure, Product, ShopMachine
 from simulator.factory.states import HANDLING, TRANSITIONS, MachineState
 from simulator.factory.store import Batch, BatchBuffer, RawStock, oldest
 from simulator.factory.streams import Streams
@@ -49,7 +49,7 @@ class Surroundings:
     """Called with each batch that leaves the raw stock."""
     stuck: Callable[["Station"], None]
     """Called when the machine waits for room."""
-    recorders: Sequence[Recorder]
+    listeners: Listeners
 
 
 @dataclass(slots=True, eq=False)
@@ -126,7 +126,7 @@ class Station:
     _clock_failures: list[PendingFailure] = field(default_factory=list)
     _maintenance: list[DueMaintenance] = field(default_factory=list)
     _times: dict[MachineState, Iterator[float]] = field(default_factory=dict)
-    _scrap: Iterator[float] = iter(())
+    _scrap: Iterator[float] = field(init=False)
     _part_spoilt: bool = False
     _member_of: CrewOnDuty | None = None
     """Crew of which a member works at the machine."""
@@ -190,8 +190,8 @@ class Station:
         if now > self.since:
             energy = self.power * (now - self.since)
             spent = StateSpent(self.index, self.state, self.since, now, energy)
-            for each in self.around.recorders:
-                each.state(spent)
+            for tell in self.around.listeners.state:
+                tell(spent)
         self.since = now
 
     def wake(self) -> bool:
@@ -264,7 +264,8 @@ class Station:
                 self._tell(made)
             made = PartMade(
                 self.index, *step, batch.number, part, self.env.now, 0.0 if row else setup,
-                part_setup, work.time, ejection, 0.0, work.energy, work.settings, is_good,
+                part_setup, work.time, ejection, 0.0, work.energy, work.peak_power,
+                work.settings, is_good,
             )  # fmt: skip
         ejection = yield from self._handle(MachineState.BATCH_EJECTION)
         if made is not None:
@@ -273,8 +274,8 @@ class Station:
         yield from self._hand_over(batch, step)
 
     def _tell(self, made: PartMade) -> None:
-        for each in self.around.recorders:
-            each.part(made)
+        for tell in self.around.listeners.part:
+            tell(made)
 
     def _hand_over(self, batch: Batch, step: tuple[int, int]) -> Course:
         """Move a batch on; wait where there is no room."""
@@ -423,7 +424,7 @@ class Station:
         share = pending.failure.scrap
         return share > 0.0 and next(pending.spoils) < share
 
-    def _down(self, repair: float, spoils: bool) -> Course:  # noqa: FBT001 (of an interrupt)
+    def _down(self, repair: float, spoils: bool) -> Course:
         """Fail, and be repaired."""
         state, power = self.state, self.power
         self._repaired = self._repaired or self.env.event()

@@ -13,7 +13,7 @@ from math import nan
 from simulator.factory.floor import Floor
 from simulator.factory.measures import Level, Measure, Quantity
 from simulator.factory.power_series import PowerSeries
-from simulator.factory.records import PartMade, StateSpent
+from simulator.factory.records import Listeners, PartMade, StateSpent
 from simulator.factory.shop import Shop
 from simulator.factory.states import MachineState
 from simulator.factory.store import Batch
@@ -64,7 +64,7 @@ class ProductTally:
 
 @dataclass(slots=True, eq=False)
 class Tally:
-    """Counts of a shop; a recorder."""
+    """Counts of a shop."""
 
     shop: Shop
     machines: list[MachineTally] = field(default_factory=list)
@@ -82,6 +82,13 @@ class Tally:
         self.products += [ProductTally() for _ in self.shop.products]
         self.power = PowerSeries(self.shop.warm_up, self.shop.duration)
 
+    @property
+    def listeners(self) -> Listeners:
+        """Functions that count."""
+        return Listeners(
+            part=(self.part,), state=(self.state,), entered=(self.entered,), left=(self.left,)
+        )
+
     def part(self, part: PartMade) -> None:
         """Count a part that left a machine."""
         if part.end < self.shop.warm_up:
@@ -90,6 +97,7 @@ class Tally:
         machine.parts += 1
         machine.good += part.is_good
         machine.machined += part.machining
+        machine.peak = max(machine.peak, part.peak_power)
         key = (part.product, part.step, part.machine)
         process = self.processes.get(key)
         if process is None:
@@ -122,7 +130,7 @@ class Tally:
         self._wip(batch.released)
         self.inside += self.shop.products[batch.product].batch
 
-    def left(self, batch: Batch, *, time: float) -> None:
+    def left(self, batch: Batch, time: float) -> None:
         """Count the good parts of a batch."""
         self._wip(time)
         self.inside -= self.shop.products[batch.product].batch

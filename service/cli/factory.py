@@ -1,0 +1,68 @@
+"""``stepnc factory``: run a shop of machines, buffers and crews."""
+
+import argparse
+from pathlib import Path
+
+from service.cli.options import OK, Commands, add_json
+
+REPORT = "factory.html"
+
+
+def add_factory_command(commands: Commands) -> None:
+    """Add it to ``stepnc``."""
+    parser = commands.add_parser(
+        "factory", help="run a shop: batches through machines, with times, states and energy"
+    )
+    parser.fill = _factory_options
+
+
+def _factory_options(parser: argparse.ArgumentParser) -> None:
+    from service.requests.factory import FactoryRequest
+    from service.requests.fields import add_options
+
+    add = parser.add_argument
+    add("shop", type=Path, metavar="SHOP", help="shop file, .toml or .json")
+    add_options(parser, FactoryRequest)
+    add(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="FOLDER",
+        help="write tables of parts, states and documents of the first replication",
+    )
+    add(
+        "--report",
+        action="store_true",
+        help="write a self-contained page with pictures into the folder",
+    )
+    add_json(parser)
+    parser.set_defaults(run=_factory)
+
+
+def _factory(options: argparse.Namespace) -> int:
+    """Run the command ``stepnc factory``."""
+    from service.cli.machine import interruptible
+    from service.factory.output import factory_json, factory_page, print_factory
+    from service.factory.run import run_factory
+    from service.files import write_atomically
+    from service.requests.factory import FactoryRequest
+    from service.requests.fields import from_options
+    from service.terminal import tell, write_out
+    from stepnc_model.errors import StepNcError
+
+    request = from_options(FactoryRequest, options)
+    if options.output is None and (options.report or request.documents or request.has_energy):
+        raise StepNcError("--report, --documents and --energy write files: name a folder, -o")
+    with interruptible():
+        result = run_factory(options.shop, request, folder=options.output, tell=tell)
+    if options.output is not None:
+        tell(f"written: {options.output} ({result.parts_written} parts)")
+    if options.report:
+        report = options.output / REPORT
+        write_atomically(report, factory_page(result).encode())
+        tell(f"report: {report}")
+    if options.json:
+        write_out(factory_json(result))
+    else:
+        print_factory(result)
+    return OK

@@ -1,0 +1,1 @@
+"""The virtual factory: a shop file run, its outputs and its report."""
