@@ -1,0 +1,1 @@
+"""Virtual factory: machining cycles of programs, for the simulation of a shop."""
