@@ -6,10 +6,11 @@ from math import isclose, pi
 from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, Plan
 from optimiser.cut import Cut, CutKind
 from simulator.physics.engagement import Engagement
+from stepnc_model.edit_conditions import rounded
 from stepnc_model.record import GENERATOR, AdviceRecord
 from stepnc_model.technology import ProgrammedQuantity
 from stepnc_model.units import deg_from_rad, kw_from_watts, um_from_mm
-from stepnc_model.writeback import WorkingstepUpdate, rounded
+from stepnc_model.writeback import WorkingstepUpdate
 
 UNCHANGED = 1e-9
 """Relative difference below which an advised number counts as unchanged."""

@@ -24,6 +24,7 @@ from datetime import UTC, datetime
 from math import exp, inf, isfinite
 
 from stepnc_model.binding import to_parameters
+from stepnc_model.edit_conditions import rounded
 from stepnc_model.entities import optimisation as entities
 from stepnc_model.entities.operations import MachiningOperation
 from stepnc_model.errors import SchemaError
@@ -33,7 +34,7 @@ from stepnc_model.part21.writer import Edits
 from stepnc_model.program import Program
 from stepnc_model.record_edit import has_parameters
 from stepnc_model.units import m_s_from_speed, mm_from_um, speed_from_m_s, um_from_mm
-from stepnc_model.writeback import SCHEMA, rounded
+from stepnc_model.writeback import SCHEMA
 
 
 def written(time: datetime) -> str:

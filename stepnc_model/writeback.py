@@ -17,9 +17,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from stepnc_model.draft import Draft
-from stepnc_model.entities.turning import TurningMachiningOperation
+from stepnc_model.edit_conditions import edit_depth, edit_number
 from stepnc_model.file_profile import FileProfile
-from stepnc_model.part21.values import Real, Ref
+from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.record import AdviceRecord
 from stepnc_model.record_edit import (
@@ -29,15 +29,12 @@ from stepnc_model.record_edit import (
     put_parameters,
     take_out,
 )
-from stepnc_model.technology import Number, Programmed
+from stepnc_model.technology import Programmed
 
 SCHEMA = "OPTIMISATION_SCHEMA"
 
 ANSWERS = ("OUTCOME", "CORRECTION")
 """Entities of the same schema that are not part of a record."""
-
-DIGITS = 12
-"""Significant digits of numbers written into the file."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,11 +133,6 @@ def records(program: Program) -> dict[int, AdviceRecord]:
     return {number: record for number, record in found.items() if record is not None}
 
 
-def rounded(value: float) -> float:
-    """Round a number to the digits that are written."""
-    return float(f"{value:.{DIGITS}g}")
-
-
 def _require_form(program: Program, profile: FileProfile) -> None:
     """Raise an error if profile ``standard`` cannot represent part of the program."""
     if profile is not FileProfile.STANDARD:
@@ -180,39 +172,11 @@ def _finished(draft: Draft) -> bytes:
 def _edit_conditions(draft: Draft, change: WorkingstepUpdate) -> None:
     """Write the feed, speed and depth of a workingstep."""
     step = change.workingstep
-    _edit_number(draft, step, change.programmed.feed, change.feed)
+    edit_number(draft, step, change.programmed.feed, change.feed)
     if change.speed is not None:
-        _edit_number(draft, step, change.programmed.speed, change.speed)
+        edit_number(draft, step, change.programmed.speed, change.speed)
     if change.depth is not None:
-        _edit_depth(draft, step, rounded(change.depth))
-
-
-def _edit_number(draft: Draft, step: ResolvedWorkingstep, number: Number, value: float) -> None:
-    """Write one programmed number, in an instance that only this operation uses."""
-    if rounded(value) == rounded(number.in_file(number.value)):
-        return
-    holder = draft.own(step.operation_ref, "its_technology")
-    if number.ref != step.technology_ref:
-        technology = draft.program.get(step.technology_ref)
-        attribute = next(
-            name
-            for name in technology.__dataclass_fields__
-            if getattr(technology, name) == number.ref
-        )
-        holder = draft.own(step.technology_ref, attribute, at=holder)
-    draft.put(number.ref, number.attribute, Real(rounded(value)), at=holder)
-
-
-def _edit_depth(draft: Draft, step: ResolvedWorkingstep, depth: float) -> None:
-    """Write the depth of one pass: in the operation, or in a turning strategy."""
-    operation = step.operation
-    if isinstance(operation, TurningMachiningOperation):
-        reference = operation.its_machining_strategy
-        if reference is not None:
-            strategy = draft.own(step.operation_ref, "its_machining_strategy")
-            draft.put(reference, "cutting_depth", (Real(depth),), at=strategy)
-    elif hasattr(operation, "axial_cutting_depth"):
-        draft.put(step.operation_ref, "axial_cutting_depth", Real(depth))
+        edit_depth(draft, step, change.depth)
 
 
 def _with_first_programmed(record: AdviceRecord, old: AdviceRecord | None) -> AdviceRecord:

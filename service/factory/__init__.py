@@ -1,1 +1,1 @@
-"""The virtual factory: a shop file run, its outputs and its report."""
+"""Virtual factory: machining cycles of programs, for the simulation of a shop."""

@@ -65,6 +65,4 @@ def _cycle(  # noqa: PLR0913, PLR0917 (one place of the plan)
             "library, or give the step a time_s instead of a program"
         )
     material = material_for(product.material, program)
-    return ProgramCycle(
-        cycle=cycles.cycle(program, machine, material), settings=CutSettings()
-    )
+    return ProgramCycle(cycle=cycles.cycle(program, machine, material), settings=CutSettings())

@@ -86,9 +86,7 @@ def run_factory(
                 PartTables(folder, shop, materials_of(shop), has_energy=request.has_energy)
             )
             states = stack.enter_context(StateFile(folder / STATES, shop))
-            listeners = listeners.plus(
-                Listeners(part=(tables.part,), state=(states.state,))
-            )
+            listeners = listeners.plus(Listeners(part=(tables.part,), state=(states.state,)))
         first = _first(shop, plan, request, listeners, tell)
     runs = [first.measures]
     cases: list[SweptCase] = []
@@ -101,9 +99,7 @@ def run_factory(
             for (changes, case), own in zip(swept, plans, strict=True):
                 found = work.measures(case, own, range(request.replications))
                 cases.append(
-                    SweptCase(
-                        changes=tuple(changes.items()), measures=over_replications(found)
-                    )
+                    SweptCase(changes=tuple(changes.items()), measures=over_replications(found))
                 )
     return FactoryResult(
         shop=shop,

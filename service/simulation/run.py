@@ -142,7 +142,7 @@ def run_of_program(
         When the machine cannot run the program.
     """
     prepared = prepared_program(program, machine, material, tell=tell)
-    virtual = _machine(SimulationRequest(), prepared, teeth=None)
+    virtual = machine_of(SimulationRequest(), prepared)
     run = RunCollector(virtual, Disturbance(), rate=1.0, watchers=())
     _run(prepared, virtual, run, tell=tell)
     return tuple(zip(virtual.workingsteps, run.totals[1:], strict=True))
@@ -162,7 +162,7 @@ def waiting_machine(
     _require_files(files)
     teeth = _teeth(request)
     prepared = _prepared(request, files, tell)
-    return prepared, _machine(request, prepared, teeth=teeth)
+    return prepared, machine_of(request, prepared, teeth=teeth)
 
 
 def _run(
@@ -216,10 +216,16 @@ def _prepared(request: SimulationRequest, files: RunFiles, tell: Tell) -> Prepar
     )
 
 
-def _machine(
-    request: SimulationRequest, prepared: PreparedRun, *, teeth: ToothOptions | None
+def machine_of(
+    request: SimulationRequest, prepared: PreparedRun, *, teeth: ToothOptions | None = None
 ) -> VirtualMachine:
-    """Build the machine, ready for the program."""
+    """Build the machine of a prepared program, ready to run it.
+
+    Raises
+    ------
+    StepNcError
+        When axes, control or zero are unknown or invalid.
+    """
     require_axes(prepared.machine)
     return VirtualMachine(
         MachineSetup(

@@ -6,15 +6,15 @@ W.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from simulator.machine.deviation import movement_of
-from simulator.machine.samples import Episode
+from simulator.machine.samples import Episode, Samples
 from simulator.machine.sensing import sensed
-from simulator.machine.totals import quadrature
-from simulator.motion.segments import Floats
+from simulator.machine.totals import Quadrature, quadrature
+from simulator.motion.segments import Floats, Segments
 from simulator.spec import Machine, PowerDeviation
 
 PARTS = 100
@@ -52,8 +52,7 @@ def cycle_of(episodes: Iterable[Episode], machine: Machine) -> PartCycle:
     machine : Machine
     """
     end, peak = 0.0, 0.0
-    times, spent = [np.zeros(1)], [np.zeros(0)]
-    traverse, feed = [np.zeros(0)], [np.zeros(0)]
+    times, spent, drawn = [np.zeros(1)], [np.zeros(0)], [MovementEnergies()]
     for episode in episodes:
         end = episode.end
         places = quadrature(episode)
@@ -64,27 +63,40 @@ def cycle_of(episodes: Iterable[Episode], machine: Machine) -> PartCycle:
         peak = max(peak, float(watts.max()))
         times.append(places.nodes[1:])
         spent.append((places.weights * watts).sum(axis=1))
-        if episode.course is None:
-            continue
-        motors = samples.axis_power.sum(axis=1) + samples.spindle_power
-        drawn = (places.weights * motors.reshape(places.times.shape)).sum(axis=1)
-        movement = movement_of(episode.course.segments)
-        middle = 0.5 * (places.nodes[:-1] + places.nodes[1:])
-        at = movement[episode.kinematics(middle).segment]
-        energies = np.bincount(at, weights=drawn, minlength=int(movement[-1]) + 1)
-        _, begins = np.unique(movement, return_index=True)
-        is_rapid = episode.course.segments.is_rapid[begins]
-        traverse.append(energies[is_rapid])
-        feed.append(energies[~is_rapid])
+        if episode.course is not None:
+            drawn.append(_drawn(episode, episode.course.segments, places, samples))
     used = np.concatenate(([0.0], np.cumsum(np.concatenate(spent))))
     return PartCycle(
         time=end,
         energy=float(used[-1]),
         peak_power=peak,
-        traverse_energies=np.concatenate(traverse),
-        feed_energies=np.concatenate(feed),
+        traverse_energies=np.concatenate([each.traverse for each in drawn]),
+        feed_energies=np.concatenate([each.feed for each in drawn]),
         profile=_profile(np.concatenate(times), used, end),
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MovementEnergies:
+    """Energy drawn by the motors in the movements of a stretch, J."""
+
+    traverse: Floats = field(default_factory=lambda: np.zeros(0))
+    feed: Floats = field(default_factory=lambda: np.zeros(0))
+
+
+def _drawn(
+    episode: Episode, segments: Segments, places: Quadrature, samples: Samples
+) -> MovementEnergies:
+    """Energies of the movements of one stretch."""
+    motors = samples.axis_power.sum(axis=1) + samples.spindle_power
+    spans = (places.weights * motors.reshape(places.times.shape)).sum(axis=1)
+    movement = movement_of(segments)
+    middle = 0.5 * (places.nodes[:-1] + places.nodes[1:])
+    at = movement[episode.kinematics(middle).segment]
+    count = int(movement[-1]) + 1
+    energies = np.bincount(at, weights=spans, minlength=count).astype(np.float64)
+    is_rapid = segments.is_rapid[np.searchsorted(movement, np.arange(count))]
+    return MovementEnergies(traverse=energies[is_rapid], feed=energies[~is_rapid])
 
 
 def _profile(times: Floats, used: Floats, end: float) -> Floats:

@@ -7,13 +7,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stepnc_model import writeback
+from stepnc_model.edit_conditions import rounded
 from stepnc_model.entities.optimisation import FaceMillingImmersion
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.record import MODES, AdviceRecord
 from stepnc_model.technology import programmed
-from stepnc_model.writeback import WorkingstepUpdate, rounded
+from stepnc_model.writeback import WorkingstepUpdate
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 SAMPLES = {path.stem: path.read_bytes() for path in sorted(PARTS.glob("*.stpnc"))}

@@ -156,9 +156,3 @@ class TestProfiles:
 def test_a_file_without_records_has_none() -> None:
     for name in PARTS_NAMES:
         assert writeback.records(program_of(part(name))) == {}
-
-
-@pytest.mark.parametrize("number", [1 / 3, 1e-300, 123456789.123456789, -0.1])
-def test_a_rounded_number_has_twelve_digits(number: float) -> None:
-    assert writeback.rounded(number) == pytest.approx(number, rel=1e-11)
-    assert writeback.rounded(writeback.rounded(number)) == writeback.rounded(number)
