@@ -30,6 +30,7 @@ SLOW = (
     "service/control/test_outcomes.py",
     "service/control/test_recorded_run.py",
     "service/dashboard",
+    "service/factory/test_cycle_tables.py",
     "service/jobs",
     "service/knowledge/test_export.py",
     "service/monitor",

@@ -4,6 +4,7 @@ A run is remembered by what determines it: the bytes of the program, its units a
 values of machine and material, and the settings.
 """
 
+from collections.abc import Hashable
 from dataclasses import dataclass, field
 from hashlib import sha256
 
@@ -12,6 +13,7 @@ from service.requests.runs import SimulationRequest
 from service.simulation.run import machine_of
 from service.simulation.setup import prepared_program
 from simulator.factory.cycle import PartCycle, cycle_of
+from simulator.factory.interpolated import CycleTable, SettingsDesign, cycle_table
 from simulator.machine.interpreter import interpret
 from simulator.spec import Machine, MachineKind, MaterialMatch, WorkMaterial
 from stepnc_model.cut_settings import CutSettings, with_settings
@@ -20,6 +22,8 @@ from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program, ResolvedWorkingstep, Stock
 from stepnc_model.technology import ProgrammedQuantity, programmed
 from stepnc_model.tool import tool_of
+from stepnc_model.toolpath.generate import generate
+from stepnc_model.toolpath.path import ToolPath
 from stepnc_model.units import (
     UnitProfile,
     mm_min_from_speed,
@@ -38,6 +42,7 @@ class CycleKey:
     machine: Machine
     material: WorkMaterial
     settings: CutSettings | None
+    workingsteps: tuple[str, ...]
 
 
 @dataclass(slots=True, kw_only=True)
@@ -53,6 +58,7 @@ class PartCycles:
         machine: Machine,
         material: MaterialMatch,
         settings: CutSettings | None = None,
+        workingsteps: tuple[str, ...] = (),
     ) -> PartCycle:
         """Cycle of :func:`part_cycle`, run once.
 
@@ -68,12 +74,45 @@ class PartCycles:
             machine=machine,
             material=material.material,
             settings=settings,
+            workingsteps=workingsteps,
         )
         if key not in self._known:
             self._known[key] = part_cycle(
-                program, machine, material, settings=settings, tell=self.tell
+                program,
+                machine,
+                material,
+                settings=settings,
+                workingsteps=workingsteps,
+                tell=self.tell,
             )
         return self._known[key]
+
+    def table(
+        self,
+        program: Program,
+        machine: Machine,
+        material: MaterialMatch,
+        design: SettingsDesign,
+        workingsteps: tuple[str, ...] = (),
+    ) -> CycleTable:
+        """Cycles of a program as a function of its settings, interpolated.
+
+        Raises
+        ------
+        StepNcError
+            When the machine cannot run the program with settings of the design, or the cycles
+            cannot be interpolated.
+        """
+
+        def layers(depth: float) -> Hashable:
+            told = with_settings(program, CutSettings(depth=depth), workingsteps)
+            paths = (item for item in generate(told) if isinstance(item, ToolPath))
+            return tuple(len(path.steps) for path in paths)
+
+        def run(settings: CutSettings) -> PartCycle:
+            return self.cycle(program, machine, material, settings, workingsteps)
+
+        return cycle_table(design, run, layers)
 
 
 def part_cycle(
@@ -82,6 +121,7 @@ def part_cycle(
     material: MaterialMatch,
     *,
     settings: CutSettings | None = None,
+    workingsteps: tuple[str, ...] = (),
     tell: Tell = silent,
 ) -> PartCycle:
     """Run a program on the virtual machine and return its machining cycle.
@@ -95,6 +135,8 @@ def part_cycle(
     material : MaterialMatch
     settings : CutSettings, optional
         Feed, spindle speed and depth instead of the program's own.
+    workingsteps : tuple of str
+        Ids of the workingsteps that get them; none: all that mill or turn.
     tell : callable
         Receives progress, and what the run found: a cut that is not modelled, a collision.
 
@@ -105,7 +147,7 @@ def part_cycle(
     """
     where = f"{program.name} on machine '{machine.name}'"
     try:
-        told = program if settings is None else with_settings(program, settings)
+        told = program if settings is None else with_settings(program, settings, workingsteps)
         for step in told.workingsteps:
             _require_possible(told, step, machine)
         prepared = prepared_program(told, machine, material, tell=tell)

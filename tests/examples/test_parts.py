@@ -22,7 +22,8 @@ from stepnc_model.technology import ProgrammedQuantity, programmed
 from stepnc_model.tool import tool_of
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
-NAMES = ["bracket", "paper000", "paper002", "paper003_case1", "paper003_case2", "shaft"]
+PAPER003 = ["paper003_case1", "paper003_case2", "paper003_pocket"]
+NAMES = ["bracket", "paper000", "paper002", *PAPER003, "shaft"]
 ROOTS = {"PROJECT", "SURFACE_TEXTURE_PARAMETER"}
 
 E = TypeVar("E", bound=Entity)
@@ -126,7 +127,19 @@ def test_paper003_has_the_numbers_of_section_4_3(case: int, feed: float, depth: 
     assert (block.x, block.y, block.z) == (101.6, 101.6, 12.7)
 
 
-@pytest.mark.parametrize("name", ["bracket", "paper002", "paper003_case1", "paper003_case2"])
+def test_the_pocket_of_paper003_has_the_middles_of_section_4_2() -> None:
+    program = load("paper003_pocket")
+    (step,) = program.workingsteps
+    tool = tool_of(program, step.tool_ref)
+    technology = programmed(program, step.technology_ref)
+    assert technology.feed.value == pytest.approx(0.5 * (30.0 + 90.0))
+    speed = technology.spindle_speed(tool.diameter)
+    assert 2.0 * pi * speed == pytest.approx(0.5 * (75.4 + 226.2))
+    assert getattr(step.operation, "axial_cutting_depth", None) == 0.5 * (2.5 + 3.5)
+    assert (tool.diameter, tool.teeth) == (8.0, 4)
+
+
+@pytest.mark.parametrize("name", ["bracket", "paper002", *PAPER003])
 def test_milling_programs_one_feed_and_one_speed(name: str) -> None:
     """ISO 14649-11, rules WR1 and WR2."""
     for technology in all_of(load(name), MillingTechnology):
