@@ -68,7 +68,8 @@ class PowerSeries:
         self.flush()
         length = np.full(len(self.energy), self.step)
         length[-1] = self.end - self.begin - self.step * (len(length) - 1)
-        return self.energy / length
+        power: Floats = self.energy / length
+        return power
 
     def demand(self) -> float:
         """Greatest mean power over a quarter of an hour, W."""

@@ -9,7 +9,7 @@ it goes on where it stopped, unless the part is spoilt.
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from simpy import Environment, Event, Interrupt, Process
 
@@ -18,13 +18,20 @@ from simulator.factory.machining import Machining
 from simulator.factory.records import Listeners, PartMade, StateSpent
 from simulator.factory.shop import Counting, Failure, Product, ShopMachine
 from simulator.factory.states import HANDLING, TRANSITIONS, MachineState
-from simulator.factory.store import Batch, BatchBuffer, RawStock, oldest
+from simulator.factory.store import Batch, BatchBuffer, Course, RawStock, oldest
 from simulator.factory.streams import Streams
 
 Steps: TypeAlias = frozenset[tuple[int, int]]
 """Indices of product and step."""
 
-Course: TypeAlias = Generator[Event, Any, None]
+
+class Breakdown(NamedTuple):
+    """Failure that interrupts a machine."""
+
+    repair: float
+    """s"""
+    spoils: bool
+    """Whether a part that is being machined is scrapped."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -215,7 +222,7 @@ class Station:
         can_fail = MachineState.FAILED in TRANSITIONS[self.state] and self._repaired is None
         if can_fail and self.process is not None:
             self._repaired = self.env.event()
-            self.process.interrupt((repair, spoils))
+            self.process.interrupt(Breakdown(repair, spoils))
         return can_fail
 
     # Course
@@ -320,7 +327,7 @@ class Station:
             left -= spent
             self._age(spent)
             first.left = next(first.between)
-            yield from self._down(next(first.repair), self._spoils(first))
+            yield from self._down(Breakdown(next(first.repair), self._spoils(first)))
         yield from self._spend(left)
         self._age(left)
         self._release()
@@ -353,9 +360,9 @@ class Station:
             begin = self.env.now
             try:
                 yield self.env.timeout(left)
-            except Interrupt as failure:
+            except Interrupt as interrupt:
                 left -= self.env.now - begin
-                yield from self._down(*failure.cause)
+                yield from self._down(_breakdown(interrupt))
             else:
                 return
 
@@ -364,8 +371,8 @@ class Station:
         while not event.processed:
             try:
                 yield event
-            except Interrupt as failure:
-                yield from self._down(*failure.cause)
+            except Interrupt as interrupt:
+                yield from self._down(_breakdown(interrupt))
 
     def _sleep(self) -> Course:
         """Wait until the machine is woken."""
@@ -404,7 +411,7 @@ class Station:
         for each in self._machining_failures:
             each.left = next(each.between)
 
-    def _changes_of_shift(self) -> Iterator[Event]:
+    def _changes_of_shift(self) -> Course:
         """SimPy process that wakes the machine when its shift begins or ends."""
         calendar = self.spec.calendar
         while calendar is not None:
@@ -412,7 +419,7 @@ class Station:
             yield self.env.timeout(calendar.next_change(now) - now)
             self.wake()
 
-    def _wakes_when_due(self, due: DueMaintenance) -> Iterator[Event]:
+    def _wakes_when_due(self, due: DueMaintenance) -> Course:
         """SimPy process that wakes a machine without work for its maintenance."""
         while True:
             yield self.env.timeout(max(due.due - self.env.now, 0.0) or due.every)
@@ -424,7 +431,7 @@ class Station:
         share = pending.failure.scrap
         return share > 0.0 and next(pending.spoils) < share
 
-    def _down(self, repair: float, spoils: bool) -> Course:
+    def _down(self, breakdown: Breakdown) -> Course:
         """Fail, and be repaired."""
         state, power = self.state, self.power
         self._repaired = self._repaired or self.env.event()
@@ -436,18 +443,27 @@ class Station:
         if member is not None:
             yield member
         self.enter(MachineState.REPAIR, self.spec.idle_power)
-        yield self.env.timeout(repair)
+        yield self.env.timeout(breakdown.repair)
         if crew is not None:
             crew.release()
         self.enter(state, power)
-        self._part_spoilt = self._part_spoilt or (spoils and state is MachineState.MACHINING)
+        is_spoilt = breakdown.spoils and state is MachineState.MACHINING
+        self._part_spoilt = self._part_spoilt or is_spoilt
         self._repaired.succeed()
         self._repaired = None
 
-    def _fails_by_clock(self, pending: PendingFailure) -> Iterator[Event]:
+    def _fails_by_clock(self, pending: PendingFailure) -> Course:
         """SimPy process of failures that count all time."""
         while True:
             yield self.env.timeout(next(pending.between))
             self.fail(next(pending.repair), spoils=self._spoils(pending))
             if self._repaired is not None:
                 yield self._repaired
+
+
+def _breakdown(interrupt: Interrupt) -> Breakdown:
+    """Failure of an interrupt, which only :meth:`Station.fail` causes."""
+    cause = interrupt.cause
+    if not isinstance(cause, Breakdown):
+        raise TypeError(f"an interrupt of a machine by {cause!r}")
+    return cause
