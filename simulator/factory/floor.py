@@ -13,9 +13,10 @@ from simulator.factory.machining import Machining, MachiningPlan
 from simulator.factory.records import Listeners
 from simulator.factory.shop import Shop
 from simulator.factory.states import MachineState
-from simulator.factory.station import PowerMeter, Station, Steps, Surroundings
+from simulator.factory.station import Station, Steps, Surroundings
 from simulator.factory.store import Batch, BatchBuffer, RawStock
 from simulator.factory.streams import Streams
+from simulator.factory.tally import Tally
 
 
 @dataclass(slots=True, eq=False)
@@ -30,7 +31,7 @@ class Floor:
     stations: list[Station] = field(default_factory=list)
     buffers: dict[str, BatchBuffer] = field(default_factory=dict)
     raw: list[RawStock] = field(default_factory=list)
-    meter: PowerMeter = field(init=False)
+    tally: Tally = field(init=False)
     in_shop: int = 0
     """Batches that entered the shop and have not left it."""
     _takers: dict[int, list[Station]] = field(default_factory=dict)
@@ -40,7 +41,7 @@ class Floor:
 
     def __post_init__(self) -> None:
         shop = self.shop
-        self.meter = PowerMeter(begin=shop.warm_up)
+        self.tally = Tally(shop)
         self._end = self.env.event()
         for each in shop.buffers:
             capacity = inf if each.capacity is None else each.capacity
@@ -69,6 +70,16 @@ class Floor:
         Deadlock
             If machines wait for each other.
         """
+        warm_up = self.shop.warm_up
+        if self.env.now < warm_up <= until:
+            self._run(warm_up)
+            self.close()
+            self.tally.reset(self.env.now)
+            for buffer in self.buffers.values():
+                buffer.area = 0.0
+        self._run(until)
+
+    def _run(self, until: float) -> None:
         if self._end.triggered or until <= self.env.now:
             return
         self.env.run(until=self._end | self.env.timeout(until - self.env.now))
@@ -86,10 +97,11 @@ class Floor:
             station.close()
         for buffer in self.buffers.values():
             buffer.close()
-        self.meter.change(0.0, self.env.now)
+        self.tally.meter.change(0.0, self.env.now)
+        self.tally.close(self.env.now)
 
     def _buffer(self, name: str, capacity: float) -> BatchBuffer:
-        return BatchBuffer(self.env, name, capacity, self._wake_taker, self.shop.warm_up)
+        return BatchBuffer(self.env, name, capacity, self._wake_taker)
 
     def _station(self, index: int, crews: Sequence[CrewOnDuty]) -> Station:
         shop, spec = self.shop, self.shop.machines[index]
@@ -123,7 +135,7 @@ class Floor:
                 behind=behind,
                 machining=machining,
                 crews=_crews_of(spec.name, crews),
-                meter=self.meter,
+                tally=self.tally,
                 started=self._started,
                 finished=self._finished,
                 stuck=self._require_movement,
@@ -149,6 +161,7 @@ class Floor:
 
     def _entered(self, batch: Batch) -> None:
         self.in_shop += 1
+        self.tally.entered(batch)
         for tell in self.listeners.entered:
             tell(batch)
 
@@ -159,6 +172,7 @@ class Floor:
             self._entered(batch)
 
     def _finished(self, batch: Batch) -> None:
+        self.tally.left(batch, self.env.now)
         for tell in self.listeners.left:
             tell(batch, self.env.now)
         self.in_shop -= 1

@@ -20,9 +20,14 @@ from simulator.factory.shop import Counting, Failure, Product, ShopMachine
 from simulator.factory.states import HANDLING, TRANSITIONS, MachineState
 from simulator.factory.store import Batch, BatchBuffer, Course, RawStock, oldest
 from simulator.factory.streams import Streams
+from simulator.factory.tally import MachineTally, PowerMeter, ProcessTally, Tally
 
-_new = tuple.__new__
-"""Makes a named tuple in half the time of its own constructor."""
+WAITING = 2_000
+"""States whose energies are added to the power over time together."""
+
+_PART_SETUP, _MACHINING, _PART_EJECTION = (
+    MachineState.PART_SETUP, MachineState.MACHINING, MachineState.PART_EJECTION,
+)  # fmt: skip
 
 Steps: TypeAlias = frozenset[tuple[int, int]]
 """Indices of product and step."""
@@ -52,7 +57,7 @@ class Surroundings:
     """Machining of one part after another, by step."""
     crews: Mapping[MachineState, CrewOnDuty]
     """Crews by the states that need a member."""
-    meter: "PowerMeter"
+    tally: Tally
     finished: Callable[[Batch], None]
     """Called with each batch that leaves the shop."""
     started: Callable[[Batch], None]
@@ -60,28 +65,6 @@ class Surroundings:
     stuck: Callable[["Station"], None]
     """Called when the machine waits for room."""
     listeners: Listeners
-
-
-@dataclass(slots=True, eq=False)
-class PowerMeter:
-    """Sum of the powers of all machines. Running state."""
-
-    begin: float
-    """Time from which the peak counts, s."""
-    power: float = 0.0
-    """W"""
-    peak: float = 0.0
-    """Greatest sum that lasted, W."""
-    since: float = 0.0
-    """Time of the last change, s."""
-
-    def change(self, difference: float, now: float) -> None:
-        """Add a difference; changes at one time count as one."""
-        if now > self.since:
-            if now > self.begin:
-                self.peak = max(self.peak, self.power)
-            self.since = now
-        self.power += difference
 
 
 @dataclass(slots=True, eq=False)
@@ -130,8 +113,15 @@ class Station:
     machined: float = 0.0
     """Machining time so far, s."""
     process: Process | None = None
+    _counts: MachineTally = field(init=False)
+    _seconds: dict[MachineState, float] = field(init=False)
+    _joules: dict[MachineState, float] = field(init=False)
+    _spent: list[tuple[float, float, float]] = field(init=False)
+    _meter: PowerMeter = field(init=False)
+    _listeners: tuple[Callable[[StateSpent], None], ...] = ()
     _failure_at: float = inf
     """Machining time at which the next failure comes, s."""
+    _has_crews: bool = False
     _has_pauses: bool = False
     """Whether shifts or maintenance may begin between two parts."""
     _powers: dict[MachineState, float] = field(default_factory=dict)
@@ -151,6 +141,13 @@ class Station:
     def __post_init__(self) -> None:
         name, spec = self.spec.name, self.spec
         self.power = spec.idle_power
+        tally = self.around.tally
+        self._counts, self._meter = tally.machines[self.index], tally.meter
+        self._seconds, self._joules = self._counts.seconds, self._counts.joules
+        self._spent = tally.power.waiting
+        self._listeners = self.around.listeners.state
+        for step in self.around.machining:
+            self._counts.processes[step] = ProcessTally()
         for state in HANDLING:
             self._times[state] = self.streams.numbers(spec.handling[state].time, name, state)
             self._powers[state] = spec.handling[state].power
@@ -175,9 +172,10 @@ class Station:
                 )
             )
         self._failure_at = min((each.at for each in self._machining_failures), default=inf)
+        self._has_crews = bool(self.around.crews)
         self._has_pauses = spec.calendar is not None or bool(self._maintenance)
         self._scrap = iter(self.streams.generator(name, "scrap").random, None)
-        self.around.meter.change(self.power, self.env.now)
+        self.around.tally.meter.change(self.power, self.env.now)
         self.process = self.env.process(self._run())
         for pending in self._clock_failures:
             self.env.process(self._fails_by_clock(pending))
@@ -197,29 +195,35 @@ class Station:
         RuntimeError
             If the transition is not legal.
         """
-        if state not in TRANSITIONS[self.state]:
-            raise RuntimeError(f"{self.spec.name}: no transition {self.state} -> {state}")
+        # Each part passes here three times, so calls are spared.
+        before, since, drawn = self.state, self.since, self.power
+        if state not in TRANSITIONS[before]:
+            raise RuntimeError(f"{self.spec.name}: no transition {before} -> {state}")
         now = self.env.now
-        if now > self.since:
-            self._record(now)
-        if power != self.power:
-            self.around.meter.change(power - self.power, now)
+        if now > since:
+            energy = drawn * (now - since)
+            self._seconds[before] += now - since
+            self._joules[before] += energy
+            self._spent.append((since, now, energy))
+            for tell in self._listeners:
+                tell(StateSpent(self.index, before, since, now, energy))
+            self.since = now
+        if power != drawn:
+            self._meter.change(power - drawn, now)
             self.power = power
         self.state = state
 
     def close(self) -> None:
         """Record the time in the present state so far."""
-        if self.env.now > self.since:
-            self._record(self.env.now)
-
-    def _record(self, now: float) -> None:
-        since = self.since
-        spent = _new(
-            StateSpent, (self.index, self.state, since, now, self.power * (now - since))
-        )
-        for tell in self.around.listeners.state:
-            tell(spent)
-        self.since = now
+        now, since = self.env.now, self.since
+        if now > since:
+            energy = self.power * (now - since)
+            self._seconds[self.state] += now - since
+            self._joules[self.state] += energy
+            self._spent.append((since, now, energy))
+            for tell in self._listeners:
+                tell(StateSpent(self.index, self.state, since, now, energy))
+            self.since = now
 
     def wake(self) -> bool:
         """Wake the machine if it waits for a batch or its shift; whether it did."""
@@ -280,25 +284,35 @@ class Station:
         for row, part in enumerate(batch.parts):
             if row and self._has_pauses:
                 yield from self._between_parts()
-            part_setup = yield from self._handle(MachineState.PART_SETUP)
             work = next(machining)
-            yield from self._machine(work)
-            ejection = yield from self._handle(MachineState.PART_EJECTION)
+            part_setup, ejection = yield from self._part(work)
             is_good = not self._part_spoilt and (scrap == 0.0 or next(self._scrap) >= scrap)
             if is_good:
                 good.append(part)
-            if made is not None:
-                self._tell(made)
-            made = _new(PartMade, (
-                self.index, *step, batch.number, part, self.env.now, 0.0 if row else setup,
-                part_setup, work.time, ejection, 0.0, work.energy, work.peak_power,
-                work.settings, is_good,
-            ))  # fmt: skip
+            self._count(step, work, is_good=is_good)
+            if len(self._spent) > WAITING:
+                self.around.tally.power.flush()
+            if self.around.listeners.part:
+                if made is not None:
+                    self._tell(made)
+                made = PartMade(
+                    self.index, *step, batch.number, part, self.env.now, 0.0 if row else setup,
+                    part_setup, work.time, ejection, 0.0, work.energy, work.peak_power,
+                    work.settings, is_good,
+                )  # fmt: skip
         ejection = yield from self._handle(MachineState.BATCH_EJECTION)
         if made is not None:
             self._tell(made._replace(batch_ejection=ejection))
         batch.parts = good
         yield from self._hand_over(batch, step)
+
+    def _count(self, step: tuple[int, int], work: Machining, *, is_good: bool) -> None:
+        process = self._counts.processes[step]
+        process.parts += 1
+        process.good += is_good
+        process.time += work.time
+        process.energy += work.energy
+        process.peak = max(process.peak, work.peak_power)
 
     def _tell(self, made: PartMade) -> None:
         for tell in self.around.listeners.part:
@@ -321,26 +335,53 @@ class Station:
         self.held = None
         self.enter(MachineState.IDLING, self.spec.idle_power)
 
+    def _part(self, work: Machining) -> Generator[Event, Any, tuple[float, float]]:
+        """Set up, machine and eject a part; the times of set-up and ejection."""
+        if self._has_crews:
+            setup = yield from self._handle(MachineState.PART_SETUP)
+            yield from self._claim(MachineState.MACHINING)
+            yield from self._machine(work)
+            self._release()
+            ejection = yield from self._handle(MachineState.PART_EJECTION)
+            return setup, ejection
+        # The same without crews: one generator for a part is faster than one for each state.
+        env, times, powers = self.env, self._times, self._powers
+        setup = next(times[_PART_SETUP])
+        self.enter(_PART_SETUP, powers[_PART_SETUP])
+        try:
+            yield env.timeout(setup)
+        except Interrupt as interrupt:
+            yield from self._interrupted(interrupt, self.since + setup - env.now)
+        if self._failure_at < self.machined + work.time:
+            yield from self._machine(work)
+        else:
+            seconds = work.time
+            self._part_spoilt = False
+            self.enter(_MACHINING, work.energy / seconds if seconds > 0.0 else 0.0)
+            try:
+                yield env.timeout(seconds)
+            except Interrupt as interrupt:
+                yield from self._interrupted(interrupt, self.since + seconds - env.now)
+            self.machined += seconds
+        ejection = next(times[_PART_EJECTION])
+        self.enter(_PART_EJECTION, powers[_PART_EJECTION])
+        try:
+            yield env.timeout(ejection)
+        except Interrupt as interrupt:
+            yield from self._interrupted(interrupt, self.since + ejection - env.now)
+        return setup, ejection
+
     def _handle(self, state: MachineState) -> Generator[Event, Any, float]:
         """Set up or eject, with a crew where the state needs one; the time that it took."""
-        if state in self.around.crews:
-            yield from self._claim(state)
+        yield from self._claim(state)
         seconds = next(self._times[state])
         self.enter(state, self._powers[state])
-        if seconds > 0.0:
-            end = self.env.now + seconds
-            try:
-                yield self.env.timeout(seconds)
-            except Interrupt as interrupt:
-                yield from self._interrupted(interrupt, end - self.env.now)
-        if self._member_of is not None:
-            self._release()
+        yield from self._spend(seconds)
+        self._release()
         return seconds
 
     def _machine(self, work: Machining) -> Course:
         """Machine a part, with the failures that come by machining time."""
-        if MachineState.MACHINING in self.around.crews:
-            yield from self._claim(MachineState.MACHINING)
         seconds = work.time
         self._part_spoilt = False
         self.enter(MachineState.MACHINING, work.energy / seconds if seconds > 0.0 else 0.0)
@@ -350,14 +391,8 @@ class Station:
             self.machined += before
             seconds -= before
             yield from self._down(self._next_breakdown())
-        end = self.env.now + seconds
-        try:
-            yield self.env.timeout(seconds)
-        except Interrupt as interrupt:
-            yield from self._interrupted(interrupt, end - self.env.now)
+        yield from self._spend(seconds)
         self.machined += seconds
-        if self._member_of is not None:
-            self._release()
 
     def _next_breakdown(self) -> Breakdown:
         """Failure that comes now by machining time."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from simulator.factory.distribution import Distribution, DistributionKind
 
-BLOCK = 256
+BLOCK = 64
 """Numbers drawn at a time."""
 
 

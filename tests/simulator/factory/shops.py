@@ -6,6 +6,7 @@ from pathlib import Path
 
 from simulator.factory.floor import Floor
 from simulator.factory.machining import MachiningPlan
+from simulator.factory.measured import measures_of
 from simulator.factory.measures import Level, Measure, Quantity, half_width
 from simulator.factory.records import Listeners, PartMade, StateSpent
 from simulator.factory.shop import Shop
@@ -52,20 +53,19 @@ def shop_of(text: str, folder: Path) -> Shop:
 
 def ran(shop: Shop, *, seed: int = 1, replication: int = 0) -> Ran:
     """Run a shop to its end."""
-    tally = Tally(shop)
     parts: list[PartMade] = []
     states: list[StateSpent] = []
     floor = Floor(
         shop,
         MachiningPlan(),
         Streams(seed=seed, replication=replication),
-        tally.listeners.plus(Listeners(part=(parts.append,), state=(states.append,))),
+        Listeners(part=(parts.append,), state=(states.append,)),
     )
     floor.run(shop.duration)
     return Ran(
         shop=shop,
-        measures=tally.measures(floor),
-        tally=tally,
+        measures=measures_of(floor),
+        tally=floor.tally,
         floor=floor,
         parts=parts,
         states=states,

@@ -113,6 +113,14 @@ def shown(run: Ran) -> list[tuple[object, ...]]:
     return [tuple(each) for each in run.parts] + [tuple(each) for each in run.states]
 
 
+def counted(run: Ran) -> range:
+    """Number of parts by the counts, less the last of batches that are on a machine."""
+    parts = sum(
+        each.parts for machine in run.tally.machines for each in machine.processes.values()
+    )
+    return range(parts - len(run.shop.machines), parts + 1)
+
+
 @settings(max_examples=40, deadline=None)
 @given(case=CASES, seed=st.integers(0, 10))
 def test_nothing_is_lost(folder: Path, case: dict[str, int], seed: int) -> None:
@@ -129,7 +137,8 @@ def test_nothing_is_lost(folder: Path, case: dict[str, int], seed: int) -> None:
         assert finished + lost <= entered
     if not case["warm_up"]:
         assert run.value(Level.LINE, Quantity.GOOD) <= finished
-        assert sum(each.parts for each in run.tally.processes.values()) == len(run.parts)
+        assert len(run.parts) in counted(run)
+        assert len(run.parts) == counted(run)[-1] or not run.floor.is_finished
 
 
 @settings(max_examples=40, deadline=None)
@@ -141,12 +150,7 @@ def test_times_and_energies_add_up(folder: Path, case: dict[str, int], seed: int
     for machine in run.tally.machines:
         assert sum(machine.seconds.values()) == pytest.approx(span)
     joules = sum(sum(each.joules.values()) for each in run.tally.machines)
-    assert (
-        run.tally.power.power().sum() * run.tally.power.step
-        == pytest.approx(joules, rel=1e-9, abs=1e-3)
-        or now < run.shop.duration
-        or run.shop.duration % run.tally.power.step
-    )
+    assert run.tally.power.energies().sum() == pytest.approx(joules, abs=1e-3)
     if not case["warm_up"]:
         assert sum(each.energy for each in run.states) == pytest.approx(joules)
 
@@ -189,7 +193,12 @@ machines = ["a"]
 time_s = {{ kind = "exponential", mean = 200 }}
 {products}
 """
-ROW = '[[machine]]\nname = "{name}"\n[machine.handling]\npart_setup_s = {{ kind = "uniform", low = 5, high = 9 }}\n'
+ROW = """
+[[machine]]
+name = "{name}"
+[machine.handling]
+part_setup_s = {{ kind = "uniform", low = 5, high = 9 }}
+"""
 OTHER = '[[product]]\nname = "q"\n[[product.step]]\nmachines = ["b"]\ntime_s = 77\n'
 
 
