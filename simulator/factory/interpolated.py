@@ -430,8 +430,8 @@ class _Cube:
         basis = _basis(scaled, (first, second, third))
 
         def fitted(values: list[Floats]) -> Floats:
-            coefficients: Floats = np.linalg.solve(basis, np.array(values))
-            return coefficients
+            solved = np.linalg.solve(basis, np.array(values))
+            return solved.astype(np.float64)
 
         return LayerTable(
             low=self.low,
