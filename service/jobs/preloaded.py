@@ -8,6 +8,7 @@ for name in (
     "service.jobs.evaluate",
     "service.jobs.simulate",
     "service.jobs.steer",
+    "service.jobs.verify",
     "service.paths.toolpaths",
     "service.plan_output",
     "service.simulation.output",

@@ -75,7 +75,7 @@ def record(
     else:
         rows.rows(client.state())
         rows.last()
-    file = RunFile(output, _schema(columns))
+    file = RunFile(output, schema_of(columns))
     keeper = _Keeper(
         file=file,
         columns=columns,
@@ -201,20 +201,27 @@ class _Keeper:
     def _flush(self) -> None:
         if not self._waiting:
             return
-        arrays = [pa.array([row[TIME] for row in self._waiting], pa.float64())]
-        for each in self.columns:
-            values = [row[each.name] for row in self._waiting]
-            arrays.append(
-                pa.array(values, pa.string()).dictionary_encode()
-                if each.is_text
-                else pa.array(values, pa.float64(), from_pandas=True)
-            )
-        self.file.write(arrays)
+        self.file.write(arrays_of(self._waiting, self.columns))
         self._waiting.clear()
 
 
-def _schema(columns: Sequence[RecordedColumn]) -> pa.Schema:
-    """Names and types of the columns, each with its unit and data item as metadata."""
+def arrays_of(
+    rows: Sequence[Mapping[str, Cell]], columns: Sequence[RecordedColumn]
+) -> list[pa.Array]:
+    """Return rows as arrays: the time, then the columns."""
+    arrays = [pa.array([row[TIME] for row in rows], pa.float64())]
+    for each in columns:
+        values = [row[each.name] for row in rows]
+        arrays.append(
+            pa.array(values, pa.string()).dictionary_encode()
+            if each.is_text
+            else pa.array(values, pa.float64(), from_pandas=True)
+        )
+    return arrays
+
+
+def schema_of(columns: Sequence[RecordedColumn]) -> pa.Schema:
+    """Return names and types of the columns, each with its unit and data item as metadata."""
     fields = [pa.field(TIME, pa.float64(), metadata={"unit": "s"})]
     fields += [
         pa.field(

@@ -20,6 +20,7 @@ from service.problem import plain_problem, problem_of
 from service.rest import (
     advice,
     agent,
+    files,
     health,
     jobs,
     knowledge,
@@ -30,6 +31,7 @@ from service.rest import (
     pages,
     programs,
     simulations,
+    verifications,
 )
 from service.rest.access import AccessMiddleware
 from service.rest.context import PROBLEMS
@@ -100,8 +102,9 @@ def _routed() -> FastAPI:
     # The most frequently used first: routes are tried in this order.
     for routes in (
         advice.ROUTES, jobs.ROUTES, live.CONTROL, live.TRIALS, programs.ROUTES,
-        simulations.ROUTES, knowledge.EVALUATIONS, knowledge.REVIEWS, knowledge.CORRECTIONS,
-        knowledge.OUTCOMES, library.MACHINES, library.MATERIALS, monitors.ROUTES,
+        simulations.ROUTES, verifications.ROUTES, files.ROUTES,
+        knowledge.EVALUATIONS, knowledge.REVIEWS, knowledge.CORRECTIONS, knowledge.OUTCOMES,
+        library.MACHINES, library.MATERIALS, monitors.ROUTES,
         health.ROUTES, pages.ROUTES,
     ):  # fmt: skip
         app.include_router(routes)

@@ -424,6 +424,7 @@ PLACES = {
     JobKind.TRIAL: "trials",
     JobKind.EVALUATION: "evaluations",
     JobKind.REVIEW: "reviews",
+    JobKind.VERIFICATION: "verifications",
 }
 """Path segment of the results by kind of job."""
 

@@ -57,6 +57,7 @@ class JobKind(StrEnum):
     TRIAL = "trial"
     EVALUATION = "evaluation"
     REVIEW = "review"
+    VERIFICATION = "verification"
 
     @property
     def is_live(self) -> bool:

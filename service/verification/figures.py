@@ -4,6 +4,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from service.verification.run import Verification
+from service.verification.surface_map import shown_rows
 from simulator.motion.segments import Floats, Ints
 from simulator.verification.deviation import SurfacePlaces
 
@@ -60,14 +61,9 @@ def _limit(found: Verification) -> float:
 
 
 def _chosen(places: SurfacePlaces) -> Ints:
-    """Rows of places to show: spread evenly, and those with the greatest deviations."""
-    count = len(places)
-    if count <= MOST_POINTS:
-        return np.arange(count)
-    even = np.linspace(0, count - 1, MOST_POINTS // 2).astype(np.int64)
-    size = np.abs(places.deviation)
-    most = np.argpartition(size, -(MOST_POINTS // 2))[-(MOST_POINTS // 2) :]
-    return np.unique(np.concatenate((even, most)))
+    """Rows of places to show: the greatest deviations, and others evenly spread."""
+    beyond = np.abs(places.deviation) - places.uncertainty
+    return shown_rows(places.position, beyond, most=MOST_POINTS)
 
 
 def _marker(deviation: Floats, limit: float, size: float) -> dict[str, object]:

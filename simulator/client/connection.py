@@ -173,6 +173,29 @@ class AgentClient:
         page = _page(self._document("/sample", {"count": "1"}))
         self._instance, self._next = page.instance, page.first
 
+    def kept(self) -> Iterator[tuple[ClientObservation, ...]]:
+        """Observations that the agent keeps now, the state at the oldest one first.
+
+        What comes while they are read is left out, so that the reading ends.
+
+        Raises
+        ------
+        AgentError
+            As :meth:`oldest_state`, and when the agent begins anew meanwhile.
+        """
+        end = _page(self._document("/current", {})).following
+        yield self.oldest_state()
+        instance = self._instance
+        while self._next is not None and self._next < end:
+            query = {"from": str(self._next), "count": str(min(COUNT, end - self._next))}
+            page = _page(self._document("/sample", query))
+            if page.instance != instance:
+                raise AgentError(f"{self.url}: the agent has begun anew")
+            if page.following <= self._next:
+                raise AgentError(f"{self.url}: the agent does not go on after {self._next}")
+            self._next = page.following
+            yield page.observations
+
     def stream(self) -> Generator[StreamPart, None, None]:
         """Observations since :meth:`state` or :meth:`rewind`, as they come, without end.
 
