@@ -44,6 +44,7 @@ SLOW = (
     "service/rest/test_openapi.py",
     "service/rest/test_programs.py",
     "service/rest/test_serve.py",
+    "service/rest/test_verifications.py",
     "service/simulation/test_run.py",
     "service/storage/test_library.py",
     "service/test_bad_control.py",

@@ -9,6 +9,7 @@ export const KINDS = {
   "control-run": ["control run", (id) => `/dashboard/control.html?id=${id}`],
   "trial": ["trial", (id) => `/dashboard/control.html?trial=${id}`],
   "evaluation": ["evaluation", (id) => `/dashboard/knowledge.html?evaluation=${id}`],
+  "verification": ["verification", (id) => `/dashboard/verify.html?id=${id}`],
   "review": ["review", (id) => `/dashboard/knowledge.html?review=${id}`],
 };
 

@@ -27,7 +27,7 @@ PARTS = ("the agent no longer keeps its beginning", "it is still going on")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class KeptRun:
+class AgentRun:
     """Run that was read from an agent."""
 
     rows: int
@@ -38,7 +38,7 @@ class KeptRun:
 
 
 @dataclass(kw_only=True)
-class _Run:
+class KeptRows:
     """Rows of one run. Running state."""
 
     is_begun: bool
@@ -59,14 +59,14 @@ class _Run:
 
 
 @dataclass(kw_only=True)
-class _Runs:
+class RunFinder:
     """Finds the runs among observations. Running state."""
 
     maker: RowMaker
     execution: str
     """Id of the data item that tells when a program runs; empty: none does."""
-    current: _Run | None = None
-    last: _Run | None = None
+    current: KeptRows | None = None
+    last: KeptRows | None = None
     """Run that has ended: the latest whole one, or else the latest."""
 
     def take(self, each: ClientObservation, *, is_first: bool) -> None:
@@ -76,14 +76,14 @@ class _Runs:
             return
         is_running = each.value in RUNNING
         if is_running and self.current is None:
-            self.current = _Run(is_begun=not is_first)
+            self.current = KeptRows(is_begun=not is_first)
         elif not is_running and self.current is not None:
             self.current.is_ended = True
             if self.current.is_whole or self.last is None or not self.last.is_whole:
                 self.last = self.current
             self.current = None
 
-    def chosen(self) -> _Run | None:
+    def chosen(self) -> KeptRows | None:
         """Return the latest whole run, else the latest; None without any."""
         self._add(self.maker.last())
         is_whole = self.last is not None and self.last.is_whole
@@ -95,7 +95,7 @@ class _Runs:
                 self.current.add(row)
 
 
-def keep_run(url: str, output: Path, *, tell: Tell = silent) -> KeptRun:
+def keep_run(url: str, output: Path, *, tell: Tell = silent) -> AgentRun:
     """Write the latest run that an agent keeps as Parquet or CSV; its time begins at 0.
 
     Raises
@@ -108,9 +108,9 @@ def keep_run(url: str, output: Path, *, tell: Tell = silent) -> KeptRun:
     if not any(each.name in POSITIONS for each in columns):
         raise AgentError(f"{url}: the device model has no positions of axes")
     execution = next((each.id for each in columns if each.name == EXECUTION), "")
-    runs = _Runs(maker=RowMaker(columns=columns), execution=execution)
+    runs = RunFinder(maker=RowMaker(columns=columns), execution=execution)
     if not execution:
-        runs.current = _Run(is_begun=True, is_ended=True)
+        runs.current = KeptRows(is_begun=True, is_ended=True)
     count = 0
     for page, observations in enumerate(client.kept()):
         for each in observations:
@@ -127,7 +127,7 @@ def keep_run(url: str, output: Path, *, tell: Tell = silent) -> KeptRun:
         file.write(arrays_of(rows, columns))
     program = next((str(row["program"]) for row in rows if row.get("program")), "")
     lacks = (not run.is_begun, not run.is_ended)
-    return KeptRun(
+    return AgentRun(
         rows=len(rows),
         program=program,
         missing=tuple(text for text, does in zip(PARTS, lacks, strict=True) if does),

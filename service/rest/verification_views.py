@@ -109,8 +109,8 @@ class SurfaceMapView(View):
     is_turned: bool = Field(description="whether x is the radius, and y 0")
     places: int = Field(description="number of places shown")
     left_out: int = Field(description="number of places left out")
-    left_out_deviation_mm: float = Field(
-        description="greatest deviation beyond its uncertainty among those; 0: none"
+    left_out_beyond_mm: float = Field(
+        description="greatest amount by which one of those exceeds its uncertainty; 0: none does"
     )
     workingsteps: list[str]
     kinds: list[str]
@@ -144,7 +144,7 @@ def map_view(found: SurfaceMap) -> dict[str, Any]:
         "is_turned": found.is_turned,
         "places": len(found.columns["block"]),
         "left_out": found.left_out,
-        "left_out_deviation_mm": round(found.left_out_deviation, 4),
+        "left_out_beyond_mm": round(found.left_out_beyond, 4),
         "workingsteps": found.workingsteps,
         "kinds": found.kinds,
         **{name: np.ascontiguousarray(values) for name, values in found.columns.items()},

@@ -1,7 +1,7 @@
 """Surface of a verified part as a file, and a bounded number of its places as a map.
 
 A map has the worst places and others evenly spread: of each cube of space the worst. What it
-leaves out is counted, with the greatest deviation among it.
+leaves out is counted.
 """
 
 from dataclasses import dataclass
@@ -41,8 +41,8 @@ class SurfaceMap:
     kinds: tuple[str, ...]
     left_out: int
     """Number of places that are left out."""
-    left_out_deviation: float
-    """Greatest deviation that exceeds its uncertainty among them, mm; 0: none does."""
+    left_out_beyond: float
+    """Greatest amount by which a deviation among them exceeds its uncertainty, mm; 0: none."""
 
 
 def write_surface(path: Path, found: Verification) -> None:
@@ -89,11 +89,10 @@ def read_map(path: Path, *, most: int) -> SurfaceMap:
     """
     table = parquet.read_table(path)
     position = np.column_stack([table.column(name).to_numpy() for name in NUMBERS[:3]])
-    deviation = np.abs(table.column("deviation_mm").to_numpy())
-    beyond = deviation - table.column("uncertainty_mm").to_numpy()
+    size = np.abs(table.column("deviation_mm").to_numpy())
+    beyond = size - table.column("uncertainty_mm").to_numpy()
     rows = shown_rows(position, beyond, most=most)
-    omitted = np.setdiff1d(np.arange(len(beyond)), rows)
-    seen = omitted[beyond[omitted] > 0.0]
+    omitted = np.delete(beyond, rows)
     names: dict[str, tuple[str, ...]] = {}
     columns: dict[str, Floats | Ints] = {}
     for name in ("workingstep", "kind"):
@@ -111,7 +110,7 @@ def read_map(path: Path, *, most: int) -> SurfaceMap:
         workingsteps=names["workingstep"],
         kinds=names["kind"],
         left_out=len(omitted),
-        left_out_deviation=float(deviation[seen].max(initial=0.0)),
+        left_out_beyond=float(omitted.max(initial=0.0)),
     )
 
 

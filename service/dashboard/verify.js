@@ -1,0 +1,130 @@
+// The page of verifications: positions, program and options; progress; the result.
+
+import { AWAY_WORDS, announce, api, byId, el, fill, followed, patiently, tell } from "/dashboard/app.js";
+import { programChoice } from "/dashboard/plan_program.js";
+import { FileField } from "/dashboard/verify_files.js";
+import { logChoice } from "/dashboard/verify_log.js";
+import { showResult } from "/dashboard/verify_result.js";
+
+const form = byId("verify-form"), button = byId("verify"), problem = byId("verify-problem");
+let program = null, working = false;
+
+const log = logChoice(ready);
+const choice = programChoice((chosen, contents) => { program = chosen && contents.is_usable ? chosen : null; ready(); });
+const tools = new FileField(byId("tools-place"), { id: "tools-file", kind: "tools", accept: ".toml",
+  title: "Measured tools", hint: "tool table, .toml" });
+const required = new FileField(byId("required-place"), { id: "required-file", kind: "required-part", accept: ".stl",
+  title: "Required part", hint: ".stl, mm; else the features" });
+
+byId("units").addEventListener("change", () => choice.again(program?.id));
+byId("zero-how").addEventListener("change", showZero);
+
+function showZero() {
+  byId("zero-place").hidden = byId("zero-how").value !== "given";
+}
+
+function ready() {
+  const isOfRun = log?.hasProgram ?? false, fields = log?.fields ?? null;
+  byId("program-choice").hidden = isOfRun;
+  byId("program-of-run").hidden = !isOfRun;
+  const missing = working ? "" : !fields ? "Choose positions first." : !isOfRun && !program ? "Choose a program first." : "";
+  button.disabled = working || Boolean(missing);
+  byId("verify-hint").textContent = missing;
+}
+
+async function library(path, select) {
+  const entries = await api(path);
+  select.append(...entries.map((each) => el("option", { value: each.name },
+    each.title === each.name ? each.name : `${each.name}: ${each.title}`)));
+}
+
+function wish() {
+  const how = byId("zero-how").value, cell = byId("cell");
+  return { ...log.fields, ...(log.hasProgram ? {} : { program_id: program.id }),
+    machine: byId("machine").value, material: byId("material").value, units: byId("units").value,
+    tolerance_mm: byId("tolerance").valueAsNumber, zero: how === "given" ? byId("zero").value.trim() : how,
+    cell_mm: cell.value === "" ? null : cell.valueAsNumber, has_deflection: byId("deflection").checked,
+    tools_id: tools.id, required_id: required.id };
+}
+
+/** Fill the form from the request of a job. */
+async function recall({ request, program_id: id }) {
+  for (const name of ["machine", "material", "units"]) byId(name).value = request[name];
+  byId("tolerance").value = request.tolerance_mm;
+  byId("cell").value = request.cell_mm ?? "";
+  byId("zero-how").value = ["", "fit"].includes(request.zero) ? request.zero : "given";
+  byId("zero").value = byId("zero-how").value === "given" ? request.zero : "";
+  byId("deflection").checked = request.has_deflection;
+  showZero();
+  await Promise.all([log.recall(request), tools.use(request.tools_id), required.use(request.required_id),
+    id && !request.run_id ? choice.use(id) : null]);
+}
+
+form.addEventListener("submit", (event) => {
+  event.preventDefault();
+  if (!button.disabled) verify();
+});
+
+async function verify() {
+  tell(problem, null);
+  byId("result").hidden = true;
+  try {
+    const asked = await api("/v1/verifications", { method: "POST", json: wish(),
+      headers: { "idempotency-key": crypto.randomUUID?.() ?? String(Math.random()) } });
+    history.replaceState(null, "", `?id=${asked.id}`);
+    await follow(asked);
+  } catch (error) {
+    const isCancelled = error.message === "the job is cancelled";
+    if (isCancelled) fill(problem, el("p", { class: "soft" }, "Cancelled."));
+    else tell(problem, error);
+    announce(isCancelled ? "cancelled" : error.message);
+  }
+}
+
+/** Wait for the end of a verification, and show its result. */
+async function follow(asked) {
+  const place = byId("verify-work"), bar = el("progress", { max: 1, "aria-label": "progress" });
+  const words = el("span", { class: "soft small" }, "waiting …");
+  const cancel = el("button", { type: "button", id: "cancel-verify", onclick: () => {
+    cancel.disabled = true;
+    words.textContent = "cancelling …";
+    api(`/v1/jobs/${asked.id}/cancel`, { method: "POST" }).catch((error) => tell(problem, error));
+  } }, "Cancel");
+  fill(place, el("div", { class: "row" }, bar, cancel), words);
+  place.hidden = false;
+  working = true;
+  ready();
+  const news = (job) => {
+    if (job.share) bar.value = job.share;
+    if (!cancel.disabled) words.textContent = job.state === "queued" ? "queued …" : job.message || "comparing …";
+  };
+  const line = { lost: () => { words.textContent = AWAY_WORDS; }, back: () => { words.textContent = "…"; } };
+  try {
+    const job = await followed(asked, news, line);
+    const [result, map] = await Promise.all([patiently(`/v1/verifications/${job.id}`, line),
+      patiently(`/v1/verifications/${job.id}/map`, line)]);
+    byId("result").hidden = false;
+    place.hidden = true;  // before the scroll distance is measured
+    await showResult(job, result, map);
+    announce(result.verdict);
+    const isCalm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    byId("result").scrollIntoView({ behavior: isCalm ? "auto" : "smooth", block: "start" });
+  } finally {
+    working = false;
+    place.hidden = true;
+    ready();
+  }
+}
+
+async function begin() {
+  const asked = new URLSearchParams(location.search);
+  await Promise.all([library("/v1/machines", byId("machine")), library("/v1/materials", byId("material")), log.ready]);
+  if (asked.get("id")) {
+    const job = await api(`/v1/jobs/${asked.get("id")}`);
+    await recall(job);
+    await follow(job);
+  } else if (asked.get("run")) await log.recall({ run_id: asked.get("run") });
+  else if (asked.get("monitor")) await log.recall({ monitor: asked.get("monitor") });
+}
+
+begin().catch((error) => tell(problem, error));
