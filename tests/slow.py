@@ -58,6 +58,7 @@ SLOW = (
     "service/test_terminal.py",
     "service/test_usecases.py",
     "service/trial/test_run.py",
+    "service/verification/test_agent_log.py",
     "service/verification/test_run.py",
     "simulator/agent/test_http.py",
     "simulator/agent/test_mqtt.py",

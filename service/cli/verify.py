@@ -24,9 +24,9 @@ def _verify_options(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add(
         "log",
-        type=Path,
         metavar="LOG",
-        help="positions as logged: .parquet, .csv, MTConnect .xml or SHDR",
+        help="positions as logged: .parquet, .csv, MTConnect .xml, SHDR, or the address of an "
+        "agent, http://HOST:PORT, whose buffer is read",
     )
     add("--program", type=Path, required=True, metavar="FILE", help="a STEP-NC program")
     add_options(parser, VerificationRequest)
@@ -67,7 +67,7 @@ def _verify(options: argparse.Namespace) -> int:
     request = from_options(VerificationRequest, options)
     outputs = [each for each in (options.output, options.report) if each is not None]
     for each in outputs:
-        require_place(each, apart_from=options.log)
+        require_place(each, apart_from=Path(options.log))
         require_place(each, apart_from=options.program)
     if options.output is not None:
         require_suffix(options.output)

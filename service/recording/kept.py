@@ -16,7 +16,7 @@ from simulator.client.columns import EXECUTION, RUNNING, TIME, Cell, RowMaker, c
 from simulator.client.connection import AgentClient, ClientObservation
 from simulator.errors import AgentError
 
-WANTED = frozenset({*POSITIONS, "tool_number", "workingstep", "program", EXECUTION})
+KEPT = frozenset({*POSITIONS, "tool_number", "workingstep", "program"})
 """Columns that are kept."""
 
 MOST_ROWS = 1_000_000
@@ -48,6 +48,7 @@ class KeptRows:
 
     @property
     def is_whole(self) -> bool:
+        """Whether it was seen from its beginning to its end."""
         return self.is_begun and self.is_ended
 
     def add(self, row: Mapping[str, Cell]) -> None:
@@ -83,6 +84,13 @@ class RunFinder:
                 self.last = self.current
             self.current = None
 
+    def interrupt(self) -> None:
+        """Note that observations were lost: what is known no longer holds."""
+        self.maker.last()
+        self.maker.interrupt()
+        if self.current is not None:
+            self.current = KeptRows(is_begun=False)
+
     def chosen(self) -> KeptRows | None:
         """Return the latest whole run, else the latest; None without any."""
         self._add(self.maker.last())
@@ -104,18 +112,29 @@ def keep_run(url: str, output: Path, *, tell: Tell = silent) -> AgentRun:
         When the agent does not answer or tells of no run, or the file cannot be written.
     """
     client = AgentClient(url)
-    columns = tuple(each for each in columns_of(client.items()) if each.name in WANTED)
+    found = [each for each in columns_of(client.items()) if each.name in KEPT | {EXECUTION}]
+    columns = tuple(each for each in found if each.name in KEPT)
     if not any(each.name in POSITIONS for each in columns):
         raise AgentError(f"{url}: the device model has no positions of axes")
-    execution = next((each.id for each in columns if each.name == EXECUTION), "")
-    runs = RunFinder(maker=RowMaker(columns=columns), execution=execution)
+    execution = next((each.id for each in found if each.name == EXECUTION), "")
+    runs = RunFinder(maker=RowMaker(columns=tuple(found)), execution=execution)
     if not execution:
         runs.current = KeptRows(is_begun=True, is_ended=True)
+    try:
+        # What changed before the oldest observation, such as the tool, is held.
+        state = client.oldest_state()
+    except AgentError:
+        client.rewind()
+        state = ()
+    for each in state:
+        runs.take(each, is_first=True)
     count = 0
-    for page, observations in enumerate(client.kept()):
-        for each in observations:
-            runs.take(each, is_first=page == 0)
-        count += len(observations)
+    for part in client.kept():
+        if part.lost:
+            runs.interrupt()
+        for each in part.observations:
+            runs.take(each, is_first=False)
+        count += len(part.observations)
         tell(f"{count} observations read")
     run = runs.chosen()
     if run is None or not run.rows:

@@ -110,7 +110,7 @@ class SurfaceMapView(View):
     places: int = Field(description="number of places shown")
     left_out: int = Field(description="number of places left out")
     left_out_beyond_mm: float = Field(
-        description="greatest amount by which one of those exceeds its uncertainty; 0: none does"
+        description="most by which one of those exceeds its uncertainty; 0: none does"
     )
     workingsteps: list[str]
     kinds: list[str]

@@ -16,13 +16,14 @@ from service.recording.signals import POSITIONS
 from service.recording.table import TABLES, batches, headings
 from service.verification.axes import without_held
 from service.verification.document import SUFFIXES, table_of
-from simulator.client.columns import TIME
+from simulator.client.columns import EXECUTION, RUNNING, TIME
 from simulator.motion.segments import AXES, Floats, Ints
 from simulator.spec import Machine
 from simulator.verification.logged import LoggedSamples, joined
 from stepnc_model.errors import StepNcError
 
 TOOL, WORKINGSTEP = "tool_number", "workingstep"
+COMPLETED = "PROGRAM_COMPLETED"
 
 PIECE = 65_536
 """Samples that are taken together."""
@@ -49,6 +50,8 @@ class LogFile:
 
     path: Path
     names: ProgramNames
+    name: str = ""
+    """Name in messages, if it is not the path."""
     machine: Machine | None = None
     """Machine whose data items a document has."""
     zero: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -58,19 +61,24 @@ class LogFile:
     """Rows with the time of the row before."""
     unknown: int = 0
     """Rows in which a position was missing."""
+    completed: int = 0
+    """Programs that were completed."""
+    is_running: bool = False
+    """Whether a program ran at the end."""
 
     def __post_init__(self) -> None:
+        self.name = self.name or str(self.path)
         self._document = self._read_document()
         self._names = (
             headings(self.path) if self._document is None else self._document.column_names
         )
         for needed in (TIME, *self._positions):
             if needed not in self._names:
-                raise StepNcError(f"{self.path}: no column {needed}")
+                raise StepNcError(f"{self.name}: no column {needed}")
         has_tools = TOOL in self._names or WORKINGSTEP in self._names
         if not has_tools and len(self.names.tools) > 1:
             raise StepNcError(
-                f"{self.path}: no column {TOOL} or {WORKINGSTEP}: the program uses "
+                f"{self.name}: no column {TOOL} or {WORKINGSTEP}: the program uses "
                 f"{len(self.names.tools)} tools, and the log does not show when they change"
             )
 
@@ -89,8 +97,8 @@ class LogFile:
             return None
         if suffix not in SUFFIXES or self.machine is None:
             known = ", ".join(sorted(TABLES | SUFFIXES))
-            raise StepNcError(f"{self.path}: expected positions in a file of {known}")
-        return table_of(self.path, self.machine, (*POSITIONS, TOOL, WORKINGSTEP))
+            raise StepNcError(f"{self.name}: expected positions in a file of {known}")
+        return table_of(self.path, self.machine, (*POSITIONS, TOOL, WORKINGSTEP, EXECUTION))
 
     def _batches(self) -> Iterator[pa.RecordBatch]:
         kinds = self._kinds()
@@ -106,11 +114,13 @@ class LogFile:
         StepNcError
             When the file is damaged, a time goes back, or an axis has no values.
         """
-        self.rows = self.equal_times = self.unknown = 0
+        self.rows = self.equal_times = self.unknown = self.completed = 0
+        self.is_running = False
         waiting: list[LoggedSamples] = []
         last = -inf
         for batch in self._batches():
             part = self._samples(batch)
+            self._count_programs(batch)
             self._require_ascending(part.time, last)
             last = float(part.time[-1])
             self.rows += len(part)
@@ -121,11 +131,11 @@ class LogFile:
                 if len(whole):
                     yield whole
         if not self.rows:
-            raise StepNcError(f"{self.path}: no rows")
+            raise StepNcError(f"{self.name}: no rows with positions")
         if waiting:
             whole, rest = self._known(joined(waiting))
             if not len(whole) and len(rest) == self.rows:
-                raise StepNcError(f"{self.path}: {self._lacking(rest.position)} has no values")
+                raise StepNcError(f"{self.name}: {self._lacking(rest.position)} has no values")
             if len(whole):
                 yield whole
 
@@ -135,7 +145,22 @@ class LogFile:
             kinds[TOOL] = pa.float64()
         if WORKINGSTEP in self._names:
             kinds[WORKINGSTEP] = pa.string()
+        if EXECUTION in self._names:
+            kinds[EXECUTION] = pa.string()
         return kinds
+
+    def _count_programs(self, batch: pa.RecordBatch) -> None:
+        """Count the programs that are completed, and note whether one runs at the end."""
+        if EXECUTION not in self._names:
+            return
+        words = batch.column(EXECUTION).dictionary_encode()
+        known = words.dictionary.to_pylist()
+        index = words.indices.fill_null(len(known)).to_numpy(zero_copy_only=False)
+        is_running = np.array([word in RUNNING for word in known] + [False])[index]
+        is_completed = np.array([word == COMPLETED for word in known] + [False])[index]
+        before = np.append(self.is_running, is_running[:-1])
+        self.completed += int(np.sum(is_completed & before))
+        self.is_running = bool(is_running[-1])
 
     def _samples(self, batch: pa.RecordBatch) -> LoggedSamples:
         position = np.zeros((batch.num_rows, len(POSITIONS)))
@@ -177,7 +202,7 @@ class LogFile:
         if len(wrong):
             at = int(wrong[0])
             raise StepNcError(
-                f"{self.path}: row {self.rows + at + 1}: time {time[at]:g} s: it must not be "
+                f"{self.name}: row {self.rows + at + 1}: time {time[at]:g} s: it must not be "
                 f"before {before[at]:g} s"
             )
         self.equal_times += int(np.sum(time == before))
@@ -193,7 +218,7 @@ class LogFile:
             if len(samples) > LONGEST_WAIT:
                 message = f"no values in {len(samples)} rows"
                 raise StepNcError(
-                    f"{self.path}: {self._lacking(samples.position)} has {message}"
+                    f"{self.name}: {self._lacking(samples.position)} has {message}"
                 )
             return samples[:0], samples
         first = int(is_known.argmax(axis=0).max())

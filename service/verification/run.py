@@ -3,11 +3,13 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
 from service.numbers import numbers_in
 from service.reading import Tell, silent
+from service.recording.run import record_kept
 from service.requests.fields import require_bounds
 from service.requests.verification import VerificationRequest
 from service.simulation.run import run_of_program
@@ -102,7 +104,7 @@ class VerificationInputs:
 
 
 def verify(
-    log: Path,
+    log: Path | str,
     program: Path,
     request: VerificationRequest,
     *,
@@ -110,6 +112,17 @@ def verify(
     tell: Tell = silent,
 ) -> Verification:
     """Compare the part that logged positions leave with the programmed one.
+
+    Parameters
+    ----------
+    log : Path or str
+        Parquet or CSV file, MTConnect document, SHDR log, or address of an agent, all of whose
+        kept observations are read.
+    program : Path
+    request : VerificationRequest
+    inputs : VerificationInputs
+    tell : callable
+        Takes messages on the progress.
 
     Raises
     ------
@@ -125,7 +138,12 @@ def verify(
         if ready.is_turned:
             raise StepNcError(f"{given.required}: a turned part has no required part yet")
         ready = replace(ready, required=read_stl(given.required))
-    return verified(log, ready, request, tell=tell)
+    if "://" not in str(log):
+        return verified(Path(log), ready, request, tell=tell)
+    with TemporaryDirectory() as folder:
+        kept = Path(folder) / "log.parquet"
+        record_kept(str(log), kept, tell=tell)
+        return verified(kept, ready, request, name=str(log), tell=tell)
 
 
 def verified(
@@ -133,16 +151,27 @@ def verified(
     program: PreparedProgram,
     request: VerificationRequest,
     *,
+    name: str = "",
     tell: Tell = silent,
 ) -> Verification:
     """Verify a log against a prepared program.
+
+    Parameters
+    ----------
+    log : Path
+    program : PreparedProgram
+    request : VerificationRequest
+    name : str
+        Name of the log in messages; empty: its path.
+    tell : callable
+        Takes messages on the progress.
 
     Raises
     ------
     StepNcError
         When the log cannot be read, or is not of this program.
     """
-    file = LogFile(path=log, names=program.names, machine=program.machine)
+    file = LogFile(path=log, name=name, names=program.names, machine=program.machine)
     file.zero, findings = _zero(request.zero, file, program)
     compared = _turned if program.is_turned else _milled
     try:
@@ -156,7 +185,7 @@ def verified(
     return Verification(
         program=program.name,
         machine=program.machine,
-        log=log.name,
+        log=name or log.name,
         facts=found.facts,
         step=found.step,
         steps=program.steps,
@@ -264,7 +293,7 @@ def _zero(
     far = distance_from(survey, program.path) > FAR
     if far.mean() > MOST_FAR:
         raise StepNcError(
-            f"{file.path}: {far.mean():.0%} of the positions are more than {FAR:g} mm from the "
+            f"{file.name}: {far.mean():.0%} of the positions are more than {FAR:g} mm from the "
             f"path of {program.name}: is it a run of this program? Where is its zero (--zero)?"
         )
     return file.zero, findings
@@ -278,7 +307,7 @@ def _require_millimetres(file: LogFile, survey: Floats, points: Floats) -> None:
     if len(ratio) and (np.abs(ratio - 1.0) < LIKE).all():
         shown = " × ".join(f"{each:.3g}" for each in logged)
         raise StepNcError(
-            f"{file.path}: positions span {shown}, {MM_PER_INCH:g} times less than the "
+            f"{file.name}: positions span {shown}, {MM_PER_INCH:g} times less than the "
             "program: they are in inches; millimetres are expected"
         )
 
@@ -288,6 +317,13 @@ def _findings(file: LogFile, facts: LogFacts, program: PreparedProgram) -> list[
     found = []
     if file.equal_times:
         found.append(f"{file.equal_times} rows have the time of the row before")
+    if file.completed > 1:
+        found.append(
+            f"{file.completed} programs were completed: their cuts are verified as those of "
+            "one part"
+        )
+    if file.is_running:
+        found.append("the log ends while a program runs: what came later is missing")
     if file.unknown:
         found.append(f"{file.unknown} rows lack a position: interpolated over time")
     if facts.gaps:

@@ -76,3 +76,17 @@ def test_the_latest_whole_run_is_chosen_or_else_the_latest(
     words: tuple[str, ...], rows: list[float], is_whole: bool
 ) -> None:
     assert found_rows(*words) == (rows, is_whole)
+
+
+def test_after_lost_observations_a_run_has_no_beginning() -> None:
+    column = RecordedColumn(name="x_axis_position_actual", id="x", units="mm", is_text=False)
+    runs = RunFinder(maker=RowMaker(columns=(column,)), execution="e")
+    for number, (id, value) in enumerate((("e", ACTIVE), ("x", "1"), ("x", "2"))):
+        runs.take(ClientObservation(id, number, float(number), value), is_first=False)
+    runs.interrupt()
+    for number, (id, value) in enumerate((("x", "3"), ("e", DONE)), start=3):
+        runs.take(ClientObservation(id, number, float(number), value), is_first=False)
+    run = runs.chosen()
+    assert run is not None
+    assert (run.is_begun, run.is_ended) == (False, True)
+    assert [row["x_axis_position_actual"] for row in run.rows] == [3.0]

@@ -79,6 +79,18 @@ def test_a_survey_is_bounded_and_spread(tmp_path: Path) -> None:
     assert np.ptp(kept[:, 0]) > 4800.0
 
 
+def test_programs_are_counted_by_the_states_of_execution(tmp_path: Path) -> None:
+    words = ("READY", "ACTIVE", "PROGRAM_COMPLETED", "PROGRAM_COMPLETED", "ACTIVE", "WAIT", "")
+    rows = "\n".join(f"{row},{row},0,0,{word}" for row, word in enumerate(words))
+    file = log_of(tmp_path, f"{HEAD},execution\n{rows}\n")
+    list(file.pieces())
+    assert (file.completed, file.is_running) == (1, False)
+    path = tmp_path / "log.csv"
+    path.write_text(path.read_text("utf-8") + "9,9,0,0,ACTIVE\n", encoding="utf-8")
+    list(file.pieces())
+    assert (file.completed, file.is_running) == (1, True)
+
+
 def test_a_lathe_without_y_stays_in_its_plane(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     path.write_text(f"{HEAD.replace('y_axis_position_actual,', '')}\n0,1,3\n1,2,3\n", "utf-8")
