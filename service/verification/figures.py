@@ -12,8 +12,8 @@ MOST_POINTS = 12_000
 """Most points in space; the greatest deviations are always among them."""
 
 MOST_IN_PLAN = 5_000
-"""Most points in the plan, each of which is an element of the page: the policy of served reports
-forbids the faster drawing by WebGL, which compiles functions from text."""
+"""Most points in the plan, each of which is an element of the page: the policy of served
+reports forbids the faster drawing by WebGL, which compiles functions from text."""
 
 PIXELS = 300
 """Pixels of the plan along its longer side; each shows the greatest deviation in it."""
