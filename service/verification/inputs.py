@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from datetime import datetime
 from pathlib import Path
+from xml.parsers import expat
 
 from pyarrow import parquet
 
@@ -11,7 +12,6 @@ from service.recording.signals import POSITIONS
 from service.recording.table import TABLES, headings
 from service.storage.files import FileKind
 from service.verification.stl import read_stl
-from simulator.agent.model import read_streams_root
 from simulator.client.columns import TIME
 from simulator.tool_table import read_tool_table
 from stepnc_model.errors import StepNcError
@@ -21,6 +21,12 @@ NEEDED = (TIME, POSITIONS[0], POSITIONS[2])
 
 MOST_ROWS = 20_000_000
 """Most rows of a Parquet file, which packs equal values into few bytes."""
+
+MOST_ELEMENTS = 1_000_000
+"""Most elements of a document, each of which takes many times its text in memory."""
+
+STREAMS = "MTConnectStreams"
+"""Root element of a document of streams."""
 
 LOOKED_AT = 100
 """Lines of a log among which one must be SHDR."""
@@ -42,7 +48,7 @@ def _require_log(path: Path) -> None:
     if suffix in TABLES:
         _require_table(path)
     elif suffix == ".xml":
-        read_streams_root(path)
+        _require_document(path)
     else:
         _require_lines(path)
 
@@ -56,6 +62,31 @@ def _require_table(path: Path) -> None:
         rows = parquet.read_metadata(path).num_rows
         if not 0 < rows <= MOST_ROWS:
             raise StepNcError(f"{path}: {rows} rows: it must be 1 to {MOST_ROWS}")
+
+
+def _require_document(path: Path) -> None:
+    """Refuse a text that is no well-formed document of streams, in little memory."""
+    parser, count = expat.ParserCreate(), 0
+
+    def begin(name: str, _attributes: object) -> None:
+        nonlocal count
+        count += 1
+        local = name.rpartition(":")[2]
+        if count == 1 and local != STREAMS:
+            raise StepNcError(f"{path}: root element {local}; expected {STREAMS}")
+        if count > MOST_ELEMENTS:
+            raise StepNcError(f"{path}: more than {MOST_ELEMENTS} elements")
+
+    def refuse(*_: object) -> None:
+        raise StepNcError(f"{path}: a document type is not accepted")
+
+    parser.StartElementHandler = begin
+    parser.StartDoctypeDeclHandler = refuse
+    try:
+        with path.open("rb") as file:
+            parser.ParseFile(file)
+    except expat.ExpatError as error:
+        raise StepNcError(f"{path}: line {error.lineno}: not well-formed: {error}") from error
 
 
 def _require_lines(path: Path) -> None:

@@ -17,6 +17,7 @@ from service.rest.verifications import PLACES_SHOWN
 from service.session.runner import FORGOTTEN_AFTER, MOST_ROWS
 from service.simulation.live import MOST_SAMPLES
 from service.storage.jobs import MOST_WAITING, OWNERS
+from service.verification.inputs import MOST_ELEMENTS
 from service.verification.inputs import MOST_ROWS as MOST_LOGGED
 from tests.docs.pages import DOCS, ROOT, blocks
 from tests.service.rest.server import Server
@@ -48,7 +49,8 @@ def test_bounds_are_those_of_the_program() -> None:
         f"{LONGEST / 3600:g} h; {LONGEST_PACED / 3600:g} h for runs",
         f"{MOST_PACED} of them at once",
         f"{MOST_SAMPLES // 1_000_000} million rows or samples; {MOST_BYTES >> 20} MB of rows",
-        f"log in Parquet | {MOST_LOGGED // 1_000_000} million rows",
+        f"{MOST_LOGGED // 1_000_000} million rows in Parquet, "
+        f"{MOST_ELEMENTS // 1_000_000} million elements in XML",
         f"{PLACES_SHOWN // 1000} 000 places",
     ):
         assert words in PAGE

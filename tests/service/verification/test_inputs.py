@@ -8,7 +8,7 @@ from pyarrow import parquet
 
 from service.storage.files import FileKind
 from service.verification import inputs
-from service.verification.inputs import require_content
+from service.verification.inputs import STREAMS, require_content
 from stepnc_model.errors import StepNcError
 
 HEADING = "time_s,x_axis_position_actual,z_axis_position_actual\n"
@@ -44,7 +44,9 @@ def test_good_files_are_accepted(kind: FileKind, name: str, text: str, tmp_path:
         (FileKind.LOG, "run.csv", "\0\0\0", "no column time_s"),
         (FileKind.LOG, "run.parquet", "PAR1", "cannot be read"),
         (FileKind.LOG, "run.xml", "<a/>", "expected MTConnectStreams"),
-        (FileKind.LOG, "run.xml", "<a", "run.xml"),
+        (FileKind.LOG, "run.xml", "<a", "run.xml: line 1: not well-formed"),
+        (FileKind.LOG, "run.xml", f"<{STREAMS}><a></{STREAMS}>", "line 1: not well-formed"),
+        (FileKind.LOG, "run.xml", f"<!DOCTYPE a><{STREAMS}/>", "a document type is not"),
         (FileKind.LOG, "run.shdr", "yesterday|x|1\n", "no line of SHDR"),
         (FileKind.LOG, "run.log", "x" * 200_000, "no line of SHDR"),
         (FileKind.TOOLS, "tools.toml", "[[tool]]\nnumber = -1\n", "number"),
@@ -70,3 +72,16 @@ def test_a_table_has_a_bounded_number_of_rows(
         parquet.write_table(pa.table(columns), path)
         with pytest.raises(StepNcError, match=f"{rows} rows: it must be 1 to 10"):
             require_content(FileKind.LOG, path)
+
+
+def test_a_document_has_a_bounded_number_of_elements(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(inputs, "MOST_ELEMENTS", 10)
+    path = tmp_path / "run.xml"
+    for count in (9, 10):
+        path.write_text(f"<{STREAMS}>{'<a/>' * count}</{STREAMS}>", encoding="utf-8")
+        if count == 9:
+            require_content(FileKind.LOG, path)
+    with pytest.raises(StepNcError, match="more than 10 elements"):
+        require_content(FileKind.LOG, path)
