@@ -224,7 +224,8 @@ function solid() {
     showbackground: false, nticks: 5, showspikes: false });
   const titles = state.map.is_turned ? ["z, mm", "x, mm", "y, mm"] : ["x, mm", "y, mm", "z, mm"];
   return layout({ hovermode: "closest", height: byId("map-solid").clientHeight || 520, margin: { l: 0, r: 0, t: 0, b: 0 },
-    uirevision: "solid", dragmode: "orbit", scene: { aspectmode: "data", dragmode: "orbit", uirevision: "solid",
+    uirevision: state.found.log, dragmode: "orbit", scene: { aspectmode: "data", dragmode: "orbit", uirevision: state.found.log,
       xaxis: axis(titles[0]), yaxis: axis(titles[1]), zaxis: axis(titles[2]),
-      camera: { eye: { x: 1.05, y: -1.55, z: 1.25 }, center: { x: 0, y: 0, z: -0.1 } } } });
+      camera: state.map.is_turned ? { eye: { x: 0.7, y: -2.6, z: 1.1 }, center: { x: 0, y: 0, z: 0 } }
+        : { eye: { x: 1.05, y: -1.55, z: 1.25 }, center: { x: 0, y: 0, z: -0.1 } } } });
 }

@@ -99,7 +99,7 @@ function line(row) {
     el("th", { scope: "row" }, el("button", { type: "button", class: "opener", "aria-pressed": "false" }, row.workingstep),
       el("div", { class: "soft small" }, [row.surface, row.feature].filter(Boolean).join(", "))),
     cell("gouge"), cell("excess"),
-    el("td", { class: "place small" }, xyz(one.at), el("div", { class: "soft" },
+    el("td", { class: "place small" }, el("span", { class: "whole" }, xyz(one.at)), el("div", { class: "soft" },
       [one.block ? `block ${one.block}` : "", one.time === null ? "" : `${fixed(one.time, 2)} s`].filter(Boolean).join(", ") || "–")));
 }
 

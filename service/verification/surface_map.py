@@ -18,7 +18,16 @@ from simulator.motion.segments import Floats, Ints
 from simulator.verification.deviation import SurfaceKind
 
 COARSER = 1.25
-"""Factor of the size of cubes until there are few enough."""
+"""Factor of the size of cubes while there are too many."""
+
+FINEST = 0.3
+"""Least factor of their size while there are far too few."""
+
+ENOUGH = 0.6
+"""Share of the places to show that is enough."""
+
+MOST_TRIES = 24
+"""Sizes of cubes that are tried; the first is at most 200 times too small."""
 
 NUMBERS = ("x_mm", "y_mm", "z_mm", "deviation_mm", "uncertainty_mm", "time_s")
 
@@ -131,16 +140,31 @@ def shown_rows(position: Floats, beyond: Floats, *, most: int) -> Ints:
         return np.arange(count)
     seen = min(int(np.sum(beyond > 0.0)), most // 2)
     worst = np.argpartition(beyond, count - seen - 1)[count - seen :]
+    even = _evenly(position, np.argsort(beyond, kind="stable")[::-1], most=most - seen)
+    return np.unique(np.concatenate((worst, even)))
+
+
+def _evenly(position: Floats, order: Ints, *, most: int) -> Ints:
+    """Rows of at most a number of places, the first in an order of each cube of space.
+
+    Cubes get larger until there are few enough, and smaller while there are far too few: places
+    lie on surfaces, or on a profile.
+    """
     low, spans = position.min(axis=0), np.ptp(position, axis=0) + 1e-6
     area = 2.0 * (spans[0] * spans[1] + spans[1] * spans[2] + spans[2] * spans[0])
-    size = float(np.sqrt(area / most))
-    order = np.argsort(beyond, kind="stable")
-    while True:
+    size, found = float(np.sqrt(area / most)), order[:1]
+    for _ in range(MOST_TRIES):
         cells = np.floor((position[order] - low) / size).astype(np.int64)
         wide, deep = cells[:, 1].max() + 1, cells[:, 2].max() + 1
         keys = (cells[:, 0] * wide + cells[:, 1]) * deep + cells[:, 2]
-        # The last of equal keys is the worst: of the reversed order, the first.
-        _, first = np.unique(keys[::-1], return_index=True)
-        if len(first) <= most - len(worst):
-            return np.unique(np.concatenate((worst, order[::-1][first])))
-        size *= COARSER
+        _, first = np.unique(keys, return_index=True)
+        if len(first) > most:
+            size *= COARSER
+            if len(found) > 1:
+                break
+        else:
+            found = order[first]
+            if len(found) > ENOUGH * most:
+                break
+            size *= max(float(np.sqrt(len(found) / most)), FINEST)
+    return found

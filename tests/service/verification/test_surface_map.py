@@ -54,3 +54,11 @@ def test_a_map_is_that_of_the_verification(tmp_path: Path) -> None:
     some = read_map(tmp_path / "surface.parquet", most=500)
     assert len(some.columns["block"]) + some.left_out == len(found.places)
     assert len(some.columns["block"]) <= 500
+
+
+def test_a_profile_is_shown_as_densely_as_a_surface() -> None:
+    along = np.linspace(-100.0, 0.0, 10_000)
+    position = np.column_stack([np.full(10_000, 20.0), np.zeros(10_000), along])
+    rows = shown_rows(position, np.full(10_000, -0.001), most=1000)
+    assert 600 < len(rows) <= 1000
+    assert np.diff(position[rows, 2]).max() < 0.5
