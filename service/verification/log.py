@@ -5,7 +5,7 @@ are bounded, so that logs of any length need the memory of one piece.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
 
@@ -43,13 +43,51 @@ class ProgramNames:
     tools: frozenset[int]
     """Numbers of all tools."""
 
+    def indices(self, words: Sequence[str | None], index: Ints, _: Ints) -> Ints:
+        """Indices of the workingsteps of rows; -1 where they are unknown."""
+        known = [-1 if word is None else self.workingsteps.get(word, -1) for word in words]
+        return np.asarray(np.array(known, dtype=np.int64)[index])
+
+    def numbers(self, words: Sequence[str | None], index: Ints) -> Ints | None:
+        """Numbers of the tools of rows by their workingsteps."""
+        known = [
+            0 if word is None else self.tool_of.get(self.workingsteps.get(word, -1), 0)
+            for word in words
+        ]
+        return np.asarray(np.array(known, dtype=np.int64)[index])
+
+
+@dataclass(kw_only=True)
+class LogSteps:
+    """Workingsteps and tools that a log shows, numbered as they come. Running state."""
+
+    tools: frozenset[int]
+    """Numbers of the tools of the table."""
+    found: dict[tuple[str, int], int] = field(default_factory=dict)
+    """Index by id of the workingstep, which may be empty, and number of the tool."""
+
+    def indices(self, words: Sequence[str | None], index: Ints, tools: Ints) -> Ints:
+        """Indices of the workingsteps and tools of rows."""
+        count = len(words)
+        pairs, row = np.unique(tools * count + index, return_inverse=True)
+        known = []
+        for pair in pairs.tolist():
+            number, word = divmod(pair, count)
+            key = (words[word] or "", number)
+            known.append(self.found.setdefault(key, len(self.found)))
+        return np.asarray(np.array(known, dtype=np.int64)[row])
+
+    def numbers(self, _words: Sequence[str | None], _index: Ints) -> Ints | None:
+        """None: workingsteps tell no tool here."""
+        return None
+
 
 @dataclass(kw_only=True)
 class LogFile:
     """Table of logged positions. Running state: what was found while it was read."""
 
     path: Path
-    names: ProgramNames
+    names: ProgramNames | LogSteps
     name: str = ""
     """Name in messages, if it is not the path."""
     machine: Machine | None = None
@@ -75,11 +113,13 @@ class LogFile:
         for needed in (TIME, *self._positions):
             if needed not in self._names:
                 raise StepNcError(f"{self.name}: no column {needed}")
-        has_tools = TOOL in self._names or WORKINGSTEP in self._names
+        is_named = isinstance(self.names, ProgramNames)
+        has_tools = TOOL in self._names or (WORKINGSTEP in self._names and is_named)
         if not has_tools and len(self.names.tools) > 1:
+            columns = f"{TOOL} or {WORKINGSTEP}" if is_named else TOOL
             raise StepNcError(
-                f"{self.name}: no column {TOOL} or {WORKINGSTEP}: the program uses "
-                f"{len(self.names.tools)} tools, and the log does not show when they change"
+                f"{self.name}: no column {columns}: there are {len(self.names.tools)} tools, "
+                "and the log does not show when they change"
             )
 
     @property
@@ -168,32 +208,33 @@ class LogFile:
             if name in self._positions:
                 position[:, axis] = batch.column(name).to_numpy(zero_copy_only=False)
         position -= np.array(self.zero)
-        steps = self._workingsteps(batch)
+        words, index = self._words(batch)
+        tools = self._tools(batch, words, index)
         return LoggedSamples(
             time=np.asarray(batch.column(TIME).to_numpy(zero_copy_only=False)),
             position=position,
-            tool=self._tools(batch, steps),
-            workingstep=steps,
+            tool=tools,
+            workingstep=self.names.indices(words, index, tools),
         )
 
-    def _workingsteps(self, batch: pa.RecordBatch) -> Ints:
+    def _words(self, batch: pa.RecordBatch) -> tuple[list[str | None], Ints]:
+        """Ids of workingsteps, with the one of each row; the last one is None."""
         if WORKINGSTEP not in self._names:
-            return np.full(batch.num_rows, -1, dtype=np.int64)
+            return [None], np.zeros(batch.num_rows, dtype=np.int64)
         words = batch.column(WORKINGSTEP).dictionary_encode()
-        known = [self.names.workingsteps.get(word, -1) for word in words.dictionary.to_pylist()]
-        indices = words.indices.fill_null(len(known)).to_numpy(zero_copy_only=False)
-        return np.asarray(np.array([*known, -1], dtype=np.int64)[indices])
+        known = words.dictionary.to_pylist()
+        index = words.indices.fill_null(len(known)).to_numpy(zero_copy_only=False)
+        return [*known, None], np.asarray(index, dtype=np.int64)
 
-    def _tools(self, batch: pa.RecordBatch, steps: Ints) -> Ints:
+    def _tools(self, batch: pa.RecordBatch, words: Sequence[str | None], index: Ints) -> Ints:
         """Numbers of the tools; where no column has them, those of the workingsteps."""
         if TOOL in self._names:
             numbers = batch.column(TOOL).to_numpy(zero_copy_only=False)
             return np.where(np.isnan(numbers), 0.0, numbers).astype(np.int64)
-        if WORKINGSTEP not in self._names:
-            return np.full(batch.num_rows, next(iter(self.names.tools)), dtype=np.int64)
-        count = len(self.names.workingsteps)
-        numbers = np.array([*(self.names.tool_of.get(each, 0) for each in range(count)), 0])
-        return np.asarray(numbers[steps], dtype=np.int64)
+        named = self.names.numbers(words, index) if WORKINGSTEP in self._names else None
+        if named is not None:
+            return named
+        return np.full(batch.num_rows, next(iter(self.names.tools)), dtype=np.int64)
 
     def _require_ascending(self, time: Floats, last: float) -> None:
         before = np.append(last, time[:-1])

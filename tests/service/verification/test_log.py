@@ -38,7 +38,7 @@ def test_a_bad_log_is_refused(tmp_path: Path, text: str, message: str) -> None:
 
 
 def test_a_log_that_does_not_show_tool_changes_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(StepNcError, match="the program uses 2 tools"):
+    with pytest.raises(StepNcError, match="there are 2 tools"):
         log_of(tmp_path, f"{HEAD}\n0,1,1,1\n", NAMES)
 
 
