@@ -7,14 +7,15 @@ import { logChoice } from "/dashboard/verify_log.js";
 import { showResult } from "/dashboard/verify_result.js";
 
 const form = byId("verify-form"), button = byId("verify"), problem = byId("verify-problem");
-let program = null, working = false;
+let program = null, working = false, tools = null, required = null;
 
 const log = logChoice(ready);
 const choice = programChoice((chosen, contents) => { program = chosen && contents.is_usable ? chosen : null; ready(); });
-const tools = new FileField(byId("tools-place"), { id: "tools-file", kind: "tools", accept: ".toml",
-  title: "Measured tools", hint: "tool table, .toml" });
-const required = new FileField(byId("required-place"), { id: "required-file", kind: "required-part", accept: ".stl",
-  title: "Required part", hint: ".stl, mm; else the features" });
+tools = new FileField(byId("tools-place"), { id: "tools-file", kind: "tools", accept: ".toml",
+  title: "Measured tools", hint: "tool table, .toml", changed: ready });
+required = new FileField(byId("required-place"), { id: "required-file", kind: "required-part", accept: ".stl",
+  title: "Required part", hint: ".stl, mm; else the features", changed: ready });
+for (const name of ["stock", "machine"]) byId(name).addEventListener("input", ready);
 
 byId("units").addEventListener("change", () => choice.again(program?.id));
 byId("zero-how").addEventListener("change", showZero);
@@ -27,9 +28,14 @@ function ready() {
   const isOfRun = log?.hasProgram ?? false, fields = log?.fields ?? null;
   byId("program-choice").hidden = isOfRun;
   byId("program-of-run").hidden = !isOfRun;
-  const missing = working ? "" : !fields ? "Choose positions first." : !isOfRun && !program ? "Choose a program first." : "";
+  const missing = working ? "" : !fields ? "Choose positions first." : !isOfRun && !program && !isEnough() ? "Choose a program first." : "";
   button.disabled = working || Boolean(missing);
   byId("verify-hint").textContent = missing;
+}
+
+/** Whether the options tell enough without a program. */
+function isEnough() {
+  return Boolean(byId("machine").value && byId("stock").value.trim() && tools?.id && required?.id);
 }
 
 async function library(path, select) {
@@ -40,8 +46,8 @@ async function library(path, select) {
 
 function wish() {
   const how = byId("zero-how").value, cell = byId("cell");
-  return { ...log.fields, ...(log.hasProgram ? {} : { program_id: program.id }),
-    machine: byId("machine").value, material: byId("material").value, units: byId("units").value,
+  return { ...log.fields, ...(log.hasProgram ? {} : { program_id: program?.id ?? null }),
+    machine: byId("machine").value, material: byId("material").value, units: byId("units").value, stock: byId("stock").value.trim(),
     tolerance_mm: byId("tolerance").valueAsNumber, zero: how === "given" ? byId("zero").value.trim() : how,
     cell_mm: cell.value === "" ? null : cell.valueAsNumber, has_deflection: byId("deflection").checked,
     tools_id: tools.id, required_id: required.id };
@@ -52,6 +58,7 @@ async function recall({ request, program_id: id }) {
   for (const name of ["machine", "material", "units"]) byId(name).value = request[name];
   byId("tolerance").value = request.tolerance_mm;
   byId("cell").value = request.cell_mm ?? "";
+  byId("stock").value = request.stock ?? "";
   byId("zero-how").value = ["", "fit"].includes(request.zero) ? request.zero : "given";
   byId("zero").value = byId("zero-how").value === "given" ? request.zero : "";
   byId("deflection").checked = request.has_deflection;

@@ -16,8 +16,8 @@ export const sizeWords = ({ size_bytes: size }) =>
 
 /** A field for an optional file, in an element of the page. Running state: the file's id. */
 export class FileField {
-  constructor(place, { id, kind, title, hint, accept }) {
-    Object.assign(this, { place, kind, title, hint, accept, input: id, id: null });
+  constructor(place, { id, kind, title, hint, accept, changed }) {
+    Object.assign(this, { place, kind, title, hint, accept, changed, input: id, id: null });
     this.show(null);
   }
 
@@ -37,6 +37,7 @@ export class FileField {
             "aria-label": `do not use ${stored.name}`, onclick: () => this.show(null) }, "✕")]
         : [el("label", { class: "button small" }, "Choose", field), el("span", { class: "soft small" }, words || this.hint)]),
       problem);
+    this.changed();
   }
 
   async take(file, problem) {

@@ -37,11 +37,15 @@ def run(task: RunningJob) -> None:
         As :func:`service.verification.run.verify`; and when an agent does not answer.
     """
     request = task.request(QueuedVerification)
-    program, name = task.program_file()
-    log = _log(task, request)
-    names = {program: name, log.path: log.name}
+    names: dict[Path, str] = {}
     tools = _input(task, request.tools_id, FileKind.TOOLS, names)
     required = _input(task, request.required_id, FileKind.REQUIRED_PART, names)
+    program: Path | None = None
+    if task.job.program:
+        program, name = task.program_file()
+        names[program] = name
+    log = _log(task, request)
+    names[log.path] = log.name
     with naming(names):
         found = verify(
             log.path,
@@ -53,7 +57,12 @@ def run(task: RunningJob) -> None:
     findings = (
         replace(each, message=with_names(each.message, names)) for each in found.findings
     )
-    found = replace(found, program=name, log=log.name, findings=(*log.findings, *findings))
+    found = replace(
+        found,
+        program=with_names(found.program, names),
+        log=log.name,
+        findings=(*log.findings, *findings),
+    )
     for suffix in (".csv", ".parquet"):
         write_places(task.folder / f"{PLACES}{suffix}", found)
     write_surface(task.folder / SURFACE, found)

@@ -17,7 +17,11 @@ class StoredVerificationRequest(VerificationRequest):
     """Verification of one log: an uploaded one, that of a run, or that of a machine."""
 
     program_id: Annotated[
-        OptionalId, About("an uploaded program (default: the one of the run)")
+        OptionalId,
+        About(
+            "an uploaded program (default: the one of the run; without any, machine, stock, "
+            "tools_id and required_id are needed)"
+        ),
     ] = None
     advice_id: Annotated[OptionalId, About("or the program optimised by this advice")] = None
     log_id: Annotated[OptionalId, About("an uploaded log")] = None

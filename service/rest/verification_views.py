@@ -30,6 +30,7 @@ class SurfaceView(View):
 
     workingstep: str
     feature: str
+    tool: int | None = Field(description="number of the tool; null: unknown")
     surface: str = Field(description="wall, floor, face or diameter")
     gouge_mm: float
     gouge_uncertainty_mm: float

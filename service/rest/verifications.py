@@ -10,7 +10,7 @@ from starlette.concurrency import run_in_threadpool
 from service.errors import NotFound, Unreadable
 from service.jobs.task import LOG, PLACES, REPORT, SAMPLES, SURFACE
 from service.monitor.monitor import MonitorSet
-from service.numbers import numbers_in
+from service.numbers import numbers_in, stock_in
 from service.requests.fields import dumped
 from service.requests.stored_verification import QueuedVerification, StoredVerificationRequest
 from service.rest.bodies import Id
@@ -29,7 +29,7 @@ from service.rest.replies import file_reply, json_reply, report_reply
 from service.rest.results import file_of, read_in_turn, require_done, result_reply
 from service.rest.verification_views import SurfaceMapView, VerificationView, map_view
 from service.rest.views import JobView, PageView, job_view
-from service.storage import files, jobs
+from service.storage import files, jobs, library
 from service.storage.files import FIELDS
 from service.storage.folder import DataFolder
 from service.storage.jobs import Job, JobKind, JobRequest
@@ -40,6 +40,9 @@ ROUTES = APIRouter(prefix="/v1/verifications", tags=["verifications"])
 
 RUNS = frozenset({JobKind.SIMULATION, JobKind.CONTROL})
 """Jobs whose samples can be verified."""
+
+WITHOUT_PROGRAM = ("machine", "stock", "tools_id", "required_id")
+"""Fields that a verification without a program needs."""
 
 PLACES_SHOWN = 12_000
 
@@ -98,8 +101,9 @@ def _order(
             words["units"] = run.request["units"]
     if source and not program:
         program = jobs.get(data_folder, source, JobKind.ADVICE).program
-    if not program:
-        raise Unreadable("name a program_id or an advice_id")
+    if not program and not all(words[name] for name in WITHOUT_PROGRAM):
+        wanted = ", ".join(WITHOUT_PROGRAM)
+        raise Unreadable(f"name a program_id or an advice_id; or all of {wanted}")
     return JobRequest(
         kind=JobKind.VERIFICATION, request=words, program=program, source=source, owner=owner
     )
@@ -115,7 +119,7 @@ def _run(data_folder: DataFolder, id: str) -> Job:
 
 
 def verifiable(data_folder: DataFolder, asked: JobRequest) -> None:
-    """Check that all files exist, and that machine, material and zero are valid.
+    """Check that all files exist, and that machine, material, stock and zero are valid.
 
     Raises
     ------
@@ -123,13 +127,18 @@ def verifiable(data_folder: DataFolder, asked: JobRequest) -> None:
         When the job would raise the same error.
     """
     words = asked.request
-    runnable(data_folder, asked)
+    if asked.program:
+        runnable(data_folder, asked)
+    else:
+        library.require(data_folder, machine=words["machine"], material=words["material"])
     for kind, field in FIELDS.items():
         if words[field] is not None:
             files.require_file(data_folder, words[field], kind)
     if words["run_id"] is not None:
         run = jobs.get(data_folder, words["run_id"])
         file_of(data_folder, run, SAMPLES, thing="samples")
+    if words["stock"]:
+        stock_in(words["stock"])
     if words["zero"] and words["zero"] != FIT:
         numbers_in(words["zero"], "zero", counts=(3,))
 

@@ -16,7 +16,14 @@ from tests.service.monitor.played import PlayedAgent
 from tests.service.rest.conftest import Done
 from tests.service.rest.samples import SLOT
 from tests.service.rest.server import Server, create_key, is_problem, made, over
+from tests.service.verification.files import write_log
 from tests.service.verification.logs import SLOT_MACHINE, slot_log
+from tests.service.verification.test_without_program import (
+    MILL,
+    OFFSET,
+    POCKET,
+    pocket_inputs,
+)
 from tests.service.waiting import until
 
 PATH = "/v1/verifications"
@@ -105,25 +112,48 @@ def test_the_samples_of_a_run_bring_their_program(
     is_problem(client.get(f"{PATH}/{id}/map"), 404)
 
 
-def test_measured_tools_and_a_required_part_are_used(
+def test_measured_tools_are_used(
     client: httpx.Client, done: Done, usual: dict[str, Any]
 ) -> None:
     tools = b'[[tool]]\nnumber = 1\nkind = "endmill"\ndiameter_mm = 8.1\n'
-    part = b"solid a\nvertex 0 0 -5.9\nvertex 99 0 -5.9\nvertex 0 99 -5.9\nendsolid\n"
-    post = client.post
-    tools_id = made(post("/v1/files?kind=tools&name=t.toml", content=tools), 201)
-    part_id = made(post("/v1/files?kind=required-part&name=p.stl", content=part), 201)
-    body = {**usual, "log_id": done.file, "tools_id": tools_id, "required_id": part_id}
-    job = over(client, made(post(PATH, json=body)))
+    tools_id = made(client.post("/v1/files?kind=tools&name=t.toml", content=tools), 201)
+    body = {**usual, "log_id": done.file, "tools_id": tools_id}
+    job = over(client, made(client.post(PATH, json=body)))
     assert job["state"] == "succeeded", job
     rows = client.get(f"{PATH}/{job['id']}").json()["surfaces"]
-    wall, floor = (
-        next(row for row in rows if row["feature"] and row["surface"] == kind)
-        for kind in ("wall", "floor")
-    )
+    wall = next(row for row in rows if row["feature"] and row["surface"] == "wall")
     assert wall["gouge_mm"] == pytest.approx(0.05, abs=wall["gouge_uncertainty_mm"])
-    # 0.1 mm below the program, which is 0.1 mm below the required part.
-    assert floor["nominal_mm"] == pytest.approx([-0.2, -0.2], abs=2e-3)
+
+
+def test_a_required_part_takes_the_place_of_a_program(
+    client: httpx.Client, tmp_path: Path
+) -> None:
+    inputs = pocket_inputs(tmp_path)
+    log = write_log(tmp_path / "log.csv", POCKET + OFFSET)
+    assert inputs.tools is not None
+    assert inputs.required is not None
+    ids = {
+        name: made(
+            client.post(f"/v1/files?kind={kind}&name={path.name}", content=path.read_bytes()),
+            201,
+        )
+        for name, kind, path in (
+            ("log_id", "log", log),
+            ("tools_id", "tools", inputs.tools),
+            ("required_id", "required-part", inputs.required),
+        )
+    }
+    body = {**ids, "machine": MILL.machine, "stock": MILL.stock, "cell_mm": MILL.cell_mm}
+    job = over(client, made(client.post(PATH, json=body)))
+    assert (job["state"], job["program_id"]) == ("succeeded", None), job
+    found = client.get(f"{PATH}/{job['id']}").json()
+    assert found["program"] == inputs.required.name
+    assert found["has_errors"]
+    assert {row["tool"] for row in found["surfaces"]} >= {1}
+    for name in ("machine", "stock", "tools_id", "required_id"):
+        less = {key: value for key, value in body.items() if key != name}
+        refused = is_problem(client.post(PATH, json=less), 400, "unreadable")
+        assert name in refused["detail"]
 
 
 def test_what_cannot_be_verified_is_refused_before_there_is_a_job(
@@ -150,6 +180,7 @@ def test_what_cannot_be_verified_is_refused_before_there_is_a_job(
         ({**log, "tolerance_mm": 0}, 422, "invalid-request"),
         ({**log, "cell_mm": 0.01}, 422, "invalid-request"),
         ({**log, "zero": "1,2"}, 422, ""),
+        ({**log, "stock": "0,0,0"}, 422, ""),
         ({**log, "machine": "no-such"}, 422, "unknown-machine"),
         ({**log, "material": "unobtainium"}, 422, "unknown-material"),
     ):
