@@ -2,6 +2,7 @@
 
 import { AWAY_WORDS, announce, api, byId, el, fill, followed, patiently, tell } from "/dashboard/app.js";
 import { programChoice } from "/dashboard/plan_program.js";
+import { showCycle } from "/dashboard/verify_cycle.js";
 import { FileField } from "/dashboard/verify_files.js";
 import { logChoice } from "/dashboard/verify_log.js";
 import { showResult } from "/dashboard/verify_result.js";
@@ -30,6 +31,8 @@ function ready() {
   byId("program-of-run").hidden = !isOfRun;
   const missing = working ? "" : !fields ? "Choose positions first." : !isOfRun && !program && !isEnough() ? "Choose a program first." : "";
   button.disabled = working || Boolean(missing);
+  // A program is enough for its cycle time.
+  byId("cycle").disabled = working || !(program || (isOfRun && fields));
   byId("verify-hint").textContent = missing;
 }
 
@@ -69,17 +72,23 @@ async function recall({ request, program_id: id }) {
 
 form.addEventListener("submit", (event) => {
   event.preventDefault();
-  if (!button.disabled) verify();
+  if (!button.disabled) ask("/v1/verifications", wish(), "id", "result", showVerification);
 });
 
-async function verify() {
+byId("cycle").addEventListener("click", () => {
+  const { program_id: id = null, machine, units } = wish();
+  ask("/v1/cycle-times", { ...log.fields, program_id: id, machine, units }, "cycle", "cycle-card", showCycleTime);
+});
+
+/** Queue a job, wait for its end and show its result in a part of the page. */
+async function ask(path, json, name, part, shown) {
   tell(problem, null);
-  byId("result").hidden = true;
+  byId(part).hidden = true;
   try {
-    const asked = await api("/v1/verifications", { method: "POST", json: wish(),
+    const asked = await api(path, { method: "POST", json,
       headers: { "idempotency-key": crypto.randomUUID?.() ?? String(Math.random()) } });
-    history.replaceState(null, "", `?id=${asked.id}`);
-    await follow(asked);
+    history.replaceState(null, "", `?${name}=${asked.id}`);
+    await follow(asked, part, shown);
   } catch (error) {
     const isCancelled = error.message === "the job is cancelled";
     if (isCancelled) fill(problem, el("p", { class: "soft" }, "Cancelled."));
@@ -88,8 +97,22 @@ async function verify() {
   }
 }
 
-/** Wait for the end of a verification, and show its result. */
-async function follow(asked) {
+async function showVerification(job, line) {
+  const [result, map] = await Promise.all([patiently(`/v1/verifications/${job.id}`, line),
+    patiently(`/v1/verifications/${job.id}/map`, line)]);
+  byId("result").hidden = false;
+  await showResult(job, result, map);
+  announce(result.verdict);
+}
+
+async function showCycleTime(job, line) {
+  const result = await patiently(`/v1/cycle-times/${job.id}`, line);
+  showCycle(job, result);
+  announce(`cycle time ${result.total.predicted_s.toFixed(1)} s predicted`);
+}
+
+/** Wait for the end of a job, and show its result. */
+async function follow(asked, part, shown) {
   const place = byId("verify-work"), bar = el("progress", { max: 1, "aria-label": "progress" });
   const words = el("span", { class: "soft small" }, "waiting …");
   const cancel = el("button", { type: "button", id: "cancel-verify", onclick: () => {
@@ -108,14 +131,10 @@ async function follow(asked) {
   const line = { lost: () => { words.textContent = AWAY_WORDS; }, back: () => { words.textContent = "…"; } };
   try {
     const job = await followed(asked, news, line);
-    const [result, map] = await Promise.all([patiently(`/v1/verifications/${job.id}`, line),
-      patiently(`/v1/verifications/${job.id}/map`, line)]);
-    byId("result").hidden = false;
+    await shown(job, line);
     place.hidden = true;  // before the scroll distance is measured
-    await showResult(job, result, map);
-    announce(result.verdict);
     const isCalm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    byId("result").scrollIntoView({ behavior: isCalm ? "auto" : "smooth", block: "start" });
+    byId(part).scrollIntoView({ behavior: isCalm ? "auto" : "smooth", block: "start" });
   } finally {
     working = false;
     place.hidden = true;
@@ -129,7 +148,14 @@ async function begin() {
   if (asked.get("id")) {
     const job = await api(`/v1/jobs/${asked.get("id")}`);
     await recall(job);
-    await follow(job);
+    await follow(job, "result", showVerification);
+  } else if (asked.get("cycle")) {
+    const job = await api(`/v1/jobs/${asked.get("cycle")}`);
+    const { log_id: id, run_id: run, monitor } = job.request;
+    for (const name of ["machine", "units"]) byId(name).value = job.request[name];
+    if (id || run || monitor) await log.recall(job.request);
+    if (job.program_id && !run) await choice.use(job.program_id);
+    await follow(job, "cycle-card", showCycleTime);
   } else if (asked.get("run")) await log.recall({ run_id: asked.get("run") });
   else if (asked.get("monitor")) await log.recall({ monitor: asked.get("monitor") });
 }

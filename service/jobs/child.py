@@ -131,6 +131,10 @@ def _work(job: Job) -> Callable[[RunningJob], None]:
             from service.jobs import verify  # noqa: PLC0415
 
             return verify.run
+        case JobKind.CYCLE_TIME:
+            from service.jobs import cycle_time  # noqa: PLC0415
+
+            return cycle_time.run
 
 
 def _cancel(_signal: int, _frame: FrameType | None) -> None:

@@ -5,6 +5,7 @@ from importlib import import_module
 for name in (
     "service.jobs.advise",
     "service.jobs.child",
+    "service.jobs.cycle_time",
     "service.jobs.evaluate",
     "service.jobs.simulate",
     "service.jobs.steer",

@@ -20,6 +20,7 @@ from service.problem import plain_problem, problem_of
 from service.rest import (
     advice,
     agent,
+    cycle_times,
     files,
     health,
     jobs,
@@ -102,7 +103,7 @@ def _routed() -> FastAPI:
     # The most frequently used first: routes are tried in this order.
     for routes in (
         advice.ROUTES, jobs.ROUTES, live.CONTROL, live.TRIALS, programs.ROUTES,
-        simulations.ROUTES, verifications.ROUTES, files.ROUTES,
+        simulations.ROUTES, verifications.ROUTES, cycle_times.ROUTES, files.ROUTES,
         knowledge.EVALUATIONS, knowledge.REVIEWS, knowledge.CORRECTIONS, knowledge.OUTCOMES,
         library.MACHINES, library.MATERIALS, monitors.ROUTES,
         health.ROUTES, pages.ROUTES,

@@ -7,9 +7,8 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from service.errors import NotFound, Unreadable
-from service.jobs.task import LOG, PLACES, REPORT, SAMPLES, SURFACE
-from service.monitor.monitor import MonitorSet
+from service.errors import Unreadable
+from service.jobs.task import LOG, PLACES, REPORT, SURFACE
 from service.numbers import numbers_in, stock_in
 from service.requests.fields import dumped
 from service.requests.stored_verification import QueuedVerification, StoredVerificationRequest
@@ -25,21 +24,18 @@ from service.rest.context import (
     runnable,
 )
 from service.rest.knowledge import KINDS, TableFormat
+from service.rest.logged import LOGS, agent_url, logged_order, require_logs
 from service.rest.replies import file_reply, json_reply, report_reply
 from service.rest.results import file_of, read_in_turn, require_done, result_reply
 from service.rest.verification_views import SurfaceMapView, VerificationView, map_view
 from service.rest.views import JobView, PageView, job_view
-from service.storage import files, jobs, library
-from service.storage.files import FIELDS
+from service.storage import jobs, library
 from service.storage.folder import DataFolder
-from service.storage.jobs import Job, JobKind, JobRequest
+from service.storage.jobs import JobKind, JobRequest
 from service.verification.run import FIT
 from service.verification.surface_map import read_map
 
 ROUTES = APIRouter(prefix="/v1/verifications", tags=["verifications"])
-
-RUNS = frozenset({JobKind.SIMULATION, JobKind.CONTROL})
-"""Jobs whose samples can be verified."""
 
 WITHOUT_PROGRAM = ("machine", "stock", "tools_id", "required_id")
 """Fields that a verification without a program needs."""
@@ -61,61 +57,13 @@ async def ask(
 
     The log is an uploaded one, the samples of a run, or the latest run of a monitored machine.
     """
-    asked = await run_in_threadpool(_order, data_folder, monitors_of(request), body, owner)
-    return await queued(request, asked, key, require=verifiable)
-
-
-def _order(
-    data_folder: DataFolder,
-    monitors: MonitorSet,
-    body: StoredVerificationRequest,
-    owner: str,
-) -> JobRequest:
-    """Return the job request, with the program and machine of the run that it names.
-
-    Raises
-    ------
-    Unreadable, NotFound, Conflict
-        When not exactly one log and one program are named, or one of them does not exist.
-    """
-    if (body.log_id is not None) + (body.run_id is not None) + bool(body.monitor) != 1:
-        raise Unreadable("name one of log_id, run_id and monitor")
-    if body.program_id is not None and body.advice_id is not None:
-        raise Unreadable("name either a program_id or an advice_id")
-    url = ""
-    if body.monitor:
-        watched = monitors.by_name.get(body.monitor)
-        if watched is None:
-            raise NotFound("monitor", body.monitor)
-        url = watched.source.url
+    url = agent_url(monitors_of(request), body.monitor)
     own = {each.name: getattr(body, each.name) for each in fields(body)}
     words = dumped(QueuedVerification(**own, agent_url=url))
-    program, source = body.program_id or "", body.advice_id or ""
-    if body.run_id is not None:
-        run = _run(data_folder, body.run_id)
-        if not program and not source:
-            program, source = run.program, run.source
-            words |= {
-                name: run.request[name] for name in ("machine", "material") if not words[name]
-            }
-            words["units"] = run.request["units"]
-    if source and not program:
-        program = jobs.get(data_folder, source, JobKind.ADVICE).program
-    if not program and not all(words[name] for name in WITHOUT_PROGRAM):
-        wanted = ", ".join(WITHOUT_PROGRAM)
-        raise Unreadable(f"name a program_id or an advice_id; or all of {wanted}")
-    return JobRequest(
-        kind=JobKind.VERIFICATION, request=words, program=program, source=source, owner=owner
+    asked = await run_in_threadpool(
+        logged_order, data_folder, JobKind.VERIFICATION, words, owner
     )
-
-
-def _run(data_folder: DataFolder, id: str) -> Job:
-    """Return the finished run whose samples are to be verified."""
-    run = jobs.get(data_folder, id)
-    if run.kind not in RUNS:
-        raise NotFound("simulation or run under control", id)
-    require_done(run)
-    return run
+    return await queued(request, asked, key, require=verifiable)
 
 
 def verifiable(data_folder: DataFolder, asked: JobRequest) -> None:
@@ -127,16 +75,16 @@ def verifiable(data_folder: DataFolder, asked: JobRequest) -> None:
         When the job would raise the same error.
     """
     words = asked.request
+    if not any(words[name] for name in LOGS):
+        raise Unreadable(f"name one of {', '.join(LOGS)}")
     if asked.program:
         runnable(data_folder, asked)
-    else:
+    elif all(words[name] for name in WITHOUT_PROGRAM):
         library.require(data_folder, machine=words["machine"], material=words["material"])
-    for kind, field in FIELDS.items():
-        if words[field] is not None:
-            files.require_file(data_folder, words[field], kind)
-    if words["run_id"] is not None:
-        run = jobs.get(data_folder, words["run_id"])
-        file_of(data_folder, run, SAMPLES, thing="samples")
+    else:
+        wanted = ", ".join(WITHOUT_PROGRAM)
+        raise Unreadable(f"name a program_id or an advice_id; or all of {wanted}")
+    require_logs(data_folder, asked)
     if words["stock"]:
         stock_in(words["stock"])
     if words["zero"] and words["zero"] != FIT:

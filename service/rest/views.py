@@ -425,6 +425,7 @@ PLACES = {
     JobKind.EVALUATION: "evaluations",
     JobKind.REVIEW: "reviews",
     JobKind.VERIFICATION: "verifications",
+    JobKind.CYCLE_TIME: "cycle-times",
 }
 """Path segment of the results by kind of job."""
 

@@ -58,6 +58,7 @@ class JobKind(StrEnum):
     EVALUATION = "evaluation"
     REVIEW = "review"
     VERIFICATION = "verification"
+    CYCLE_TIME = "cycle-time"
 
     @property
     def is_live(self) -> bool:

@@ -199,6 +199,18 @@ def test_a_monitored_machine_is_verified(page: Page, watched: Watched) -> None:
     assert log.value.suggested_filename.endswith(".parquet")
 
 
+def test_the_cycle_time_stands_beside_the_logged_one(page: Page, watched: Watched) -> None:
+    page.goto(f"{PAGE}?run={watched.run}")
+    page.locator("#cycle").click()
+    rows = page.locator("#cycle-rows")
+    expect(rows).to_contain_text("MILL SLOT", timeout=LATE)
+    expect(rows.locator("tfoot")).to_contain_text(re.compile(r"[+−]0\.\d\d %"))
+    page.locator("#cycle-more summary").click()
+    expect(page.locator("#cycle-stretches")).to_contain_text("acceleration and corners")
+    page.reload()
+    expect(rows).to_contain_text("MILL SLOT", timeout=LATE)
+
+
 def test_a_file_that_is_no_log_is_refused_in_words(page: Page, tmp_path: Path) -> None:
     page.goto(PAGE)
     bad = tmp_path / "log.csv"

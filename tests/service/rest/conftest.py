@@ -44,6 +44,7 @@ class Done:
     review: str
     file: str
     verification: str
+    cycle: str
 
 
 @pytest.fixture(scope="session")
@@ -71,6 +72,10 @@ def done(service: Server, log: bytes) -> Done:
             "trial": ("/v1/trials", {"pace": 100.0}),
             "evaluation": ("/v1/evaluations", {}),
             "review": ("/v1/reviews", {}),
+            "cycle": (
+                "/v1/cycle-times",
+                {"program_id": slot, "log_id": file, "machine": SLOT_MACHINE},
+            ),
             "verification": (
                 "/v1/verifications",
                 {

@@ -164,7 +164,7 @@ def test_what_cannot_be_verified_is_refused_before_there_is_a_job(
     for body, status, kind in (
         (usual, 400, "unreadable"),
         ({**log, "run_id": done.simulation}, 400, "unreadable"),
-        ({**log, "monitor": "mill"}, 400, "unreadable"),
+        ({**log, "monitor": "mill"}, 404, "not-found"),
         ({**log, "advice_id": done.advice}, 400, "unreadable"),
         ({"log_id": done.file}, 400, "unreadable"),
         ({**log, "log_id": NOBODY}, 404, "not-found"),

@@ -35,7 +35,7 @@ KINDS: dict[JobKind, type[Request]] = {
     JobKind.REVIEW: ReviewRequest,
 }
 
-NEWER = {JobKind.VERIFICATION}
+NEWER = {JobKind.VERIFICATION, JobKind.CYCLE_TIME}
 """Kinds that the earlier version did not have."""
 
 
