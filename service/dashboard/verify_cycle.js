@@ -38,8 +38,8 @@ const line = (row) => el("tr", {}, el("th", { scope: "row" }, row.workingstep ||
 
 function off(row) {
   if (!row.actual_s) return "–";
-  const share = 100 * (row.predicted_s / row.actual_s - 1);
-  return `${share < 0 ? "−" : "+"}${fixed(Math.abs(share), 2)} %`;
+  const share = 100 * (row.predicted_s / row.actual_s - 1), told = fixed(Math.abs(share), 2);
+  return told === "0.00" ? "0.00 %" : `${share < 0 ? "−" : "+"}${told} %`;
 }
 
 byId("cycle-report").addEventListener("click", () => {

@@ -10,6 +10,8 @@ const SCALES = {
   light: ["#9e0f22", "#e0604d", "#cdd3d9", "#5aa0d0", "#0b4f9c"],
   dark: ["#ff5c5c", "#b4524f", "#3d4853", "#3f83b8", "#7cc8ff"],
 };
+/** Walls without a deviation in plan, darker than floors, so that the part can be recognised. */
+const WALLS = { light: "#98a4b0", dark: "#6d7a88" };
 /** Angles at which a turned profile is shown in 3D. */
 const TURNS = 36, MOST_TURNED = 700;
 
@@ -152,7 +154,7 @@ function drawPlan(label) {
   const floors = at.filter((each) => isFloor[map.kind[each]]), others = at.filter((each) => !isFloor[map.kind[each]]);
   // What deviates most is drawn last, on top of what lies above or below it.
   const dots = [...groups(floors, end, tints, { size: spacing(floors, x, y), least: 2 }),
-    ...groups(others, end, tints, { size: 0.25, least: 4 })];
+    ...groups(others, end, tints, { size: 0.25, least: 3.5 })];
   dots.sort((a, b) => a.rank - b.rank);
   const titles = map.is_turned ? ["z, mm", "radius, mm"] : ["x, mm", "y, mm"];
   state.flat.show({ dots, x, y, titles, label, key: state.found, tell: told, again: () => drawPlan(label),
@@ -167,9 +169,9 @@ function groups(places, end, tints, more) {
     if (!found.has(level)) found.set(level, []);
     found.get(level).push(at);
   }
-  const middle = (LEVELS - 1) / 2;
-  return [...found].map(([level, at]) => ({ at, colour: tints[level], ...more,
-    rank: Math.abs(level - middle) * 2 + (more.size < 0.3 ? 1 : 0) }));
+  const middle = (LEVELS - 1) / 2, isWall = more.size < 0.3;
+  return [...found].map(([level, at]) => ({ at, ...more, rank: Math.abs(level - middle) * 2 + (isWall ? 1 : 0),
+    colour: level === middle && isWall ? WALLS[document.documentElement.dataset.theme] ?? WALLS.light : tints[level] }));
 }
 
 /** Size of the squares of floors that leaves few gaps, mm. */

@@ -47,7 +47,7 @@ export async function showResult(asked, found, map) {
 function verdict(spots) {
   const wrong = spots.filter(isWrong), seen = spots.filter(isSeen);
   const worst = most(wrong.length ? wrong : seen, wrong.length ? (one) => one.size : excessOf);
-  const [lamp, word] = wrong.length ? ["over", "ERROR"] : ["safe", "WITHIN TOLERANCE"];
+  const [lamp, word] = wrong.length ? ["over", "ERROR"] : blindSpots().length ? ["idle", "NO ERROR SEEN"] : ["safe", "WITHIN TOLERANCE"];
   const told = !worst ? `Nothing exceeds the uncertainty of this log. Tolerance ± ${number(result.tolerance_mm)} mm.`
     : `${worst.sign === "gouge" ? "Gouge" : "Excess"} of ${size(worst)} (${FEEL[worst.sign]}) on the ${on(worst.row)}, ${where(worst)}. `
       + (wrong.length ? `${places(wrong)} beyond ± ${number(result.tolerance_mm)} mm.` : `Tolerance ± ${number(result.tolerance_mm)} mm.`);
@@ -70,11 +70,15 @@ function figures(spots) {
     figure("Positions", samples.count.toLocaleString("en-GB"), rate));
 }
 
-/** Say where the log cannot tell whether the tolerance is kept. */
-function cautions() {
+/** Where the log cannot tell whether the tolerance is kept, with what it resolves there. */
+function blindSpots() {
   const { resolution: can, tolerance_mm: tolerance } = result;
-  const blind = [[can.straight_mm, "on straights"], [can.arc_radius_mm === null ? 0 : can.arc_mm, `on arcs of R ${number(can.arc_radius_mm)} mm`],
+  return [[can.straight_mm, "on straights"], [can.arc_radius_mm === null ? 0 : can.arc_mm, `on arcs of R ${number(can.arc_radius_mm)} mm`],
     [can.square_corner_mm, "at square corners"]].filter(([value]) => value > tolerance);
+}
+
+function cautions() {
+  const blind = blindSpots(), can = result.resolution;
   return blind.length ? el("div", { class: "banner warn", id: "blind" }, `With ${number(can.step_mm)} mm between positions, this log resolves `,
     blind.map(([value, words]) => `${fixed(value, 4)} mm ${words}`).join(" and "),
     `: more than the tolerance. Smaller errors there stay unseen; a higher rate or a lower feed shows them.`) : null;
