@@ -8,19 +8,26 @@ it goes on where it stopped, unless the part is spoilt.
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import inf
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
 from simpy import Environment, Event, Interrupt, Process
 
 from simulator.factory.crews import CrewOnDuty
 from simulator.factory.machining import Machining
 from simulator.factory.records import Listeners, PartMade, StateSpent
-from simulator.factory.shop import Counting, Failure, Product, ShopMachine
+from simulator.factory.shop import Counting, Product, ShopMachine
 from simulator.factory.states import HANDLING, TRANSITIONS, MachineState
 from simulator.factory.store import Batch, BatchBuffer, Course, RawStock, oldest
 from simulator.factory.streams import Streams
 from simulator.factory.tally import MachineTally, PowerMeter, ProcessTally, Tally
+from simulator.factory.upkeep import (
+    Breakdown,
+    DueMaintenance,
+    PendingFailure,
+    Upkeep,
+    breakdown_of,
+    upkeep_of,
+)
 
 WAITING = 2_000
 """States whose energies are added to the power over time together."""
@@ -31,15 +38,6 @@ _PART_SETUP, _MACHINING, _PART_EJECTION = (
 
 Steps: TypeAlias = frozenset[tuple[int, int]]
 """Indices of product and step."""
-
-
-class Breakdown(NamedTuple):
-    """Failure that interrupts a machine."""
-
-    repair: float
-    """s"""
-    spoils: bool
-    """Whether a part that is being machined is scrapped."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,29 +63,6 @@ class Surroundings:
     stuck: Callable[["Station"], None]
     """Called when the machine waits for room."""
     listeners: Listeners
-
-
-@dataclass(slots=True, eq=False)
-class PendingFailure:
-    """Failure that counts machining time. Running state."""
-
-    failure: Failure
-    between: Iterator[float]
-    repair: Iterator[float]
-    spoils: Iterator[float]
-    at: float = inf
-    """Machining time of the machine at which it comes, s."""
-
-
-@dataclass(slots=True, eq=False)
-class DueMaintenance:
-    """Maintenance with the time until it is due. Running state."""
-
-    counts: Counting
-    every: float
-    duration: Iterator[float]
-    due: float
-    """Machining time, or time, at which it is due, s."""
 
 
 @dataclass(slots=True, eq=False)
@@ -119,17 +94,13 @@ class Station:
     _spent: list[tuple[float, float, float]] = field(init=False)
     _meter: PowerMeter = field(init=False)
     _listeners: tuple[Callable[[StateSpent], None], ...] = ()
-    _failure_at: float = inf
-    """Machining time at which the next failure comes, s."""
     _has_crews: bool = False
     _has_pauses: bool = False
     """Whether shifts or maintenance may begin between two parts."""
     _powers: dict[MachineState, float] = field(default_factory=dict)
     _asleep: Event | None = None
     _repaired: Event | None = None
-    _machining_failures: list[PendingFailure] = field(default_factory=list)
-    _clock_failures: list[PendingFailure] = field(default_factory=list)
-    _maintenance: list[DueMaintenance] = field(default_factory=list)
+    _upkeep: Upkeep = field(init=False)
     _times: dict[MachineState, Iterator[float]] = field(default_factory=dict)
     _scrap: Iterator[float] = field(init=False)
     _part_spoilt: bool = False
@@ -151,37 +122,17 @@ class Station:
         for state in HANDLING:
             self._times[state] = self.streams.numbers(spec.handling[state].time, name, state)
             self._powers[state] = spec.handling[state].power
-        for row, failure in enumerate(spec.failures):
-            purpose = f"failure {row}"
-            pending = PendingFailure(
-                failure=failure,
-                between=self.streams.numbers(failure.between, name, purpose),
-                repair=self.streams.numbers(failure.repair, name, f"{purpose} repair"),
-                spoils=iter(self.streams.generator(name, f"{purpose} scrap").random, None),
-            )
-            if failure.counts is Counting.MACHINING:
-                pending.at = next(pending.between)
-                self._machining_failures.append(pending)
-            else:
-                self._clock_failures.append(pending)
-        for row, each in enumerate(spec.maintenance):
-            duration = self.streams.numbers(each.duration, name, f"maintenance {row}")
-            self._maintenance.append(
-                DueMaintenance(
-                    counts=each.counts, every=each.every, duration=duration, due=each.every
-                )
-            )
-        self._failure_at = min((each.at for each in self._machining_failures), default=inf)
+        self._upkeep = upkeep_of(spec, self.streams)
         self._has_crews = bool(self.around.crews)
-        self._has_pauses = spec.calendar is not None or bool(self._maintenance)
+        self._has_pauses = spec.calendar is not None or bool(self._upkeep.maintenance)
         self._scrap = iter(self.streams.generator(name, "scrap").random, None)
         self.around.tally.meter.change(self.power, self.env.now)
         self.process = self.env.process(self._run())
-        for pending in self._clock_failures:
+        for pending in self._upkeep.by_clock:
             self.env.process(self._fails_by_clock(pending))
         if spec.calendar is not None:
             self.env.process(self._changes_of_shift())
-        for due in self._maintenance:
+        for due in self._upkeep.maintenance:
             if due.counts is Counting.CLOCK:
                 self.env.process(self._wakes_when_due(due))
 
@@ -352,7 +303,7 @@ class Station:
             yield env.timeout(setup)
         except Interrupt as interrupt:
             yield from self._interrupted(interrupt, self.since + setup - env.now)
-        if self._failure_at < self.machined + work.time:
+        if self._upkeep.failure_at < self.machined + work.time:
             yield from self._machine(work)
         else:
             seconds = work.time
@@ -385,21 +336,14 @@ class Station:
         seconds = work.time
         self._part_spoilt = False
         self.enter(MachineState.MACHINING, work.energy / seconds if seconds > 0.0 else 0.0)
-        while self._failure_at < self.machined + seconds:
-            before = self._failure_at - self.machined
+        while self._upkeep.failure_at < self.machined + seconds:
+            before = self._upkeep.failure_at - self.machined
             yield from self._spend(before)
             self.machined += before
             seconds -= before
-            yield from self._down(self._next_breakdown())
+            yield from self._down(self._upkeep.breakdown(self.machined))
         yield from self._spend(seconds)
         self.machined += seconds
-
-    def _next_breakdown(self) -> Breakdown:
-        """Failure that comes now by machining time."""
-        first = min(self._machining_failures, key=lambda each: each.at)
-        first.at = self.machined + next(first.between)
-        self._failure_at = min(each.at for each in self._machining_failures)
-        return Breakdown(next(first.repair), self._spoils(first))
 
     def _claim(self, state: MachineState) -> Course:
         """Wait for a member of the crew that a state needs."""
@@ -426,7 +370,7 @@ class Station:
 
     def _interrupted(self, interrupt: Interrupt, left: float) -> Course:
         """Fail, and then let the time pass that was left."""
-        yield from self._down(_breakdown(interrupt))
+        yield from self._down(breakdown_of(interrupt))
         yield from self._spend(max(left, 0.0))
 
     def _until(self, event: Event) -> Course:
@@ -435,7 +379,7 @@ class Station:
             try:
                 yield event
             except Interrupt as interrupt:
-                yield from self._down(_breakdown(interrupt))
+                yield from self._down(breakdown_of(interrupt))
 
     def _sleep(self) -> Course:
         """Wait until the machine is woken."""
@@ -458,22 +402,14 @@ class Station:
         return calendar is None or calendar.is_open(self.start + self.env.now)
 
     def _due(self) -> DueMaintenance | None:
-        for each in self._maintenance:
-            counted = self.machined if each.counts is Counting.MACHINING else self.env.now
-            if counted >= each.due:
-                return each
-        return None
+        return self._upkeep.due(self.machined, self.env.now)
 
     def _maintain(self, due: DueMaintenance) -> Course:
         yield from self._claim(MachineState.MAINTENANCE)
         self.enter(MachineState.MAINTENANCE, self.spec.idle_power)
-        yield self.env.timeout(next(due.duration))
+        yield self.env.timeout(next(due.durations))
         self._release()
-        counted = self.machined if due.counts is Counting.MACHINING else self.env.now
-        due.due = counted + due.every
-        for each in self._machining_failures:
-            each.at = self.machined + next(each.between)
-        self._failure_at = min((each.at for each in self._machining_failures), default=inf)
+        self._upkeep.maintained(due, self.machined, self.env.now)
 
     def _changes_of_shift(self) -> Course:
         """SimPy process that wakes the machine when its shift begins or ends."""
@@ -486,14 +422,10 @@ class Station:
     def _wakes_when_due(self, due: DueMaintenance) -> Course:
         """SimPy process that wakes a machine without work for its maintenance."""
         while True:
-            yield self.env.timeout(max(due.due - self.env.now, 0.0) or due.every)
+            yield self.env.timeout(max(due.at - self.env.now, 0.0) or due.every)
             self.wake()
 
     # Failures
-
-    def _spoils(self, pending: PendingFailure) -> bool:
-        share = pending.failure.scrap
-        return share > 0.0 and next(pending.spoils) < share
 
     def _down(self, breakdown: Breakdown) -> Course:
         """Fail, and be repaired."""
@@ -522,14 +454,7 @@ class Station:
         """SimPy process of failures that count all time."""
         while True:
             yield self.env.timeout(next(pending.between))
-            self.fail(next(pending.repair), spoils=self._spoils(pending))
+            breakdown = pending.breakdown()
+            self.fail(breakdown.repair, spoils=breakdown.spoils)
             if self._repaired is not None:
                 yield self._repaired
-
-
-def _breakdown(interrupt: Interrupt) -> Breakdown:
-    """Failure of an interrupt, which only :meth:`Station.fail` causes."""
-    cause = interrupt.cause
-    if not isinstance(cause, Breakdown):
-        raise TypeError(f"an interrupt of a machine by {cause!r}")
-    return cause
