@@ -83,6 +83,43 @@ def with_settings(
     return Program(file, units=program.units, name=program.name, stock=program.stock)
 
 
+def common_settings(program: Program) -> CutSettings:
+    """Settings that all milling and turning workingsteps of a program share; None: they differ.
+
+    Parameters
+    ----------
+    program : Program
+    """
+    found = [
+        _settings(program, step)
+        for step in program.workingsteps
+        if isinstance(step.operation, (MillingTypeOperation, TurningMachiningOperation))
+    ]
+    return CutSettings(**{
+        field.name: _same([getattr(each, field.name) for each in found])
+        for field in fields(CutSettings)
+    })
+
+
+def _settings(program: Program, step: ResolvedWorkingstep) -> CutSettings:
+    """Settings of one workingstep as programmed; None where the file has another quantity."""
+    told = programmed(program, step.technology_ref)
+    tool = tool_of(program, step.tool_ref)
+    depth = getattr(step.operation, "axial_cutting_depth", None)
+    is_speed = told.speed.quantity is ProgrammedQuantity.SPINDLE_SPEED
+    if not is_speed and tool.diameter <= 0.0:
+        return CutSettings(depth=depth or None)
+    speed = told.spindle_speed(tool.diameter)
+    feed = told.feed_per_tooth(speed, tool.teeth) * tool.teeth * speed
+    sense = 1.0 if is_speed and told.speed.scale > 0.0 else -1.0
+    return CutSettings(feed=feed, spindle_speed=sense * speed, depth=depth or None)
+
+
+def _same(values: Sequence[float | None]) -> float | None:
+    """Value that all share; None if they differ."""
+    return values[0] if len(set(values)) == 1 else None
+
+
 def _chosen(program: Program, names: Sequence[str]) -> list[ResolvedWorkingstep]:
     steps = program.workingsteps
     for name in names:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import isfinite, isnan
 
 from service.factory.run import FactoryResult
@@ -21,6 +22,9 @@ TITLES = {
     Level.BUFFER: "buffer, mean",
 }
 """Headings of the first column by level."""
+
+EXACT = 1e-9
+"""Relative half-width that is rounding only."""
 
 SWEPT = (
     Quantity.THROUGHPUT,
@@ -52,7 +56,7 @@ def rows_of(measures: Sequence[MeasureInterval], level: Level) -> list[FigureRow
 def columns_of(rows: Sequence[FigureRow], title: str) -> tuple[Column[FigureRow], ...]:
     """Columns of the quantities that rows have."""
     quantities = dict.fromkeys(quantity for row in rows for quantity in row.values)
-    names = Column[FigureRow](
+    names: Column[FigureRow] = Column(
         heading=title, is_key=True, is_words=True, value=lambda row: row.name or "all"
     )
     return (names, *(_column(quantity) for quantity in quantities))
@@ -65,6 +69,8 @@ def interval_text(interval: MeasureInterval) -> str:
     mean = f"{interval.mean:.4g}" if abs(interval.mean) < 1e4 else f"{interval.mean:.0f}"
     if not isfinite(interval.half_width):
         return mean
+    if interval.half_width < EXACT * abs(interval.mean):
+        return f"{mean} ± 0"
     return f"{mean} ± {interval.half_width:.2g}"
 
 
@@ -79,16 +85,20 @@ def _column(quantity: Quantity) -> Column[FigureRow]:
 def case_columns(cases: Sequence[SweptCase]) -> tuple[Column[SweptCase], ...]:
     """Columns of a sweep: its keys, and figures of the line."""
     keys = [key for key, _ in cases[0].changes]
-    named = tuple(
-        Column[SweptCase](
+    named: tuple[Column[SweptCase], ...] = tuple(
+        Column(
             heading=key,
             is_key=True,
             form="g",
-            value=lambda case, key=key: dict(case.changes)[key],
+            value=partial(_changed, key),
         )
         for key in keys
     )
     return (*named, *(_case_column(quantity) for quantity in SWEPT))
+
+
+def _changed(key: str, case: SweptCase) -> float | str:
+    return dict(case.changes)[key]
 
 
 def line_figure(measures: Sequence[MeasureInterval], quantity: Quantity) -> MeasureInterval:

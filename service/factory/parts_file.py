@@ -9,6 +9,7 @@ References
 Lechevalier, Shin, Rachuri, Foufou, Lee, Bouras (2018), Fig. 11.
 """
 
+from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
@@ -40,7 +41,7 @@ class PartTables:
     """
 
     def __init__(
-        self, folder: Path, shop: Shop, materials: dict[int, str], *, has_energy: bool
+        self, folder: Path, shop: Shop, materials: Mapping[int, str], *, has_energy: bool
     ) -> None:
         self._shop = shop
         self._materials = {row: disarmed(name) for row, name in materials.items()}

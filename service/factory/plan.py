@@ -5,11 +5,12 @@ from pathlib import Path
 from service.chosen import material_for
 from service.factory.cycles import PartCycles
 from service.reading import read_program
+from simulator.factory.interpolated import CycleTable
 from simulator.factory.machining import MachiningPlan, Place, ProgramCycle
-from simulator.factory.shop import Product, RouteStep, Shop
-from stepnc_model.cut_settings import CutSettings
+from simulator.factory.shop import Shop, ShopMachine
+from simulator.spec import Machine
+from stepnc_model.cut_settings import common_settings
 from stepnc_model.errors import StepNcError
-from stepnc_model.program import Program
 
 
 def machining_plan(shop: Shop, cycles: PartCycles, *, place: str) -> MachiningPlan:
@@ -29,6 +30,8 @@ def machining_plan(shop: Shop, cycles: PartCycles, *, place: str) -> MachiningPl
         With the key of the step whose program cannot be read, or not be made by a machine.
     """
     found: dict[Place, ProgramCycle] = {}
+    tables: dict[Place, CycleTable] = {}
+    materials = {row: each.material for row, each in enumerate(shop.products)}
     rows = {machine.name: row for row, machine in enumerate(shop.machines)}
     for number, product in enumerate(shop.products):
         for at, step in enumerate(product.steps):
@@ -37,32 +40,28 @@ def machining_plan(shop: Shop, cycles: PartCycles, *, place: str) -> MachiningPl
             key = f"{place}: product[{number + 1}].step[{at + 1}].program"
             try:
                 program = read_program(Path(step.program), units="iso")
+                material = material_for(product.material, program)
+                materials[number] = product.material or material.material.title
                 for name in step.machines:
-                    cycle = _cycle(shop, product, step, program, rows[name], cycles)
-                    found[number, at, rows[name]] = cycle
+                    machine = _machine(shop.machines[rows[name]])
+                    where = (number, at, rows[name])
+                    if step.design is None:
+                        found[where] = ProgramCycle(
+                            cycle=cycles.cycle(program, machine, material),
+                            settings=common_settings(program),
+                        )
+                    else:
+                        tables[where] = cycles.table(program, machine, material, step.design)
             except StepNcError as error:
                 raise StepNcError(f"{key}: {error}") from error
-    return MachiningPlan(cycles=found)
+    return MachiningPlan(cycles=found, tables=tables, materials=materials)
 
 
-def materials_of(shop: Shop) -> dict[int, str]:
-    """Names of the work materials of the products, for tables."""
-    return {row: product.material or "" for row, product in enumerate(shop.products)}
-
-
-def _cycle(  # noqa: PLR0913, PLR0917 (one place of the plan)
-    shop: Shop,
-    product: Product,
-    step: RouteStep,
-    program: Program,
-    row: int,
-    cycles: PartCycles,
-) -> ProgramCycle:
-    machine = shop.machines[row].machine
-    if machine is None:
+def _machine(spec: ShopMachine) -> Machine:
+    """Machine of the library that runs programs in the shop."""
+    if spec.machine is None:
         raise StepNcError(
-            f"machine '{shop.machines[row].name}' has only times: name its machine of the "
-            "library, or give the step a time_s instead of a program"
+            f"machine '{spec.name}' has only times: name its machine of the library, or give "
+            "the step a time_s instead of a program"
         )
-    material = material_for(product.material, program)
-    return ProgramCycle(cycle=cycles.cycle(program, machine, material), settings=CutSettings())
+    return spec.machine

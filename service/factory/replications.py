@@ -10,7 +10,6 @@ from signal import SIG_IGN, SIGINT, signal
 
 from service.progress import Ticker
 from service.reading import Tell
-
 from simulator.factory.floor import Floor
 from simulator.factory.machining import MachiningPlan
 from simulator.factory.measures import Measure

@@ -5,9 +5,9 @@ from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from service.factory.parts_file import PartTables
 from service.factory.cycles import PartCycles
-from service.factory.plan import machining_plan, materials_of
+from service.factory.parts_file import PartTables
+from service.factory.plan import machining_plan
 from service.factory.replications import Replications, ShopRun, processes, run_shop
 from service.factory.states_file import ShownStates, StateFile
 from service.factory.sweep import SweptCase, combinations, swept_keys
@@ -83,7 +83,7 @@ def run_factory(
         tables = None
         if folder is not None:
             tables = stack.enter_context(
-                PartTables(folder, shop, materials_of(shop), has_energy=request.has_energy)
+                PartTables(folder, shop, plan.materials, has_energy=request.has_energy)
             )
             states = stack.enter_context(StateFile(folder / STATES, shop))
             listeners = listeners.plus(Listeners(part=(tables.part,), state=(states.state,)))
@@ -130,8 +130,8 @@ def chosen_shop(
         shop = replace(shop, warm_up=seconds_from_hours(request.warm_up_hours))
     if shop.warm_up >= shop.duration:
         raise StepNcError(
-            f"{file.name}: a warm-up of {hours_from_seconds(shop.warm_up):g} h is not below the "
-            f"whole time of {hours_from_seconds(shop.duration):g} h"
+            f"{file.name}: warm-up {hours_from_seconds(shop.warm_up):g} h: it must be below "
+            f"{hours_from_seconds(shop.duration):g} h, the whole time"
         )
     return shop
 

@@ -1,12 +1,12 @@
 """Crews while a shop runs: free members, and tasks that wait for one. Running state."""
 
 from collections import deque
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from simpy import Environment, Event
 
 from simulator.factory.shop import Crew
+from simulator.factory.store import Course
 
 
 @dataclass(slots=True, eq=False)
@@ -44,7 +44,7 @@ class CrewOnDuty:
             self.busy += 1
             self.waiting.popleft().succeed()
 
-    def hours(self) -> Iterator[Event]:
+    def hours(self) -> Course:
         """SimPy process that begins work when the shift does."""
         calendar = self.crew.calendar
         while calendar is not None:

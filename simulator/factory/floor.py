@@ -35,11 +35,13 @@ class Floor:
     """Batches that entered the shop and have not left it."""
     _takers: dict[int, list[Station]] = field(default_factory=dict)
     """Machines that take from a buffer, by its identity."""
-    _is_done: Event | None = None
+    _end: Event = field(init=False)
+    _deadlock: Deadlock | None = None
 
     def __post_init__(self) -> None:
         shop = self.shop
         self.meter = PowerMeter(begin=shop.warm_up)
+        self._end = self.env.event()
         for each in shop.buffers:
             capacity = inf if each.capacity is None else each.capacity
             self.buffers[each.name] = self._buffer(each.name, capacity)
@@ -58,7 +60,6 @@ class Floor:
                     stock.product.arrival, stock.product.name, "arrival"
                 )
                 self.env.process(stock.arrivals(intervals))
-        self._is_done = self.env.event()
 
     def run(self, until: float) -> None:
         """Run until a time in s, or until all orders are finished.
@@ -68,15 +69,16 @@ class Floor:
         Deadlock
             If machines wait for each other.
         """
-        if self.is_finished or until <= self.env.now:
+        if self._end.triggered or until <= self.env.now:
             return
-        end = self.env.timeout(until - self.env.now)
-        self.env.run(until=self._is_done | end if self._is_done is not None else end)
+        self.env.run(until=self._end | self.env.timeout(until - self.env.now))
+        if self._deadlock is not None:
+            raise self._deadlock
 
     @property
     def is_finished(self) -> bool:
         """Whether all orders are finished."""
-        return self._is_done is not None and self._is_done.triggered
+        return self._end.triggered and self._deadlock is None
 
     def close(self) -> None:
         """Record the states so far."""
@@ -161,14 +163,17 @@ class Floor:
             tell(batch, self.env.now)
         self.in_shop -= 1
         is_over = not self.in_shop and not any(stock.left for stock in self.raw)
-        if is_over and self._is_done is not None:
-            self._is_done.succeed()
+        if is_over and not self._end.triggered:
+            self._end.succeed()
 
     def _require_movement(self, station: Station) -> None:
-        """Refuse a machine that can never hand over its batch."""
+        """End the run where a machine can never hand over its batch."""
         found: dict[int, Station] = {}
-        if not self._can_move(station, found):
-            raise Deadlock([self._waits(each) for each in found.values()], self.env.now)
+        if not self._can_move(station, found) and not self._end.triggered:
+            # Raised by `run`, as SimPy makes exceptions of processes anew.
+            waits = [self._waits(each) for each in found.values()]
+            self._deadlock = Deadlock(waits, self.env.now)
+            self._end.succeed()
 
     def _can_move(self, station: Station, seen: dict[int, Station]) -> bool:
         """Whether a machine will give its batch away, as others take what it waits for."""

@@ -430,8 +430,7 @@ class _Cube:
         basis = _basis(scaled, (first, second, third))
 
         def fitted(values: list[Floats]) -> Floats:
-            solved = np.linalg.solve(basis, np.array(values))
-            return solved.astype(np.float64)
+            return np.asarray(np.linalg.solve(basis, np.array(values)), dtype=np.float64)
 
         return LayerTable(
             low=self.low,

@@ -10,9 +10,6 @@ import numpy as np
 
 from simulator.factory.distribution import Floats
 
-WAITING = 20_000
-"""States that are added together."""
-
 DEMAND = 900.0
 """Interval of the demand that electricity tariffs take, s."""
 
@@ -32,25 +29,14 @@ class PowerSeries:
     """Length of an interval, s."""
     energy: Floats = field(init=False)
     """Energy in each interval, (N,), J."""
-    _rows: list[tuple[float, float, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         span = self.end - self.begin
         self.step = FINE if span <= FINE * MOST else DEMAND
         self.energy = np.zeros(max(1, int(np.ceil(span / self.step - 1e-9))))
 
-    def add(self, begin: float, end: float, energy: float) -> None:
-        """Add the energy of a state."""
-        self._rows.append((begin, end, energy))
-        if len(self._rows) >= WAITING:
-            self.flush()
-
-    def flush(self) -> None:
-        """Count what was added."""
-        if not self._rows:
-            return
-        begin, end, energy = np.array(self._rows).T
-        self._rows.clear()
+    def add(self, begin: Floats, end: Floats, energy: Floats) -> None:
+        """Add energies in J that are spent evenly from begin to end, (N,) each."""
         first, last = (begin - self.begin) / self.step, (end - self.begin) / self.step
         power = energy / (end - begin)
         low = np.clip(first.astype(np.int64), 0, len(self.energy) - 1)
@@ -65,14 +51,13 @@ class PowerSeries:
 
     def power(self) -> Floats:
         """Mean power of each interval, (N,), W; the last one may be shorter."""
-        self.flush()
         length = np.full(len(self.energy), self.step)
         length[-1] = self.end - self.begin - self.step * (len(length) - 1)
-        return self.energy / length
+        power: Floats = self.energy / length
+        return power
 
     def demand(self) -> float:
         """Greatest mean power over a quarter of an hour, W."""
-        self.flush()
         group = max(1, round(DEMAND / self.step))
         if len(self.energy) < group:
             return float(self.energy.sum() / (self.end - self.begin))

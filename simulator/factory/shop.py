@@ -10,6 +10,7 @@ from enum import StrEnum
 
 from simulator.factory.calendar import Calendar
 from simulator.factory.distribution import Distribution
+from simulator.factory.interpolated import SettingsDesign
 from simulator.factory.states import MachineState
 from simulator.spec import Machine
 
@@ -98,18 +99,6 @@ class Buffer:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SettingRanges:
-    """Ranges of settings drawn uniformly for each part; None: as programmed."""
-
-    feed: tuple[float, float] | None = None
-    """mm/s"""
-    spindle_speed: tuple[float, float] | None = None
-    """rev/s"""
-    depth: tuple[float, float] | None = None
-    """mm"""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class RouteStep:
     """Step of a route: a program, or a time, on one of several machines."""
 
@@ -118,7 +107,8 @@ class RouteStep:
     """STEP-NC program; empty: only its time is known."""
     load: StateLoad | None = None
     """Time and power of machining where there is no program."""
-    ranges: SettingRanges | None = None
+    design: SettingsDesign | None = None
+    """Settings that are drawn uniformly for each part; None: as programmed."""
     into: str = ""
     """Buffer behind the step; empty behind the last."""
     scrap: float = 0.0

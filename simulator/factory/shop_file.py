@@ -20,6 +20,7 @@ from simulator.factory.distribution import (
     constant,
     scattered,
 )
+from simulator.factory.interpolated import SettingRange, SettingsDesign
 from simulator.factory.shop import (
     Buffer,
     Counting,
@@ -28,7 +29,6 @@ from simulator.factory.shop import (
     Maintenance,
     Product,
     RouteStep,
-    SettingRanges,
     Shop,
     ShopMachine,
     StateLoad,
@@ -249,14 +249,13 @@ class VaryTable(FileTable, frozen=True, kw_only=True):
                 raise KeyFault(key, f"[{shown}]: expected a lower and an upper bound")
 
     @property
-    def ranges(self) -> SettingRanges:
+    def design(self) -> SettingsDesign:
         """Ranges in canonical units."""
-        low, high = self.spindle_rad_s or (0.0, 0.0)
-        turns = (rev_s_from_rad_s(low), rev_s_from_rad_s(high))
-        return SettingRanges(
-            feed=_pair(self.feed_mm_s),
-            spindle_speed=turns if self.spindle_rad_s else None,
-            depth=_pair(self.depth_mm),
+        turns = tuple(rev_s_from_rad_s(end) for end in self.spindle_rad_s)
+        return SettingsDesign(
+            feed=_range(self.feed_mm_s),
+            spindle_speed=_range(turns),
+            depth=_range(self.depth_mm),
         )
 
 
@@ -528,7 +527,7 @@ def _product(
                 machines=tuple(dict.fromkeys(machines)),
                 program=str(path.parent / step.program) if step.program else "",
                 load=load,
-                ranges=None if step.vary is None else step.vary.ranges,
+                design=None if step.vary is None else step.vary.design,
                 into=into,
                 scrap=step.scrap,
             )
@@ -568,8 +567,8 @@ def _distribution(time: float | DistributionTable) -> Distribution:
     return time.distribution if isinstance(time, DistributionTable) else constant(time)
 
 
-def _pair(ends: Sequence[float]) -> tuple[float, float] | None:
-    return (ends[0], ends[1]) if ends else None
+def _range(ends: Sequence[float]) -> SettingRange | None:
+    return SettingRange(low=ends[0], high=ends[1]) if ends else None
 
 
 def _require_once(key: str, names: Sequence[str]) -> None:

@@ -9,7 +9,7 @@ it goes on where it stopped, unless the part is spoilt.
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from simpy import Environment, Event, Interrupt, Process
 
@@ -18,13 +18,23 @@ from simulator.factory.machining import Machining
 from simulator.factory.records import Listeners, PartMade, StateSpent
 from simulator.factory.shop import Counting, Failure, Product, ShopMachine
 from simulator.factory.states import HANDLING, TRANSITIONS, MachineState
-from simulator.factory.store import Batch, BatchBuffer, RawStock, oldest
+from simulator.factory.store import Batch, BatchBuffer, Course, RawStock, oldest
 from simulator.factory.streams import Streams
+
+_new = tuple.__new__
+"""Makes a named tuple in half the time of its own constructor."""
 
 Steps: TypeAlias = frozenset[tuple[int, int]]
 """Indices of product and step."""
 
-Course: TypeAlias = Generator[Event, Any, None]
+
+class Breakdown(NamedTuple):
+    """Failure that interrupts a machine."""
+
+    repair: float
+    """s"""
+    spoils: bool
+    """Whether a part that is being machined is scrapped."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,8 +92,8 @@ class PendingFailure:
     between: Iterator[float]
     repair: Iterator[float]
     spoils: Iterator[float]
-    left: float = inf
-    """Machining time until it comes, s."""
+    at: float = inf
+    """Machining time of the machine at which it comes, s."""
 
 
 @dataclass(slots=True, eq=False)
@@ -120,6 +130,11 @@ class Station:
     machined: float = 0.0
     """Machining time so far, s."""
     process: Process | None = None
+    _failure_at: float = inf
+    """Machining time at which the next failure comes, s."""
+    _has_pauses: bool = False
+    """Whether shifts or maintenance may begin between two parts."""
+    _powers: dict[MachineState, float] = field(default_factory=dict)
     _asleep: Event | None = None
     _repaired: Event | None = None
     _machining_failures: list[PendingFailure] = field(default_factory=list)
@@ -129,13 +144,16 @@ class Station:
     _scrap: Iterator[float] = field(init=False)
     _part_spoilt: bool = False
     _member_of: CrewOnDuty | None = None
-    """Crew of which a member works at the machine."""
+    """Crew of which a member works at the machine, or was asked for."""
+    _member: Event | None = None
+    """Event of the member that was asked for."""
 
     def __post_init__(self) -> None:
         name, spec = self.spec.name, self.spec
         self.power = spec.idle_power
         for state in HANDLING:
             self._times[state] = self.streams.numbers(spec.handling[state].time, name, state)
+            self._powers[state] = spec.handling[state].power
         for row, failure in enumerate(spec.failures):
             purpose = f"failure {row}"
             pending = PendingFailure(
@@ -145,7 +163,7 @@ class Station:
                 spoils=iter(self.streams.generator(name, f"{purpose} scrap").random, None),
             )
             if failure.counts is Counting.MACHINING:
-                pending.left = next(pending.between)
+                pending.at = next(pending.between)
                 self._machining_failures.append(pending)
             else:
                 self._clock_failures.append(pending)
@@ -156,6 +174,8 @@ class Station:
                     counts=each.counts, every=each.every, duration=duration, due=each.every
                 )
             )
+        self._failure_at = min((each.at for each in self._machining_failures), default=inf)
+        self._has_pauses = spec.calendar is not None or bool(self._maintenance)
         self._scrap = iter(self.streams.generator(name, "scrap").random, None)
         self.around.meter.change(self.power, self.env.now)
         self.process = self.env.process(self._run())
@@ -179,19 +199,26 @@ class Station:
         """
         if state not in TRANSITIONS[self.state]:
             raise RuntimeError(f"{self.spec.name}: no transition {self.state} -> {state}")
-        self.close()
+        now = self.env.now
+        if now > self.since:
+            self._record(now)
         if power != self.power:
-            self.around.meter.change(power - self.power, self.env.now)
-        self.state, self.power = state, power
+            self.around.meter.change(power - self.power, now)
+            self.power = power
+        self.state = state
 
     def close(self) -> None:
         """Record the time in the present state so far."""
-        now = self.env.now
-        if now > self.since:
-            energy = self.power * (now - self.since)
-            spent = StateSpent(self.index, self.state, self.since, now, energy)
-            for tell in self.around.listeners.state:
-                tell(spent)
+        if self.env.now > self.since:
+            self._record(self.env.now)
+
+    def _record(self, now: float) -> None:
+        since = self.since
+        spent = _new(
+            StateSpent, (self.index, self.state, since, now, self.power * (now - since))
+        )
+        for tell in self.around.listeners.state:
+            tell(spent)
         self.since = now
 
     def wake(self) -> bool:
@@ -215,7 +242,7 @@ class Station:
         can_fail = MachineState.FAILED in TRANSITIONS[self.state] and self._repaired is None
         if can_fail and self.process is not None:
             self._repaired = self.env.event()
-            self.process.interrupt((repair, spoils))
+            self.process.interrupt(Breakdown(repair, spoils))
         return can_fail
 
     # Course
@@ -251,7 +278,7 @@ class Station:
         good: list[int] = []
         made: PartMade | None = None
         for row, part in enumerate(batch.parts):
-            if row:
+            if row and self._has_pauses:
                 yield from self._between_parts()
             part_setup = yield from self._handle(MachineState.PART_SETUP)
             work = next(machining)
@@ -262,11 +289,11 @@ class Station:
                 good.append(part)
             if made is not None:
                 self._tell(made)
-            made = PartMade(
+            made = _new(PartMade, (
                 self.index, *step, batch.number, part, self.env.now, 0.0 if row else setup,
                 part_setup, work.time, ejection, 0.0, work.energy, work.peak_power,
                 work.settings, is_good,
-            )  # fmt: skip
+            ))  # fmt: skip
         ejection = yield from self._handle(MachineState.BATCH_EJECTION)
         if made is not None:
             self._tell(made._replace(batch_ejection=ejection))
@@ -296,76 +323,84 @@ class Station:
 
     def _handle(self, state: MachineState) -> Generator[Event, Any, float]:
         """Set up or eject, with a crew where the state needs one; the time that it took."""
-        yield from self._claim(state)
+        if state in self.around.crews:
+            yield from self._claim(state)
         seconds = next(self._times[state])
-        self.enter(state, self.spec.handling[state].power)
+        self.enter(state, self._powers[state])
         if seconds > 0.0:
-            yield from self._spend(seconds)
-        self._release()
+            end = self.env.now + seconds
+            try:
+                yield self.env.timeout(seconds)
+            except Interrupt as interrupt:
+                yield from self._interrupted(interrupt, end - self.env.now)
+        if self._member_of is not None:
+            self._release()
         return seconds
 
     def _machine(self, work: Machining) -> Course:
         """Machine a part, with the failures that come by machining time."""
-        yield from self._claim(MachineState.MACHINING)
-        power = work.energy / work.time if work.time > 0.0 else 0.0
+        if MachineState.MACHINING in self.around.crews:
+            yield from self._claim(MachineState.MACHINING)
+        seconds = work.time
         self._part_spoilt = False
-        self.enter(MachineState.MACHINING, power)
-        left = work.time
-        while self._machining_failures:
-            first = min(self._machining_failures, key=lambda each: each.left)
-            if first.left >= left:
-                break
-            spent = first.left
-            yield from self._spend(spent)
-            left -= spent
-            self._age(spent)
-            first.left = next(first.between)
-            yield from self._down(next(first.repair), self._spoils(first))
-        yield from self._spend(left)
-        self._age(left)
-        self._release()
-
-    def _age(self, seconds: float) -> None:
+        self.enter(MachineState.MACHINING, work.energy / seconds if seconds > 0.0 else 0.0)
+        while self._failure_at < self.machined + seconds:
+            before = self._failure_at - self.machined
+            yield from self._spend(before)
+            self.machined += before
+            seconds -= before
+            yield from self._down(self._next_breakdown())
+        end = self.env.now + seconds
+        try:
+            yield self.env.timeout(seconds)
+        except Interrupt as interrupt:
+            yield from self._interrupted(interrupt, end - self.env.now)
         self.machined += seconds
-        for each in self._machining_failures:
-            each.left -= seconds
+        if self._member_of is not None:
+            self._release()
+
+    def _next_breakdown(self) -> Breakdown:
+        """Failure that comes now by machining time."""
+        first = min(self._machining_failures, key=lambda each: each.at)
+        first.at = self.machined + next(first.between)
+        self._failure_at = min(each.at for each in self._machining_failures)
+        return Breakdown(next(first.repair), self._spoils(first))
 
     def _claim(self, state: MachineState) -> Course:
         """Wait for a member of the crew that a state needs."""
         crew = self.around.crews.get(state)
         if crew is None:
             return
-        member = crew.claim()
-        if member is not None:
+        self._member_of, self._member = crew, crew.claim()
+        if self._member is not None:
             self.enter(MachineState.WAITING, self.spec.idle_power)
-            yield from self._until(member)
-        self._member_of = crew
+            yield from self._until(self._member)
 
     def _release(self) -> None:
         if self._member_of is not None:
             self._member_of.release()
-            self._member_of = None
+            self._member_of = self._member = None
 
     def _spend(self, seconds: float) -> Course:
-        """Let time pass; what a failure interrupts goes on after the repair."""
-        left = seconds
-        while True:
-            begin = self.env.now
-            try:
-                yield self.env.timeout(left)
-            except Interrupt as failure:
-                left -= self.env.now - begin
-                yield from self._down(*failure.cause)
-            else:
-                return
+        """Let time pass, through failures."""
+        end = self.env.now + seconds
+        try:
+            yield self.env.timeout(seconds)
+        except Interrupt as interrupt:
+            yield from self._interrupted(interrupt, end - self.env.now)
+
+    def _interrupted(self, interrupt: Interrupt, left: float) -> Course:
+        """Fail, and then let the time pass that was left."""
+        yield from self._down(_breakdown(interrupt))
+        yield from self._spend(max(left, 0.0))
 
     def _until(self, event: Event) -> Course:
         """Wait for an event, through failures."""
         while not event.processed:
             try:
                 yield event
-            except Interrupt as failure:
-                yield from self._down(*failure.cause)
+            except Interrupt as interrupt:
+                yield from self._down(_breakdown(interrupt))
 
     def _sleep(self) -> Course:
         """Wait until the machine is woken."""
@@ -402,9 +437,10 @@ class Station:
         counted = self.machined if due.counts is Counting.MACHINING else self.env.now
         due.due = counted + due.every
         for each in self._machining_failures:
-            each.left = next(each.between)
+            each.at = self.machined + next(each.between)
+        self._failure_at = min((each.at for each in self._machining_failures), default=inf)
 
-    def _changes_of_shift(self) -> Iterator[Event]:
+    def _changes_of_shift(self) -> Course:
         """SimPy process that wakes the machine when its shift begins or ends."""
         calendar = self.spec.calendar
         while calendar is not None:
@@ -412,7 +448,7 @@ class Station:
             yield self.env.timeout(calendar.next_change(now) - now)
             self.wake()
 
-    def _wakes_when_due(self, due: DueMaintenance) -> Iterator[Event]:
+    def _wakes_when_due(self, due: DueMaintenance) -> Course:
         """SimPy process that wakes a machine without work for its maintenance."""
         while True:
             yield self.env.timeout(max(due.due - self.env.now, 0.0) or due.every)
@@ -424,30 +460,41 @@ class Station:
         share = pending.failure.scrap
         return share > 0.0 and next(pending.spoils) < share
 
-    def _down(self, repair: float, spoils: bool) -> Course:
+    def _down(self, breakdown: Breakdown) -> Course:
         """Fail, and be repaired."""
         state, power = self.state, self.power
         self._repaired = self._repaired or self.env.event()
         self.enter(MachineState.FAILED, self.spec.idle_power)
         crew = self.around.crews.get(MachineState.REPAIR)
-        if crew is self._member_of:
-            crew = None
-        member = None if crew is None else crew.claim()
-        if member is not None:
+        if crew is not None and crew is self._member_of:
+            # One member is enough: who works here, or was asked for, repairs.
+            crew, member = None, self._member
+        else:
+            member = None if crew is None else crew.claim()
+        if member is not None and not member.processed:
             yield member
         self.enter(MachineState.REPAIR, self.spec.idle_power)
-        yield self.env.timeout(repair)
+        yield self.env.timeout(breakdown.repair)
         if crew is not None:
             crew.release()
         self.enter(state, power)
-        self._part_spoilt = self._part_spoilt or (spoils and state is MachineState.MACHINING)
+        is_spoilt = breakdown.spoils and state is MachineState.MACHINING
+        self._part_spoilt = self._part_spoilt or is_spoilt
         self._repaired.succeed()
         self._repaired = None
 
-    def _fails_by_clock(self, pending: PendingFailure) -> Iterator[Event]:
+    def _fails_by_clock(self, pending: PendingFailure) -> Course:
         """SimPy process of failures that count all time."""
         while True:
             yield self.env.timeout(next(pending.between))
             self.fail(next(pending.repair), spoils=self._spoils(pending))
             if self._repaired is not None:
                 yield self._repaired
+
+
+def _breakdown(interrupt: Interrupt) -> Breakdown:
+    """Failure of an interrupt, which only :meth:`Station.fail` causes."""
+    cause = interrupt.cause
+    if not isinstance(cause, Breakdown):
+        raise TypeError(f"an interrupt of a machine by {cause!r}")
+    return cause

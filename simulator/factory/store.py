@@ -6,10 +6,11 @@ machine.
 """
 
 from collections import deque
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Generator, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 from math import inf
+from typing import Any, TypeAlias
 
 from simpy import Environment, Event
 
@@ -34,6 +35,9 @@ class Batch:
     offered: Event | None = None
     """Event for the machine on which it waits for room; None once it is in the buffer."""
 
+
+Course: TypeAlias = Generator[Event, Any, None]
+"""Course of a SimPy process."""
 
 Wake = Callable[["BatchBuffer"], None]
 """Function that wakes a machine which waits for a buffer."""
@@ -139,7 +143,7 @@ class RawStock:
             self.entered(batch)
         self.buffer.put(batch)
 
-    def arrivals(self, intervals: Iterator[float]) -> Iterator[Event]:
+    def arrivals(self, intervals: Iterator[float]) -> Course:
         """SimPy process of arrivals."""
         while self.left > 0:
             yield self.buffer.env.timeout(next(intervals))

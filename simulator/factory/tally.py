@@ -10,6 +10,8 @@ from collections import Counter
 from dataclasses import dataclass, field
 from math import nan
 
+import numpy as np
+
 from simulator.factory.floor import Floor
 from simulator.factory.measures import Level, Measure, Quantity
 from simulator.factory.power_series import PowerSeries
@@ -25,18 +27,23 @@ PRODUCTION = (_S.PART_SETUP, _S.MACHINING, _S.PART_EJECTION)
 DOWN = (_S.FAILED, _S.REPAIR, _S.MAINTENANCE)
 
 
+WAITING = 20_000
+"""States that are counted together."""
+
+CODE = {state: row for row, state in enumerate(MachineState)}
+"""Numbers of the states."""
+
+STATES = tuple(MachineState)
+
+
 @dataclass(slots=True, eq=False)
 class MachineTally:
-    """Counts of one machine."""
+    """Times and energies of one machine."""
 
     seconds: Counter[MachineState] = field(default_factory=Counter)
     joules: Counter[MachineState] = field(default_factory=Counter)
     peak: float = 0.0
-    """W"""
-    parts: int = 0
-    good: int = 0
-    machined: float = 0.0
-    """Machining time of the parts, s."""
+    """Greatest mean power of a state, W."""
 
 
 @dataclass(slots=True, eq=False)
@@ -44,6 +51,7 @@ class ProcessTally:
     """Counts of the machining of one step on one machine."""
 
     parts: int = 0
+    good: int = 0
     time: float = 0.0
     """s"""
     energy: float = 0.0
@@ -57,7 +65,6 @@ class ProductTally:
     """Counts of one product."""
 
     good: int = 0
-    lost: int = 0
     lead: float = 0.0
     """Lead times of batches times their good parts, s."""
 
@@ -76,6 +83,7 @@ class Tally:
     area: float = 0.0
     """Parts in the shop times time, s."""
     since: float = 0.0
+    _states: list[StateSpent] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.machines += [MachineTally() for _ in self.shop.machines]
@@ -91,39 +99,51 @@ class Tally:
 
     def part(self, part: PartMade) -> None:
         """Count a part that left a machine."""
-        if part.end < self.shop.warm_up:
+        machine, product, step, _, _, end, _, _, time, _, _, energy, peak, _, is_good = part
+        if end < self.shop.warm_up:
             return
-        machine = self.machines[part.machine]
-        machine.parts += 1
-        machine.good += part.is_good
-        machine.machined += part.machining
-        machine.peak = max(machine.peak, part.peak_power)
-        key = (part.product, part.step, part.machine)
-        process = self.processes.get(key)
+        process = self.processes.get((product, step, machine))
         if process is None:
-            process = self.processes.setdefault(key, ProcessTally())
+            process = self.processes.setdefault((product, step, machine), ProcessTally())
         process.parts += 1
-        process.time += part.machining
-        process.energy += part.energy
-        process.peak = max(process.peak, part.peak_power)
-        if not part.is_good:
-            self.products[part.product].lost += 1
+        process.good += is_good
+        process.time += time
+        process.energy += energy
+        process.peak = max(process.peak, peak)
 
     def state(self, spent: StateSpent) -> None:
         """Count the time in a state."""
-        _, state, begin, end, energy = spent
-        warm_up = self.shop.warm_up
-        if end <= warm_up:
+        self._states.append(spent)
+        if len(self._states) >= WAITING:
+            self.flush()
+
+    def flush(self) -> None:
+        """Count the states that wait."""
+        if not self._states:
             return
-        if begin < warm_up:
-            energy *= (end - warm_up) / (end - begin)
-            begin = warm_up
-        machine = self.machines[spent.machine]
-        machine.seconds[state] += end - begin  # type: ignore[assignment]
-        if energy > 0.0:
-            machine.joules[state] += energy  # type: ignore[assignment]
-            machine.peak = max(machine.peak, energy / (end - begin))
-            self.power.add(begin, end, energy)
+        columns = list(zip(*self._states, strict=True))
+        self._states.clear()
+        machine = np.array(columns[0])
+        state = np.array([CODE[each] for each in columns[1]])
+        begin, end, energy = (np.array(each) for each in columns[2:])
+        # What lies before the warm-up does not count.
+        late = np.clip(begin, self.shop.warm_up, np.maximum(end, self.shop.warm_up))
+        energy = energy * (end - late) / (end - begin)
+        counts = end > late
+        cell = (machine * len(CODE) + state)[counts]
+        begin, end, energy = late[counts], end[counts], energy[counts]
+        seconds = np.bincount(cell, end - begin)
+        joules = np.bincount(cell, energy)
+        for row in np.flatnonzero(seconds).tolist():
+            tally = self.machines[row // len(CODE)]
+            of = STATES[row % len(CODE)]
+            tally.seconds[of] += seconds[row]
+            tally.joules[of] += joules[row]
+        power, at = energy / (end - begin), machine[counts]
+        for row in np.unique(at).tolist():
+            tally = self.machines[row]
+            tally.peak = max(tally.peak, float(power[at == row].max()))
+        self.power.add(begin, end, energy)
 
     def entered(self, batch: Batch) -> None:
         """Count the parts of a batch in the shop."""
@@ -147,6 +167,7 @@ class Tally:
     def measures(self, floor: Floor) -> tuple[Measure, ...]:
         """Figures of the run, which has ended."""
         floor.close()
+        self.flush()
         now = floor.env.now
         self._wip(now)
         span = now - self.shop.warm_up
@@ -170,7 +191,7 @@ class Tally:
 
     def _line(self, floor: Floor, span: float) -> list[Measure]:
         good = sum(each.good for each in self.products)
-        lost = sum(each.lost for each in self.products)
+        lost = sum(each.parts - each.good for each in self.processes.values())
         lead = sum(each.lead for each in self.products)
         energy = sum(sum(each.joules.values()) for each in self.machines)
         self.power.end = min(self.power.end, floor.env.now)
@@ -190,10 +211,12 @@ class Tally:
 
     def _product(self, row: int, span: float) -> list[Measure]:
         found = self.products[row]
+        own = [each for key, each in self.processes.items() if key[0] == row]
+        lost = sum(each.parts - each.good for each in own)
         values = {
             Quantity.GOOD: found.good,
             Quantity.THROUGHPUT: found.good / hours_from_seconds(span),
-            Quantity.SCRAP: _share(found.lost, found.good + found.lost),
+            Quantity.SCRAP: _share(lost, found.good + lost),
             Quantity.LEAD_TIME: hours_from_seconds(_ratio(found.lead, found.good)),
         }
         return _measures(Level.PRODUCT, self.shop.products[row].name, values)
@@ -204,20 +227,23 @@ class Tally:
         planned = sum(seconds.values()) - seconds[_S.OFF]
         production = sum(seconds[each] for each in PRODUCTION)
         joules = sum(found.joules.values())
-        quality = _ratio(found.good, found.parts)
+        own = [each for key, each in self.processes.items() if key[2] == row]
+        parts, machined = sum(each.parts for each in own), sum(each.time for each in own)
+        quality = _ratio(sum(each.good for each in own), parts)
+        peak = max([found.peak, *(each.peak for each in own)])
         values = {
-            Quantity.PARTS: found.parts,
+            Quantity.PARTS: parts,
             Quantity.UTILISATION: _share(seconds[_S.MACHINING], planned),
             Quantity.STARVED: _share(seconds[_S.STARVED], planned),
             Quantity.BLOCKED: _share(seconds[_S.BLOCKED], planned),
             Quantity.DOWN: _share(sum(seconds[each] for each in DOWN), planned),
             Quantity.AVAILABILITY: _share(production, planned),
-            Quantity.EFFECTIVENESS: _share(found.machined, production),
+            Quantity.EFFECTIVENESS: _share(machined, production),
             Quantity.QUALITY: 100.0 * quality,
-            Quantity.OEE: _share(found.machined * quality, planned),
+            Quantity.OEE: _share(machined * quality, planned),
             Quantity.ENERGY: kwh_from_joules(joules),
             Quantity.MEAN_POWER: kw_from_watts(joules / span),
-            Quantity.PEAK_POWER: kw_from_watts(found.peak),
+            Quantity.PEAK_POWER: kw_from_watts(peak),
         }
         return _measures(Level.MACHINE, self.shop.machines[row].name, values)
 
