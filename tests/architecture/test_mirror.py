@@ -77,6 +77,7 @@ TOGETHER = {
     "simulator/factory/streams.py": "compared in test_station.py",
     "simulator/factory/tally.py": "added up in test_station.py",
     "simulator/factory/upkeep.py": "held against a closed form in test_queueing.py",
+    "service/cli/factory.py": "run in tests/service/factory/test_factory.py",
     "service/factory/figures.py": "drawn in tests/service/factory/test_factory.py",
     "service/factory/output.py": "printed in tests/service/factory/test_factory.py",
     "service/factory/parts_file.py": "read in tests/service/factory/test_factory.py",
