@@ -139,6 +139,17 @@ def test_a_loop_without_room_is_refused(tmp_path: Path) -> None:
     shop_of(text.replace("capacity = 0", "capacity = 1"), tmp_path)
 
 
+def test_raw_stock_without_end_needs_time(tmp_path: Path) -> None:
+    text = GOOD.replace(
+        'arrival_min = { kind = "uniform", low = 10, high = 20 }\n', ""
+    ).replace("time_s = 60", "time_s = 0")
+    shop_of(text, tmp_path)  # vmc15 has set-ups
+    bare = text.replace('machine = "vmc15"\n', "")
+    with pytest.raises(LibraryError, match=r"product\[1\].step\[1\].time_s: 0 s on a-1"):
+        shop_of(bare, tmp_path)
+    shop_of(bare.replace("batch = 10", "batch = 10\nbatches = 3"), tmp_path)
+
+
 def test_changes_replace_values(tmp_path: Path) -> None:
     path = tmp_path / "shop.toml"
     path.write_text(GOOD, encoding="utf-8")
