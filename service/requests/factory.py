@@ -50,3 +50,29 @@ class FactoryRequest(Request):
         About("write an MTConnect document of each of the first parts of a machine, N of them",
               flag="--documents", metavar="N"),
     ] = 0  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LiveFactoryRequest(Request):
+    """Request of a shop that runs live, for clients of its MTConnect agent."""
+
+    speed: Annotated[
+        float,
+        Interval(ge=0.01, le=10_000.0),
+        About("with --live: simulated seconds per wall-clock second", name="speed",
+              flag="--speed", metavar="X"),
+    ] = 60.0  # fmt: skip
+    port: Annotated[
+        int,
+        Interval(ge=0, le=65535),
+        About("with --live: port to listen on; 0: any that is free", flag="--port",
+              metavar="N"),
+    ] = 5000  # fmt: skip
+    host: Annotated[str, About("with --live: address to listen on", flag="--host")] = (
+        "127.0.0.1"
+    )
+    buffer: Annotated[
+        int,
+        Interval(ge=1000, le=1 << 22),
+        About("with --live: observations that are kept", flag="--buffer", metavar="N"),
+    ] = 1 << 17  # fmt: skip

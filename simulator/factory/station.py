@@ -124,6 +124,12 @@ class Station:
     """Batch on the machine."""
     holding_for: BatchBuffer | None = None
     """Buffer for whose room it waits."""
+    part: int | None = None
+    """Number of the part on the machine, in its batch."""
+    work: Machining | None = None
+    """Machining of the part, from its begin to its end."""
+    cut: float = 0.0
+    """Machining time of the part before the present state, s."""
     machined: float = 0.0
     """Machining time so far, s."""
     process: Process | None = None
@@ -190,16 +196,26 @@ class Station:
         if power != self.power:
             self.around.meter.change(power - self.power, self.env.now)
         self.state, self.power = state, power
+        for tell in self.around.listeners.began:
+            tell(self.index)
 
     def close(self) -> None:
         """Record the time in the present state so far."""
         now = self.env.now
+        if self.state is MachineState.MACHINING:
+            self.cut += now - self.since
         if now > self.since:
             energy = self.power * (now - self.since)
             spent = StateSpent(self.index, self.state, self.since, now, energy)
             for tell in self.around.listeners.state:
                 tell(spent)
         self.since = now
+
+    @property
+    def elapsed(self) -> float:
+        """Machining time of the part so far, s."""
+        is_cutting = self.state is MachineState.MACHINING
+        return self.cut + (self.env.now - self.since if is_cutting else 0.0)
 
     def wake(self) -> bool:
         """Wake the machine if it waits for a batch or its shift; whether it did."""
@@ -260,6 +276,7 @@ class Station:
         for row, part in enumerate(batch.parts):
             if row:
                 yield from self._between_parts()
+            self.part = part
             part_setup = yield from self._handle(MachineState.PART_SETUP)
             work = next(machining)
             yield from self._machine(work)
@@ -274,6 +291,7 @@ class Station:
                 part_setup, work.time, ejection, 0.0, work.energy, work.peak_power,
                 work.settings, is_good,
             )  # fmt: skip
+        self.part = None
         ejection = yield from self._handle(MachineState.BATCH_EJECTION)
         if made is not None:
             self._tell(made._replace(batch_ejection=ejection))
@@ -316,6 +334,7 @@ class Station:
         yield from self._claim(MachineState.MACHINING)
         power = work.energy / work.time if work.time > 0.0 else 0.0
         self._part_spoilt = False
+        self.work, self.cut = work, 0.0
         self.enter(MachineState.MACHINING, power)
         left = work.time
         while self._machining_failures:
@@ -331,6 +350,7 @@ class Station:
         yield from self._spend(left)
         self._age(left)
         self._release()
+        self.work = None
 
     def _age(self, seconds: float) -> None:
         self.machined += seconds
