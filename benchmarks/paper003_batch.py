@@ -96,7 +96,7 @@ class Line:
 def line(columns: list[Floats], seconds: Floats) -> Line:
     """Least squares of times over an intercept and some columns."""
     matrix = np.stack([np.ones(len(seconds)), *columns], axis=1)
-    solved, *_ = np.linalg.lstsq(matrix, seconds)
+    solved = np.linalg.lstsq(matrix, seconds)[0].astype(np.float64)
     left = seconds - matrix @ solved
     variance = float(left @ left) / (len(seconds) - matrix.shape[1])
     errors = np.sqrt(variance * np.diag(np.linalg.inv(matrix.T @ matrix)))

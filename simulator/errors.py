@@ -186,3 +186,7 @@ class Deadlock(SimulationError):
         )
         self.waits = tuple(waits)
         self.time = time
+
+    def __reduce__(self) -> tuple[type["Deadlock"], tuple[tuple[str, ...], float]]:
+        """How it is passed from a worker process."""
+        return Deadlock, (self.waits, self.time)

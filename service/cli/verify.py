@@ -24,17 +24,23 @@ def _verify_options(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add(
         "log",
-        type=Path,
         metavar="LOG",
-        help="positions as logged: .parquet, .csv, MTConnect .xml or SHDR",
+        help="positions as logged: .parquet, .csv, MTConnect .xml, SHDR, or the address of an "
+        "agent, http://HOST:PORT, whose buffer is read",
     )
-    add("--program", type=Path, required=True, metavar="FILE", help="a STEP-NC program")
+    add(
+        "--program",
+        type=Path,
+        metavar="FILE",
+        help="a STEP-NC program; without one, name --tools, --stock, --required and --machine",
+    )
     add_options(parser, VerificationRequest)
     add(
         "--tools",
         type=Path,
         metavar="TOML",
-        help="tool table with the measured tools, by the program's numbers",
+        help="tool table with the measured tools, by the program's numbers; without a program, "
+        "all tools by the numbers of the log",
     )
     add(
         "--required",
@@ -67,8 +73,9 @@ def _verify(options: argparse.Namespace) -> int:
     request = from_options(VerificationRequest, options)
     outputs = [each for each in (options.output, options.report) if each is not None]
     for each in outputs:
-        require_place(each, apart_from=options.log)
-        require_place(each, apart_from=options.program)
+        require_place(each, apart_from=Path(options.log))
+        if options.program is not None:
+            require_place(each, apart_from=options.program)
     if options.output is not None:
         require_suffix(options.output)
     with interruptible():

@@ -142,6 +142,8 @@ function gist({ request, kind }) {
   const of = [machine, material, tool, program].filter(Boolean);
   if (kind === "evaluation") of.push(grouping === "kind" ? "by kind of feature" : "by feature", only === "all" ? "" : only);
   if (kind === "evaluation" || kind === "review") return of.filter(Boolean).join(" · ") || "all outcomes";
+  if (kind === "verification") return [...of, request.monitor ? "monitored machine" : request.run_id ? "samples of a run" : "log",
+    `tolerance ${request.tolerance_mm} mm`].filter(Boolean).join(" · ");
   return [mode, ...of, law, pace === undefined ? "" : paceWord(pace)].filter(Boolean).join(" · ");
 }
 

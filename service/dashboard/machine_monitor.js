@@ -72,7 +72,9 @@ export function showMonitor(place, name, { programs, prediction = "" }) {
       el("h2", { id: "real-signals" }, "Measured and predicted"),
       el("div", { class: "row no-print" },
         el("label", { class: "grow" }, "Prediction: finished simulation of this machine", choice),
-        el("label", {}, "Time shown", span)),
+        el("label", {}, "Time shown", span),
+        el("a", { class: "button", id: "verify-monitor",
+          href: `/dashboard/verify.html?monitor=${encodeURIComponent(name)}` }, "Verify the latest run")),
       monitorKeys(), drawn,
       el("p", { class: "soft small" }, "Drag across a range to zoom in; double-click to follow the machine again.")),
     table);

@@ -13,6 +13,7 @@ export async function results(place, job, goTo) {
     el("section", { class: "card", style: "grid-column: span 7", "aria-labelledby": "totals-title" },
       el("div", { class: "row spread" }, el("h2", { id: "totals-title" }, "Results"),
         el("div", { class: "row no-print" },
+          el("a", { class: "button", id: "verify-run", href: `/dashboard/verify.html?run=${job.id}` }, "Verify positions"),
           el("button", { id: "get-samples", onclick: () => save(`${path}/samples`) }, "Samples (Parquet)"),
           el("button", { id: "get-report", onclick: () => show(`${path}/report`) }, "Report"))),
       el("div", { class: "figures", id: "totals" },

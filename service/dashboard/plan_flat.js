@@ -1,4 +1,4 @@
-// Plane view of lines on a canvas: thousands of coloured strands, without WebGL.
+// Plane view of lines and dots on a canvas: thousands of coloured strands, without WebGL.
 // (plotly's scattergl needs functions compiled from strings, which the page's policy forbids, and
 // its SVG lines need an element for each strand.) Wheel, drag, buttons and keys zoom and move.
 
@@ -19,14 +19,19 @@ export class FlatView {
       button("−", "zoom out", () => this.zoom(1 / 1.5)), button("⤢", "whole path", () => this.whole())));
     this.place = place;
     this.scene = null;
+    /** Whether all is shown, as after the first drawing; then it follows the size of the window. */
+    this.isWhole = true;
     this.bind();
   }
 
   /**
-   * Show strands: `lines` = [{at, colour, width, dash}] with `at` as indices of points, -1 for a gap; `x`, `y`
-   * in mm; `titles` of the axes; `bar` = {title, high, colours} or null; `tell(at)` describes a point.
+   * Show strands: `lines` = [{at, colour, width, dash}] with `at` as indices of points, -1 for a gap; `dots` =
+   * [{at, colour, size, least}] are squares of a size in mm, and of at least so many pixels; `mark` = [x, y] is
+   * ringed; `x`, `y` in mm; `titles` of the axes; `bar` = {title, low, high, colours} or null; `tell(at)` describes a point.
    */
   show(scene) {
+    scene.lines ??= [];
+    scene.dots ??= [];
     const isOther = this.scene?.key !== scene.key;
     this.scene = scene;
     this.canvas.setAttribute("aria-label", scene.label);
@@ -34,6 +39,7 @@ export class FlatView {
   }
 
   whole() {
+    this.isWhole = true;
     const [left, right] = extent(this.scene.x), [low, high] = extent(this.scene.y);
     this.measure();
     this.middle = [(left + right) / 2, (low + high) / 2];
@@ -58,11 +64,13 @@ export class FlatView {
     const dx = (across - EDGE.left - this.wide / 2) / this.scale, dy = (EDGE.top + this.tall / 2 - down) / this.scale;
     this.middle = [this.middle[0] + dx * (1 - 1 / by), this.middle[1] + dy * (1 - 1 / by)];
     this.scale *= by;
+    this.isWhole = false;
     this.draw();
   }
 
   move(across, down) {
     this.middle = [this.middle[0] - across / this.scale, this.middle[1] + down / this.scale];
+    this.isWhole = false;
     this.draw();
   }
 
@@ -95,6 +103,15 @@ export class FlatView {
       }
       pen.stroke();
     }
+    for (const dot of this.scene.dots) {
+      const size = Math.max(dot.size * this.scale, dot.least);
+      pen.fillStyle = dot.colour;
+      for (const at of dot.at) {
+        const [across, down] = this.at(x[at], y[at]);
+        pen.fillRect(across - size / 2, down - size / 2, size, size);
+      }
+    }
+    if (this.scene.mark) this.mark(pen, ...this.at(...this.scene.mark));
     pen.restore();
     if (this.scene.bar) this.bar(pen);
   }
@@ -122,17 +139,38 @@ export class FlatView {
     upright(pen, this.scene.titles[1], 12, EDGE.top + this.tall / 2);
   }
 
+  /** Draw a ring that stands out on any colour. */
+  mark(pen, across, down) {
+    pen.setLineDash([]);
+    for (const [name, width] of [["card", 6], ["ink", 2.5]]) {
+      pen.strokeStyle = colour(name);
+      pen.lineWidth = width;
+      pen.beginPath();
+      pen.arc(across, down, 11, 0, 2 * Math.PI);
+      pen.stroke();
+    }
+  }
+
+  /** Move to a point, unless it is in sight. */
+  reveal(x, y) {
+    const [across, down] = this.at(x, y);
+    const isSeen = across > EDGE.left && across < EDGE.left + this.wide && down > EDGE.top && down < EDGE.top + this.tall;
+    if (!isSeen) [this.middle, this.isWhole] = [[x, y], false];
+    this.draw();
+  }
+
   bar(pen) {
-    const { title, high, colours } = this.scene.bar, left = EDGE.left + this.wide + 14, { tall } = this;
+    const { title, low = 0, high, colours } = this.scene.bar, left = EDGE.left + this.wide + 14, { tall } = this;
     colours.forEach((name, at) => {
       pen.fillStyle = name;
       pen.fillRect(left, EDGE.top + tall * (1 - (at + 1) / colours.length), 12, tall / colours.length + 1);
     });
     pen.fillStyle = colour("ink");
     pen.textAlign = "left";
-    const step = roundStep(high / 5);
-    for (let value = 0; value <= high; value += step)
-      pen.fillText(number(near(value, step)), left + 16, EDGE.top + tall * (1 - value / high) + (value ? 4 : 0));
+    const step = roundStep((high - low) / 5);
+    for (let value = Math.ceil(low / step) * step; value <= high * 1.0001; value += step)
+      pen.fillText(number(near(value, step)), left + 16,
+        EDGE.top + tall * (1 - (value - low) / (high - low)) + (value > low ? 4 : 0));
     upright(pen, title, this.width - 8, EDGE.top + tall / 2);
   }
 
@@ -143,6 +181,14 @@ export class FlatView {
       if (line.isQuiet) continue;
       for (const at of line.at) {
         if (at < 0) continue;
+        const [x, y] = this.at(this.scene.x[at], this.scene.y[at]), far = (x - across) ** 2 + (y - down) ** 2;
+        if (far < least) { least = far; found = at; }
+      }
+    }
+    // The dots that are drawn last lie on top.
+    for (const dot of this.scene.dots.toReversed()) {
+      if (found >= 0 && least <= 4 ** 2) break;
+      for (const at of dot.at) {
         const [x, y] = this.at(this.scene.x[at], this.scene.y[at]), far = (x - across) ** 2 + (y - down) ** 2;
         if (far < least) { least = far; found = at; }
       }
@@ -184,7 +230,7 @@ export class FlatView {
       event.preventDefault();
     });
     document.addEventListener("theme", () => this.scene?.again());
-    new ResizeObserver(() => this.draw()).observe(this.place);
+    new ResizeObserver(() => (this.isWhole && this.scene && !this.place.hidden ? this.whole() : this.draw())).observe(this.place);
   }
 
   tell(across, down) {

@@ -9,6 +9,8 @@ export const KINDS = {
   "control-run": ["control run", (id) => `/dashboard/control.html?id=${id}`],
   "trial": ["trial", (id) => `/dashboard/control.html?trial=${id}`],
   "evaluation": ["evaluation", (id) => `/dashboard/knowledge.html?evaluation=${id}`],
+  "verification": ["verification", (id) => `/dashboard/verify.html?id=${id}`],
+  "cycle-time": ["cycle time", (id) => `/dashboard/verify.html?cycle=${id}`],
   "review": ["review", (id) => `/dashboard/knowledge.html?review=${id}`],
 };
 

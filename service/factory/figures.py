@@ -87,9 +87,9 @@ def share_figure(result: FactoryResult) -> go.Figure:
 def power_figure(result: FactoryResult) -> go.Figure:
     """Power of the whole shop over time, first replication."""
     series = result.first.tally.power
-    power = series.power()
-    used = int(np.ceil((result.first.ended - series.begin) / series.step - 1e-9))
-    power = kw_from_watts(1.0) * power[: max(1, used)]
+    power = kw_from_watts(1.0) * series.energies() / series.step
+    # The last interval may be shorter than the others.
+    power = power[: max(1, int((result.first.ended - series.begin) / series.step))]
     group = int(np.ceil(len(power) / MOST_POINTS))
     times = series.begin + series.step * np.arange(len(power))
     if group > 1:

@@ -1,7 +1,7 @@
 """A shop that runs live: advanced step by step, watched, and ordered about while it runs.
 
 Running state; independent of wall-clock time. Inside s, W and J; rows and status in the units
-of their names. All figures count from the end of the warm-up, as those of the result.
+of their names. Figures begin anew at the end of the warm-up, as those of the result.
 """
 
 from collections.abc import Collection, Mapping
@@ -19,7 +19,6 @@ from simulator.factory.records import Listeners
 from simulator.factory.shop import Shop
 from simulator.factory.states import MachineState
 from simulator.factory.streams import Streams
-from simulator.factory.tally import Tally
 from simulator.motion.segments import Floats
 from stepnc_model.errors import StepNcError
 from stepnc_model.units import (
@@ -99,9 +98,7 @@ class LiveShop:
         listeners: Listeners | None = None,
     ) -> None:
         self.shop = shop
-        self.tally = Tally(shop)
-        own = Listeners(began=(self._began,))
-        told = self.tally.listeners.plus(own).plus(listeners or Listeners())
+        told = Listeners(began=(self._began,)).plus(listeners or Listeners())
         self._events: list[ShopEvent] = []
         self._rows: list[list[float]] = []
         self._changes: list[tuple[float, int, int]] = []
@@ -112,7 +109,6 @@ class LiveShop:
         self.view = ShopView(
             shop=shop,
             floor=self.floor,
-            tally=self.tally,
             programs=programs,
             stages=Stages(shop),
         )
@@ -210,8 +206,8 @@ class LiveShop:
             self.time,
             kw_from_watts(sum(powers)),
             kwh_from_joules(sum(self.view.energies())),
-            float(self.tally.inside),
-            float(sum(each.good for each in self.tally.products)),
+            float(self.floor.tally.inside),
+            float(sum(each.good for each in self.floor.tally.products)),
             *powers,
         ]
 

@@ -14,7 +14,7 @@ from simulator.factory.floor import Floor
 from simulator.factory.shop import Product, Shop
 from simulator.factory.states import MachineState
 from simulator.factory.station import Station
-from simulator.factory.tally import Tally
+from simulator.factory.tally import MachineTally
 from stepnc_model.units import hours_from_seconds, kw_from_watts, kwh_from_joules
 
 
@@ -45,7 +45,6 @@ class ShopView:
 
     shop: Shop
     floor: Floor
-    tally: Tally
     programs: Mapping[str, str]
     """Names of programs for display, by their path."""
     stages: Stages
@@ -57,12 +56,20 @@ class ShopView:
 
     def energies(self) -> list[float]:
         """Energy of each machine so far, J."""
-        begin = self.shop.warm_up
+        machines = self.floor.tally.machines
         return [
-            sum(tally.joules.values())
-            + station.power * max(0.0, self.time - max(station.since, begin))
-            for tally, station in zip(self.tally.machines, self.floor.stations, strict=True)
+            sum(tally.joules.values()) + station.power * (self.time - station.since)
+            for tally, station in zip(machines, self.floor.stations, strict=True)
         ]
+
+    def lost(self, product: int) -> int:
+        """Scrapped parts of a product."""
+        return sum(
+            process.parts - process.good
+            for machine in self.floor.tally.machines
+            for (row, _), process in machine.processes.items()
+            if row == product
+        )
 
     def product_of(self, station: Station) -> tuple[Product, int] | None:
         """Product on a machine, and the index of the step that the machine makes."""
@@ -109,12 +116,12 @@ def live_status(view: ShopView, *, is_done: bool) -> dict[str, Any]:
             {
                 "name": product.name,
                 "good": tally.good,
-                "lost": tally.lost,
+                "lost": view.lost(row),
                 "waiting": None if raw.is_endless else len(raw.buffer.items),
                 "lead_time_h": _hours(tally.lead, tally.good),
             }
-            for product, tally, raw in zip(
-                shop.products, view.tally.products, floor.raw, strict=True
+            for row, (product, tally, raw) in enumerate(
+                zip(shop.products, floor.tally.products, floor.raw, strict=True)
             )
         ],
         "processes": _processes(view),
@@ -126,12 +133,13 @@ def _hours(lead: float, good: int) -> float | None:
 
 
 def _line(view: ShopView, energy: float) -> dict[str, Any]:
-    tally, meter = view.tally, view.floor.meter
-    span = view.time - view.shop.warm_up
+    tally, meter = view.floor.tally, view.floor.tally.meter
+    warm_up = view.shop.warm_up
+    span = view.time - (warm_up if view.time >= warm_up else 0.0)
     good = sum(each.good for each in tally.products)
     return {
         "good": good,
-        "lost": sum(each.lost for each in tally.products),
+        "lost": sum(view.lost(row) for row in range(len(tally.products))),
         "wip_parts": tally.inside,
         "throughput_h": good / hours_from_seconds(span) if span > 0.0 else None,
         "lead_time_h": _hours(sum(each.lead for each in tally.products), good),
@@ -143,12 +151,10 @@ def _line(view: ShopView, energy: float) -> dict[str, Any]:
 
 
 def _machine(view: ShopView, station: Station, energy: float) -> dict[str, Any]:
-    tally = view.tally.machines[station.index]
+    tally = view.floor.tally.machines[station.index]
     batch, work, made = station.held, station.work, view.product_of(station)
     seconds: dict[MachineState, float] = dict(tally.seconds)
-    spent = view.time - max(station.since, view.shop.warm_up)
-    if spent > 0.0:
-        seconds[station.state] = seconds.get(station.state, 0.0) + spent
+    seconds[station.state] += view.time - station.since
     is_cut = work is not None and work.time > 0.0
     return {
         "name": station.spec.name,
@@ -161,8 +167,8 @@ def _machine(view: ShopView, station: Station, energy: float) -> dict[str, Any]:
         "part": station.part,
         "program": view.program_of(station) or None,
         "progress": min(1.0, station.elapsed / work.time) if is_cut and work else None,
-        "parts": tally.parts,
-        "good": tally.good,
+        "parts": parts_of(tally),
+        "good": sum(each.good for each in tally.processes.values()),
         "power_kw": kw_from_watts(station.power),
         "energy_kwh": kwh_from_joules(energy),
         "seconds": {state.value: found for state, found in seconds.items() if found > 0.0},
@@ -172,8 +178,13 @@ def _machine(view: ShopView, station: Station, energy: float) -> dict[str, Any]:
 def _processes(view: ShopView) -> list[dict[str, Any]]:
     """Machining of each step on each machine so far, and its power now."""
     found = []
-    for (product, step, machine), tally in sorted(view.tally.processes.items()):
-        station = view.floor.stations[machine]
+    rows = [
+        (*key, station, process)
+        for station, machine in zip(view.floor.stations, view.floor.tally.machines, strict=True)
+        for key, process in machine.processes.items()
+        if process.parts
+    ]
+    for product, step, station, tally in sorted(rows, key=lambda row: (*row[:2], row[2].index)):
         held = station.held
         is_now = (
             station.state is MachineState.MACHINING
@@ -192,3 +203,8 @@ def _processes(view: ShopView) -> list[dict[str, Any]]:
             "now_kw": kw_from_watts(station.power) if is_now else 0.0,
         })
     return found
+
+
+def parts_of(tally: MachineTally) -> int:
+    """Parts that a machine has made."""
+    return sum(each.parts for each in tally.processes.values())

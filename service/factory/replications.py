@@ -12,6 +12,7 @@ from service.progress import Ticker
 from service.reading import Tell
 from simulator.factory.floor import Floor
 from simulator.factory.machining import MachiningPlan
+from simulator.factory.measured import measures_of
 from simulator.factory.measures import Measure
 from simulator.factory.records import Listeners
 from simulator.factory.shop import Shop
@@ -52,8 +53,7 @@ def run_shop(
     Deadlock
         If machines wait for each other.
     """
-    tally = Tally(shop)
-    floor = Floor(shop, plan, streams, tally.listeners.plus(listeners))
+    floor = Floor(shop, plan, streams, listeners)
     try:
         for part in range(1, SLICES + 1):
             floor.run(shop.duration * part / SLICES)
@@ -63,8 +63,8 @@ def run_shop(
     finally:
         floor.close()
     return ShopRun(
-        measures=tally.measures(floor),
-        tally=tally,
+        measures=measures_of(floor),
+        tally=floor.tally,
         ended=floor.env.now,
         is_finished=floor.is_finished,
     )

@@ -127,6 +127,14 @@ def _work(job: Job) -> Callable[[RunningJob], None]:
 
             is_review = job.kind is JobKind.REVIEW
             return evaluate.run_review if is_review else evaluate.run_evaluation
+        case JobKind.VERIFICATION:
+            from service.jobs import verify  # noqa: PLC0415
+
+            return verify.run
+        case JobKind.CYCLE_TIME:
+            from service.jobs import cycle_time  # noqa: PLC0415
+
+            return cycle_time.run
 
 
 def _cancel(_signal: int, _frame: FrameType | None) -> None:

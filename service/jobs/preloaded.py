@@ -5,9 +5,11 @@ from importlib import import_module
 for name in (
     "service.jobs.advise",
     "service.jobs.child",
+    "service.jobs.cycle_time",
     "service.jobs.evaluate",
     "service.jobs.simulate",
     "service.jobs.steer",
+    "service.jobs.verify",
     "service.paths.toolpaths",
     "service.plan_output",
     "service.simulation.output",

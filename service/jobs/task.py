@@ -17,12 +17,13 @@ from service.progress import share_in
 from service.requests.advice import AdviceRequest
 from service.requests.fields import R, loaded
 from service.requests.runs import RunRequest
+from service.requests.verification import VerificationRequest
 from service.storage import jobs
 from service.storage.folder import DataFolder
 from service.storage.jobs import Job, JobKind
 from service.storage.library import machine_word, material_word
 
-N = TypeVar("N", bound=AdviceRequest | RunRequest)
+N = TypeVar("N", bound=AdviceRequest | RunRequest | VerificationRequest)
 """Type of requests that name a machine and a material."""
 
 RESULT = "result.json"
@@ -30,11 +31,15 @@ OPTIMISED = "optimised.stpnc"
 REPORT = "report.html"
 SAMPLES = "samples.parquet"
 NC_CODE = "program.nc"
+PLACES = "places"
+"""Name of the files of places, without their suffixes."""
+SURFACE = "surface.parquet"
+LOG = "log.parquet"
 
 UNFINISHED = (".*", "*.partial.*")
 """File name patterns of incomplete files, which no client can request."""
 
-LARGE = (*UNFINISHED, "series.bin", SAMPLES)
+LARGE = (*UNFINISHED, "series.bin", SAMPLES, f"{PLACES}.*", SURFACE, LOG)
 """File name patterns of large files, removed to recover from a full disk."""
 
 APART = 0.5

@@ -22,6 +22,7 @@ from simulator.client.columns import (
     columns_of,
 )
 from simulator.client.connection import AgentClient, ClientObservation, StreamPart
+from simulator.errors import AgentError
 from stepnc_model.errors import StepNcError
 
 EVERY = 5.0
@@ -75,7 +76,7 @@ def record(
     else:
         rows.rows(client.state())
         rows.last()
-    file = RunFile(output, _schema(columns))
+    file = RunFile(output, schema_of(columns))
     keeper = _Keeper(
         file=file,
         columns=columns,
@@ -93,15 +94,39 @@ def record(
         except KeyboardInterrupt:
             tell("interrupted: the file is complete up to here")
         keeper.end()
-    return Recording(
-        file=output,
-        rows=file.rows,
-        columns=columns,
-        observations=keeper.count,
-        lost=keeper.lost,
-        restarts=keeper.restarts,
-        faults=keeper.faults,
-    )
+    return keeper.recording(output)
+
+
+def record_kept(url: str, output: Path, *, tell: Tell = silent) -> Recording:
+    """Record all that an agent keeps now, and end; what is still to come is not waited for.
+
+    Raises
+    ------
+    StepNcError
+        When the agent cannot be read to the end, or the file cannot be written.
+    """
+    require_suffix(output)
+    client = AgentClient(url)
+    columns = columns_of(client.items())
+    if not columns:
+        raise StepNcError(f"{url}: the device model has no samples")
+    rows = RowMaker(columns=columns)
+    try:
+        # What changed before the oldest observation, such as the tool, is held.
+        rows.rows(client.oldest_state())
+        rows.last()
+    except AgentError:
+        client.rewind()
+    file = RunFile(output, schema_of(columns))
+    keeper = _Keeper(
+        file=file, columns=columns, rows=rows, tell=tell, clock=time.monotonic,
+        is_next_run=False, is_on=True, was_running=False,
+    )  # fmt: skip
+    with file.closing(is_whole=True):
+        for part in client.kept():
+            keeper.take(part)
+        keeper.end()
+    return keeper.recording(output)
 
 
 @dataclass(kw_only=True)
@@ -135,8 +160,7 @@ class _Keeper:
         """Take parts until the recording is over."""
         begin = self.clock()
         for part in parts:
-            self._take(part)
-            self._progress()
+            self.take(part)
             if request.duration_s is not None and self.clock() - begin >= request.duration_s:
                 return
             is_ending = request.is_until_completed or request.is_next_run
@@ -148,7 +172,20 @@ class _Keeper:
         self._keep(self.rows.last())
         self._flush()
 
-    def _take(self, part: StreamPart) -> None:
+    def recording(self, output: Path) -> Recording:
+        """What was recorded."""
+        return Recording(
+            file=output,
+            rows=self.file.rows,
+            columns=tuple(self.columns),
+            observations=self.count,
+            lost=self.lost,
+            restarts=self.restarts,
+            faults=self.faults,
+        )
+
+    def take(self, part: StreamPart) -> None:
+        """Take a part, and write rows that are enough for a group."""
         if part.fault:
             self.faults += 1
             self.tell(f"no connection: {part.fault}")
@@ -164,6 +201,7 @@ class _Keeper:
         self._keep(self.rows.rows(part.observations))
         if len(self._waiting) >= ROWS:
             self._flush()
+        self._progress()
 
     def _keep(self, rows: Sequence[Mapping[str, Cell]]) -> None:
         """Keep rows; where the next run is waited for, from its start until it ends."""
@@ -201,20 +239,27 @@ class _Keeper:
     def _flush(self) -> None:
         if not self._waiting:
             return
-        arrays = [pa.array([row[TIME] for row in self._waiting], pa.float64())]
-        for each in self.columns:
-            values = [row[each.name] for row in self._waiting]
-            arrays.append(
-                pa.array(values, pa.string()).dictionary_encode()
-                if each.is_text
-                else pa.array(values, pa.float64(), from_pandas=True)
-            )
-        self.file.write(arrays)
+        self.file.write(arrays_of(self._waiting, self.columns))
         self._waiting.clear()
 
 
-def _schema(columns: Sequence[RecordedColumn]) -> pa.Schema:
-    """Names and types of the columns, each with its unit and data item as metadata."""
+def arrays_of(
+    rows: Sequence[Mapping[str, Cell]], columns: Sequence[RecordedColumn]
+) -> list[pa.Array]:
+    """Return rows as arrays: the time, then the columns."""
+    arrays = [pa.array([row[TIME] for row in rows], pa.float64())]
+    for each in columns:
+        values = [row[each.name] for row in rows]
+        arrays.append(
+            pa.array(values, pa.string()).dictionary_encode()
+            if each.is_text
+            else pa.array(values, pa.float64(), from_pandas=True)
+        )
+    return arrays
+
+
+def schema_of(columns: Sequence[RecordedColumn]) -> pa.Schema:
+    """Return names and types of the columns, each with its unit and data item as metadata."""
     fields = [pa.field(TIME, pa.float64(), metadata={"unit": "s"})]
     fields += [
         pa.field(

@@ -19,6 +19,14 @@ class VerificationRequest(Request):
     machine: MachineName = ""
     material: MaterialName = ""
     units: FileUnits = ISO
+    stock: Annotated[
+        Name,
+        About(
+            "raw part where there is no program, or it defines none, in mm: "
+            "x0,y0,z0,x1,y1,z1 or diameter,z0,z1",
+            flag="--stock", metavar="NUMBERS", examples=("0,0,-30,100,120,5",),
+        ),
+    ] = ""  # fmt: skip
     zero: Annotated[
         Name,
         About(

@@ -30,10 +30,10 @@ from stepnc_model.errors import StepNcError
 LOG = structlog.get_logger("rest")
 
 BODY_BYTES = 1 << 20
-"""Largest request body other than a program, in bytes."""
+"""Largest request body other than an upload, in bytes."""
 
-UPLOADS = frozenset({"/v1/programs"})
-"""Paths that accept bodies as large as a program; their routes count the unpacked bytes."""
+UPLOADS = frozenset({"/v1/programs", "/v1/files"})
+"""Paths that accept uploads; their routes count the unpacked bytes."""
 
 PATIENT = 5.0
 """Time for which a valid key is not looked up again, in s."""

@@ -20,6 +20,8 @@ from service.problem import plain_problem, problem_of
 from service.rest import (
     advice,
     agent,
+    cycle_times,
+    files,
     health,
     jobs,
     knowledge,
@@ -30,6 +32,7 @@ from service.rest import (
     pages,
     programs,
     simulations,
+    verifications,
 )
 from service.rest.access import AccessMiddleware
 from service.rest.context import PROBLEMS
@@ -100,8 +103,9 @@ def _routed() -> FastAPI:
     # The most frequently used first: routes are tried in this order.
     for routes in (
         advice.ROUTES, jobs.ROUTES, live.CONTROL, live.TRIALS, programs.ROUTES,
-        simulations.ROUTES, knowledge.EVALUATIONS, knowledge.REVIEWS, knowledge.CORRECTIONS,
-        knowledge.OUTCOMES, library.MACHINES, library.MATERIALS, monitors.ROUTES,
+        simulations.ROUTES, verifications.ROUTES, cycle_times.ROUTES, files.ROUTES,
+        knowledge.EVALUATIONS, knowledge.REVIEWS, knowledge.CORRECTIONS, knowledge.OUTCOMES,
+        library.MACHINES, library.MATERIALS, monitors.ROUTES,
         health.ROUTES, pages.ROUTES,
     ):  # fmt: skip
         app.include_router(routes)

@@ -1,7 +1,5 @@
 """Routes of ``/v1/programs``: upload, list, check and delete programs, and request advice."""
 
-import asyncio
-import zlib
 from functools import partial
 from pathlib import Path as FilePath
 from typing import Annotated
@@ -11,7 +9,7 @@ from starlette.concurrency import run_in_threadpool
 
 from service.contents import check
 from service.contents_output import contents_json
-from service.errors import TooLarge, Unreadable
+from service.errors import Unreadable
 from service.files import read_bytes
 from service.requests.advice import ISO, AdviceRequest, Name, Units
 from service.requests.fields import dumped
@@ -29,6 +27,7 @@ from service.rest.context import (
     settings_of,
 )
 from service.rest.replies import file_reply, json_reply, matches, tagged
+from service.rest.uploads import pieces
 from service.rest.views import (
     ContentsView,
     JobView,
@@ -222,31 +221,5 @@ def _contents(data_folder: DataFolder, stored: StoredProgram, units: str) -> byt
 
 async def _body(request: Request) -> bytes:
     """Read the request body, unpacked, up to the size limit."""
-    packing = request.headers.get("content-encoding", "identity").lower()
-    if packing not in {"identity", "gzip"}:
-        raise Unreadable(f"unknown Content-Encoding '{packing}'; send gzip or none")
     bound = settings_of(request).upload_bytes
-    unpack = zlib.decompressobj(wbits=31) if packing == "gzip" else None
-    parts: list[bytes] = []
-    size = 0
-    async for chunk in request.stream():
-        part = chunk if unpack is None else _unpacked(unpack, chunk, bound + 1 - size)
-        size += len(part)
-        if size > bound:
-            raise TooLarge("the program", bound=bound)
-        parts.append(part)
-        await asyncio.sleep(0)
-    if unpack is not None and not unpack.eof:
-        raise Unreadable("the gzip body is incomplete")
-    return b"".join(parts)
-
-
-def _unpacked(unpack: "zlib._Decompress", chunk: bytes, most: int) -> bytes:
-    """Decompress a chunk, up to a number of bytes."""
-    try:
-        part = unpack.decompress(chunk, most)
-    except zlib.error as error:
-        raise Unreadable(f"the body is not valid gzip: {error}") from error
-    if unpack.unused_data:
-        raise Unreadable("data follows the end of the gzip body; send a single file")
-    return part
+    return b"".join([part async for part in pieces(request, what="the program", bound=bound)])

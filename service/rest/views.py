@@ -424,6 +424,8 @@ PLACES = {
     JobKind.TRIAL: "trials",
     JobKind.EVALUATION: "evaluations",
     JobKind.REVIEW: "reviews",
+    JobKind.VERIFICATION: "verifications",
+    JobKind.CYCLE_TIME: "cycle-times",
 }
 """Path segment of the results by kind of job."""
 

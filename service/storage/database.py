@@ -50,6 +50,13 @@ SCHEMA = (
     UPDATE jobs SET request = json_replace(request, '$.nc_control', NULL)
     WHERE kind = 'advice' AND json_extract(request, '$.nc_control') = ''
     """,
+    """
+    CREATE TABLE files (
+        id TEXT PRIMARY KEY, kind TEXT NOT NULL, name TEXT NOT NULL, size INTEGER NOT NULL,
+        sha256 TEXT NOT NULL, owner TEXT NOT NULL, created REAL NOT NULL
+    ) STRICT;
+    CREATE INDEX files_by_kind ON files (kind, id);
+    """,
 )
 """Migration script of each version; the file's version is the number of scripts applied."""
 

@@ -55,7 +55,7 @@ def open_data_folder(root: Path, *, knowledge: str = "") -> DataFolder:
     """
     try:
         root.mkdir(mode=PRIVATE, parents=True, exist_ok=True)
-        for name in ("programs", "jobs", "machines", "materials"):
+        for name in ("programs", "files", "jobs", "machines", "materials"):
             (root / name).mkdir(mode=PRIVATE, exist_ok=True)
     except OSError as error:
         raise Unavailable(f"{root}: {error.strerror or error}") from error

@@ -55,7 +55,8 @@ def made_before(
 def _is_there(connection: sqlite3.Connection, made: str) -> bool:
     query = (
         "SELECT EXISTS (SELECT 1 FROM programs WHERE id = ?1) "
-        "OR EXISTS (SELECT 1 FROM jobs WHERE id = ?1)"
+        "OR EXISTS (SELECT 1 FROM jobs WHERE id = ?1) "
+        "OR EXISTS (SELECT 1 FROM files WHERE id = ?1)"
     )
     return bool(connection.execute(query, (made,)).fetchone()[0])
 

@@ -57,6 +57,8 @@ class JobKind(StrEnum):
     TRIAL = "trial"
     EVALUATION = "evaluation"
     REVIEW = "review"
+    VERIFICATION = "verification"
+    CYCLE_TIME = "cycle-time"
 
     @property
     def is_live(self) -> bool:

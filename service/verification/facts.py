@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
@@ -63,6 +64,8 @@ class SurfaceDeviation:
 
     workingstep: str
     feature: str
+    tool: int
+    """Number of the tool; 0: unknown."""
     kind: SurfaceKind
     gouge: DeviationSpot
     excess: DeviationSpot
@@ -105,7 +108,7 @@ class LogResolution:
     arc: float
     """On the smallest arc of the program."""
     radius: float
-    """Radius of that arc; infinite without an arc."""
+    """Radius of that arc; infinite without an arc, or without a program."""
     corner: float
     """At square corners."""
 
@@ -128,6 +131,7 @@ def _surface(found: Verification, index: int, is_wall: bool, rows: Bools) -> Sur
     return SurfaceDeviation(
         workingstep=step.workingstep if step else RAW,
         feature=step.feature if step else "",
+        tool=step.tool if step else 0,
         kind=_kind(found, is_wall),
         gouge=_spot(found, places, -1.0),
         excess=_spot(found, places, 1.0),
@@ -173,7 +177,8 @@ def tolerance_bands(found: Verification) -> tuple[ToleranceBand, ...]:
 def log_resolution(found: Verification) -> LogResolution:
     """What the log can resolve, by its usual step, its rounding and the limit of the method."""
     facts = found.facts
-    rounding, radius = rounding_uncertainty(facts) + EXACT, smallest_arc(found.path)
+    rounding = rounding_uncertainty(facts) + EXACT
+    radius = inf if found.path is None else smallest_arc(found.path)
     return LogResolution(
         step=found.step,
         straight=rounding,

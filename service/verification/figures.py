@@ -4,11 +4,16 @@ import numpy as np
 import plotly.graph_objects as go
 
 from service.verification.run import Verification
+from service.verification.surface_map import shown_rows
 from simulator.motion.segments import Floats, Ints
 from simulator.verification.deviation import SurfacePlaces
 
 MOST_POINTS = 12_000
-"""Most points of a figure; the greatest deviations are always among them."""
+"""Most points in space; the greatest deviations are always among them."""
+
+MOST_IN_PLAN = 5_000
+"""Most points in the plan, each of which is an element of the page: the policy of served
+reports forbids the faster drawing by WebGL, which compiles functions from text."""
 
 PIXELS = 300
 """Pixels of the plan along its longer side; each shows the greatest deviation in it."""
@@ -25,13 +30,13 @@ def plan_figure(found: Verification) -> go.Figure:
     places, limit = found.places, _limit(found)
     figure = go.Figure()
     if found.is_turned:
-        rows = _chosen(places)
+        rows = _chosen(places, MOST_IN_PLAN)
         figure.add_trace(_points(found, rows, limit, across=2, up=0))
         figure.update_layout(xaxis_title="z, mm", yaxis_title="radius, mm")
     else:
         figure.add_trace(_floors(places[~places.is_wall], limit))
         walls = places[places.is_wall]
-        rows = _chosen(walls)
+        rows = _chosen(walls, MOST_IN_PLAN)
         figure.add_trace(_points(found, rows, limit, across=0, up=1, places=walls))
         figure.update_layout(xaxis_title="x, mm", yaxis_title="y, mm")
     figure.update_yaxes(scaleanchor="x")
@@ -42,7 +47,7 @@ def plan_figure(found: Verification) -> go.Figure:
 def space_figure(found: Verification) -> go.Figure:
     """Figure of the surface in space."""
     places, limit = found.places, _limit(found)
-    shown = places[_chosen(places)]
+    shown = places[_chosen(places, MOST_POINTS)]
     x, y, z = shown.position.T
     trace = go.Scatter3d(
         x=x, y=y, z=z, mode="markers", marker=_marker(shown.deviation, limit, 2.0),
@@ -59,15 +64,10 @@ def _limit(found: Verification) -> float:
     return float(max(size.max(initial=0.0), ROOM * found.tolerance))
 
 
-def _chosen(places: SurfacePlaces) -> Ints:
-    """Rows of places to show: spread evenly, and those with the greatest deviations."""
-    count = len(places)
-    if count <= MOST_POINTS:
-        return np.arange(count)
-    even = np.linspace(0, count - 1, MOST_POINTS // 2).astype(np.int64)
-    size = np.abs(places.deviation)
-    most = np.argpartition(size, -(MOST_POINTS // 2))[-(MOST_POINTS // 2) :]
-    return np.unique(np.concatenate((even, most)))
+def _chosen(places: SurfacePlaces, most: int) -> Ints:
+    """Rows of places to show: the greatest deviations, and others evenly spread."""
+    beyond = np.abs(places.deviation) - places.uncertainty
+    return shown_rows(places.position, beyond, most=most)
 
 
 def _marker(deviation: Floats, limit: float, size: float) -> dict[str, object]:
@@ -85,7 +85,7 @@ def _points(
     across: int,
     up: int,
     places: SurfacePlaces | None = None,
-) -> go.Scattergl:
+) -> go.Scatter:
     """Points in a plane, with the workingstep and block of each."""
     shown = (found.places if places is None else places)[rows]
     names = [step.workingstep for step in found.steps] + ["raw part"]
@@ -96,7 +96,7 @@ def _points(
             strict=True,
         )
     ]  # fmt: skip
-    return go.Scattergl(
+    return go.Scatter(
         x=shown.position[:, across], y=shown.position[:, up], mode="markers", text=texts,
         marker=_marker(shown.deviation, limit, 4.0),
         hovertemplate="%{x:.2f}, %{y:.2f}: %{marker.color:.4f} mm<br>%{text}<extra></extra>",

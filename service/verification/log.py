@@ -5,7 +5,7 @@ are bounded, so that logs of any length need the memory of one piece.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
 
@@ -16,13 +16,14 @@ from service.recording.signals import POSITIONS
 from service.recording.table import TABLES, batches, headings
 from service.verification.axes import without_held
 from service.verification.document import SUFFIXES, table_of
-from simulator.client.columns import TIME
+from simulator.client.columns import EXECUTION, RUNNING, TIME
 from simulator.motion.segments import AXES, Floats, Ints
 from simulator.spec import Machine
 from simulator.verification.logged import LoggedSamples, joined
 from stepnc_model.errors import StepNcError
 
 TOOL, WORKINGSTEP = "tool_number", "workingstep"
+COMPLETED = "PROGRAM_COMPLETED"
 
 PIECE = 65_536
 """Samples that are taken together."""
@@ -42,13 +43,53 @@ class ProgramNames:
     tools: frozenset[int]
     """Numbers of all tools."""
 
+    def indices(self, words: Sequence[str | None], index: Ints, _: Ints) -> Ints:
+        """Indices of the workingsteps of rows; -1 where they are unknown."""
+        known = [-1 if word is None else self.workingsteps.get(word, -1) for word in words]
+        return np.asarray(np.array(known, dtype=np.int64)[index])
+
+    def numbers(self, words: Sequence[str | None], index: Ints) -> Ints | None:
+        """Numbers of the tools of rows by their workingsteps."""
+        known = [
+            0 if word is None else self.tool_of.get(self.workingsteps.get(word, -1), 0)
+            for word in words
+        ]
+        return np.asarray(np.array(known, dtype=np.int64)[index])
+
+
+@dataclass(kw_only=True)
+class LogSteps:
+    """Workingsteps and tools that a log shows, numbered as they come. Running state."""
+
+    tools: frozenset[int]
+    """Numbers of the tools of the table."""
+    found: dict[tuple[str, int], int] = field(default_factory=dict)
+    """Index by id of the workingstep, which may be empty, and number of the tool."""
+
+    def indices(self, words: Sequence[str | None], index: Ints, tools: Ints) -> Ints:
+        """Indices of the workingsteps and tools of rows."""
+        count = len(words)
+        pairs, row = np.unique(tools * count + index, return_inverse=True)
+        known = []
+        for pair in pairs.tolist():
+            number, word = divmod(pair, count)
+            key = (words[word] or "", number)
+            known.append(self.found.setdefault(key, len(self.found)))
+        return np.asarray(np.array(known, dtype=np.int64)[row])
+
+    def numbers(self, _words: Sequence[str | None], _index: Ints) -> Ints | None:
+        """None: workingsteps tell no tool here."""
+        return None
+
 
 @dataclass(kw_only=True)
 class LogFile:
     """Table of logged positions. Running state: what was found while it was read."""
 
     path: Path
-    names: ProgramNames
+    names: ProgramNames | LogSteps
+    name: str = ""
+    """Name in messages, if it is not the path."""
     machine: Machine | None = None
     """Machine whose data items a document has."""
     zero: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -58,20 +99,27 @@ class LogFile:
     """Rows with the time of the row before."""
     unknown: int = 0
     """Rows in which a position was missing."""
+    completed: int = 0
+    """Programs that were completed."""
+    is_running: bool = False
+    """Whether a program ran at the end."""
 
     def __post_init__(self) -> None:
+        self.name = self.name or str(self.path)
         self._document = self._read_document()
         self._names = (
             headings(self.path) if self._document is None else self._document.column_names
         )
         for needed in (TIME, *self._positions):
             if needed not in self._names:
-                raise StepNcError(f"{self.path}: no column {needed}")
-        has_tools = TOOL in self._names or WORKINGSTEP in self._names
+                raise StepNcError(f"{self.name}: no column {needed}")
+        is_named = isinstance(self.names, ProgramNames)
+        has_tools = TOOL in self._names or (WORKINGSTEP in self._names and is_named)
         if not has_tools and len(self.names.tools) > 1:
+            columns = f"{TOOL} or {WORKINGSTEP}" if is_named else TOOL
             raise StepNcError(
-                f"{self.path}: no column {TOOL} or {WORKINGSTEP}: the program uses "
-                f"{len(self.names.tools)} tools, and the log does not show when they change"
+                f"{self.name}: no column {columns}: there are {len(self.names.tools)} tools, "
+                "and the log does not show when they change"
             )
 
     @property
@@ -89,8 +137,8 @@ class LogFile:
             return None
         if suffix not in SUFFIXES or self.machine is None:
             known = ", ".join(sorted(TABLES | SUFFIXES))
-            raise StepNcError(f"{self.path}: expected positions in a file of {known}")
-        return table_of(self.path, self.machine, (*POSITIONS, TOOL, WORKINGSTEP))
+            raise StepNcError(f"{self.name}: expected positions in a file of {known}")
+        return table_of(self.path, self.machine, (*POSITIONS, TOOL, WORKINGSTEP, EXECUTION))
 
     def _batches(self) -> Iterator[pa.RecordBatch]:
         kinds = self._kinds()
@@ -106,11 +154,13 @@ class LogFile:
         StepNcError
             When the file is damaged, a time goes back, or an axis has no values.
         """
-        self.rows = self.equal_times = self.unknown = 0
+        self.rows = self.equal_times = self.unknown = self.completed = 0
+        self.is_running = False
         waiting: list[LoggedSamples] = []
         last = -inf
         for batch in self._batches():
             part = self._samples(batch)
+            self._count_programs(batch)
             self._require_ascending(part.time, last)
             last = float(part.time[-1])
             self.rows += len(part)
@@ -121,11 +171,11 @@ class LogFile:
                 if len(whole):
                     yield whole
         if not self.rows:
-            raise StepNcError(f"{self.path}: no rows")
+            raise StepNcError(f"{self.name}: no rows with positions")
         if waiting:
             whole, rest = self._known(joined(waiting))
             if not len(whole) and len(rest) == self.rows:
-                raise StepNcError(f"{self.path}: {self._lacking(rest.position)} has no values")
+                raise StepNcError(f"{self.name}: {self._lacking(rest.position)} has no values")
             if len(whole):
                 yield whole
 
@@ -135,7 +185,22 @@ class LogFile:
             kinds[TOOL] = pa.float64()
         if WORKINGSTEP in self._names:
             kinds[WORKINGSTEP] = pa.string()
+        if EXECUTION in self._names:
+            kinds[EXECUTION] = pa.string()
         return kinds
+
+    def _count_programs(self, batch: pa.RecordBatch) -> None:
+        """Count the programs that are completed, and note whether one runs at the end."""
+        if EXECUTION not in self._names:
+            return
+        words = batch.column(EXECUTION).dictionary_encode()
+        known = words.dictionary.to_pylist()
+        index = words.indices.fill_null(len(known)).to_numpy(zero_copy_only=False)
+        is_running = np.array([word in RUNNING for word in known] + [False])[index]
+        is_completed = np.array([word == COMPLETED for word in known] + [False])[index]
+        before = np.append(self.is_running, is_running[:-1])
+        self.completed += int(np.sum(is_completed & before))
+        self.is_running = bool(is_running[-1])
 
     def _samples(self, batch: pa.RecordBatch) -> LoggedSamples:
         position = np.zeros((batch.num_rows, len(POSITIONS)))
@@ -143,32 +208,33 @@ class LogFile:
             if name in self._positions:
                 position[:, axis] = batch.column(name).to_numpy(zero_copy_only=False)
         position -= np.array(self.zero)
-        steps = self._workingsteps(batch)
+        words, index = self._words(batch)
+        tools = self._tools(batch, words, index)
         return LoggedSamples(
             time=np.asarray(batch.column(TIME).to_numpy(zero_copy_only=False)),
             position=position,
-            tool=self._tools(batch, steps),
-            workingstep=steps,
+            tool=tools,
+            workingstep=self.names.indices(words, index, tools),
         )
 
-    def _workingsteps(self, batch: pa.RecordBatch) -> Ints:
+    def _words(self, batch: pa.RecordBatch) -> tuple[list[str | None], Ints]:
+        """Ids of workingsteps, with the one of each row; the last one is None."""
         if WORKINGSTEP not in self._names:
-            return np.full(batch.num_rows, -1, dtype=np.int64)
+            return [None], np.zeros(batch.num_rows, dtype=np.int64)
         words = batch.column(WORKINGSTEP).dictionary_encode()
-        known = [self.names.workingsteps.get(word, -1) for word in words.dictionary.to_pylist()]
-        indices = words.indices.fill_null(len(known)).to_numpy(zero_copy_only=False)
-        return np.asarray(np.array([*known, -1], dtype=np.int64)[indices])
+        known = words.dictionary.to_pylist()
+        index = words.indices.fill_null(len(known)).to_numpy(zero_copy_only=False)
+        return [*known, None], np.asarray(index, dtype=np.int64)
 
-    def _tools(self, batch: pa.RecordBatch, steps: Ints) -> Ints:
+    def _tools(self, batch: pa.RecordBatch, words: Sequence[str | None], index: Ints) -> Ints:
         """Numbers of the tools; where no column has them, those of the workingsteps."""
         if TOOL in self._names:
             numbers = batch.column(TOOL).to_numpy(zero_copy_only=False)
             return np.where(np.isnan(numbers), 0.0, numbers).astype(np.int64)
-        if WORKINGSTEP not in self._names:
-            return np.full(batch.num_rows, next(iter(self.names.tools)), dtype=np.int64)
-        count = len(self.names.workingsteps)
-        numbers = np.array([*(self.names.tool_of.get(each, 0) for each in range(count)), 0])
-        return np.asarray(numbers[steps], dtype=np.int64)
+        named = self.names.numbers(words, index) if WORKINGSTEP in self._names else None
+        if named is not None:
+            return named
+        return np.full(batch.num_rows, next(iter(self.names.tools)), dtype=np.int64)
 
     def _require_ascending(self, time: Floats, last: float) -> None:
         before = np.append(last, time[:-1])
@@ -177,7 +243,7 @@ class LogFile:
         if len(wrong):
             at = int(wrong[0])
             raise StepNcError(
-                f"{self.path}: row {self.rows + at + 1}: time {time[at]:g} s: it must not be "
+                f"{self.name}: row {self.rows + at + 1}: time {time[at]:g} s: it must not be "
                 f"before {before[at]:g} s"
             )
         self.equal_times += int(np.sum(time == before))
@@ -193,7 +259,7 @@ class LogFile:
             if len(samples) > LONGEST_WAIT:
                 message = f"no values in {len(samples)} rows"
                 raise StepNcError(
-                    f"{self.path}: {self._lacking(samples.position)} has {message}"
+                    f"{self.name}: {self._lacking(samples.position)} has {message}"
                 )
             return samples[:0], samples
         first = int(is_known.argmax(axis=0).max())

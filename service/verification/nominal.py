@@ -6,11 +6,22 @@ import numpy as np
 
 from service.verification.prepared import PreparedProgram
 from simulator.motion.segments import Floats
+from simulator.removal.lathe import TurningStock
 from simulator.verification.deviation import SurfacePlaces
 from simulator.verification.mesh import height_deviation, outline_at
-from simulator.verification.nominal import NominalOutline, floor_deviation, wall_deviation
+from simulator.verification.nominal import (
+    NominalOutline,
+    floor_deviation,
+    profile_side,
+    wall_deviation,
+)
+from simulator.verification.revolved import RequiredBar, profile_deviation
+from simulator.verification.sweep import FAR
+from simulator.verification.turned import profile_distance
 from stepnc_model.toolpath.milling.contour import Chain
 from stepnc_model.toolpath.milling.nominal import NominalWall, nominal_walls
+from stepnc_model.toolpath.turning.nominal import nominal_outlines
+from stepnc_model.toolpath.turning.outline import FeatureOutline
 
 LEVEL = 3
 """Decimals of a millimetre to which the levels of walls are rounded."""
@@ -68,6 +79,51 @@ def required_deviation(triangles: Floats, places: SurfacePlaces, normal: Floats)
         outline = outline_at(triangles, height)
         found[rows] = wall_deviation(places.position[rows, :2], normal[rows], outline)
     return found
+
+
+def turned_nominal_deviation(program: PreparedProgram, places: SurfacePlaces) -> Floats:
+    """Deviation of a programmed profile from the features, (N,), mm; NaN: unknown."""
+    found = np.full(len(places), np.nan)
+    steps = {step.id: step for step in program.program.workingsteps}
+    for index, name in enumerate(program.steps):
+        own = np.flatnonzero(places.workingstep == index)
+        outlines = nominal_outlines(program.program, steps[name.workingstep])
+        if len(own) and outlines:
+            chains = [_profile(outline) for outline in outlines]
+            found[own] = profile_side(places.position[own][:, [2, 0]], chains)
+    return found
+
+
+def required_profile_deviation(
+    part: RequiredBar, bar: TurningStock, places: SurfacePlaces
+) -> Floats:
+    """Deviation of a programmed profile from a required one, (N,), mm; NaN: unknown.
+
+    Parameters
+    ----------
+    part : RequiredBar
+    bar : TurningStock
+        Programmed part.
+    places : SurfacePlaces
+        Places on it.
+    """
+    at = places.position[:, [0, 2]]
+    outside, inside = (
+        profile_distance(at, np.column_stack([radius, bar.z]), bar.cell)
+        for radius in (bar.outer, bar.inner)
+    )
+    is_bore = (bar.inner > 0.0).any() & (inside < outside)
+    found = profile_deviation(places, is_bore, part)
+    return np.where((places.workingstep >= 0) & (np.abs(found) < FAR), found, np.nan)
+
+
+def _profile(outline: FeatureOutline) -> Floats:
+    """Points z and radius along an outline, (N, 2), mm."""
+    points = [outline.pieces[0].start]
+    for piece in outline.pieces:
+        count = max(ceil(abs(piece.turn) / LONGEST), 1)
+        points += [piece.point((index + 1.0) / count) for index in range(count)]
+    return np.array(points)
 
 
 def _walls(position: Floats, normal: Floats, walls: tuple[NominalWall, ...]) -> Floats:

@@ -40,6 +40,7 @@ SURFACES: tuple[Column[Row], ...] = (
     Column(key="workingstep", heading="workingstep", is_key=True, kind=str,
            value=lambda row: row.workingstep),
     Column(key="feature", heading="feature", kind=str, value=lambda row: row.feature),
+    Column(key="tool", heading="tool", value=lambda row: row.tool or None),
     Column(key="surface", heading="on", kind=str, value=lambda row: row.kind.value),
     Column(key="gouge_mm", heading="gouge mm", form=".4f", value=lambda row: row.gouge.size),
     Column(key="gouge_uncertainty_mm", heading="±", form=".4f",

@@ -3,10 +3,16 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from service.reading import Tell, silent
+import numpy as np
+
+from service.chosen import machine_for, material_for
+from service.numbers import stock_in
+from service.reading import Tell, read_program, silent
 from service.requests.verification import VerificationRequest
-from service.simulation.setup import PreparedRun, from_program
+from service.simulation.setup import PreparedRun, prepared_program
 from service.verification.log import ProgramNames
+from service.verification.stl import read_stl
+from simulator.library import load_machine
 from simulator.machine.acts import MoveStretch, ToolTo, WorkingstepTo
 from simulator.machine.interpreter import interpret
 from simulator.motion.segments import Floats
@@ -17,6 +23,11 @@ from simulator.verification.path import ProgrammedPath, ProgrammedRun, programme
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program, Stock
 
+MM_PER_INCH = 25.4
+
+LIKE = 0.1
+"""Relative difference of sizes that count as the same."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepName:
@@ -24,6 +35,8 @@ class StepName:
 
     workingstep: str
     feature: str
+    tool: int
+    """Number of its tool; 0: unknown."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,6 +71,25 @@ class PreparedProgram:
         )
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RequiredSetup:
+    """What a log is compared with where there is no program."""
+
+    name: str
+    """Name of the file of the required part."""
+    machine: Machine
+    stock: Stock
+    cutters: dict[int, Cutter | Insert | None]
+    """Shapes of the tools by number."""
+    required: Floats
+    """Triangles of the required part, (T, 3, 3), mm."""
+
+    @property
+    def is_turned(self) -> bool:
+        """Whether the part is turned."""
+        return self.machine.kind is MachineKind.LATHE
+
+
 def prepared(
     program: Path, request: VerificationRequest, *, tell: Tell = silent
 ) -> PreparedProgram:
@@ -68,16 +100,17 @@ def prepared(
     StepNcError
         When the program cannot be run, has several setups, or has no stock.
     """
-    run = from_program(
-        program, units=request.units, machine=request.machine, material=request.material,
-        tell=tell,
-    )  # fmt: skip
+    read = read_program(program, units=request.units, stock=request.stock)
+    match = material_for(request.material, read)
+    tell(f"material: {match.reason}")
+    run = prepared_program(read, machine_for(request.machine, read), match, tell=tell)
     if run.program is None or run.raw is None or run.material is None:
         raise StepNcError(f"{program}: the program has no stock")
     if len({step.setup for step in run.program.workingsteps}) > 1:
         raise StepNcError(f"{program}: several setups: only one can be verified at a time")
     features = {step.id: _feature(run, step.features) for step in run.program.workingsteps}
     runs, names = _runs(run)
+    tools = {each.workingstep: each.tool for each in runs}
     return PreparedProgram(
         program=run.program,
         name=run.name,
@@ -85,9 +118,96 @@ def prepared(
         material=run.material,
         stock=run.raw,
         path=programmed_path(runs),
-        steps=tuple(StepName(workingstep=name, feature=features[name]) for name in names),
+        steps=tuple(
+            StepName(workingstep=name, feature=features[name], tool=tools.get(row, 0))
+            for row, name in enumerate(names)
+        ),
         cutters={number: _cutter(run, number) for number in run.tools or {}},
     )
+
+
+def required_setup(
+    request: VerificationRequest, tools: Path | None, required: Path | None
+) -> RequiredSetup:
+    """Prepare a verification without a program.
+
+    Raises
+    ------
+    StepNcError
+        When something is not given that a program would tell, or a file is invalid.
+    """
+    given = {
+        "--required STL": required,
+        "--tools TOML": tools,
+        "--stock NUMBERS": request.stock,
+        "--machine NAME": request.machine,
+    }
+    missing = [name for name, value in given.items() if not value]
+    if missing or required is None or tools is None:
+        raise StepNcError(
+            f"without --program, a verification needs {', '.join(given)}; missing: "
+            f"{', '.join(missing)}"
+        )
+    if request.has_deflection:
+        raise StepNcError("--with-deflection needs a program (--program): it is simulated")
+    machine = load_machine(request.machine)
+    kind = Insert if machine.kind is MachineKind.LATHE else Cutter
+    table = read_tool_table(tools)
+    if not any(isinstance(tool.shape, kind) for tool in table):
+        what = "turns" if kind is Insert else "rotates"
+        raise StepNcError(f"{tools}: no tool {what}: {machine.name} needs one")
+    stock = stock_in(request.stock)
+    return RequiredSetup(
+        name=required.name,
+        machine=machine,
+        stock=stock,
+        cutters={tool.number: tool.shape for tool in table},
+        required=required_triangles(required, stock),
+    )
+
+
+def with_required(program: PreparedProgram, path: Path) -> PreparedProgram:
+    """Compare the programmed part with an STL file in place of the features.
+
+    Raises
+    ------
+    StepNcError
+        When the file is invalid, or has another part.
+    """
+    return replace(program, required=required_triangles(path, program.stock))
+
+
+def required_triangles(path: Path, stock: Stock) -> Floats:
+    """Read a required part that lies in a stock, (T, 3, 3), mm.
+
+    Raises
+    ------
+    StepNcError
+        When the file is invalid, or the part is in inches or lies elsewhere.
+    """
+    triangles = read_stl(path)
+    corners = triangles.reshape(-1, 3)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    stock_low, stock_high = np.array(stock.low), np.array(stock.high)
+    shown = f"{_box(low, high)}; the stock spans {_box(stock_low, stock_high)}"
+    size, whole = high - low, stock_high - stock_low
+    if (size * MM_PER_INCH <= (1.0 + LIKE) * whole).all():
+        raise StepNcError(
+            f"{path}: the part spans {shown}: it fits {MM_PER_INCH:g} times into it: is it in "
+            "inches? Millimetres are expected"
+        )
+    within = np.minimum(high, stock_high) - np.maximum(low, stock_low)
+    if (within <= 0.0).any():
+        raise StepNcError(
+            f"{path}: the part spans {shown}: they do not overlap: is it in coordinates of the "
+            "setup?"
+        )
+    return triangles
+
+
+def _box(low: Floats, high: Floats) -> str:
+    pairs = zip("xyz", low.tolist(), high.tolist(), strict=True)
+    return ", ".join(f"{axis} {one:.4g} to {other:.4g}" for axis, one, other in pairs) + " mm"
 
 
 def with_tools(program: PreparedProgram, path: Path) -> PreparedProgram:

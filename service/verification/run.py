@@ -1,38 +1,37 @@
 """Verification of logged positions, for the command ``verify``."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
 from service.numbers import numbers_in
 from service.reading import Tell, silent
+from service.recording.run import record_kept
 from service.requests.fields import require_bounds
 from service.requests.verification import VerificationRequest
 from service.simulation.run import run_of_program
-from service.verification.log import LogFile, thinned
-from service.verification.nominal import nominal_deviation, required_deviation
-from service.verification.prepared import PreparedProgram, StepName, prepared, with_tools
-from service.verification.stl import read_stl
+from service.verification.comparison import compared_with_program, compared_with_required
+from service.verification.log import LogFile, LogSteps, thinned
+from service.verification.prepared import (
+    LIKE,
+    MM_PER_INCH,
+    PreparedProgram,
+    RequiredSetup,
+    StepName,
+    prepared,
+    required_setup,
+    with_required,
+    with_tools,
+)
 from simulator.motion.segments import Floats
-from simulator.removal.cutter import Cutter
 from simulator.spec import Machine
-from simulator.verification.deviation import (
-    ComparedVolumes,
-    SurfacePlaces,
-    compared_volumes,
-    surface_places,
-)
-from simulator.verification.logged import LogFacts, LoggedPart, NearestSamples
+from simulator.verification.deviation import ComparedVolumes, SurfacePlaces
+from simulator.verification.logged import LogFacts
 from simulator.verification.path import ProgrammedPath
-from simulator.verification.surface import programmed_part
-from simulator.verification.turned import (
-    LoggedBar,
-    turned_part,
-    turned_places,
-    turned_volumes,
-)
 from simulator.verification.zero import distance_from, fitted_zero
 from stepnc_model.errors import Finding, Severity, StepNcError
 
@@ -45,11 +44,6 @@ MOST_FAR = 0.2
 SURVEYED = 4096
 """Most positions of a log that are compared with the path before it is verified."""
 
-MM_PER_INCH = 25.4
-
-LIKE = 0.1
-"""Relative difference of sizes that count as the same."""
-
 FIT = "fit"
 
 
@@ -58,14 +52,16 @@ class Verification:
     """Result of ``verify``."""
 
     program: str
+    """Name of the program; of the required part without a program."""
     machine: Machine
     log: str
     facts: LogFacts
     step: float
     """Way of the tool between samples where it made the surface, mm; 95 % are shorter."""
     steps: tuple[StepName, ...]
-    """Workingsteps in order of execution."""
-    path: ProgrammedPath
+    """Workingsteps in order of execution; without a program, those or the tools of the log."""
+    path: ProgrammedPath | None
+    """None without a program."""
     places: SurfacePlaces
     nominal: Floats
     """Deviation of the programmed surface from the nominal features at each place, (N,), mm:
@@ -102,14 +98,27 @@ class VerificationInputs:
 
 
 def verify(
-    log: Path,
-    program: Path,
+    log: Path | str,
+    program: Path | None,
     request: VerificationRequest,
     *,
     inputs: VerificationInputs | None = None,
     tell: Tell = silent,
 ) -> Verification:
-    """Compare the part that logged positions leave with the programmed one.
+    """Compare the part that logged positions leave with the programmed or the required one.
+
+    Parameters
+    ----------
+    log : Path or str
+        Parquet or CSV file, MTConnect document, SHDR log, or address of an agent, all of whose
+        kept observations are read.
+    program : Path or None
+        STEP-NC program; without one, the inputs name tools and required part, and the request
+        machine and stock.
+    request : VerificationRequest
+    inputs : VerificationInputs
+    tell : callable
+        Takes messages on the progress.
 
     Raises
     ------
@@ -117,15 +126,30 @@ def verify(
         When a file, a name or a number is invalid, or the log is not of this program.
     """
     require_bounds(request)
-    ready = prepared(program, request, tell=tell)
     given = inputs or VerificationInputs()
+    if program is None:
+        setup = required_setup(request, given.tools, given.required)
+        with log_file(log, tell=tell) as (path, name):
+            return verified_without_program(path, setup, request, name=name, tell=tell)
+    ready = prepared(program, request, tell=tell)
     if given.tools is not None:
         ready = with_tools(ready, given.tools)
     if given.required is not None:
-        if ready.is_turned:
-            raise StepNcError(f"{given.required}: a turned part has no required part yet")
-        ready = replace(ready, required=read_stl(given.required))
-    return verified(log, ready, request, tell=tell)
+        ready = with_required(ready, given.required)
+    with log_file(log, tell=tell) as (path, name):
+        return verified(path, ready, request, name=name, tell=tell)
+
+
+@contextmanager
+def log_file(log: Path | str, *, tell: Tell) -> Iterator[tuple[Path, str]]:
+    """File of a log while it is needed, with its name; what an agent keeps is recorded."""
+    if "://" not in str(log):
+        yield Path(log), ""
+        return
+    with TemporaryDirectory() as folder:
+        kept = Path(folder) / "log.parquet"
+        record_kept(str(log), kept, tell=tell)
+        yield kept, str(log)
 
 
 def verified(
@@ -133,30 +157,41 @@ def verified(
     program: PreparedProgram,
     request: VerificationRequest,
     *,
+    name: str = "",
     tell: Tell = silent,
 ) -> Verification:
     """Verify a log against a prepared program.
+
+    Parameters
+    ----------
+    log : Path
+    program : PreparedProgram
+    request : VerificationRequest
+    name : str
+        Name of the log in messages; empty: its path.
+    tell : callable
+        Takes messages on the progress.
 
     Raises
     ------
     StepNcError
         When the log cannot be read, or is not of this program.
     """
-    file = LogFile(path=log, names=program.names, machine=program.machine)
+    file = LogFile(path=log, name=name, names=program.names, machine=program.machine)
     file.zero, findings = _zero(request.zero, file, program)
-    compared = _turned if program.is_turned else _milled
     try:
-        found = compared(program, file, request.cell_mm, tell)
+        found = compared_with_program(program, file, request.cell_mm, tell)
     except ValueError as error:
         raise StepNcError(f"{program.name}: {error}") from error
     bent: dict[str, float] = {}
     if request.has_deflection:
         totals = run_of_program(program.program, program.machine, program.material, tell=tell)
         bent = {name: total.deflection.value for name, total in totals}
+    tools = {run.tool for run in program.path.runs}
     return Verification(
         program=program.name,
         machine=program.machine,
-        log=log.name,
+        log=name or log.name,
         facts=found.facts,
         step=found.step,
         steps=program.steps,
@@ -169,74 +204,77 @@ def verified(
         zero=file.zero,
         tolerance=request.tolerance_mm,
         bent=bent,
-        findings=(*findings, *_findings(file, found.facts, program)),
-    )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ComparedParts:
-    """Comparison of two parts."""
-
-    places: SurfacePlaces
-    nominal: Floats
-    volumes: ComparedVolumes
-    facts: LogFacts
-    step: float
-    cell: float
-
-
-def _milled(
-    program: PreparedProgram, file: LogFile, cell: float | None, tell: Tell
-) -> ComparedParts:
-    """Compare milled parts."""
-    part = programmed_part(program.path, program.stock, cell=cell)
-    cutters = {
-        number: shape if isinstance(shape, Cutter) else None
-        for number, shape in program.cutters.items()
-    }
-    left = LoggedPart(part, program.stock, cutters)
-    for piece in file.pieces():
-        left.add(piece)
-        tell(f"{left.facts.samples} samples, {left.facts.end:.0f} s of the log")
-    places = surface_places(part, left)
-    return ComparedParts(
-        places=places,
-        nominal=(
-            nominal_deviation(program, places, part.walls.normal)
-            if program.required is None
-            else required_deviation(program.required, places, part.walls.normal)
+        findings=(
+            *findings,
+            *(Finding(severity=Severity.NOTE, message=text) for text in found.notes),
+            *_findings(file, found.facts, tools),
         ),
-        volumes=compared_volumes(part, left),
-        facts=left.facts,
-        step=_usual(left.walls, left.floors),
-        cell=part.map.cell,
     )
 
 
-def _turned(
-    program: PreparedProgram, file: LogFile, cell: float | None, tell: Tell
-) -> ComparedParts:
-    """Compare turned parts."""
-    part = turned_part(program.path, program.stock, cell=cell)
-    left = LoggedBar(part, program.stock, program.cutters)
-    for piece in file.pieces():
-        left.add(piece)
-        tell(f"{left.facts.samples} samples, {left.facts.end:.0f} s of the log")
-    places = turned_places(part, left)
-    return ComparedParts(
-        places=places,
-        nominal=np.full(len(places), np.nan),
-        volumes=turned_volumes(part, left, program.stock),
-        facts=left.facts,
-        step=_usual(left.nearest),
-        cell=part.bar.cell,
+def verified_without_program(
+    log: Path,
+    setup: RequiredSetup,
+    request: VerificationRequest,
+    *,
+    name: str = "",
+    tell: Tell = silent,
+) -> Verification:
+    """Verify a log against a required part.
+
+    Parameters
+    ----------
+    log : Path
+    setup : RequiredSetup
+    request : VerificationRequest
+    name : str
+        Name of the log in messages; empty: its path.
+    tell : callable
+        Takes messages on the progress.
+
+    Raises
+    ------
+    StepNcError
+        When the log cannot be read, or its positions do not enter the stock.
+    """
+    if request.zero == FIT:
+        raise StepNcError("--zero fit needs a program (--program): the zero is fitted to it")
+    steps = LogSteps(tools=frozenset(setup.cutters))
+    file = LogFile(path=log, name=name, names=steps, machine=setup.machine)
+    if request.zero:
+        file.zero = _given_zero(request.zero)
+    try:
+        found = compared_with_required(setup, file, request.cell_mm, tell)
+    except ValueError as error:
+        raise StepNcError(f"{setup.name}: {error}") from error
+    return Verification(
+        program=setup.name,
+        machine=setup.machine,
+        log=name or log.name,
+        facts=found.facts,
+        step=found.step,
+        steps=tuple(
+            StepName(workingstep=word or f"T{tool}", feature="", tool=tool)
+            for word, tool in steps.found
+        ),
+        path=None,
+        places=found.places,
+        nominal=found.nominal,
+        volumes=found.volumes,
+        cell=found.cell,
+        is_turned=setup.is_turned,
+        zero=file.zero,
+        tolerance=request.tolerance_mm,
+        findings=(
+            *(Finding(severity=Severity.NOTE, message=text) for text in found.notes),
+            *_findings(file, found.facts, set()),
+        ),
     )
 
 
-def _usual(*places: NearestSamples) -> float:
-    """Way between samples that 95 % of the samples at a surface do not exceed, mm."""
-    steps = np.concatenate([each.step[np.isfinite(each.time)] for each in places])
-    return float(np.quantile(steps, 0.95)) if len(steps) else 0.0
+def _given_zero(text: str) -> tuple[float, float, float]:
+    x, y, z = numbers_in(text, "zero", counts=(3,))
+    return x, y, z
 
 
 def _zero(
@@ -245,8 +283,7 @@ def _zero(
     """Find where the program's zero is, and check that the log is of this program."""
     findings: list[Finding] = []
     if text and text != FIT:
-        x, y, z = numbers_in(text, "zero", counts=(3,))
-        file.zero = (x, y, z)
+        file.zero = _given_zero(text)
     survey = np.concatenate(thinned(file.pieces(), most=SURVEYED))
     points = np.concatenate(program.path.chords)
     _require_millimetres(file, survey, points)
@@ -264,7 +301,7 @@ def _zero(
     far = distance_from(survey, program.path) > FAR
     if far.mean() > MOST_FAR:
         raise StepNcError(
-            f"{file.path}: {far.mean():.0%} of the positions are more than {FAR:g} mm from the "
+            f"{file.name}: {far.mean():.0%} of the positions are more than {FAR:g} mm from the "
             f"path of {program.name}: is it a run of this program? Where is its zero (--zero)?"
         )
     return file.zero, findings
@@ -278,16 +315,23 @@ def _require_millimetres(file: LogFile, survey: Floats, points: Floats) -> None:
     if len(ratio) and (np.abs(ratio - 1.0) < LIKE).all():
         shown = " × ".join(f"{each:.3g}" for each in logged)
         raise StepNcError(
-            f"{file.path}: positions span {shown}, {MM_PER_INCH:g} times less than the "
+            f"{file.name}: positions span {shown}, {MM_PER_INCH:g} times less than the "
             "program: they are in inches; millimetres are expected"
         )
 
 
-def _findings(file: LogFile, facts: LogFacts, program: PreparedProgram) -> list[Finding]:
+def _findings(file: LogFile, facts: LogFacts, tools: set[int]) -> list[Finding]:
     """Say what the log lacks."""
     found = []
     if file.equal_times:
         found.append(f"{file.equal_times} rows have the time of the row before")
+    if file.completed > 1:
+        found.append(
+            f"{file.completed} programs were completed: their cuts are verified as those of "
+            "one part"
+        )
+    if file.is_running:
+        found.append("the log ends while a program runs: what came later is missing")
     if file.unknown:
         found.append(f"{file.unknown} rows lack a position: interpolated over time")
     if facts.gaps:
@@ -295,11 +339,10 @@ def _findings(file: LogFile, facts: LogFacts, program: PreparedProgram) -> list[
             f"{facts.gaps} gaps of up to {facts.longest_gap:.3g} s in which the tool moved: "
             "what it did there is not known"
         )
-    seen = {run.tool for run in program.path.runs}
-    missing = sorted(seen - facts.tools)
+    missing = sorted(tools - facts.tools)
     if missing:
-        tools = ", ".join(f"T{each}" for each in missing)
+        shown = ", ".join(f"T{each}" for each in missing)
         found.append(
-            f"the log never shows {tools}: its tool changes or workingsteps are missing"
+            f"the log never shows {shown}: its tool changes or workingsteps are missing"
         )
     return [Finding(severity=Severity.WARNING, message=text) for text in found]

@@ -29,13 +29,15 @@ def read_stl(path: Path) -> Floats:
     triangles = _binary(content) if _is_binary(content) else _text(path, content)
     if not len(triangles):
         raise StepNcError(f"{path}: no triangles: expected an STL file")
-    if len(triangles) > MOST_TRIANGLES:
-        raise StepNcError(
-            f"{path}: {len(triangles)} triangles; at most {MOST_TRIANGLES} are accepted"
-        )
+    _require_few(path, len(triangles))
     if not np.isfinite(triangles).all():
         raise StepNcError(f"{path}: a corner of a triangle is not finite")
     return triangles
+
+
+def _require_few(path: Path, count: int) -> None:
+    if count > MOST_TRIANGLES:
+        raise StepNcError(f"{path}: {count} triangles; at most {MOST_TRIANGLES} are accepted")
 
 
 def _is_binary(content: bytes) -> bool:
@@ -52,6 +54,8 @@ def _binary(content: bytes) -> Floats:
 
 
 def _text(path: Path, content: bytes) -> Floats:
+    # Counted first: each vertex takes many times its text in memory.
+    _require_few(path, content.count(b"vertex") // 3)
     try:
         found = [[float(each) for each in match] for match in VERTEX.findall(content)]
     except ValueError as error:

@@ -87,6 +87,7 @@ class _Page:
 
     instance: str
     first: int
+    last: int
     following: int
     observations: tuple[ClientObservation, ...]
 
@@ -172,6 +173,45 @@ class AgentClient:
         """Let the stream begin with the oldest observation that the agent keeps."""
         page = _page(self._document("/sample", {"count": "1"}))
         self._instance, self._next = page.instance, page.first
+
+    def kept(self) -> Iterator[StreamPart]:
+        """Observations since :meth:`oldest_state` or :meth:`rewind` that the agent keeps now.
+
+        Ends with what was the newest observation when it began. Observations that the agent
+        drops meanwhile are told as lost.
+
+        Raises
+        ------
+        AgentError
+            When there is no answer, it is no document of streams, or the agent begins anew.
+        """
+        last = self._looked().last
+        while self._next is not None and self._next <= last:
+            query = {"from": str(self._next), "count": str(COUNT)}
+            try:
+                page = _page(self._document("/sample", query))
+            except AgentError:
+                first = self._looked().first
+                if first <= self._next:
+                    raise
+                yield StreamPart(lost=first - self._next)
+                self._next = first
+                continue
+            self._require_same(page)
+            if page.following <= self._next:
+                raise AgentError(f"{self.url}: no observation after {self._next}")
+            self._next = page.following
+            yield StreamPart(observations=page.observations)
+
+    def _looked(self) -> _Page:
+        """Page of one observation, for what the agent keeps."""
+        page = _page(self._document("/sample", {"count": "1"}))
+        self._require_same(page)
+        return page
+
+    def _require_same(self, page: _Page) -> None:
+        if page.instance != self._instance:
+            raise AgentError(f"{self.url}: the agent has begun anew while it was read")
 
     def stream(self) -> Generator[StreamPart, None, None]:
         """Observations since :meth:`state` or :meth:`rewind`, as they come, without end.
@@ -300,6 +340,7 @@ def _page(root: Any) -> _Page:
         raise AgentError("a document of streams without a header")
     try:
         first, following = int(header.get("firstSequence")), int(header.get("nextSequence"))
+        last = int(header.get("lastSequence", following - 1))
         found = [
             observation_of(each) for each in root.iter() if each.get("sequence") is not None
         ]
@@ -311,6 +352,7 @@ def _page(root: Any) -> _Page:
     return _Page(
         instance=header.get("instanceId", ""),
         first=first,
+        last=last,
         following=following,
         observations=tuple(found),
     )

@@ -13,9 +13,10 @@ from simulator.factory.machining import Machining, MachiningPlan
 from simulator.factory.records import Listeners
 from simulator.factory.shop import Shop
 from simulator.factory.states import MachineState
-from simulator.factory.station import PowerMeter, Station, Steps, Surroundings
+from simulator.factory.station import Station, Steps, Surroundings
 from simulator.factory.store import Batch, BatchBuffer, RawStock
 from simulator.factory.streams import Streams
+from simulator.factory.tally import Tally
 
 
 @dataclass(slots=True, eq=False)
@@ -30,16 +31,18 @@ class Floor:
     stations: list[Station] = field(default_factory=list)
     buffers: dict[str, BatchBuffer] = field(default_factory=dict)
     raw: list[RawStock] = field(default_factory=list)
-    meter: PowerMeter = field(init=False)
+    tally: Tally = field(init=False)
     in_shop: int = 0
     """Batches that entered the shop and have not left it."""
     _takers: dict[int, list[Station]] = field(default_factory=dict)
     """Machines that take from a buffer, by its identity."""
-    _is_done: Event | None = None
+    _end: Event = field(init=False)
+    _deadlock: Deadlock | None = None
 
     def __post_init__(self) -> None:
         shop = self.shop
-        self.meter = PowerMeter(begin=shop.warm_up)
+        self.tally = Tally(shop)
+        self._end = self.env.event()
         for each in shop.buffers:
             capacity = inf if each.capacity is None else each.capacity
             self.buffers[each.name] = self._buffer(each.name, capacity)
@@ -58,7 +61,6 @@ class Floor:
                     stock.product.arrival, stock.product.name, "arrival"
                 )
                 self.env.process(stock.arrivals(intervals))
-        self._is_done = self.env.event()
 
     def run(self, until: float) -> None:
         """Run until a time in s, or until all orders are finished.
@@ -68,15 +70,26 @@ class Floor:
         Deadlock
             If machines wait for each other.
         """
-        if self.is_finished or until <= self.env.now:
+        warm_up = self.shop.warm_up
+        if self.env.now < warm_up <= until:
+            self._run(warm_up)
+            self.close()
+            self.tally.reset(self.env.now)
+            for buffer in self.buffers.values():
+                buffer.area = 0.0
+        self._run(until)
+
+    def _run(self, until: float) -> None:
+        if self._end.triggered or until <= self.env.now:
             return
-        end = self.env.timeout(until - self.env.now)
-        self.env.run(until=self._is_done | end if self._is_done is not None else end)
+        self.env.run(until=self._end | self.env.timeout(until - self.env.now))
+        if self._deadlock is not None:
+            raise self._deadlock
 
     @property
     def is_finished(self) -> bool:
         """Whether all orders are finished."""
-        return self._is_done is not None and self._is_done.triggered
+        return self._end.triggered and self._deadlock is None
 
     def close(self) -> None:
         """Record the states so far."""
@@ -84,10 +97,11 @@ class Floor:
             station.close()
         for buffer in self.buffers.values():
             buffer.close()
-        self.meter.change(0.0, self.env.now)
+        self.tally.meter.change(0.0, self.env.now)
+        self.tally.close(self.env.now)
 
     def _buffer(self, name: str, capacity: float) -> BatchBuffer:
-        return BatchBuffer(self.env, name, capacity, self._wake_taker, self.shop.warm_up)
+        return BatchBuffer(self.env, name, capacity, self._wake_taker)
 
     def _station(self, index: int, crews: Sequence[CrewOnDuty]) -> Station:
         shop, spec = self.shop, self.shop.machines[index]
@@ -121,7 +135,7 @@ class Floor:
                 behind=behind,
                 machining=machining,
                 crews=_crews_of(spec.name, crews),
-                meter=self.meter,
+                tally=self.tally,
                 started=self._started,
                 finished=self._finished,
                 stuck=self._require_movement,
@@ -147,6 +161,7 @@ class Floor:
 
     def _entered(self, batch: Batch) -> None:
         self.in_shop += 1
+        self.tally.entered(batch)
         for tell in self.listeners.entered:
             tell(batch)
 
@@ -157,18 +172,22 @@ class Floor:
             self._entered(batch)
 
     def _finished(self, batch: Batch) -> None:
+        self.tally.left(batch, self.env.now)
         for tell in self.listeners.left:
             tell(batch, self.env.now)
         self.in_shop -= 1
         is_over = not self.in_shop and not any(stock.left for stock in self.raw)
-        if is_over and self._is_done is not None:
-            self._is_done.succeed()
+        if is_over and not self._end.triggered:
+            self._end.succeed()
 
     def _require_movement(self, station: Station) -> None:
-        """Refuse a machine that can never hand over its batch."""
+        """End the run where a machine can never hand over its batch."""
         found: dict[int, Station] = {}
-        if not self._can_move(station, found):
-            raise Deadlock([self._waits(each) for each in found.values()], self.env.now)
+        if not self._can_move(station, found) and not self._end.triggered:
+            # Raised by `run`, as SimPy makes exceptions of processes anew.
+            waits = [self._waits(each) for each in found.values()]
+            self._deadlock = Deadlock(waits, self.env.now)
+            self._end.succeed()
 
     def _can_move(self, station: Station, seen: dict[int, Station]) -> bool:
         """Whether a machine will give its batch away, as others take what it waits for."""

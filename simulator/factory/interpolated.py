@@ -371,7 +371,7 @@ def _layer_table(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class HeldOut:
+class HeldOutPoints:
     """Points that no grid has, and their cycles."""
 
     points: Floats
@@ -404,13 +404,13 @@ class _Cube:
             self.known[key] = self._run(self._design.settings(point))
         return self.known[key]
 
-    def held_out(self) -> HeldOut:
+    def held_out(self) -> HeldOutPoints:
         """Points drawn in the box, the same each time."""
         rng = np.random.Generator(np.random.Philox(20180401))
         points = self.low + rng.random((HELD_OUT, 3)) * (self.high - self.low)
         if not any(self._free):
             points = points[:1]
-        return HeldOut(points=points, cycles=tuple(self.cycle(point) for point in points))
+        return HeldOutPoints(points=points, cycles=tuple(self.cycle(point) for point in points))
 
     def table(self, order: int) -> LayerTable:
         """Polynomials of an order through the runs on their Chebyshev grid."""
@@ -430,7 +430,8 @@ class _Cube:
         basis = _basis(scaled, (first, second, third))
 
         def fitted(values: list[Floats]) -> Floats:
-            return np.asarray(np.linalg.solve(basis, np.array(values)), dtype=np.float64)
+            solved = np.linalg.solve(basis, np.array(values))
+            return solved.astype(np.float64)
 
         return LayerTable(
             low=self.low,

@@ -5,13 +5,11 @@ energy is exact and intervals shorter than a part are smooth.
 """
 
 from dataclasses import dataclass, field
+from itertools import chain
 
 import numpy as np
 
 from simulator.factory.distribution import Floats
-
-WAITING = 20_000
-"""States that are added together."""
 
 DEMAND = 900.0
 """Interval of the demand that electricity tariffs take, s."""
@@ -30,52 +28,56 @@ class PowerSeries:
     """s"""
     step: float = field(init=False)
     """Length of an interval, s."""
-    energy: Floats = field(init=False)
+    _energy: Floats = field(init=False)
     """Energy in each interval, (N,), J."""
-    _rows: list[tuple[float, float, float]] = field(default_factory=list)
+    waiting: list[tuple[float, float, float]] = field(default_factory=list)
+    """Begin, end and energy of states that are yet to be added, s and J."""
 
     def __post_init__(self) -> None:
         span = self.end - self.begin
         self.step = FINE if span <= FINE * MOST else DEMAND
-        self.energy = np.zeros(max(1, int(np.ceil(span / self.step - 1e-9))))
+        self._energy = np.zeros(max(1, int(np.ceil(span / self.step - 1e-9))))
 
-    def add(self, begin: float, end: float, energy: float) -> None:
-        """Add the energy of a state."""
-        self._rows.append((begin, end, energy))
-        if len(self._rows) >= WAITING:
-            self.flush()
+    def restart(self, begin: float) -> None:
+        """Begin anew at a later time."""
+        self.waiting.clear()
+        self.begin = begin
+        self.__post_init__()
+
+    def energies(self) -> Floats:
+        """Energy in each interval, (N,), J."""
+        self.flush()
+        return self._energy
+
+    def demand(self, now: float) -> float:
+        """Greatest mean power over a whole quarter of an hour until now, W.
+
+        Of a shorter time it is the mean.
+        """
+        energies = self.energies()
+        group = max(1, round(DEMAND / self.step))
+        count = int((now - self.begin) / (group * self.step) + 1e-9) * group
+        if count == 0:
+            return float(energies.sum() / (now - self.begin))
+        return float(energies[:count].reshape(-1, group).sum(axis=1).max() / DEMAND)
 
     def flush(self) -> None:
-        """Count what was added."""
-        if not self._rows:
+        """Add the states that wait."""
+        if not self.waiting:
             return
-        begin, end, energy = np.array(self._rows).T
-        self._rows.clear()
+        rows = np.fromiter(chain.from_iterable(self.waiting), np.float64, 3 * len(self.waiting))
+        self.waiting.clear()
+        begin, end, energy = rows.reshape(-1, 3).T
         first, last = (begin - self.begin) / self.step, (end - self.begin) / self.step
         power = energy / (end - begin)
-        low = np.clip(first.astype(np.int64), 0, len(self.energy) - 1)
-        high = np.clip(last.astype(np.int64), 0, len(self.energy) - 1)
+        most = len(self._energy) - 1
+        low = np.clip(first.astype(np.int64), 0, most)
+        high = np.clip(last.astype(np.int64), 0, most)
+        left, size = int(low.min()), int(high.max()) - int(low.min()) + 2
         # Whole intervals by differences, then what the first and the last lack.
-        steps = np.zeros(len(self.energy) + 1)
-        np.add.at(steps, low, power)
-        np.add.at(steps, high + 1, -power)
-        self.energy += self.step * np.cumsum(steps)[:-1]
-        np.add.at(self.energy, low, -power * self.step * (first - low))
-        np.add.at(self.energy, high, -power * self.step * (high + 1 - last))
-
-    def power(self) -> Floats:
-        """Mean power of each interval, (N,), W; the last one may be shorter."""
-        self.flush()
-        length = np.full(len(self.energy), self.step)
-        length[-1] = self.end - self.begin - self.step * (len(length) - 1)
-        power: Floats = self.energy / length
-        return power
-
-    def demand(self) -> float:
-        """Greatest mean power over a quarter of an hour, W."""
-        self.flush()
-        group = max(1, round(DEMAND / self.step))
-        if len(self.energy) < group:
-            return float(self.energy.sum() / (self.end - self.begin))
-        whole = self.energy[: len(self.energy) // group * group]
-        return float(whole.reshape(-1, group).sum(axis=1).max() / (group * self.step))
+        steps = np.bincount(low - left, power, size)
+        steps -= np.bincount(high + 1 - left, power, size)
+        lacking = np.bincount(low - left, power * (first - low), size)
+        lacking += np.bincount(high - left, power * (high + 1 - last), size)
+        energies = self.step * (np.cumsum(steps) - lacking)
+        self._energy[left : left + size - 1] += energies[:-1]

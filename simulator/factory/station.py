@@ -8,30 +8,36 @@ it goes on where it stopped, unless the part is spoilt.
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import inf
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
 from simpy import Environment, Event, Interrupt, Process
 
 from simulator.factory.crews import CrewOnDuty
 from simulator.factory.machining import Machining
 from simulator.factory.records import Listeners, PartMade, StateSpent
-from simulator.factory.shop import Counting, Failure, Product, ShopMachine
+from simulator.factory.shop import Counting, Product, ShopMachine
 from simulator.factory.states import HANDLING, TRANSITIONS, MachineState
 from simulator.factory.store import Batch, BatchBuffer, Course, RawStock, oldest
 from simulator.factory.streams import Streams
+from simulator.factory.tally import MachineTally, PowerMeter, ProcessTally, Tally
+from simulator.factory.upkeep import (
+    Breakdown,
+    DueMaintenance,
+    PendingFailure,
+    Upkeep,
+    breakdown_of,
+    upkeep_of,
+)
+
+WAITING = 2_000
+"""States whose energies are added to the power over time together."""
+
+_PART_SETUP, _MACHINING, _PART_EJECTION = (
+    MachineState.PART_SETUP, MachineState.MACHINING, MachineState.PART_EJECTION,
+)  # fmt: skip
 
 Steps: TypeAlias = frozenset[tuple[int, int]]
 """Indices of product and step."""
-
-
-class Breakdown(NamedTuple):
-    """Failure that interrupts a machine."""
-
-    repair: float
-    """s"""
-    spoils: bool
-    """Whether a part that is being machined is scrapped."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,7 +55,7 @@ class Surroundings:
     """Machining of one part after another, by step."""
     crews: Mapping[MachineState, CrewOnDuty]
     """Crews by the states that need a member."""
-    meter: "PowerMeter"
+    tally: Tally
     finished: Callable[[Batch], None]
     """Called with each batch that leaves the shop."""
     started: Callable[[Batch], None]
@@ -57,51 +63,6 @@ class Surroundings:
     stuck: Callable[["Station"], None]
     """Called when the machine waits for room."""
     listeners: Listeners
-
-
-@dataclass(slots=True, eq=False)
-class PowerMeter:
-    """Sum of the powers of all machines. Running state."""
-
-    begin: float
-    """Time from which the peak counts, s."""
-    power: float = 0.0
-    """W"""
-    peak: float = 0.0
-    """Greatest sum that lasted, W."""
-    since: float = 0.0
-    """Time of the last change, s."""
-
-    def change(self, difference: float, now: float) -> None:
-        """Add a difference; changes at one time count as one."""
-        if now > self.since:
-            if now > self.begin:
-                self.peak = max(self.peak, self.power)
-            self.since = now
-        self.power += difference
-
-
-@dataclass(slots=True, eq=False)
-class PendingFailure:
-    """Failure that counts machining time. Running state."""
-
-    failure: Failure
-    between: Iterator[float]
-    repair: Iterator[float]
-    spoils: Iterator[float]
-    left: float = inf
-    """Machining time until it comes, s."""
-
-
-@dataclass(slots=True, eq=False)
-class DueMaintenance:
-    """Maintenance with the time until it is due. Running state."""
-
-    counts: Counting
-    every: float
-    duration: Iterator[float]
-    due: float
-    """Machining time, or time, at which it is due, s."""
 
 
 @dataclass(slots=True, eq=False)
@@ -127,56 +88,58 @@ class Station:
     part: int | None = None
     """Number of the part on the machine, in its batch."""
     work: Machining | None = None
-    """Machining of the part, from its begin to its end."""
+    """Machining of the part."""
     cut: float = 0.0
     """Machining time of the part before the present state, s."""
     machined: float = 0.0
     """Machining time so far, s."""
     process: Process | None = None
+    _counts: MachineTally = field(init=False)
+    _seconds: dict[MachineState, float] = field(init=False)
+    _joules: dict[MachineState, float] = field(init=False)
+    _spent: list[tuple[float, float, float]] = field(init=False)
+    _meter: PowerMeter = field(init=False)
+    _listeners: tuple[Callable[[StateSpent], None], ...] = ()
+    _began: tuple[Callable[[int], None], ...] = ()
+    _has_crews: bool = False
+    _has_pauses: bool = False
+    """Whether shifts or maintenance may begin between two parts."""
+    _powers: dict[MachineState, float] = field(default_factory=dict)
     _asleep: Event | None = None
     _repaired: Event | None = None
-    _machining_failures: list[PendingFailure] = field(default_factory=list)
-    _clock_failures: list[PendingFailure] = field(default_factory=list)
-    _maintenance: list[DueMaintenance] = field(default_factory=list)
+    _upkeep: Upkeep = field(init=False)
     _times: dict[MachineState, Iterator[float]] = field(default_factory=dict)
     _scrap: Iterator[float] = field(init=False)
     _part_spoilt: bool = False
     _member_of: CrewOnDuty | None = None
-    """Crew of which a member works at the machine."""
+    """Crew of which a member works at the machine, or was asked for."""
+    _member: Event | None = None
+    """Event of the member that was asked for."""
 
     def __post_init__(self) -> None:
         name, spec = self.spec.name, self.spec
         self.power = spec.idle_power
+        tally = self.around.tally
+        self._counts, self._meter = tally.machines[self.index], tally.meter
+        self._seconds, self._joules = self._counts.seconds, self._counts.joules
+        self._spent = tally.power.waiting
+        self._listeners, self._began = self.around.listeners.state, self.around.listeners.began
+        for step in self.around.machining:
+            self._counts.processes[step] = ProcessTally()
         for state in HANDLING:
             self._times[state] = self.streams.numbers(spec.handling[state].time, name, state)
-        for row, failure in enumerate(spec.failures):
-            purpose = f"failure {row}"
-            pending = PendingFailure(
-                failure=failure,
-                between=self.streams.numbers(failure.between, name, purpose),
-                repair=self.streams.numbers(failure.repair, name, f"{purpose} repair"),
-                spoils=iter(self.streams.generator(name, f"{purpose} scrap").random, None),
-            )
-            if failure.counts is Counting.MACHINING:
-                pending.left = next(pending.between)
-                self._machining_failures.append(pending)
-            else:
-                self._clock_failures.append(pending)
-        for row, each in enumerate(spec.maintenance):
-            duration = self.streams.numbers(each.duration, name, f"maintenance {row}")
-            self._maintenance.append(
-                DueMaintenance(
-                    counts=each.counts, every=each.every, duration=duration, due=each.every
-                )
-            )
+            self._powers[state] = spec.handling[state].power
+        self._upkeep = upkeep_of(spec, self.streams)
+        self._has_crews = bool(self.around.crews)
+        self._has_pauses = spec.calendar is not None or bool(self._upkeep.maintenance)
         self._scrap = iter(self.streams.generator(name, "scrap").random, None)
-        self.around.meter.change(self.power, self.env.now)
+        self.around.tally.meter.change(self.power, self.env.now)
         self.process = self.env.process(self._run())
-        for pending in self._clock_failures:
+        for pending in self._upkeep.by_clock:
             self.env.process(self._fails_by_clock(pending))
         if spec.calendar is not None:
             self.env.process(self._changes_of_shift())
-        for due in self._maintenance:
+        for due in self._upkeep.maintenance:
             if due.counts is Counting.CLOCK:
                 self.env.process(self._wakes_when_due(due))
 
@@ -190,32 +153,46 @@ class Station:
         RuntimeError
             If the transition is not legal.
         """
-        if state not in TRANSITIONS[self.state]:
-            raise RuntimeError(f"{self.spec.name}: no transition {self.state} -> {state}")
-        self.close()
-        if power != self.power:
-            self.around.meter.change(power - self.power, self.env.now)
-        self.state, self.power = state, power
-        for tell in self.around.listeners.began:
-            tell(self.index)
+        # Each part passes here three times, so calls are spared.
+        before, since, drawn = self.state, self.since, self.power
+        if state not in TRANSITIONS[before]:
+            raise RuntimeError(f"{self.spec.name}: no transition {before} -> {state}")
+        now = self.env.now
+        if now > since:
+            energy = drawn * (now - since)
+            self._seconds[before] += now - since
+            self._joules[before] += energy
+            self._spent.append((since, now, energy))
+            for tell in self._listeners:
+                tell(StateSpent(self.index, before, since, now, energy))
+            if before is _MACHINING:
+                self.cut += now - since
+            self.since = now
+        if power != drawn:
+            self._meter.change(power - drawn, now)
+            self.power = power
+        self.state = state
+        for begin in self._began:
+            begin(self.index)
 
     def close(self) -> None:
         """Record the time in the present state so far."""
-        now = self.env.now
-        if self.state is MachineState.MACHINING:
-            self.cut += now - self.since
-        if now > self.since:
-            energy = self.power * (now - self.since)
-            spent = StateSpent(self.index, self.state, self.since, now, energy)
-            for tell in self.around.listeners.state:
-                tell(spent)
-        self.since = now
+        now, since = self.env.now, self.since
+        if now > since:
+            energy = self.power * (now - since)
+            self._seconds[self.state] += now - since
+            self._joules[self.state] += energy
+            self._spent.append((since, now, energy))
+            for tell in self._listeners:
+                tell(StateSpent(self.index, self.state, since, now, energy))
+            if self.state is _MACHINING:
+                self.cut += now - since
+            self.since = now
 
     @property
     def elapsed(self) -> float:
         """Machining time of the part so far, s."""
-        is_cutting = self.state is MachineState.MACHINING
-        return self.cut + (self.env.now - self.since if is_cutting else 0.0)
+        return self.cut + (self.env.now - self.since if self.state is _MACHINING else 0.0)
 
     def wake(self) -> bool:
         """Wake the machine if it waits for a batch or its shift; whether it did."""
@@ -274,29 +251,39 @@ class Station:
         good: list[int] = []
         made: PartMade | None = None
         for row, part in enumerate(batch.parts):
-            if row:
+            if row and self._has_pauses:
                 yield from self._between_parts()
-            self.part = part
-            part_setup = yield from self._handle(MachineState.PART_SETUP)
             work = next(machining)
-            yield from self._machine(work)
-            ejection = yield from self._handle(MachineState.PART_EJECTION)
+            self.part, self.work, self.cut = part, work, 0.0
+            part_setup, ejection = yield from self._part(work)
             is_good = not self._part_spoilt and (scrap == 0.0 or next(self._scrap) >= scrap)
             if is_good:
                 good.append(part)
-            if made is not None:
-                self._tell(made)
-            made = PartMade(
-                self.index, *step, batch.number, part, self.env.now, 0.0 if row else setup,
-                part_setup, work.time, ejection, 0.0, work.energy, work.peak_power,
-                work.settings, is_good,
-            )  # fmt: skip
-        self.part = None
+            self._count(step, work, is_good=is_good)
+            if len(self._spent) > WAITING:
+                self.around.tally.power.flush()
+            if self.around.listeners.part:
+                if made is not None:
+                    self._tell(made)
+                made = PartMade(
+                    self.index, *step, batch.number, part, self.env.now, 0.0 if row else setup,
+                    part_setup, work.time, ejection, 0.0, work.energy, work.peak_power,
+                    work.settings, is_good,
+                )  # fmt: skip
+        self.part, self.work = None, None
         ejection = yield from self._handle(MachineState.BATCH_EJECTION)
         if made is not None:
             self._tell(made._replace(batch_ejection=ejection))
         batch.parts = good
         yield from self._hand_over(batch, step)
+
+    def _count(self, step: tuple[int, int], work: Machining, *, is_good: bool) -> None:
+        process = self._counts.processes[step]
+        process.parts += 1
+        process.good += is_good
+        process.time += work.time
+        process.energy += work.energy
+        process.peak = max(process.peak, work.peak_power)
 
     def _tell(self, made: PartMade) -> None:
         for tell in self.around.listeners.part:
@@ -319,72 +306,92 @@ class Station:
         self.held = None
         self.enter(MachineState.IDLING, self.spec.idle_power)
 
+    def _part(self, work: Machining) -> Generator[Event, Any, tuple[float, float]]:
+        """Set up, machine and eject a part; the times of set-up and ejection."""
+        if self._has_crews:
+            setup = yield from self._handle(MachineState.PART_SETUP)
+            yield from self._claim(MachineState.MACHINING)
+            yield from self._machine(work)
+            self._release()
+            ejection = yield from self._handle(MachineState.PART_EJECTION)
+            return setup, ejection
+        # The same without crews: one generator for a part is faster than one for each state.
+        env, times, powers = self.env, self._times, self._powers
+        setup = next(times[_PART_SETUP])
+        self.enter(_PART_SETUP, powers[_PART_SETUP])
+        try:
+            yield env.timeout(setup)
+        except Interrupt as interrupt:
+            yield from self._interrupted(interrupt, self.since + setup - env.now)
+        if self._upkeep.failure_at < self.machined + work.time:
+            yield from self._machine(work)
+        else:
+            seconds = work.time
+            self._part_spoilt = False
+            self.enter(_MACHINING, work.energy / seconds if seconds > 0.0 else 0.0)
+            try:
+                yield env.timeout(seconds)
+            except Interrupt as interrupt:
+                yield from self._interrupted(interrupt, self.since + seconds - env.now)
+            self.machined += seconds
+        ejection = next(times[_PART_EJECTION])
+        self.enter(_PART_EJECTION, powers[_PART_EJECTION])
+        try:
+            yield env.timeout(ejection)
+        except Interrupt as interrupt:
+            yield from self._interrupted(interrupt, self.since + ejection - env.now)
+        return setup, ejection
+
     def _handle(self, state: MachineState) -> Generator[Event, Any, float]:
         """Set up or eject, with a crew where the state needs one; the time that it took."""
         yield from self._claim(state)
         seconds = next(self._times[state])
-        self.enter(state, self.spec.handling[state].power)
-        if seconds > 0.0:
-            yield from self._spend(seconds)
+        self.enter(state, self._powers[state])
+        yield from self._spend(seconds)
         self._release()
         return seconds
 
     def _machine(self, work: Machining) -> Course:
         """Machine a part, with the failures that come by machining time."""
-        yield from self._claim(MachineState.MACHINING)
-        power = work.energy / work.time if work.time > 0.0 else 0.0
+        seconds = work.time
         self._part_spoilt = False
-        self.work, self.cut = work, 0.0
-        self.enter(MachineState.MACHINING, power)
-        left = work.time
-        while self._machining_failures:
-            first = min(self._machining_failures, key=lambda each: each.left)
-            if first.left >= left:
-                break
-            spent = first.left
-            yield from self._spend(spent)
-            left -= spent
-            self._age(spent)
-            first.left = next(first.between)
-            yield from self._down(Breakdown(next(first.repair), self._spoils(first)))
-        yield from self._spend(left)
-        self._age(left)
-        self._release()
-        self.work = None
-
-    def _age(self, seconds: float) -> None:
+        self.enter(MachineState.MACHINING, work.energy / seconds if seconds > 0.0 else 0.0)
+        while self._upkeep.failure_at < self.machined + seconds:
+            before = self._upkeep.failure_at - self.machined
+            yield from self._spend(before)
+            self.machined += before
+            seconds -= before
+            yield from self._down(self._upkeep.breakdown(self.machined))
+        yield from self._spend(seconds)
         self.machined += seconds
-        for each in self._machining_failures:
-            each.left -= seconds
 
     def _claim(self, state: MachineState) -> Course:
         """Wait for a member of the crew that a state needs."""
         crew = self.around.crews.get(state)
         if crew is None:
             return
-        member = crew.claim()
-        if member is not None:
+        self._member_of, self._member = crew, crew.claim()
+        if self._member is not None:
             self.enter(MachineState.WAITING, self.spec.idle_power)
-            yield from self._until(member)
-        self._member_of = crew
+            yield from self._until(self._member)
 
     def _release(self) -> None:
         if self._member_of is not None:
             self._member_of.release()
-            self._member_of = None
+            self._member_of = self._member = None
 
     def _spend(self, seconds: float) -> Course:
-        """Let time pass; what a failure interrupts goes on after the repair."""
-        left = seconds
-        while True:
-            begin = self.env.now
-            try:
-                yield self.env.timeout(left)
-            except Interrupt as interrupt:
-                left -= self.env.now - begin
-                yield from self._down(_breakdown(interrupt))
-            else:
-                return
+        """Let time pass, through failures."""
+        end = self.env.now + seconds
+        try:
+            yield self.env.timeout(seconds)
+        except Interrupt as interrupt:
+            yield from self._interrupted(interrupt, end - self.env.now)
+
+    def _interrupted(self, interrupt: Interrupt, left: float) -> Course:
+        """Fail, and then let the time pass that was left."""
+        yield from self._down(breakdown_of(interrupt))
+        yield from self._spend(max(left, 0.0))
 
     def _until(self, event: Event) -> Course:
         """Wait for an event, through failures."""
@@ -392,7 +399,7 @@ class Station:
             try:
                 yield event
             except Interrupt as interrupt:
-                yield from self._down(_breakdown(interrupt))
+                yield from self._down(breakdown_of(interrupt))
 
     def _sleep(self) -> Course:
         """Wait until the machine is woken."""
@@ -415,21 +422,14 @@ class Station:
         return calendar is None or calendar.is_open(self.start + self.env.now)
 
     def _due(self) -> DueMaintenance | None:
-        for each in self._maintenance:
-            counted = self.machined if each.counts is Counting.MACHINING else self.env.now
-            if counted >= each.due:
-                return each
-        return None
+        return self._upkeep.due(self.machined, self.env.now)
 
     def _maintain(self, due: DueMaintenance) -> Course:
         yield from self._claim(MachineState.MAINTENANCE)
         self.enter(MachineState.MAINTENANCE, self.spec.idle_power)
-        yield self.env.timeout(next(due.duration))
+        yield self.env.timeout(next(due.durations))
         self._release()
-        counted = self.machined if due.counts is Counting.MACHINING else self.env.now
-        due.due = counted + due.every
-        for each in self._machining_failures:
-            each.left = next(each.between)
+        self._upkeep.maintained(due, self.machined, self.env.now)
 
     def _changes_of_shift(self) -> Course:
         """SimPy process that wakes the machine when its shift begins or ends."""
@@ -442,14 +442,10 @@ class Station:
     def _wakes_when_due(self, due: DueMaintenance) -> Course:
         """SimPy process that wakes a machine without work for its maintenance."""
         while True:
-            yield self.env.timeout(max(due.due - self.env.now, 0.0) or due.every)
+            yield self.env.timeout(max(due.at - self.env.now, 0.0) or due.every)
             self.wake()
 
     # Failures
-
-    def _spoils(self, pending: PendingFailure) -> bool:
-        share = pending.failure.scrap
-        return share > 0.0 and next(pending.spoils) < share
 
     def _down(self, breakdown: Breakdown) -> Course:
         """Fail, and be repaired."""
@@ -457,10 +453,12 @@ class Station:
         self._repaired = self._repaired or self.env.event()
         self.enter(MachineState.FAILED, self.spec.idle_power)
         crew = self.around.crews.get(MachineState.REPAIR)
-        if crew is self._member_of:
-            crew = None
-        member = None if crew is None else crew.claim()
-        if member is not None:
+        if crew is not None and crew is self._member_of:
+            # One member is enough: who works here, or was asked for, repairs.
+            crew, member = None, self._member
+        else:
+            member = None if crew is None else crew.claim()
+        if member is not None and not member.processed:
             yield member
         self.enter(MachineState.REPAIR, self.spec.idle_power)
         yield self.env.timeout(breakdown.repair)
@@ -476,14 +474,7 @@ class Station:
         """SimPy process of failures that count all time."""
         while True:
             yield self.env.timeout(next(pending.between))
-            self.fail(next(pending.repair), spoils=self._spoils(pending))
+            breakdown = pending.breakdown()
+            self.fail(breakdown.repair, spoils=breakdown.spoils)
             if self._repaired is not None:
                 yield self._repaired
-
-
-def _breakdown(interrupt: Interrupt) -> Breakdown:
-    """Failure of an interrupt, which only :meth:`Station.fail` causes."""
-    cause = interrupt.cause
-    if not isinstance(cause, Breakdown):
-        raise TypeError(f"an interrupt of a machine by {cause!r}")
-    return cause

@@ -52,8 +52,6 @@ class BatchBuffer:
     capacity: float
     wake: Wake
     """Called when a batch can be taken."""
-    begin: float = 0.0
-    """Time from which the mean level counts, s."""
     area: float = 0.0
     """Level times time so far, batches·s."""
     since: float = 0.0
@@ -70,7 +68,7 @@ class BatchBuffer:
         """Count the level so far."""
         now = self.env.now
         if now > self.since:
-            self.area += self.level * max(0.0, now - max(self.since, self.begin))
+            self.area += self.level * (now - self.since)
             self.since = now
 
     def put(self, batch: Batch) -> Event | None:

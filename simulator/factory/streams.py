@@ -6,15 +6,16 @@ gives the same run everywhere: the hash is BLAKE2, not Python's own, which chang
 to process.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from hashlib import blake2b
+from itertools import chain, repeat
 
 import numpy as np
 
-from simulator.factory.distribution import Distribution, DistributionKind, Floats
+from simulator.factory.distribution import Distribution, DistributionKind
 
-BLOCK = 256
+BLOCK = 64
 """Numbers drawn at a time."""
 
 
@@ -35,18 +36,7 @@ class Streams:
     def numbers(self, distribution: Distribution, owner: str, purpose: str) -> Iterator[float]:
         """Numbers of a distribution, one after another without end."""
         if distribution.kind is DistributionKind.CONSTANT:
-            return repeated(distribution.mean)
+            return repeat(distribution.mean)
         generator = self.generator(owner, purpose)
-        return blockwise(lambda: distribution.draw(generator, BLOCK))
-
-
-def blockwise(block: Callable[[], Floats]) -> Iterator[float]:
-    """Numbers of blocks, one after another without end."""
-    while True:
-        yield from block().tolist()
-
-
-def repeated(value: float) -> Iterator[float]:
-    """One number without end."""
-    while True:
-        yield value
+        blocks = (distribution.draw(generator, BLOCK).tolist() for _ in repeat(None))
+        return chain.from_iterable(blocks)

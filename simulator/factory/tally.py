@@ -1,42 +1,14 @@
-"""Figures of a running shop, gathered from its warm-up on. Running state.
+"""Counts of a running shop, from its warm-up on. Running state.
 
-Memory does not grow with parts. Times are those of ISO 22400-2, [1]_ of
-:mod:`simulator.factory.measures`: *planned busy time* is all but off shift, *actual production
-time* is part set-up, machining and part ejection, and the *planned run time* of a part is its
-machining. So OEE is the machining time of good parts over the planned busy time.
+Machines count their own times, energies and parts as they go; memory does not grow with them.
 """
 
-from collections import Counter
 from dataclasses import dataclass, field
-from math import nan
 
-from simulator.factory.floor import Floor
-from simulator.factory.measures import Level, Measure, Quantity
 from simulator.factory.power_series import PowerSeries
-from simulator.factory.records import Listeners, PartMade, StateSpent
 from simulator.factory.shop import Shop
 from simulator.factory.states import MachineState
 from simulator.factory.store import Batch
-from stepnc_model.units import hours_from_seconds, kw_from_watts, kwh_from_joules
-
-_S = MachineState
-
-PRODUCTION = (_S.PART_SETUP, _S.MACHINING, _S.PART_EJECTION)
-DOWN = (_S.FAILED, _S.REPAIR, _S.MAINTENANCE)
-
-
-@dataclass(slots=True, eq=False)
-class MachineTally:
-    """Counts of one machine."""
-
-    seconds: Counter[MachineState] = field(default_factory=Counter)
-    joules: Counter[MachineState] = field(default_factory=Counter)
-    peak: float = 0.0
-    """W"""
-    parts: int = 0
-    good: int = 0
-    machined: float = 0.0
-    """Machining time of the parts, s."""
 
 
 @dataclass(slots=True, eq=False)
@@ -44,6 +16,7 @@ class ProcessTally:
     """Counts of the machining of one step on one machine."""
 
     parts: int = 0
+    good: int = 0
     time: float = 0.0
     """s"""
     energy: float = 0.0
@@ -53,13 +26,51 @@ class ProcessTally:
 
 
 @dataclass(slots=True, eq=False)
+class MachineTally:
+    """Times, energies and parts of one machine."""
+
+    seconds: dict[MachineState, float] = field(default_factory=dict)
+    joules: dict[MachineState, float] = field(default_factory=dict)
+    processes: dict[tuple[int, int], ProcessTally] = field(default_factory=dict)
+    """Machining by the indices of product and step."""
+
+    def __post_init__(self) -> None:
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin anew."""
+        for state in MachineState:
+            self.seconds[state] = self.joules[state] = 0.0
+        for step in self.processes:
+            self.processes[step] = ProcessTally()
+
+
+@dataclass(slots=True, eq=False)
 class ProductTally:
     """Counts of one product."""
 
     good: int = 0
-    lost: int = 0
     lead: float = 0.0
     """Lead times of batches times their good parts, s."""
+
+
+@dataclass(slots=True, eq=False)
+class PowerMeter:
+    """Sum of the powers of all machines. Running state."""
+
+    power: float = 0.0
+    """W"""
+    peak: float = 0.0
+    """Greatest sum that lasted, W."""
+    since: float = 0.0
+    """Time of the last change, s."""
+
+    def change(self, difference: float, now: float) -> None:
+        """Add a difference; changes at one time count as one."""
+        if now > self.since:
+            self.peak = max(self.peak, self.power)
+            self.since = now
+        self.power += difference
 
 
 @dataclass(slots=True, eq=False)
@@ -69,186 +80,42 @@ class Tally:
     shop: Shop
     machines: list[MachineTally] = field(default_factory=list)
     products: list[ProductTally] = field(default_factory=list)
-    processes: dict[tuple[int, int, int], ProcessTally] = field(default_factory=dict)
+    meter: PowerMeter = field(default_factory=PowerMeter)
     power: PowerSeries = field(init=False)
     inside: int = 0
     """Parts in the shop."""
     area: float = 0.0
     """Parts in the shop times time, s."""
     since: float = 0.0
+    """Time of the last change of the parts in the shop, s."""
 
     def __post_init__(self) -> None:
         self.machines += [MachineTally() for _ in self.shop.machines]
         self.products += [ProductTally() for _ in self.shop.products]
-        self.power = PowerSeries(self.shop.warm_up, self.shop.duration)
-
-    @property
-    def listeners(self) -> Listeners:
-        """Functions that count."""
-        return Listeners(
-            part=(self.part,), state=(self.state,), entered=(self.entered,), left=(self.left,)
-        )
-
-    def part(self, part: PartMade) -> None:
-        """Count a part that left a machine."""
-        if part.end < self.shop.warm_up:
-            return
-        machine = self.machines[part.machine]
-        machine.parts += 1
-        machine.good += part.is_good
-        machine.machined += part.machining
-        machine.peak = max(machine.peak, part.peak_power)
-        key = (part.product, part.step, part.machine)
-        process = self.processes.get(key)
-        if process is None:
-            process = self.processes.setdefault(key, ProcessTally())
-        process.parts += 1
-        process.time += part.machining
-        process.energy += part.energy
-        process.peak = max(process.peak, part.peak_power)
-        if not part.is_good:
-            self.products[part.product].lost += 1
-
-    def state(self, spent: StateSpent) -> None:
-        """Count the time in a state."""
-        _, state, begin, end, energy = spent
-        warm_up = self.shop.warm_up
-        if end <= warm_up:
-            return
-        if begin < warm_up:
-            energy *= (end - warm_up) / (end - begin)
-            begin = warm_up
-        machine = self.machines[spent.machine]
-        machine.seconds[state] += end - begin  # type: ignore[assignment]
-        if energy > 0.0:
-            machine.joules[state] += energy  # type: ignore[assignment]
-            machine.peak = max(machine.peak, energy / (end - begin))
-            self.power.add(begin, end, energy)
+        self.power = PowerSeries(0.0, self.shop.duration)
 
     def entered(self, batch: Batch) -> None:
         """Count the parts of a batch in the shop."""
-        self._wip(batch.released)
+        self.close(batch.released)
         self.inside += self.shop.products[batch.product].batch
 
     def left(self, batch: Batch, time: float) -> None:
         """Count the good parts of a batch."""
-        self._wip(time)
+        self.close(time)
         self.inside -= self.shop.products[batch.product].batch
-        if time >= self.shop.warm_up:
-            product = self.products[batch.product]
-            product.good += len(batch.parts)
-            product.lead += len(batch.parts) * (time - batch.released)
+        product = self.products[batch.product]
+        product.good += len(batch.parts)
+        product.lead += len(batch.parts) * (time - batch.released)
 
-    def _wip(self, now: float) -> None:
-        warm_up = self.shop.warm_up
-        self.area += self.inside * max(0.0, now - max(self.since, warm_up))
+    def close(self, now: float) -> None:
+        """Count the parts in the shop so far."""
+        self.area += self.inside * (now - self.since)
         self.since = now
 
-    def measures(self, floor: Floor) -> tuple[Measure, ...]:
-        """Figures of the run, which has ended."""
-        floor.close()
-        now = floor.env.now
-        self._wip(now)
-        span = now - self.shop.warm_up
-        if span <= 0.0:
-            return ()
-        return (
-            *self._line(floor, span),
-            *(each for row in range(len(self.products)) for each in self._product(row, span)),
-            *(each for row in range(len(self.machines)) for each in self._machine(row, span)),
-            *(each for key in sorted(self.processes) for each in self._process(key)),
-            *(
-                Measure(
-                    level=Level.BUFFER,
-                    name=buffer.name,
-                    quantity=Quantity.LEVEL,
-                    value=buffer.area / span,
-                )
-                for buffer in floor.buffers.values()
-            ),
-        )
-
-    def _line(self, floor: Floor, span: float) -> list[Measure]:
-        good = sum(each.good for each in self.products)
-        lost = sum(each.lost for each in self.products)
-        lead = sum(each.lead for each in self.products)
-        energy = sum(sum(each.joules.values()) for each in self.machines)
-        self.power.end = min(self.power.end, floor.env.now)
-        values = {
-            Quantity.GOOD: good,
-            Quantity.THROUGHPUT: good / hours_from_seconds(span),
-            Quantity.SCRAP: _share(lost, good + lost),
-            Quantity.LEAD_TIME: hours_from_seconds(_ratio(lead, good)),
-            Quantity.WIP: self.area / span,
-            Quantity.ENERGY: kwh_from_joules(energy),
-            Quantity.ENERGY_PER_PART: kwh_from_joules(_ratio(energy, good)),
-            Quantity.MEAN_POWER: kw_from_watts(energy / span),
-            Quantity.DEMAND: kw_from_watts(self.power.demand()),
-            Quantity.PEAK_POWER: kw_from_watts(floor.meter.peak),
-        }
-        return _measures(Level.LINE, "", values)
-
-    def _product(self, row: int, span: float) -> list[Measure]:
-        found = self.products[row]
-        values = {
-            Quantity.GOOD: found.good,
-            Quantity.THROUGHPUT: found.good / hours_from_seconds(span),
-            Quantity.SCRAP: _share(found.lost, found.good + found.lost),
-            Quantity.LEAD_TIME: hours_from_seconds(_ratio(found.lead, found.good)),
-        }
-        return _measures(Level.PRODUCT, self.shop.products[row].name, values)
-
-    def _machine(self, row: int, span: float) -> list[Measure]:
-        found = self.machines[row]
-        seconds = found.seconds
-        planned = sum(seconds.values()) - seconds[_S.OFF]
-        production = sum(seconds[each] for each in PRODUCTION)
-        joules = sum(found.joules.values())
-        quality = _ratio(found.good, found.parts)
-        values = {
-            Quantity.PARTS: found.parts,
-            Quantity.UTILISATION: _share(seconds[_S.MACHINING], planned),
-            Quantity.STARVED: _share(seconds[_S.STARVED], planned),
-            Quantity.BLOCKED: _share(seconds[_S.BLOCKED], planned),
-            Quantity.DOWN: _share(sum(seconds[each] for each in DOWN), planned),
-            Quantity.AVAILABILITY: _share(production, planned),
-            Quantity.EFFECTIVENESS: _share(found.machined, production),
-            Quantity.QUALITY: 100.0 * quality,
-            Quantity.OEE: _share(found.machined * quality, planned),
-            Quantity.ENERGY: kwh_from_joules(joules),
-            Quantity.MEAN_POWER: kw_from_watts(joules / span),
-            Quantity.PEAK_POWER: kw_from_watts(found.peak),
-        }
-        return _measures(Level.MACHINE, self.shop.machines[row].name, values)
-
-    def _process(self, key: tuple[int, int, int]) -> list[Measure]:
-        product, step, machine = key
-        found = self.processes[key]
-        name = (
-            f"{self.shop.products[product].name} step {step + 1} on "
-            f"{self.shop.machines[machine].name}"
-        )
-        values = {
-            Quantity.PARTS: found.parts,
-            Quantity.TIME: found.time / found.parts,
-            Quantity.PART_ENERGY: found.energy / found.parts / 1000.0,
-            Quantity.MEAN_POWER: kw_from_watts(_ratio(found.energy, found.time)),
-            Quantity.PEAK_POWER: kw_from_watts(found.peak),
-        }
-        return _measures(Level.PROCESS, name, values)
-
-
-def _measures(level: Level, name: str, values: dict[Quantity, float]) -> list[Measure]:
-    return [
-        Measure(level=level, name=name, quantity=quantity, value=float(value))
-        for quantity, value in values.items()
-    ]
-
-
-def _ratio(part: float, whole: float) -> float:
-    return part / whole if whole else nan
-
-
-def _share(part: float, whole: float) -> float:
-    """Share in per cent."""
-    return 100.0 * _ratio(part, whole)
+    def reset(self, now: float) -> None:
+        """Begin anew after the warm-up."""
+        for machine in self.machines:
+            machine.reset()
+        self.products[:] = [ProductTally() for _ in self.products]
+        self.meter.peak, self.area, self.since = 0.0, 0.0, now
+        self.power.restart(now)

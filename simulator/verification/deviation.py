@@ -22,8 +22,8 @@ import numpy as np
 from scipy import ndimage
 
 from simulator.motion.segments import Bools, Floats, Ints
-from simulator.removal.zmap import OUTSIDE
-from simulator.verification.logged import LogFacts, LoggedPart
+from simulator.removal.zmap import OUTSIDE, HeightGrid
+from simulator.verification.logged import LogFacts, LoggedPart, ReferencePart
 from simulator.verification.path import SAGITTA, ProgrammedPath
 from simulator.verification.surface import EXACT, ProgrammedPart
 from simulator.verification.sweep import FAR
@@ -114,7 +114,7 @@ def surface_places(part: ProgrammedPart, logged: LoggedPart) -> SurfacePlaces:
     return SurfacePlaces.joined([_wall_places(part, logged), _floor_places(part, logged)])
 
 
-def compared_volumes(part: ProgrammedPart, logged: LoggedPart) -> ComparedVolumes:
+def compared_volumes(part: ReferencePart, logged: LoggedPart) -> ComparedVolumes:
     """Compare the volumes that the two paths remove, by the height maps."""
     grid = part.map.grid
     cell = grid.dx * grid.dy
@@ -191,43 +191,83 @@ def path_uncertainty(
     return np.asarray(0.5 * step * np.sin(0.5 * turn) + arc)
 
 
-def _floor_places(part: ProgrammedPart, logged: LoggedPart) -> SurfacePlaces:
-    grid, path = part.map.grid, part.path
-    distance = ndimage.distance_transform_edt(~part.is_wall, sampling=(grid.dx, grid.dy))
-    is_floor = (distance > BESIDE_WALLS) & (grid.owner != OUTSIDE)
-    column, row = np.nonzero(is_floor)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FloorCells:
+    """N cells of a height map that are compared by height."""
+
+    cells: tuple[Ints, Ints]
+    """Columns and rows."""
+    position: Floats
+    """Middle of each at its height, (N, 3), mm."""
+    deviation: Floats
+    """Deviation along the normal, (N,), mm."""
+    uncertainty: Floats
+    """Uncertainty by rounding and by slivers, (N,), mm."""
+    area: Floats
+    """(N,), mm²"""
+
+
+def floor_cells(
+    grid: HeightGrid, is_compared: Bools, is_wall: Bools, logged: LoggedPart
+) -> FloorCells:
+    """Compare heights away from walls.
+
+    Parameters
+    ----------
+    grid : HeightGrid
+        Heights of the part that is compared with.
+    is_compared : (X, Y) array of bool
+        Cells that count.
+    is_wall : (X, Y) array of bool
+        Cells beside a wall.
+    logged : LoggedPart
+    """
+    distance = ndimage.distance_transform_edt(~is_wall, sampling=(grid.dx, grid.dy))
+    column, row = np.nonzero(is_compared & (distance > BESIDE_WALLS))
     lean = _lean(grid.heights, grid.dx, grid.dy)[column, row]
-    deviation, is_lateral = _floor_deviation(part, logged)
-    owner = grid.owner[column, row]
-    segment = path.segment[np.maximum(owner, 0)]
-    is_cut = owner >= 0
-    step = logged.floors.step[column, row]
-    # A height is as certain as the positions; the bottom of a plunge may lie between samples.
-    height = np.where(path.is_plunge[segment] & is_cut, 0.5 * step, 0.0)
-    beside = np.where(is_lateral[column, row], part.map.cell + 0.5 * logged.facts.step, 0.0)
-    return SurfacePlaces(
-        is_wall=np.zeros(len(column), dtype=np.bool_),
+    deviation, is_lateral = _floor_deviation(grid, logged)
+    width = max(grid.dx, grid.dy) + 0.5 * logged.facts.step
+    beside = np.where(is_lateral[column, row], width, 0.0)
+    return FloorCells(
+        cells=(column, row),
         position=np.column_stack([
             grid.x + (column + 0.5) * grid.dx,
             grid.y + (row + 0.5) * grid.dy,
             grid.heights[column, row],
         ]),
         deviation=deviation[column, row] * lean,
-        uncertainty=height + beside + rounding_uncertainty(logged.facts) + 10.0 * SAGITTA,
+        uncertainty=beside + rounding_uncertainty(logged.facts) + 10.0 * SAGITTA,
         area=grid.dx * grid.dy / lean,
-        workingstep=np.where(is_cut, path.workingstep[segment], -1),
-        block=np.where(is_cut, path.block[segment], 0),
-        time=logged.floors.time[column, row],
-        cut_by=logged.floors.workingstep[column, row],
     )
 
 
-def _floor_deviation(part: ProgrammedPart, logged: LoggedPart) -> tuple[Floats, Bools]:
+def _floor_places(part: ProgrammedPart, logged: LoggedPart) -> SurfacePlaces:
+    grid, path = part.map.grid, part.path
+    floors = floor_cells(grid, grid.owner != OUTSIDE, part.is_wall, logged)
+    owner = grid.owner[floors.cells]
+    segment = path.segment[np.maximum(owner, 0)]
+    is_cut = owner >= 0
+    step = logged.floors.step[floors.cells]
+    # A height is as certain as the positions; the bottom of a plunge may lie between samples.
+    height = np.where(path.is_plunge[segment] & is_cut, 0.5 * step, 0.0)
+    return SurfacePlaces(
+        is_wall=np.zeros(len(owner), dtype=np.bool_),
+        position=floors.position,
+        deviation=floors.deviation,
+        uncertainty=height + floors.uncertainty,
+        area=floors.area,
+        workingstep=np.where(is_cut, path.workingstep[segment], -1),
+        block=np.where(is_cut, path.block[segment], 0),
+        time=logged.floors.time[floors.cells],
+        cut_by=logged.floors.workingstep[floors.cells],
+    )
+
+
+def _floor_deviation(grid: HeightGrid, logged: LoggedPart) -> tuple[Floats, Bools]:
     """Differences of heights, (X, Y), mm, and where the way to the side is shorter.
 
     A sliver that is high but narrow deviates by its width, not by its height.
     """
-    grid = part.map.grid
     more = logged.map.grid.heights - grid.heights
     is_other = np.abs(more) > EQUAL
     if is_other.all():

@@ -7,6 +7,8 @@ between samples there. Units mm and s.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import pi
+from typing import Protocol
 
 import numpy as np
 
@@ -14,8 +16,8 @@ from simulator.motion.segments import Floats, Ints
 from simulator.removal.cutter import Cutter
 from simulator.removal.zmap import ZMap
 from simulator.verification.path import rows_between
-from simulator.verification.surface import PartSweep, ProgrammedPart
-from simulator.verification.sweep import approach, renewed
+from simulator.verification.surface import PartSweep
+from simulator.verification.sweep import WallTargets, approach, renewed
 from stepnc_model.program import Stock
 
 GAP = 3.0
@@ -76,6 +78,15 @@ class LogFacts:
     """Longest time between samples in which the tool moved, s."""
     tools: set[int] = field(default_factory=set)
     """Numbers of the tools that the log shows."""
+    low: Floats = field(default_factory=lambda: np.full(3, np.inf))
+    """Least position, (3,), mm."""
+    high: Floats = field(default_factory=lambda: np.full(3, -np.inf))
+    """Greatest position, (3,), mm."""
+
+    @property
+    def span(self) -> Floats:
+        """Extent of the positions, (3,), mm."""
+        return self.high - self.low
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -86,8 +97,45 @@ class NearestSamples:
     """Time, s; NaN where no tool came near."""
     step: Floats
     """Greatest distance between samples around it, mm."""
+    bend: Floats
+    """Greatest distance of the path from the lines between samples, mm, by how these turn."""
+    rise: Floats
+    """Greatest vertical way between samples around it, mm."""
     workingstep: Ints
     """Index of the workingstep of the log; -1 where it is unknown."""
+
+    def meet(self, where: object, part: "SampledStretch", index: Ints) -> None:
+        """Note that samples of a stretch came nearest to some places."""
+        self.time[where] = part.samples.time[index]  # type: ignore[call-overload]
+        self.step[where] = part.step[index]  # type: ignore[call-overload]
+        self.bend[where] = part.bend[index]  # type: ignore[call-overload]
+        self.rise[where] = part.rise[index]  # type: ignore[call-overload]
+        self.workingstep[where] = part.samples.workingstep[index]  # type: ignore[call-overload]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SampledStretch:
+    """Consecutive samples of one tool, with the way around each."""
+
+    samples: LoggedSamples
+    step: Floats
+    """Greatest way between samples around each, (N,), mm."""
+    bend: Floats
+    """Greatest distance of the path from the lines around each, (N,), mm, by how they turn."""
+    rise: Floats
+    """Greatest vertical way between samples around each, (N,), mm."""
+
+
+class ReferencePart(Protocol):
+    """Part with which a log is compared."""
+
+    @property
+    def map(self) -> ZMap:
+        """Its height map."""
+
+    @property
+    def targets(self) -> WallTargets:
+        """Points on its walls."""
 
 
 class SampleSteps:
@@ -104,8 +152,8 @@ class SampleSteps:
         self._last: LoggedSamples | None = None
         self._top = top
 
-    def pieces(self, samples: LoggedSamples) -> Iterator[tuple[LoggedSamples, Floats]]:
-        """Yield samples of one tool each, with the greatest way around each in mm, (N,).
+    def pieces(self, samples: LoggedSamples) -> Iterator[SampledStretch]:
+        """Yield samples of one tool each.
 
         The last sample before them is the first one of these.
         """
@@ -116,14 +164,21 @@ class SampleSteps:
         self.facts.samples += len(samples)
         self.facts.end = float(samples.time[-1])
         self.facts.tools.update(np.unique(samples.tool).tolist())
+        self.facts.low = np.minimum(self.facts.low, samples.position.min(axis=0))
+        self.facts.high = np.maximum(self.facts.high, samples.position.max(axis=0))
         if self._last is not None:
             samples = joined((self._last, samples))
         self._last = samples[-1:]
-        steps = self._steps(samples)
+        whole = self._stretch(samples)
         edges = np.flatnonzero(np.diff(samples.tool)) + 1
         for part in np.split(np.arange(len(samples)), edges):
             rows = slice(int(part[0]), int(part[-1]) + 1)
-            yield samples[rows], steps[rows]
+            yield SampledStretch(
+                samples=samples[rows],
+                step=whole.step[rows],
+                bend=whole.bend[rows],
+                rise=whole.rise[rows],
+            )
 
     def _begin(self, samples: LoggedSamples) -> None:
         """Find interval and rounding of the log from its first piece."""
@@ -131,9 +186,10 @@ class SampleSteps:
         self.facts.interval = float(np.median(np.diff(samples.time))) if len(samples) > 1 else 0
         self.facts.rounding = rounding_of(samples.position)
 
-    def _steps(self, samples: LoggedSamples) -> Floats:
-        """Greatest way between samples around each, (N,), mm."""
-        way = np.linalg.norm(np.diff(samples.position, axis=0), axis=1)
+    def _stretch(self, samples: LoggedSamples) -> SampledStretch:
+        """Samples with the way between them, and how it turns."""
+        lines = np.diff(samples.position, axis=0)
+        way = np.linalg.norm(lines, axis=1)
         seconds = np.diff(samples.time)
         speed = np.divide(way, seconds, out=np.zeros(len(way)), where=seconds > 0.0)
         is_gap = (seconds > GAP * self.facts.interval) & (way > STILL)
@@ -147,8 +203,13 @@ class SampleSteps:
         if is_usual.any():
             usual = float(np.quantile(way[is_usual], 0.99))
             self.facts.step = max(self.facts.step, usual)
+        turn = np.where(is_gap, pi, turns_of(samples.position))
         around = _greatest_around(way)
-        return np.concatenate((around[:1], around)) if len(around) else np.zeros(len(samples))
+        bend = _greatest_around(0.5 * around * np.sin(0.5 * turn))
+        rise = _greatest_around(np.where(is_gap, way, np.abs(lines[:, 2])))
+        return SampledStretch(
+            samples=samples, step=_to_ends(around), bend=_to_ends(bend), rise=_to_ends(rise)
+        )
 
 
 class LoggedPart:
@@ -156,7 +217,7 @@ class LoggedPart:
 
     Parameters
     ----------
-    part : ProgrammedPart
+    part : ReferencePart
         What it is compared with.
     stock : Stock
     cutters : mapping
@@ -164,9 +225,9 @@ class LoggedPart:
     """
 
     def __init__(
-        self, part: ProgrammedPart, stock: Stock, cutters: Mapping[int, Cutter | None]
+        self, part: ReferencePart, stock: Stock, cutters: Mapping[int, Cutter | None]
     ) -> None:
-        self.targets = renewed(part.walls.targets)
+        self.targets = renewed(part.targets)
         self._left = PartSweep(stock, cell=part.map.cell)
         self._cutters = cutters
         self._steps = SampleSteps(stock.high[2])
@@ -195,13 +256,14 @@ class LoggedPart:
 
     def add(self, samples: LoggedSamples) -> None:
         """Remove the sweep of more samples, which are later than those before."""
-        for part, steps in self._steps.pieces(samples):
-            cutter = self._cutters.get(int(part.tool[0]))
+        for part in self._steps.pieces(samples):
+            cutter = self._cutters.get(int(part.samples.tool[0]))
             if cutter is not None:
-                self._cut(part, cutter, steps)
+                self._cut(part, cutter)
 
-    def _cut(self, samples: LoggedSamples, cutter: Cutter, steps: Floats) -> None:
+    def _cut(self, part: SampledStretch, cutter: Cutter) -> None:
         """Remove the sweep of consecutive samples with one tool."""
+        samples = part.samples
         moves = np.linalg.norm(np.diff(samples.position, axis=0), axis=1) > STILL
         kept = np.concatenate(([True], moves))
         points = samples.position[kept]
@@ -216,10 +278,7 @@ class LoggedPart:
             (self._left.map.grid.owner, self._floors),
         ):
             where = np.nonzero(row >= first)
-            index = ends[row[where] - first]
-            nearest.time[where] = samples.time[index]
-            nearest.step[where] = steps[index]
-            nearest.workingstep[where] = samples.workingstep[index]
+            nearest.meet(where, part, ends[row[where] - first])
 
 
 def joined(parts: Sequence[LoggedSamples]) -> LoggedSamples:
@@ -240,13 +299,45 @@ def rounding_of(position: Floats) -> float:
     return 0.0
 
 
+def turns_of(position: Floats) -> Floats:
+    """Angle by which the path turns from before to after each line between samples, rad.
+
+    Parameters
+    ----------
+    position : (N, 3) array, mm
+
+    Returns
+    -------
+    (N - 1,) array, rad
+        At most half a turn, which also counts at both ends, where it is not known; 0 where the
+        tool stands still.
+    """
+    lines = np.diff(position, axis=0)
+    length = np.linalg.norm(lines, axis=1)
+    moves = np.flatnonzero(length > STILL)
+    found = np.zeros(len(lines))
+    if len(moves):
+        along = lines[moves] / length[moves, None]
+        cosine = np.clip(np.sum(along[:-1] * along[1:], axis=1), -1.0, 1.0)
+        turn = np.concatenate(([pi], np.arccos(cosine), [pi]))
+        found[moves] = np.minimum(turn[:-1] + turn[1:], pi)
+    return found
+
+
 def unmet(shape: tuple[int, ...]) -> NearestSamples:
     """Places to which no sample came near yet."""
     return NearestSamples(
         time=np.full(shape, np.nan),
         step=np.zeros(shape),
+        bend=np.zeros(shape),
+        rise=np.zeros(shape),
         workingstep=np.full(shape, -1, dtype=np.int64),
     )
+
+
+def _to_ends(values: Floats) -> Floats:
+    """Values of N - 1 lines at the end of each, and at the start of the first, (N,)."""
+    return np.concatenate((values[:1] if len(values) else [0.0], values))
 
 
 def _greatest_around(values: Floats) -> Floats:

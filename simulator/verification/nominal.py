@@ -17,6 +17,10 @@ from simulator.verification.sweep import FAR
 PIECE = 0.05
 """Longest piece of an outline whose middle stands for it, mm."""
 
+END = 0.3
+"""Share of the first and last piece of a profile whose points are not compared: the surface
+may turn away there."""
+
 NEAR_FLOOR = 1.0
 """Greatest difference of heights, mm, at which a floor is that of the feature."""
 
@@ -61,6 +65,40 @@ def wall_deviation(points: Floats, normal: Floats, outline: NominalOutline) -> F
     # Material is too much where the nominal wall lies deeper in it.
     deviation = np.sum(away * normal, axis=1)
     return np.where(size <= FAR, deviation, np.nan)
+
+
+def profile_side(points: Floats, chains: Sequence[Floats]) -> Floats:
+    """Deviation of points of a turned profile from nominal ones.
+
+    Parameters
+    ----------
+    points : (P, 2) array, mm
+        z and radius.
+    chains : sequence of (N, 2) array, mm
+        z and radius along each nominal profile, from the front: material lies to the left.
+
+    Returns
+    -------
+    (P,) array, mm
+        Excess positive; NaN beyond the ends of the profiles, and farther away than 5 mm.
+    """
+    if not chains:
+        return np.full(len(points), np.nan)
+    parts = [pieces_of(chain, PIECE) for chain in chains]
+    start = np.concatenate([part[0] for part in parts])
+    vector = np.concatenate([part[1] for part in parts])
+    last = np.cumsum([len(part[0]) for part in parts]) - 1
+    best = cKDTree(start + 0.5 * vector).query(points)[1]
+    start, vector = start[best], vector[best]
+    square = np.maximum(np.sum(vector * vector, axis=1), 1e-18)
+    share = np.sum((points - start) * vector, axis=1) / square
+    is_before = np.isin(best, np.append(0, last[:-1] + 1)) & (share < END)
+    is_after = np.isin(best, last) & (share > 1.0 - END)
+    away = points - start - np.clip(share, 0.0, 1.0)[:, None] * vector
+    side = away[:, 0] * vector[:, 1] - away[:, 1] * vector[:, 0]
+    size = np.hypot(*away.T)
+    is_known = (size <= FAR) & ~is_before & ~is_after
+    return np.where(is_known, np.where(side < 0.0, -size, size), np.nan)
 
 
 def floor_deviation(heights: Floats, floors: Sequence[float]) -> Floats:

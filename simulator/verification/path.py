@@ -131,13 +131,19 @@ def pieces_of(points: Floats, longest: float) -> tuple[Floats, Floats, Ints, Flo
     way : (M,) array, mm
         Way from the start of the line to the middle of the piece.
     """
-    along = np.diff(points, axis=0)
+    return divided(points[:-1], np.diff(points, axis=0), longest)
+
+
+def divided(
+    begin: Floats, along: Floats, longest: float
+) -> tuple[Floats, Floats, Ints, Floats]:
+    """Divide lines, given by their start and vector, as :func:`pieces_of` does."""
     way = np.linalg.norm(along, axis=1)
     counts = np.maximum(np.ceil(way / longest), 1.0).astype(np.int64)
     rows = np.repeat(np.arange(len(along)), counts)
     index = np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)
     piece = along[rows] / counts[rows, None]
-    start = points[rows] + index[:, None] * piece
+    start = begin[rows] + index[:, None] * piece
     return start, piece, rows, (index + 0.5) * (way / counts)[rows]
 
 

@@ -65,6 +65,11 @@ class ProgrammedPart:
     is_wall: Bools
     """Cells beside a wall, (X, Y)."""
 
+    @property
+    def targets(self) -> WallTargets:
+        """Points on the walls, as no tool has approached them yet."""
+        return self.walls.targets
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class WallCells:
@@ -118,14 +123,14 @@ def programmed_part(
     left = PartSweep(stock, cell=cell_size(stock) if cell is None else cell)
     for run, points in zip(path.runs, path.chords, strict=True):
         left.cut(run.cutter, points)
-    found, is_wall = _wall_cells(left.map)
+    found, is_wall = wall_cells(left.map)
     if not len(found.points):
         raise ValueError("the programmed path leaves no wall in the stock")
     walls = _on_boundary(path, found, left)
     return ProgrammedPart(path=path, map=left.map, walls=walls, is_wall=is_wall)
 
 
-def _wall_cells(whole: ZMap) -> tuple[WallCells, Bools]:
+def wall_cells(whole: ZMap) -> tuple[WallCells, Bools]:
     """Points between cells of different height, and the cells beside them."""
     grid = whole.grid
     least = max(LEAST_STEP, 2.0 * whole.cell)

@@ -7,8 +7,8 @@ to a cell. Positions are radius, 0 and z. Units mm and s.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from math import pi
+from dataclasses import dataclass, replace
+from math import inf, pi
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -99,17 +99,15 @@ class LoggedBar:
 
     Parameters
     ----------
-    part : TurnedPart
-        What it is compared with.
+    cell : float, mm
+        Length of a cell along the axis.
     stock : Stock
     shapes : mapping
         Shapes of tools by number; other tools remove nothing.
     """
 
-    def __init__(
-        self, part: TurnedPart, stock: Stock, shapes: Mapping[int, Shape | None]
-    ) -> None:
-        self.bar = TurningStock(stock, part.bar.cell)
+    def __init__(self, cell: float, stock: Stock, shapes: Mapping[int, Shape | None]) -> None:
+        self.bar = TurningStock(stock, cell)
         self._shapes = shapes
         self._steps = SampleSteps(stock.high[2])
         self._nearest = unmet(self.bar.outer.shape)
@@ -126,39 +124,53 @@ class LoggedBar:
 
     def add(self, samples: LoggedSamples) -> None:
         """Cut along more samples, which are later than those before."""
-        for part, steps in self._steps.pieces(samples):
-            moves = np.linalg.norm(np.diff(part.position, axis=0), axis=1) > STILL
+        for part in self._steps.pieces(samples):
+            position = part.samples.position
+            moves = np.linalg.norm(np.diff(position, axis=0), axis=1) > STILL
             kept = np.flatnonzero(np.concatenate(([True], moves)))
             if len(kept) < 2:
                 continue
-            points = part.position[kept]
-            shape = self._shapes.get(int(part.tool[0]))
+            points = position[kept]
+            shape = self._shapes.get(int(part.samples.tool[0]))
             cut = _cut(self.bar, lines(list(points), speed=1.0), shape)
             if cut.any():
                 index = kept[_nearest(points, self.bar, cut)]
-                self._nearest.time[cut] = part.time[index]
-                self._nearest.step[cut] = steps[index]
-                self._nearest.workingstep[cut] = part.workingstep[index]
+                nose = shape.nose_radius if isinstance(shape, Insert) else 0.0
+                bend = _bend_within(part.bend, position, PIECE + nose)
+                self._nearest.meet(cut, replace(part, bend=bend), index)
 
 
 def turned_places(part: TurnedPart, logged: LoggedBar) -> SurfacePlaces:
     """Compare the profiles of outside and bore."""
     sides = [_side(part, logged, is_bore=False)]
-    if (part.bar.inner > 0.0).any() or (logged.bar.inner > 0.0).any():
+    if has_bore(part.bar, logged):
         sides.append(_side(part, logged, is_bore=True))
     return SurfacePlaces.joined(sides)
 
 
-def turned_volumes(part: TurnedPart, logged: LoggedBar, stock: Stock) -> ComparedVolumes:
-    """Compare the volumes that the two paths remove."""
-    raw = TurningStock(stock, part.bar.cell).volume
-    area, other = (
-        np.maximum(bar.outer**2 - bar.inner**2, 0.0) for bar in (part.bar, logged.bar)
+def turned_volumes(
+    bar: TurningStock, logged: LoggedBar, stock: Stock, *, low: float = -inf
+) -> ComparedVolumes:
+    """Compare the volumes that are removed from a stock, in the log and in the other part.
+
+    Parameters
+    ----------
+    bar : TurningStock
+    logged : LoggedBar
+    stock : Stock
+    low : float, mm
+        Only what lies before this z counts.
+    """
+    is_before = bar.z > low
+    raw, area, other = (
+        np.maximum(each.outer**2 - each.inner**2, 0.0)[is_before]
+        for each in (TurningStock(stock, bar.cell), bar, logged.bar)
     )
-    more = pi * part.bar.cell * (other - area)
+    disc = pi * bar.cell
+    more = disc * (other - area)
     return ComparedVolumes(
-        programmed=raw - part.bar.volume,
-        logged=raw - logged.bar.volume,
+        programmed=disc * float((raw - area).sum()),
+        logged=disc * float((raw - other).sum()),
         gouge=float(-np.minimum(more, 0.0).sum()),
         excess=float(np.maximum(more, 0.0).sum()),
     )
@@ -171,6 +183,17 @@ def _cut(bar: TurningStock, segments: Segments, shape: Shape | None) -> Bools:
     outer, inner = bar.outer.copy(), bar.inner.copy()
     bar.cut(segments, shape)
     return np.asarray((outer - bar.outer > CHANGED) | (bar.inner - inner > CHANGED))
+
+
+def _bend_within(bend: Floats, position: Floats, reach: float) -> Floats:
+    """Greatest bend within a reach along the path, (N,), mm: an insert cuts beside its tip."""
+    way = np.linalg.norm(np.diff(position, axis=0), axis=1)
+    square = np.floor(np.append(0.0, np.cumsum(way)) / reach).astype(np.int64)
+    _, square = np.unique(square, return_inverse=True)
+    greatest = np.zeros(int(square.max()) + 3)
+    np.maximum.at(greatest, square + 1, bend)
+    widened = np.maximum(np.maximum(greatest[:-2], greatest[1:-1]), greatest[2:])
+    return np.asarray(widened[square])
 
 
 def _nearest(points: Floats, bar: TurningStock, cut: Bools) -> Ints:
@@ -197,9 +220,23 @@ class ProfilePoints:
     """Whether there is material beyond (1), less (-1) or neither (0) in the log, (P,)."""
 
 
-def _side(part: TurnedPart, logged: LoggedBar, *, is_bore: bool) -> SurfacePlaces:
-    """Compare one profile; in a bore material lies outside."""
-    bar, path = part.bar, part.path
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ProfileComparison:
+    """P points on a profile, with the distance of another profile from each."""
+
+    points: ProfilePoints
+    position: Floats
+    """Radius, 0 and z, (P, 3), mm."""
+    deviation: Floats
+    """(P,), mm: excess positive, gouge negative."""
+    uncertainty: Floats
+    """Uncertainty by rounding and cells, (P,), mm."""
+
+
+def compared_profiles(
+    bar: TurningStock, logged: LoggedBar, *, is_bore: bool
+) -> ProfileComparison:
+    """Compare the profiles of outside or bore; in a bore material lies outside."""
     radius = bar.inner if is_bore else bar.outer
     other = logged.bar.inner if is_bore else logged.bar.outer
     parts = (_along(radius, other, bar), _steps(radius, other, bar))
@@ -208,19 +245,37 @@ def _side(part: TurnedPart, logged: LoggedBar, *, is_bore: bool) -> SurfacePlace
         for name in ProfilePoints.__slots__
     })
     place = np.column_stack([points.radius, points.z])
-    away = _distance(place, np.column_stack([other, bar.z]), bar.cell)
+    away = profile_distance(place, np.column_stack([other, bar.z]), bar.cell)
+    return ProfileComparison(
+        points=points,
+        position=np.column_stack([points.radius, np.zeros(len(place)), points.z]),
+        deviation=(-points.sign if is_bore else points.sign) * away,
+        uncertainty=np.where(points.is_face, bar.cell, 0.0)
+        + (rounding_uncertainty(logged.facts) + LIMIT),
+    )
+
+
+def has_bore(bar: TurningStock, logged: LoggedBar) -> bool:
+    """Whether one of two parts has a bore."""
+    return bool((bar.inner > 0.0).any() or (logged.bar.inner > 0.0).any())
+
+
+def _side(part: TurnedPart, logged: LoggedBar, *, is_bore: bool) -> SurfacePlaces:
+    """Compare one profile with that of the programmed path."""
+    path = part.path
+    found = compared_profiles(part.bar, logged, is_bore=is_bore)
+    points = found.points
     chord = part.chord[points.cell]
     segment, is_cut = path.segment[np.maximum(chord, 0)], chord >= 0
     noses = [run.cutter.nose_radius for run in path.runs if isinstance(run.cutter, Insert)]
     reach = PIECE + max(noses, default=0.0)
     step = logged.nearest.step[points.cell]
     bend = path_uncertainty(path, part.station[points.cell], step, reach=reach)
-    limit = rounding_uncertainty(logged.facts) + LIMIT + bar.cell * points.is_face
     return SurfacePlaces(
         is_wall=points.is_face,
-        position=np.column_stack([points.radius, np.zeros(len(place)), points.z]),
-        deviation=(-points.sign if is_bore else points.sign) * away,
-        uncertainty=np.where(is_cut, bend, 0.0) + limit,
+        position=found.position,
+        deviation=found.deviation,
+        uncertainty=np.where(is_cut, bend, 0.0) + found.uncertainty,
         area=points.area,
         workingstep=np.where(is_cut, path.workingstep[segment], -1),
         block=np.where(is_cut, path.block[segment], 0),
@@ -266,7 +321,7 @@ def _steps(radius: Floats, other: Floats, bar: TurningStock) -> ProfilePoints:
     )
 
 
-def _distance(points: Floats, profile: Floats, cell: float) -> Floats:
+def profile_distance(points: Floats, profile: Floats, cell: float) -> Floats:
     """Distance of points from a profile of lines, (C,), mm; at most ``FAR``."""
     start, piece, _, _ = pieces_of(profile, cell)
     best = cKDTree(start + 0.5 * piece).query(points, k=3)[1]

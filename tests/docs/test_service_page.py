@@ -13,9 +13,12 @@ from service.http_protocol import HEAD_S
 from service.jobs.runner import LONGEST, LONGEST_PACED, MOST_PACED
 from service.live.series import MOST_BYTES
 from service.rest.settings import Settings
+from service.rest.verifications import PLACES_SHOWN
 from service.session.runner import FORGOTTEN_AFTER, MOST_ROWS
 from service.simulation.live import MOST_SAMPLES
 from service.storage.jobs import MOST_WAITING, OWNERS
+from service.verification.inputs import MOST_ELEMENTS
+from service.verification.inputs import MOST_ROWS as MOST_LOGGED
 from tests.docs.pages import DOCS, ROOT, blocks
 from tests.service.rest.server import Server
 
@@ -46,6 +49,9 @@ def test_bounds_are_those_of_the_program() -> None:
         f"{LONGEST / 3600:g} h; {LONGEST_PACED / 3600:g} h for runs",
         f"{MOST_PACED} of them at once",
         f"{MOST_SAMPLES // 1_000_000} million rows or samples; {MOST_BYTES >> 20} MB of rows",
+        f"{MOST_LOGGED // 1_000_000} million rows in Parquet, "
+        f"{MOST_ELEMENTS // 1_000_000} million elements in XML",
+        f"{PLACES_SHOWN // 1000} 000 places",
     ):
         assert words in PAGE
     assert (OWNERS, MOST_ROWS, FORGOTTEN_AFTER) == (4, MOST_SAMPLES, 3600.0)
@@ -67,6 +73,8 @@ def test_the_commands_do_what_the_page_says(served: Server, tmp_path: Path) -> N
     optimised = (tmp_path / "part.optimised.stpnc").read_text(encoding="utf-8")
     assert optimised.startswith("ISO-10303-21;")
     assert "G1" in (tmp_path / "part.ngc").read_text(encoding="utf-8")
+    assert '"verdict":"nothing beyond the uncertainty of the log"' in done.stdout
+    assert (tmp_path / "places.csv").read_text(encoding="utf-8").startswith('"x_mm"')
 
 
 def test_the_example_client_shows_a_feed_and_a_run(served: Server) -> None:

@@ -277,7 +277,7 @@ def turning_path(job: ToolPathTask) -> ToolPath:
     """
     operation = operation_of(job)
     with job.program.using(job.step.operation_ref, *job.step.features):
-        outlines = _outlines(job)
+        outlines = outlines_of(job)
         bar = bar_of(job, outlines)
         course = PathBuilder(job, _safe_point(job, bar), is_turning=True)
         for finding in bar.findings:
@@ -319,8 +319,14 @@ def _make(
         )
 
 
-def _outlines(job: ToolPathTask) -> tuple[FeatureOutline, ...]:
-    """Outlines of the features within the bar, ordered from the front."""
+def outlines_of(job: ToolPathTask) -> tuple[FeatureOutline, ...]:
+    """Outlines of the features of a workingstep within the bar, ordered from the front.
+
+    Raises
+    ------
+    PathError, SchemaError
+        If there is none, or one cannot be turned.
+    """
     if not job.step.features:
         raise job.fault("the workingstep has no feature to turn", job.step.ref)
     reach = _reach(job)

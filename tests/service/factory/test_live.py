@@ -8,6 +8,7 @@ import pytest
 from service.factory.live import STATES, LiveShop, ShopEventKind, require_failure
 from service.factory.replications import run_shop
 from simulator.factory.machining import MachiningPlan
+from simulator.factory.measured import measures_of
 from simulator.factory.records import Listeners
 from simulator.factory.states import MachineState
 from simulator.factory.streams import Streams
@@ -34,7 +35,7 @@ def test_advanced_in_steps_it_ends_with_the_figures_of_one_run(tmp_path: Path) -
         pass
     shop = live.shop
     whole = run_shop(shop, MachiningPlan(), Streams(seed=3), listeners=Listeners())
-    assert live.tally.measures(live.floor) == whole.measures
+    assert measures_of(live.floor) == whole.measures
     assert live.is_done
     assert live.snapshot()["is_done"]
     assert not live.advance(1e9)

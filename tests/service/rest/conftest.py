@@ -7,9 +7,10 @@ import httpx
 import pytest
 
 from kbe.store import open_store
-from tests.service.rest.samples import SAMPLE
+from tests.service.rest.samples import SAMPLE, SLOT
 from tests.service.rest.server import Server, made, over
 from tests.service.shop import outcomes
+from tests.service.verification.logs import SLOT_MACHINE, slot_log
 
 
 @pytest.fixture(scope="session")
@@ -41,15 +42,26 @@ class Done:
     trial: str
     evaluation: str
     review: str
+    file: str
+    verification: str
+    cycle: str
 
 
 @pytest.fixture(scope="session")
-def done(service: Server) -> Done:
+def log(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """Positions of the slot, cut too deep."""
+    return slot_log(tmp_path_factory.mktemp("log") / "run.parquet", lower=0.1).read_bytes()
+
+
+@pytest.fixture(scope="session")
+def done(service: Server, log: bytes) -> Done:
     """One job of each kind that has succeeded."""
     with service.client() as client:
         program = made(
             client.post("/v1/programs?name=part.stpnc", content=SAMPLE.read_bytes()), 201
         )
+        slot = made(client.post("/v1/programs?name=slot.stpnc", content=SLOT.read_bytes()), 201)
+        file = made(client.post("/v1/files?name=run.parquet", content=log), 201)
         asked = {
             "advice": (
                 f"/v1/programs/{program}/advice",
@@ -60,6 +72,19 @@ def done(service: Server) -> Done:
             "trial": ("/v1/trials", {"pace": 100.0}),
             "evaluation": ("/v1/evaluations", {}),
             "review": ("/v1/reviews", {}),
+            "cycle": (
+                "/v1/cycle-times",
+                {"program_id": slot, "log_id": file, "machine": SLOT_MACHINE},
+            ),
+            "verification": (
+                "/v1/verifications",
+                {
+                    "program_id": slot,
+                    "log_id": file,
+                    "machine": SLOT_MACHINE,
+                    "cell_mm": 0.5,
+                },
+            ),
         }
         ids = {name: made(client.post(path, json=body)) for name, (path, body) in asked.items()}
         made_end = client.post(f"/v1/trials/{ids['trial']}/changes", json={"end": True})
@@ -67,4 +92,4 @@ def done(service: Server) -> Done:
         for id in ids.values():
             job = over(client, id, within=120.0)
             assert job["state"] == "succeeded", job
-    return Done(program=program, **ids)
+    return Done(program=program, file=file, **ids)

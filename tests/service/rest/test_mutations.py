@@ -129,7 +129,7 @@ def test_a_thousand_files_that_are_nearly_programs_do_no_harm(service: Server) -
     assert files_outside(service) == outside
     known = {path.name for path in service.data.iterdir()}
     assert known <= {
-        "programs", "jobs", "machines", "materials", "runner.lock", "server.lock",
+        "programs", "files", "jobs", "machines", "materials", "runner.lock", "server.lock",
         "service.db", "service.db-wal", "service.db-shm", "knowledge.db", "knowledge.db-wal",
         "knowledge.db-shm", "metrics", "runs",
     }  # fmt: skip

@@ -35,7 +35,8 @@ EXAMPLES = 15
 OF = {
     "programs": "program", "advice": "advice", "simulations": "simulation",
     "control-runs": "control", "trials": "trial", "evaluations": "evaluation",
-    "reviews": "review", "jobs": "simulation",
+    "reviews": "review", "jobs": "simulation", "verifications": "verification",
+    "files": "file", "cycle-times": "cycle",
 }  # fmt: skip
 """what of the things that were made is at a path"""
 

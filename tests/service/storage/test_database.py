@@ -31,7 +31,7 @@ def test_a_new_file_gets_every_version_and_says_so(tmp_path: Path) -> None:
     with database.reading() as connection:
         found = connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")
         assert {row["name"] for row in found} == {
-            "programs", "jobs", "requests", "keys", "runner",
+            "programs", "files", "jobs", "requests", "keys", "runner",
         }  # fmt: skip
         assert connection.execute("PRAGMA journal_mode").fetchone()[0] == "wal"
         assert connection.execute("PRAGMA synchronous").fetchone()[0] == 2

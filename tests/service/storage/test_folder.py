@@ -17,7 +17,8 @@ def test_a_new_folder_is_its_owners_alone(data_folder: DataFolder) -> None:
         data_folder.root,
         *(each for each in data_folder.root.iterdir() if each.is_dir()),
     ]
-    assert {each.name for each in folders[1:]} == {"programs", "jobs", "machines", "materials"}
+    wanted = {"programs", "files", "jobs", "machines", "materials"}
+    assert {each.name for each in folders[1:]} == wanted
     assert {stat.S_IMODE(each.stat().st_mode) for each in folders} == {0o700}
 
 

@@ -38,7 +38,7 @@ def test_a_bad_log_is_refused(tmp_path: Path, text: str, message: str) -> None:
 
 
 def test_a_log_that_does_not_show_tool_changes_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(StepNcError, match="the program uses 2 tools"):
+    with pytest.raises(StepNcError, match="there are 2 tools"):
         log_of(tmp_path, f"{HEAD}\n0,1,1,1\n", NAMES)
 
 
@@ -77,6 +77,18 @@ def test_a_survey_is_bounded_and_spread(tmp_path: Path) -> None:
     kept = np.concatenate(thinned(log_of(tmp_path, f"{HEAD}\n{rows}").pieces(), most=100))
     assert 50 <= len(kept) <= 100
     assert np.ptp(kept[:, 0]) > 4800.0
+
+
+def test_programs_are_counted_by_the_states_of_execution(tmp_path: Path) -> None:
+    words = ("READY", "ACTIVE", "PROGRAM_COMPLETED", "PROGRAM_COMPLETED", "ACTIVE", "WAIT", "")
+    rows = "\n".join(f"{row},{row},0,0,{word}" for row, word in enumerate(words))
+    file = log_of(tmp_path, f"{HEAD},execution\n{rows}\n")
+    list(file.pieces())
+    assert (file.completed, file.is_running) == (1, False)
+    path = tmp_path / "log.csv"
+    path.write_text(path.read_text("utf-8") + "9,9,0,0,ACTIVE\n", encoding="utf-8")
+    list(file.pieces())
+    assert (file.completed, file.is_running) == (1, True)
 
 
 def test_a_lathe_without_y_stays_in_its_plane(tmp_path: Path) -> None:

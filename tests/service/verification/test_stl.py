@@ -7,6 +7,7 @@ import pytest
 
 from service.verification.stl import read_stl
 from stepnc_model.errors import StepNcError
+from tests.service.verification.files import write_stl
 from tests.simulator.verification.box import box
 
 BOX = box((0.0, 0.0, -10.0), (40.0, 20.0, 0.0))
@@ -30,10 +31,7 @@ def test_text_is_read(tmp_path: Path) -> None:
 
 def test_binary_is_read(tmp_path: Path) -> None:
     path = tmp_path / "box.stl"
-    kind = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")])
-    records = np.zeros(len(BOX), dtype=kind)
-    records["corners"] = BOX
-    path.write_bytes(bytes(80) + len(BOX).to_bytes(4, "little") + records.tobytes())
+    write_stl(path, BOX)
     assert np.array_equal(read_stl(path), BOX)
 
 

@@ -208,3 +208,42 @@ def test_the_oldest_state_is_followed_by_all_that_the_agent_keeps(serve: Serve) 
     assert (state["vmc15_xpos"], state["vmc15_ypos"]) == ("4000", "7.5")
     parts = until(client.stream(), has("vmc15_xpos", "4999"))
     assert values(parts, "vmc15_xpos") == [f"{n}" for n in range(4001, 5000)]
+
+
+def test_what_an_agent_keeps_is_read_to_its_end(serve: Serve) -> None:
+    served = serve(size=5000)
+    served.add("vmc15_xpos", [float(n) for n in range(7000)])
+    client = AgentClient(served.url, wait=no_wait)
+    client.oldest_state()
+    parts = list(client.kept())
+    assert values(parts, "vmc15_xpos") == [f"{n}" for n in range(2001, 7000)]
+    assert list(client.kept()) == []
+
+
+def test_what_an_agent_drops_while_it_is_read_is_lost(serve: Serve) -> None:
+    served = serve(size=5000)
+    served.add("vmc15_xpos", [float(n) for n in range(5000)])
+    client = AgentClient(served.url, wait=no_wait)
+    client.rewind()
+    parts = client.kept()
+    first = next(parts)
+    served.add("vmc15_ypos", [float(n) for n in range(3000)])
+    rest = list(parts)
+    assert (len(first.observations), rest[0].lost) == (1000, 2000)
+    assert values(rest, "vmc15_xpos") == [f"{n}" for n in range(3000, 5000)]
+
+
+def test_an_agent_that_begins_anew_while_it_is_read_is_refused(serve: Serve) -> None:
+    served = serve()
+    served.add("vmc15_xpos", [float(n) for n in range(5000)])
+    client = AgentClient(served.url, wait=no_wait)
+    client.rewind()
+    parts = client.kept()
+    next(parts)
+    new = Agent(model=served.agent.model, clock=lambda: BEGIN + 90_000_000)
+    served.do(lambda: setattr(served.agent, "writer", new.writer))
+    with pytest.raises(AgentError, match="begun anew"):
+        list(parts)
+    client._port = 9  # nobody listens there
+    with pytest.raises(AgentError, match="refused"):
+        list(client.kept())

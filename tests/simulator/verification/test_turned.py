@@ -26,7 +26,7 @@ PART = turned_part(programmed_path([RUN]), BAR)
 
 
 def logged(points: Floats) -> LoggedBar:
-    left = LoggedBar(PART, BAR, {1: INSERT})
+    left = LoggedBar(PART.bar.cell, BAR, {1: INSERT})
     left.add(samples_at(points))
     return left
 
@@ -55,7 +55,7 @@ def test_an_offset_along_the_axis_is_a_gouge_on_the_face_to_a_cell() -> None:
 
 
 def test_volumes_are_those_of_rings() -> None:
-    found = turned_volumes(PART, logged(sampled(WAY, 0.4) + np.array([0.5, 0.0, 0.0])), BAR)
+    found = turned_volumes(PART.bar, logged(sampled(WAY, 0.4) + np.array([0.5, 0.0, 0.0])), BAR)
     assert found.programmed == pytest.approx(pi * (20.0**2 - 15.0**2) * 30.0, rel=1e-6)
     ring = pi * (15.5**2 - 15.0**2) * 30.0
     assert found.excess == pytest.approx(ring, rel=1e-3)

@@ -1,0 +1,46 @@
+"""Request to verify a log that the service has, or gets from a monitored machine."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import MaxLen
+
+from service.requests.fields import LONGEST_NAME, About
+from service.requests.runs import OptionalId
+from service.requests.verification import VerificationRequest
+
+MonitorName = Annotated[str, MaxLen(LONGEST_NAME)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StoredVerificationRequest(VerificationRequest):
+    """Verification of one log: an uploaded one, that of a run, or that of a machine."""
+
+    program_id: Annotated[
+        OptionalId,
+        About(
+            "an uploaded program (default: the one of the run; without any, machine, stock, "
+            "tools_id and required_id are needed)"
+        ),
+    ] = None
+    advice_id: Annotated[OptionalId, About("or the program optimised by this advice")] = None
+    log_id: Annotated[OptionalId, About("an uploaded log")] = None
+    run_id: Annotated[
+        OptionalId, About("or the samples of this simulation or run under control")
+    ] = None
+    monitor: Annotated[
+        MonitorName,
+        About("or the latest run that the agent of this monitored machine still keeps"),
+    ] = ""
+    tools_id: Annotated[OptionalId, About("an uploaded tool table with measured tools")] = None
+    required_id: Annotated[
+        OptionalId, About("an uploaded required part, in place of the features")
+    ] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class QueuedVerification(StoredVerificationRequest):
+    """Verification as a job has it: with what clients cannot choose."""
+
+    agent_url: str = ""
+    """Address of the monitored machine's agent, from the settings of the service."""

@@ -1,0 +1,195 @@
+"""Response bodies of verifications and of the files that they compare."""
+
+from typing import Any
+
+import numpy as np
+from pydantic import ConfigDict, Field
+
+from service.rest.replies import moment
+from service.rest.views import FindingView, View
+from service.storage.files import FileKind, StoredFile
+from service.verification.surface_map import SurfaceMap
+
+
+class FileView(View):
+    """Uploaded file: a log, a tool table or a required part."""
+
+    id: str
+    kind: FileKind
+    name: str
+    size_bytes: int
+    sha256: str
+    owner: str
+    created_at: str
+
+
+class SurfaceView(View):
+    """Greatest gouge and excess on the walls or floors of a workingstep."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+    workingstep: str
+    feature: str
+    tool: int | None = Field(description="number of the tool; null: unknown")
+    surface: str = Field(description="wall, floor, face or diameter")
+    gouge_mm: float
+    gouge_uncertainty_mm: float
+    gouge_at_mm: list[float] = Field(description="x, y and z of the place")
+    gouge_block: int = Field(description="block of the program; 0: none")
+    gouge_time_s: float | None = Field(description="time in the log; null: none came near")
+    gouge_cut_by: str = Field(description="workingstep that the log shows then")
+    excess_mm: float
+    excess_uncertainty_mm: float
+    excess_at_mm: list[float]
+    excess_block: int
+    excess_time_s: float | None
+    excess_cut_by: str
+    nominal_mm: list[float] | None = Field(
+        description="least and greatest deviation from the nominal feature; null: unknown"
+    )
+    predicted_deflection_mm: float | None = Field(
+        description="of the tool, which the log does not see; null: not requested or unknown"
+    )
+    area_mm2: float
+    beyond: float = Field(description="share of the area beyond its uncertainty, 0 to 1")
+
+
+class VolumesView(View):
+    """Volumes that the programmed and the logged path remove."""
+
+    programmed_mm3: float
+    logged_mm3: float
+    gouge_mm3: float
+    excess_mm3: float
+
+
+class BandView(View):
+    """Share of the surface within a tolerance band."""
+
+    width_mm: float = Field(description="half width of the band")
+    share: float = Field(description="0 to 1")
+
+
+class ResolutionView(View):
+    """What the log can resolve normal to a surface."""
+
+    step_mm: float = Field(description="way of the tool between samples")
+    straight_mm: float
+    arc_mm: float
+    arc_radius_mm: float | None = Field(description="of the smallest arc; null: no arc")
+    square_corner_mm: float
+
+
+class VerificationView(View):
+    """Result of a verification, as ``stepnc verify --json`` prints it."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+    program: str
+    machine: str
+    log: str
+    zero_mm: list[float]
+    tolerance_mm: float
+    has_errors: bool = Field(
+        description="whether a deviation exceeds both its uncertainty and the tolerance"
+    )
+    verdict: str
+    surfaces: list[SurfaceView]
+    volumes: VolumesView
+    bands: list[BandView]
+    samples: dict[str, Any]
+    resolution: ResolutionView
+    cell_mm: float
+    not_seen: list[str] = Field(description="what position feedback cannot see")
+    findings: list[FindingView]
+
+
+class SurfaceMapView(View):
+    """Places on the surface with their deviations: the worst, and others evenly spread."""
+
+    is_turned: bool = Field(description="whether x is the radius, and y 0")
+    places: int = Field(description="number of places shown")
+    left_out: int = Field(description="number of places left out")
+    left_out_beyond_mm: float = Field(
+        description="most by which one of those exceeds its uncertainty; 0: none does"
+    )
+    workingsteps: list[str]
+    kinds: list[str]
+    x_mm: list[float]
+    y_mm: list[float]
+    z_mm: list[float]
+    deviation_mm: list[float] = Field(description="excess positive, gouge negative")
+    uncertainty_mm: list[float]
+    workingstep: list[int] = Field(description="place in workingsteps, from 0")
+    kind: list[int] = Field(description="place in kinds, from 0")
+    block: list[int] = Field(description="block of the program; 0: none")
+    time_s: list[float | None] = Field(description="time in the log; null: none came near")
+
+
+class CycleRowView(View):
+    """Times of one tool in one workingstep, or of all."""
+
+    workingstep: str
+    tool: int | None
+    blocks: int
+    theoretical_s: float = Field(description="length over feed")
+    block_rate_s: float = Field(description="at the feed that block rate and axes allow")
+    predicted_s: float = Field(description="with acceleration and corners")
+    actual_s: float | None = Field(description="as logged; null: the log does not tell it")
+
+
+class LosingStretchView(View):
+    """Consecutive blocks that lose time for the same reason."""
+
+    workingstep: str
+    first_block: int
+    last_block: int
+    blocks: int
+    spacing_mm: float = Field(description="mean length of a block")
+    feed_mm_min: float
+    reached_mm_min: float
+    lost_s: float
+    cause: str
+
+
+class CycleTimeView(View):
+    """Cycle time of a program, as ``stepnc cycletime --json`` prints it."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+    program: str
+    log: str | None
+    machine: str
+    control: str
+    block_time_ms: float | None = Field(description="null: the block rate limits nothing")
+    rows: list[CycleRowView]
+    total: CycleRowView
+    stretches: list[LosingStretchView] = Field(description="those that lose most, first")
+    hints: list[str]
+    findings: list[FindingView]
+
+
+def file_view(stored: StoredFile) -> dict[str, Any]:
+    """Return a stored file as a :class:`FileView`."""
+    return {
+        "id": stored.id,
+        "kind": stored.kind.value,
+        "name": stored.name,
+        "size_bytes": stored.size,
+        "sha256": stored.sha256,
+        "owner": stored.owner,
+        "created_at": moment(stored.created),
+    }
+
+
+def map_view(found: SurfaceMap) -> dict[str, Any]:
+    """Return a map as a :class:`SurfaceMapView`."""
+    return {
+        "is_turned": found.is_turned,
+        "places": len(found.columns["block"]),
+        "left_out": found.left_out,
+        "left_out_beyond_mm": round(found.left_out_beyond, 4),
+        "workingsteps": found.workingsteps,
+        "kinds": found.kinds,
+        **{name: np.ascontiguousarray(values) for name, values in found.columns.items()},
+    }

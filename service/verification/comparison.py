@@ -1,0 +1,239 @@
+"""Comparison of the logged part with the programmed or the required one."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.reading import Tell
+from service.verification.log import LogFile
+from service.verification.nominal import (
+    nominal_deviation,
+    required_deviation,
+    required_profile_deviation,
+    turned_nominal_deviation,
+)
+from service.verification.prepared import PreparedProgram, RequiredSetup
+from simulator.motion.segments import AXES, Floats
+from simulator.removal.cutter import Cutter
+from simulator.verification.deviation import (
+    ComparedVolumes,
+    SurfacePlaces,
+    compared_volumes,
+    surface_places,
+)
+from simulator.verification.logged import LogFacts, LoggedPart, LoggedSamples, NearestSamples
+from simulator.verification.required import required_part, required_places
+from simulator.verification.revolved import required_bar, required_turned_places
+from simulator.verification.surface import EXACT, programmed_part
+from simulator.verification.turned import (
+    LoggedBar,
+    turned_part,
+    turned_places,
+    turned_volumes,
+)
+from stepnc_model.errors import StepNcError
+
+NEVER = "never enter the stock: where is its zero (--zero), and are they in millimetres?"
+
+LEAST_VOLUME = 1e-3
+"""Volume that counts as nothing, mm³."""
+
+MOST_SHORT = 3.0
+"""Positions are refused if this multiple of their extent is less than what is required."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ComparedParts:
+    """Comparison of two parts."""
+
+    places: SurfacePlaces
+    nominal: Floats
+    volumes: ComparedVolumes
+    facts: LogFacts
+    step: float
+    cell: float
+    notes: tuple[str, ...] = ()
+    """What is to be known of the required part."""
+
+
+def compared_with_program(
+    program: PreparedProgram, file: LogFile, cell: float | None, tell: Tell
+) -> ComparedParts:
+    """Compare the logged part with the programmed one."""
+    if program.is_turned:
+        return _turned(program, file, cell, tell)
+    return _milled(program, file, cell, tell)
+
+
+def compared_with_required(
+    setup: RequiredSetup, file: LogFile, cell: float | None, tell: Tell
+) -> ComparedParts:
+    """Compare the logged part with the required one, without a program."""
+    if setup.is_turned:
+        return _turned_required(setup, file, cell, tell)
+    return _milled_required(setup, file, cell, tell)
+
+
+def _milled(
+    program: PreparedProgram, file: LogFile, cell: float | None, tell: Tell
+) -> ComparedParts:
+    part = programmed_part(program.path, program.stock, cell=cell)
+    left = LoggedPart(part, program.stock, _rotating(program.cutters))
+    for piece in _told(file, left, tell):
+        left.add(piece)
+    places = surface_places(part, left)
+    return ComparedParts(
+        places=places,
+        nominal=(
+            nominal_deviation(program, places, part.walls.normal)
+            if program.required is None
+            else required_deviation(program.required, places, part.walls.normal)
+        ),
+        volumes=compared_volumes(part, left),
+        facts=left.facts,
+        step=_usual(left.walls, left.floors),
+        cell=part.map.cell,
+    )
+
+
+def _turned(
+    program: PreparedProgram, file: LogFile, cell: float | None, tell: Tell
+) -> ComparedParts:
+    part = turned_part(program.path, program.stock, cell=cell)
+    required = (
+        None
+        if program.required is None
+        else required_bar(program.required, program.stock, cell=cell)
+    )
+    left = LoggedBar(part.bar.cell, program.stock, program.cutters)
+    for piece in _told(file, left, tell):
+        left.add(piece)
+    places = turned_places(part, left)
+    return ComparedParts(
+        places=places,
+        nominal=(
+            turned_nominal_deviation(program, places)
+            if required is None
+            else required_profile_deviation(required, part.bar, places)
+        ),
+        volumes=turned_volumes(part.bar, left, program.stock),
+        facts=left.facts,
+        step=_usual(left.nearest),
+        cell=part.bar.cell,
+    )
+
+
+def _milled_required(
+    setup: RequiredSetup, file: LogFile, cell: float | None, tell: Tell
+) -> ComparedParts:
+    part = required_part(setup.required, setup.stock, cell=cell)
+    left = LoggedPart(part, setup.stock, _rotating(setup.cutters))
+    for piece in _told(file, left, tell):
+        left.add(piece)
+    places = required_places(part, left)
+    found = ComparedParts(
+        places=places,
+        nominal=np.full(len(places), np.nan),
+        volumes=compared_volumes(part, left),
+        facts=left.facts,
+        step=_usual(left.walls, left.floors),
+        cell=part.map.cell,
+        notes=(*_sag_notes(float(part.sag.max())), *_open_notes(part.open)),
+    )
+    grid = part.map.grid
+    cut = np.nonzero(part.is_part & (grid.heights < grid.top - EXACT))
+    widest = max(
+        shape.diameter for shape in setup.cutters.values() if isinstance(shape, Cutter)
+    )
+    wanted = [np.ptp(each) * size for each, size in zip(cut, (grid.dx, grid.dy), strict=True)]
+    _require_cut(found, file, np.array(wanted) - widest, axes=[0, 1])
+    return found
+
+
+def _turned_required(
+    setup: RequiredSetup, file: LogFile, cell: float | None, tell: Tell
+) -> ComparedParts:
+    part = required_bar(setup.required, setup.stock, cell=cell)
+    left = LoggedBar(part.bar.cell, setup.stock, setup.cutters)
+    for piece in _told(file, left, tell):
+        left.add(piece)
+    places = required_turned_places(part, left)
+    found = ComparedParts(
+        places=places,
+        nominal=np.full(len(places), np.nan),
+        volumes=turned_volumes(part.bar, left, setup.stock, low=part.low),
+        facts=left.facts,
+        step=_usual(left.nearest),
+        cell=part.bar.cell,
+        notes=tuple(_sag_notes(part.sag)),
+    )
+    bar = part.bar
+    cut = np.flatnonzero(bar.outer < bar.outer.max() - EXACT)
+    _require_cut(found, file, np.array([np.ptp(bar.z[cut]) if len(cut) else 0.0]), axes=[2])
+    return found
+
+
+def _sag_notes(sag: float) -> Iterator[str]:
+    """Say how far facets lie beside the surface."""
+    if sag > EXACT:
+        yield (
+            f"facets of the required part lie up to {sag:.2g} mm beside the curved surface "
+            "that they stand for; their corners are taken to lie on it"
+        )
+
+
+def _open_notes(count: int) -> Iterator[str]:
+    """Say that a mesh is not closed."""
+    if count:
+        yield (
+            f"the mesh of the required part is not closed: {count} edges do not belong to two "
+            "triangles; what is missing is not compared"
+        )
+
+
+def _told(file: LogFile, left: LoggedPart | LoggedBar, tell: Tell) -> Iterator[LoggedSamples]:
+    """Yield the pieces of a log, and tell how far it was taken."""
+    for piece in file.pieces():
+        yield piece
+        tell(f"{left.facts.samples} samples, {left.facts.end:.0f} s of the log")
+
+
+def _rotating(cutters: Mapping[int, object]) -> dict[int, Cutter | None]:
+    """Shapes of rotating tools; other tools mill nothing."""
+    return {
+        number: shape if isinstance(shape, Cutter) else None
+        for number, shape in cutters.items()
+    }
+
+
+def _usual(*places: NearestSamples) -> float:
+    """Way between samples that 95 % of the samples at a surface do not exceed, mm."""
+    steps = np.concatenate([each.step[np.isfinite(each.time)] for each in places])
+    return float(np.quantile(steps, 0.95)) if len(steps) else 0.0
+
+
+def _require_cut(
+    found: ComparedParts, file: LogFile, wanted: Floats, *, axes: list[int]
+) -> None:
+    """Refuse a log that removes nothing, or goes too short a way for what is to be removed.
+
+    Parameters
+    ----------
+    found : ComparedParts
+    file : LogFile
+    wanted : (A,) array, mm
+        Extent of what is to be removed along some axes, less the widest tool.
+    axes : list of int
+    """
+    if not found.volumes.logged > LEAST_VOLUME:
+        raise StepNcError(f"{file.name}: the positions {NEVER}")
+    span = found.facts.span[axes]
+    if (span * MOST_SHORT < wanted).all():
+        shown = " × ".join(f"{each:.3g}" for each in span.tolist())
+        needed = " × ".join(f"{each:.3g}" for each in wanted.tolist())
+        names = ", ".join(AXES[axis] for axis in axes)
+        raise StepNcError(
+            f"{file.name}: positions span {shown} mm in {names}; the required part needs a way "
+            f"of {needed} mm: are they in inches, or is it another part?"
+        )

@@ -1,0 +1,189 @@
+"""Shop files: what they may say, and how they are refused."""
+
+import json
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from simulator.errors import LibraryError
+from simulator.factory.calendar import WEEK, calendar_of
+from simulator.factory.distribution import Distribution, DistributionKind
+from simulator.factory.shop import Counting
+from simulator.factory.shop_file import read_shop
+from simulator.factory.states import MachineState
+from tests.simulator.factory.shops import shop_of
+
+GOOD = """
+title = "Two machines"
+hours = 10
+[[shift]]
+name = "day"
+hours = ["Mon-Fri 06:00-14:00"]
+[[machine]]
+name = "a"
+machine = "vmc15"
+count = 2
+shift = "day"
+[[machine.failure]]
+every_h = { kind = "exponential", mean = 5 }
+repair_min = 30
+[[machine]]
+name = "b"
+[[buffer]]
+name = "wip"
+capacity = 2
+[[crew]]
+name = "setters"
+tasks = ["batch set-up"]
+machines = ["a"]
+[[product]]
+name = "p"
+batch = 10
+arrival_min = { kind = "uniform", low = 10, high = 20 }
+[[product.step]]
+machines = ["a"]
+time_s = 60
+into = "wip"
+[[product.step]]
+machines = ["b"]
+time_s = { kind = "triangular", low = 1, mode = 2, high = 9 }
+scrap = 0.01
+"""
+
+REFUSED = {
+    "unknown machine": ('machines = ["b"]', 'machines = ["c"]',
+                        "product[1].step[2].machines: unknown 'c'; known: a-1, a-2, b, a"),
+    "unknown library": ('"vmc15"', '"vmc16"', "machine[1].machine: unknown machine 'vmc16'"),
+    "unknown buffer": ('into = "wip"', 'into = "w"',
+                       "product[1].step[1].into: unknown 'w'; known: wip"),
+    "unknown shift": ('shift = "day"', 'shift = "night"',
+                      "machine[1].shift: unknown 'night'; known: day"),
+    "negative time": ("low = 10, high", "low = -10, high",
+                      "product[1].arrival_min.low: -10 is below 0"),
+    "reversed time": ("low = 10, high = 20", "low = 30, high = 20",
+                      "product[1].arrival_min.low: 30 exceeds high 20"),
+    "mode above": ("mode = 2, high = 9", "mode = 12, high = 9",
+                   "product[1].step[2].time_s.mode: 12 exceeds high 9"),
+    "key of another kind": ('"exponential", mean = 5', '"exponential", mean = 5, low = 1',
+                            "low: kind exponential has only mean"),
+    "missing mean": ('"exponential", mean = 5', '"exponential"',
+                     "failure[1].every_h.mean: missing; kind exponential needs mean"),
+    "unknown kind": ('"exponential"', '"poisson"', "'poisson' is not one of constant, uniform"),
+    "share": ("scrap = 0.01", "scrap = 1.5", "product[1].step[2].scrap: 1.5 exceeds 1"),
+    "no parts": ("batch = 10", "batch = 0", "product[1].batch: 0 parts is below 1 parts"),
+    "half parts": ("batch = 10", "batch = 2.5", "product[1].batch: 2.5 is not a whole number"),
+    "negative room": ("capacity = 2", "capacity = -1", "capacity: -1 batches is below"),
+    "task": ('"batch set-up"]', '"starved"]', "crew[1].tasks: 'starved' needs no crew"),
+    "hours": ("06:00-14:00", "6-14", "shift[1].hours: 'Mon-Fri 6-14': expected days and hours"),
+    "day": ("Mon-Fri", "Mon-Fry", "unknown day 'Fry'"),
+    "clock": ("14:00", "26:00", "26:00 is no time of a day"),
+    "twice": ('name = "b"', 'name = "a-1"', "machine: 'a-1' is there 2 times"),
+    "typo": ("capacity", "capcity", "buffer[1].capcity: unknown key"),
+    "neither": ("time_s = 60\n", "", "step[1].program: expected either a program or"),
+    "both": ("time_s = 60\n", 'time_s = 60\nprogram = "x"\n', "expected either a program or"),
+    "never works": ("mean = 5", "mean = 0", "every_h: 0 h: the machine would never work"),
+    "warm-up": ("hours = 10\n", "hours = 10\nwarm_up_hours = 10\n",
+                "warm_up_hours: 10 h is not below the whole time of 10 h"),
+    "start": ("hours = 10\n", 'hours = 10\nstart = "noon"\n', "start: 'noon': expected a day"),
+    "behind the last": ("scrap = 0.01", 'into = "wip"',
+                        "product[1].step[2].into: the last step has no buffer behind it"),
+    "no machines": ('machines = ["b"]', "machines = []", "step[2].machines: empty"),
+    "text for a number": ("batch = 10", 'batch = "ten"', "batch: 'ten' is not a number"),
+}  # fmt: skip
+
+
+def test_a_good_file(tmp_path: Path) -> None:
+    shop = shop_of(GOOD, tmp_path)
+    assert [each.name for each in shop.machines] == ["a-1", "a-2", "b"]
+    assert shop.machines[0].idle_power == 1200.0
+    assert shop.machines[0].handling[MachineState.BATCH_SETUP].power == 1300.0
+    assert shop.machines[0].failures[0].counts is Counting.MACHINING
+    assert shop.machines[0].failures[0].between.mean == 5 * 3600.0
+    assert shop.machines[0].failures[0].repair.mean == 1800.0
+    assert shop.products[0].steps[0].machines == ("a-1", "a-2")
+    assert shop.products[0].arrival is not None
+    assert shop.products[0].arrival.average == 900.0
+    assert shop.crews[0].machines == {"a-1", "a-2"}
+    assert shop.duration == 36_000.0
+
+
+def test_json_says_the_same(tmp_path: Path) -> None:
+    path = tmp_path / "shop.json"
+    path.write_text(json.dumps(tomllib.loads(GOOD)), encoding="utf-8")
+    assert read_shop(path) == shop_of(GOOD, tmp_path)
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_bad_files_are_refused(tmp_path: Path, case: str) -> None:
+    before, after, message = REFUSED[case]
+    assert before in GOOD
+    with pytest.raises(LibraryError) as caught:
+        shop_of(GOOD.replace(before, after), tmp_path)
+    assert message in str(caught.value)
+    assert str(caught.value).startswith(str(tmp_path / "shop.toml"))
+
+
+@pytest.mark.parametrize("text", ["{", "[]", "nonsense", ""])
+def test_bad_json_is_refused(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "shop.json"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(LibraryError, match=r"shop\.json"):
+        read_shop(path)
+
+
+def test_a_loop_without_room_is_refused(tmp_path: Path) -> None:
+    text = GOOD.replace("capacity = 2", "capacity = 0").replace(
+        "scrap = 0.01", 'into = "wip"\n[[product.step]]\nmachines = ["a"]\ntime_s = 5'
+    )
+    with pytest.raises(LibraryError, match=r"buffer: capacity 0 of 'wip' on the loop a-1 -> b"):
+        shop_of(text, tmp_path)
+    shop_of(text.replace("capacity = 0", "capacity = 1"), tmp_path)
+
+
+def test_changes_replace_values(tmp_path: Path) -> None:
+    path = tmp_path / "shop.toml"
+    path.write_text(GOOD, encoding="utf-8")
+    shop = read_shop(path, changes={"product[1].batch": 3.0, "machine[1].count": 1.0})
+    assert shop.products[0].batch == 3
+    assert [each.name for each in shop.machines] == ["a", "b"]
+    for key in ("product[2].batch", "product[1].step[9].time_s", "nothing[1].x", "title.x"):
+        with pytest.raises(LibraryError, match="is not in the file; rows count from 1"):
+            read_shop(path, changes={key: 1.0})
+    with pytest.raises(LibraryError, match=r"product\[1\].batch: 0 parts is below"):
+        read_shop(path, changes={"product[1].batch": 0.0})
+
+
+def test_shifts_over_midnight_and_the_end_of_the_week() -> None:
+    calendar = calendar_of(["Sun 22:00-06:00", "Mon 06:00-07:00"])
+    assert calendar.is_open(0.0)
+    assert calendar.is_open(7 * 3600.0 - 1.0)
+    assert not calendar.is_open(7 * 3600.0)
+    assert calendar.is_open(WEEK - 1.0)
+    assert calendar.next_change(3600.0) == 7 * 3600.0
+    assert calendar.next_change(8 * 3600.0) == WEEK - 2 * 3600.0
+    assert calendar.weekly == 9 * 3600.0
+
+
+@pytest.mark.parametrize(
+    "distribution",
+    [
+        Distribution(kind=DistributionKind.CONSTANT, mean=4.0),
+        Distribution(kind=DistributionKind.UNIFORM, low=2.0, high=6.0),
+        Distribution(kind=DistributionKind.TRIANGULAR, low=1.0, mode=2.0, high=9.0),
+        Distribution(kind=DistributionKind.EXPONENTIAL, mean=4.0),
+        Distribution(kind=DistributionKind.GAMMA, mean=4.0, variation=0.5),
+        Distribution(kind=DistributionKind.LOGNORMAL, mean=4.0, variation=0.5),
+        Distribution(kind=DistributionKind.WEIBULL, mean=4.0, shape=2.0),
+    ],
+    ids=lambda each: each.kind,
+)
+def test_draws_have_their_mean_and_are_never_negative(distribution: Distribution) -> None:
+    numbers = distribution.draw(np.random.default_rng(5), 100_000)
+    assert numbers.min() >= 0.0
+    assert distribution.average == pytest.approx(4.0)
+    assert numbers.mean() == pytest.approx(4.0, abs=4.5 * numbers.std() / 100_000**0.5 + 1e-12)
+    assert distribution.scaled(2.0).average == pytest.approx(8.0)
+    if distribution.variation == 0.5:
+        assert numbers.std() / numbers.mean() == pytest.approx(0.5, rel=0.03)
