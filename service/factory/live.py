@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 
 from service.factory.live_status import ShopView, Stages, live_status
+from service.factory.state_log import COLUMNS, STATES
+from service.requests.factory import LONGEST_REPAIR, SHORTEST_REPAIR
 from simulator.factory.floor import Floor
 from simulator.factory.machining import MachiningPlan
 from simulator.factory.records import Listeners
@@ -26,14 +28,6 @@ from stepnc_model.units import (
     kwh_from_joules,
     seconds_from_minutes,
 )
-
-STATE_COLUMNS = ("time_s", "machine", "state")
-"""Columns of the changes of state; machine and state are their numbers, from 0."""
-
-STATES = tuple(MachineState)
-
-SHORTEST_REPAIR, LONGEST_REPAIR = 0.0, 10_000.0
-"""Bounds of the repair time of an ordered failure, in min."""
 
 
 class ShopEventKind(StrEnum):
@@ -164,8 +158,8 @@ class LiveShop:
         return update
 
     def changes(self) -> Floats:
-        """Return changes of state since the last call, (N, 3), as :data:`STATE_COLUMNS`."""
-        changes = np.array(self._changes, dtype=np.float64).reshape(-1, len(STATE_COLUMNS))
+        """Return changes of state since the last call, (N, 3), as :data:`COLUMNS`."""
+        changes = np.array(self._changes, dtype=np.float64).reshape(-1, len(COLUMNS))
         self._changes.clear()
         return changes
 

@@ -10,7 +10,7 @@ from service.factory.devices import shop_devices
 from service.factory.live import LiveShop
 from service.factory.plan import machining_plan
 from service.factory.published import ShopPublisher
-from service.factory.run import chosen_shop
+from service.factory.source import chosen_shop, source_of_file
 from service.factory.timelines import FASTEST, part_timelines
 from service.reading import Tell, silent
 from service.requests.factory import FactoryRequest, LiveFactoryRequest
@@ -45,7 +45,7 @@ def serve_shop(
     require_bounds(request)
     require_bounds(live)
     require_live(request)
-    shop = chosen_shop(file, request)
+    shop = chosen_shop(source_of_file(file), request)
     if len(shop.machines) > MOST_DEVICES:
         raise StepNcError(
             f"{file.name}: {len(shop.machines)} machines: one agent serves at most "

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from service.factory.live import STATES, LiveShop, ShopEventKind, require_failure
+from service.factory.live import LiveShop, ShopEventKind, require_failure
 from service.factory.replications import run_shop
+from service.factory.state_log import STATES
 from simulator.factory.machining import MachiningPlan
 from simulator.factory.measured import measures_of
 from simulator.factory.records import Listeners
