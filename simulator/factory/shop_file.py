@@ -5,7 +5,7 @@ bound before anything runs.
 """
 
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -113,6 +113,7 @@ def shop_of(
     )
     buffers = {row.name: _buffer(row) for row in file.buffer}
     products = tuple(_product(row, file.groups, buffers, program_named) for row in file.product)
+    _require_time(products, machines, path)
     return Shop(
         title=file.title or path.stem,
         machines=machines,
@@ -123,6 +124,26 @@ def shop_of(
         warm_up=seconds_from_hours(file.warm_up_hours),
         start=moment(file.start),
     )
+
+
+def _require_time(
+    products: Sequence[Product], machines: Sequence[ShopMachine], path: Path
+) -> None:
+    """Refuse raw stock without end that is used up without time."""
+    specs = {machine.name: machine for machine in machines}
+    for row, product in enumerate(products, start=1):
+        first = product.steps[0]
+        if product.arrival is not None or product.batches is not None or first.load is None:
+            continue
+        for name in first.machines:
+            times = [first.load.time, *(load.time for load in specs[name].handling.values())]
+            if all(time.is_zero for time in times):
+                raise LibraryError(
+                    f"0 s on {name}, which has no set-up either: raw stock that never runs out "
+                    "would be used up at once; expected a time, arrival_min or batches",
+                    path=str(path),
+                    key=f"product[{row}].step[1].time_s",
+                )
 
 
 def content_of(text: str, path: Path) -> dict[str, Any]:

@@ -279,7 +279,7 @@ def test_no_file_of_the_server_is_named_by_a_client(client: httpx.Client) -> Non
 
 def test_a_run_in_which_no_time_passes_ends(client: httpx.Client) -> None:
     steps = [{"machines": ["saw"], "time_s": 0}]
-    body = {"shop": shop(product=[{"name": "p", "step": steps}])}
+    body = {"shop": shop(product=[{"name": "p", "batches": 1e9, "step": steps}])}
     job = over(client, made(client.post("/v1/factories", json=body)), within=120.0)
     assert job["state"] == "failed"
     assert "no time passes: 20000 parts are made at once" in job["problem"]["detail"]

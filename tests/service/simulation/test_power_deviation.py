@@ -1,14 +1,18 @@
 """``simulate --power-deviation``: seeded, in file and totals alike, milling and turning."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from pyarrow import parquet
 
+from service.agent.run import DocumentChoice, simulated_with_document
 from service.simulation.output import print_simulation, simulation_json
 from service.simulation.run import Simulation, simulate
+from simulator.agent.names import NameSet, SchemaVersion
 from stepnc_model.errors import StepNcError
 from tests.asking import asked_simulation
 
@@ -52,6 +56,36 @@ def test_samples_in_the_file_integrate_to_the_totals(tmp_path: Path) -> None:
     table = parquet.read_table(output)
     time, total = table["time_s"].to_numpy(), table["electric_wattage"].to_numpy()
     assert np.trapezoid(total, time) == pytest.approx(whole.energy.total, rel=3e-4)
+
+
+def test_the_document_shows_the_powers_of_the_file(tmp_path: Path) -> None:
+    output, document = tmp_path / "run.parquet", tmp_path / "run.xml"
+    request, files = asked_simulation(
+        PARTS / "paper000.stpnc",
+        machine="paper000",
+        has_power_deviation=True,
+        seed=3,
+        output=output,
+    )
+    shown = DocumentChoice(version=SchemaVersion.V1_3, names=NameSet.PAPERS)
+    simulated_with_document(request, files, document, shown)
+    found = re.findall(
+        r'<Wattage dataItemId="c_axis_wattage"[^>]*>([\d.]+)<', document.read_text("utf-8")
+    )
+    shown_watts = np.array(list(map(float, found)))
+    drawn = parquet.read_table(output)["c_axis_wattage"].to_numpy()
+    plain = tmp_path / "plain.parquet"
+    run("paper000", "paper000", seed=None, output=plain)
+    exact = parquet.read_table(plain)["c_axis_wattage"].to_numpy()
+
+    def apart(watts: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Distance of each value of the document from the nearest of a file, W."""
+        distance: NDArray[np.float64] = np.abs(shown_watts[:, None] - watts).min(axis=1)
+        return distance
+
+    assert len(shown_watts) > 20
+    assert apart(drawn).max() < 0.01
+    assert apart(exact).max() > 10.0
 
 
 def test_the_sampling_rate_does_not_change_the_run() -> None:

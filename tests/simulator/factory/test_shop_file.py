@@ -4,12 +4,9 @@ import json
 import tomllib
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from simulator.errors import LibraryError
-from simulator.factory.calendar import WEEK, calendar_of
-from simulator.factory.distribution import Distribution, DistributionKind
 from simulator.factory.shop import Counting
 from simulator.factory.shop_file import read_shop
 from simulator.factory.states import MachineState
@@ -142,6 +139,17 @@ def test_a_loop_without_room_is_refused(tmp_path: Path) -> None:
     shop_of(text.replace("capacity = 0", "capacity = 1"), tmp_path)
 
 
+def test_raw_stock_without_end_needs_time(tmp_path: Path) -> None:
+    text = GOOD.replace(
+        'arrival_min = { kind = "uniform", low = 10, high = 20 }\n', ""
+    ).replace("time_s = 60", "time_s = 0")
+    shop_of(text, tmp_path)  # vmc15 has set-ups
+    bare = text.replace('machine = "vmc15"\n', "")
+    with pytest.raises(LibraryError, match=r"product\[1\].step\[1\].time_s: 0 s on a-1"):
+        shop_of(bare, tmp_path)
+    shop_of(bare.replace("batch = 10", "batch = 10\nbatches = 3"), tmp_path)
+
+
 def test_changes_replace_values(tmp_path: Path) -> None:
     path = tmp_path / "shop.toml"
     path.write_text(GOOD, encoding="utf-8")
@@ -153,37 +161,3 @@ def test_changes_replace_values(tmp_path: Path) -> None:
             read_shop(path, changes={key: 1.0})
     with pytest.raises(LibraryError, match=r"product\[1\].batch: 0 parts is below"):
         read_shop(path, changes={"product[1].batch": 0.0})
-
-
-def test_shifts_over_midnight_and_the_end_of_the_week() -> None:
-    calendar = calendar_of(["Sun 22:00-06:00", "Mon 06:00-07:00"])
-    assert calendar.is_open(0.0)
-    assert calendar.is_open(7 * 3600.0 - 1.0)
-    assert not calendar.is_open(7 * 3600.0)
-    assert calendar.is_open(WEEK - 1.0)
-    assert calendar.next_change(3600.0) == 7 * 3600.0
-    assert calendar.next_change(8 * 3600.0) == WEEK - 2 * 3600.0
-    assert calendar.weekly == 9 * 3600.0
-
-
-@pytest.mark.parametrize(
-    "distribution",
-    [
-        Distribution(kind=DistributionKind.CONSTANT, mean=4.0),
-        Distribution(kind=DistributionKind.UNIFORM, low=2.0, high=6.0),
-        Distribution(kind=DistributionKind.TRIANGULAR, low=1.0, mode=2.0, high=9.0),
-        Distribution(kind=DistributionKind.EXPONENTIAL, mean=4.0),
-        Distribution(kind=DistributionKind.GAMMA, mean=4.0, variation=0.5),
-        Distribution(kind=DistributionKind.LOGNORMAL, mean=4.0, variation=0.5),
-        Distribution(kind=DistributionKind.WEIBULL, mean=4.0, shape=2.0),
-    ],
-    ids=lambda each: each.kind,
-)
-def test_draws_have_their_mean_and_are_never_negative(distribution: Distribution) -> None:
-    numbers = distribution.draw(np.random.default_rng(5), 100_000)
-    assert numbers.min() >= 0.0
-    assert distribution.average == pytest.approx(4.0)
-    assert numbers.mean() == pytest.approx(4.0, abs=4.5 * numbers.std() / 100_000**0.5 + 1e-12)
-    assert distribution.scaled(2.0).average == pytest.approx(8.0)
-    if distribution.variation == 0.5:
-        assert numbers.std() / numbers.mean() == pytest.approx(0.5, rel=0.03)
