@@ -186,7 +186,7 @@ def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent
         shdr = None
         if request.shdr_port is not None:
             shdr = stack.enter_context(listening(request.host, request.shdr_port))
-            tell(f"SHDR adapter: {_place(shdr)}")
+            tell(f"SHDR adapter: {place_of(shdr)}")
         log = files.run.file
         if log is not None and log.suffix.lower() in LOGS:
             agent, work = replayed(request, files, log, tell=tell)
@@ -200,9 +200,31 @@ def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent
             repository = RunRepository(files.runs)
             stack.callback(RunKeeper(agent, repository, tell=tell).close)
             app = with_runs(app, repository)
-        tell(f"MTConnect agent: http://{_place(listener)}/current")
-        with asyncio.Runner(loop_factory=_new_loop) as runner:
-            runner.run(_serve(agent, app, [*work, *broker(agent)], listener, shdr))
+        tell(f"MTConnect agent: http://{place_of(listener)}/current")
+        run_server(agent, app, [*work, *broker(agent)], listener, shdr=shdr)
+
+
+def run_server(
+    agent: Agent,
+    app: Application,
+    work: Sequence[Work],
+    listener: socket.socket,
+    *,
+    shdr: socket.socket | None = None,
+) -> None:
+    """Serve an agent, and do what goes on beside it, until told to stop.
+
+    Parameters
+    ----------
+    agent : Agent
+    app : Application
+    work : sequence
+    listener : socket
+    shdr : socket, optional
+        Socket of an SHDR adapter that feeds other agents.
+    """
+    with asyncio.Runner(loop_factory=_new_loop) as runner:
+        runner.run(_serve(agent, app, work, listener, shdr))
 
 
 def _broker(request: AgentRequest, tell: Tell) -> Callable[[Agent], Sequence[Work]]:
@@ -403,7 +425,8 @@ def listening(host: str, port: int) -> socket.socket:
     return listener
 
 
-def _place(listener: socket.socket) -> str:
+def place_of(listener: socket.socket) -> str:
+    """Return host and port of a socket, as in an address."""
     host, port = listener.getsockname()[:2]
     return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
 

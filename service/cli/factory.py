@@ -2,8 +2,12 @@
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from service.cli.options import OK, Commands, add_json
+
+if TYPE_CHECKING:
+    from service.requests.factory import FactoryRequest
 
 REPORT = "factory.html"
 
@@ -17,7 +21,7 @@ def add_factory_command(commands: Commands) -> None:
 
 
 def _factory_options(parser: argparse.ArgumentParser) -> None:
-    from service.requests.factory import FactoryRequest
+    from service.requests.factory import FactoryRequest, LiveFactoryRequest
     from service.requests.fields import add_options
 
     add = parser.add_argument
@@ -35,6 +39,13 @@ def _factory_options(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="write a self-contained page with pictures into the folder",
     )
+    add(
+        "--live",
+        dest="is_live",
+        action="store_true",
+        help="run the shop at a pace, each machine as a device of one MTConnect agent",
+    )
+    add_options(parser, LiveFactoryRequest)
     add_json(parser)
     parser.set_defaults(run=_factory)
 
@@ -51,6 +62,8 @@ def _factory(options: argparse.Namespace) -> int:
     from stepnc_model.errors import StepNcError
 
     request = from_options(FactoryRequest, options)
+    if options.is_live:
+        return _live(options, request)
     if options.output is None and (options.report or request.documents or request.has_energy):
         raise StepNcError("--report, --documents and --energy write files: name a folder, -o")
     with interruptible():
@@ -65,4 +78,23 @@ def _factory(options: argparse.Namespace) -> int:
         write_out(factory_json(result))
     else:
         print_factory(result)
+    return OK
+
+
+def _live(options: argparse.Namespace, request: "FactoryRequest") -> int:
+    """Run a shop for clients until interrupted."""
+    from service.cli.machine import interruptible
+    from service.factory.serve import serve_shop
+    from service.requests.factory import LiveFactoryRequest
+    from service.requests.fields import from_options
+    from service.terminal import tell
+    from stepnc_model.errors import StepNcError
+
+    if options.output is not None or options.report or options.json:
+        raise StepNcError(
+            "--live serves clients and writes nothing: leave out -o, --report, --json"
+        )
+    live = from_options(LiveFactoryRequest, options)
+    with interruptible():
+        serve_shop(options.shop, request, live, tell=tell)
     return OK

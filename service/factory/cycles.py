@@ -145,7 +145,7 @@ def part_cycle(
     StepNcError
         When the machine cannot run the program; with program, machine, workingstep and bound.
     """
-    where = f"{program.name} on machine '{machine.name}'"
+    where = place_text(program, machine)
     try:
         told = program if settings is None else with_settings(program, settings, workingsteps)
         for step in told.workingsteps:
@@ -164,6 +164,11 @@ def part_cycle(
     for finding in (*prepared.findings, *virtual.findings):
         tell(f"{where}: {finding.message}")
     return cycle
+
+
+def place_text(program: Program, machine: Machine) -> str:
+    """Program and machine, for messages."""
+    return f"{program.name} on machine '{machine.name}'"
 
 
 def _require_possible(program: Program, step: ResolvedWorkingstep, machine: Machine) -> None:

@@ -1,12 +1,15 @@
 """Result of ``factory`` as text, JSON and page."""
 
 from collections.abc import Mapping, Sequence
+from csv import writer
 from dataclasses import dataclass
 from functools import partial
+from io import StringIO
 from math import isfinite, isnan
 
 from service.factory.run import FactoryResult
 from service.factory.sweep import SweptCase
+from service.formula import disarmed
 from service.rendering.columns import Column
 from service.rendering.pages import plot, rendered
 from service.rendering.records import dump
@@ -154,6 +157,14 @@ def factory_json(result: FactoryResult) -> str:
         "is_finished": result.first.is_finished,
         "parts_written": result.parts_written,
         "measures": [_record(each) for each in result.measures],
+        "states": [
+            {"machine": machine.name, "state": state.value, "hours": hours_from_seconds(time)}
+            for machine, tally in zip(
+                result.shop.machines, result.first.tally.machines, strict=True
+            )
+            for state, time in tally.seconds.items()
+            if time > 0.0
+        ],
         "sweep": [
             {
                 "changes": dict(case.changes),
@@ -173,6 +184,19 @@ def _record(interval: MeasureInterval) -> dict[str, object]:
         "half_width": interval.half_width if isfinite(interval.half_width) else None,
         "count": interval.count,
     }
+
+
+def factory_csv(result: FactoryResult) -> str:
+    """Return the figures as CSV, one row each."""
+    stream = StringIO()
+    rows = writer(stream, lineterminator="\n")
+    rows.writerow(("level", "name", "figure", "mean", "half_width", "count"))
+    for each in result.measures:
+        mean = "" if isnan(each.mean) else f"{each.mean:.10g}"
+        half = f"{each.half_width:.10g}" if isfinite(each.half_width) else ""
+        name = disarmed(each.name)
+        rows.writerow((each.level.value, name, each.quantity.value, mean, half, each.count))
+    return stream.getvalue()
 
 
 def factory_page(result: FactoryResult) -> str:

@@ -1,14 +1,22 @@
 """Run of a shop file, for the command ``factory``."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 
 from service.factory.cycles import PartCycles
 from service.factory.parts_file import PartTables
 from service.factory.plan import machining_plan
-from service.factory.replications import Replications, ShopRun, processes, run_shop
+from service.factory.replications import (
+    PartBound,
+    Replications,
+    ShopRun,
+    processes,
+    run_shop,
+)
+from service.factory.source import ShopSource, chosen_shop, source_of_file
 from service.factory.states_file import ShownStates, StateFile
 from service.factory.sweep import SweptCase, combinations, swept_keys
 from service.progress import Ticker, bar
@@ -19,10 +27,9 @@ from simulator.factory.machining import MachiningPlan
 from simulator.factory.measures import MeasureInterval, over_replications
 from simulator.factory.records import Listeners, StateSpent
 from simulator.factory.shop import Shop
-from simulator.factory.shop_file import read_shop
 from simulator.factory.streams import Streams
 from stepnc_model.errors import StepNcError, WriteError
-from stepnc_model.units import hours_from_seconds, seconds_from_hours
+from stepnc_model.units import hours_from_seconds
 
 STATES = "states.parquet"
 
@@ -50,14 +57,33 @@ def run_factory(
 ) -> FactoryResult:
     """Run a shop file.
 
+    Parameters and errors are those of :func:`run_source`.
+    """
+    return run_source(source_of_file(file), request, folder=folder, tell=tell)
+
+
+def run_source(
+    source: ShopSource,
+    request: FactoryRequest,
+    *,
+    folder: Path | None = None,
+    tell: Tell = silent,
+    most_parts: float = inf,
+    require: Callable[[Shop], None] = lambda _: None,
+) -> FactoryResult:
+    """Run a shop.
+
     Parameters
     ----------
-    file : Path
-        Shop file.
+    source : ShopSource
     request : FactoryRequest
     folder : Path, optional
         Folder for the tables of parts and the states of the first replication.
     tell : callable
+    most_parts : float
+        Most parts that the machines of a run may make together.
+    require : callable
+        Check of the shop, and of each that a sweep makes of it.
 
     Raises
     ------
@@ -67,16 +93,18 @@ def run_factory(
     """
     require_bounds(request)
     keys = swept_keys(request.sweep)
-    shop = chosen_shop(file, request)
+    shop = chosen_shop(source, request)
     swept = [
-        (changes, chosen_shop(file, request, changes))
+        (changes, chosen_shop(source, request, changes))
         for changes in (combinations(keys) if keys else ())
     ]
+    for each in (shop, *(each for _, each in swept)):
+        require(each)
     cycles = PartCycles(tell=tell)
-    plan = machining_plan(shop, cycles, place=file.name)
-    plans = [machining_plan(each, cycles, place=file.name) for _, each in swept]
+    plan = machining_plan(shop, cycles, place=source.name)
+    plans = [machining_plan(each, cycles, place=source.name) for _, each in swept]
     if folder is not None:
-        _require_folder(folder, shop)
+        require_folder(folder, shop)
     shown = ShownStates()
     with ExitStack() as stack:
         listeners = Listeners(state=(shown.state,))
@@ -87,6 +115,8 @@ def run_factory(
             )
             states = stack.enter_context(StateFile(folder / STATES, shop))
             listeners = listeners.plus(Listeners(part=(tables.part,), state=(states.state,)))
+        if most_parts < inf:
+            listeners = listeners.plus(Listeners(part=(PartBound(most_parts).part,)))
         first = _first(shop, plan, request, listeners, tell)
     runs = [first.measures]
     cases: list[SweptCase] = []
@@ -94,7 +124,7 @@ def run_factory(
     if others:
         with processes(others) as pool:
             numbers = range(1, request.replications)
-            work = Replications(pool=pool, seed=request.seed, tell=tell)
+            work = Replications(pool=pool, seed=request.seed, tell=tell, most_parts=most_parts)
             runs += work.measures(shop, plan, numbers)
             for (changes, case), own in zip(swept, plans, strict=True):
                 found = work.measures(case, own, range(request.replications))
@@ -113,31 +143,14 @@ def run_factory(
     )
 
 
-def chosen_shop(
-    file: Path, request: FactoryRequest, changes: dict[str, float | str] | None = None
-) -> Shop:
-    """Read a shop file with the times and changes of a request.
+def require_folder(folder: Path, shop: Shop) -> None:
+    """Make the folder of the outputs.
 
     Raises
     ------
     StepNcError
-        When the file or a change is invalid.
+        When it cannot be made, or a machine's name cannot name a file.
     """
-    shop = read_shop(file, changes=changes)
-    if request.hours is not None:
-        shop = replace(shop, duration=seconds_from_hours(request.hours))
-    if request.warm_up_hours is not None:
-        shop = replace(shop, warm_up=seconds_from_hours(request.warm_up_hours))
-    if shop.warm_up >= shop.duration:
-        raise StepNcError(
-            f"{file.name}: warm-up {hours_from_seconds(shop.warm_up):g} h: it must be below "
-            f"{hours_from_seconds(shop.duration):g} h, the whole time"
-        )
-    return shop
-
-
-def _require_folder(folder: Path, shop: Shop) -> None:
-    """Make the folder of the outputs."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -127,6 +127,10 @@ def _work(job: Job) -> Callable[[RunningJob], None]:
 
             is_review = job.kind is JobKind.REVIEW
             return evaluate.run_review if is_review else evaluate.run_evaluation
+        case JobKind.FACTORY:
+            from service.jobs import produce  # noqa: PLC0415
+
+            return produce.run
         case JobKind.VERIFICATION:
             from service.jobs import verify  # noqa: PLC0415
 

@@ -7,6 +7,7 @@ for name in (
     "service.jobs.child",
     "service.jobs.cycle_time",
     "service.jobs.evaluate",
+    "service.jobs.produce",
     "service.jobs.simulate",
     "service.jobs.steer",
     "service.jobs.verify",

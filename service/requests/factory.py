@@ -1,17 +1,31 @@
 """Request of a run of the virtual factory."""
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
-from annotated_types import Interval
+from annotated_types import Interval, MaxLen
 
+from service.live.playback import LEAST, MOST
+from service.requests.advice import Name
 from service.requests.fields import About, Request
-from service.requests.runs import Seed
+from service.requests.runs import PaceOrNone, Seed
+
+MOST_REPLICATIONS = 500
+"""Most replications that the service runs."""
+
+SHORTEST_REPAIR, LONGEST_REPAIR = 0.0, 10_000.0
+"""Bounds of the repair time of an ordered failure, in min."""
+
+EXAMPLE = {
+    "machine": [{"name": "mill", "machine": "vmc15", "count": 2}],
+    "product": [{"name": "plate", "batch": 5, "step": [{"machines": ["mill"], "time_s": 300}]}],
+}
+"""A small shop."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FactoryRequest(Request):
-    """Request to run a shop."""
+class ShopTimes(Request):
+    """Times and seed of a run of a shop."""
 
     hours: Annotated[
         float | None,
@@ -26,6 +40,12 @@ class FactoryRequest(Request):
               unit="h", name="warm-up", flag="--warm-up-hours", metavar="H"),
     ] = None  # fmt: skip
     seed: Seed = 1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FactoryRequest(ShopTimes):
+    """Request to run a shop."""
+
     replications: Annotated[
         int,
         Interval(ge=1, le=10_000),
@@ -50,3 +70,84 @@ class FactoryRequest(Request):
         About("write an MTConnect document of each of the first parts of a machine, N of them",
               flag="--documents", metavar="N"),
     ] = 0  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LiveFactoryRequest(Request):
+    """Request of a shop that runs live, for clients of its MTConnect agent."""
+
+    speed: Annotated[
+        float,
+        Interval(ge=0.01, le=10_000.0),
+        About("with --live: simulated seconds per wall-clock second", name="speed",
+              flag="--speed", metavar="X"),
+    ] = 60.0  # fmt: skip
+    port: Annotated[
+        int,
+        Interval(ge=0, le=65535),
+        About("with --live: port to listen on; 0: any that is free", flag="--port",
+              metavar="N"),
+    ] = 5000  # fmt: skip
+    host: Annotated[str, About("with --live: address to listen on", flag="--host")] = (
+        "127.0.0.1"
+    )
+    buffer: Annotated[
+        int,
+        Interval(ge=1000, le=1 << 22),
+        About("with --live: observations that are kept", flag="--buffer", metavar="N"),
+    ] = 1 << 17  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FactoryOrder(ShopTimes):
+    """Request to run a shop in the service; programs and machines by name, never by path."""
+
+    shop: Annotated[
+        dict[str, Any] | str | None,
+        About("content of a shop file: a JSON object, or TOML text", examples=(EXAMPLE,)),
+    ] = None
+    sample: Annotated[Name, About("or a sample shop", examples=("line",))] = ""
+    replications: Annotated[
+        int,
+        Interval(ge=1, le=MOST_REPLICATIONS),
+        About("independent runs; two and more give 95 % intervals"),
+    ] = 1
+    sweep: Annotated[
+        tuple[Annotated[str, MaxLen(300)], ...],
+        MaxLen(8),
+        About("values of a key of the shop file to compare, as product[1].batch=1,5,10"),
+    ] = ()
+    pace: Annotated[
+        float,
+        Interval(ge=0.0, le=MOST),
+        PaceOrNone(),
+        About(
+            "simulated seconds per wall-clock second of a live run, which counts from its "
+            "beginning unless it has a warm-up; 0: not live"
+        ),
+    ] = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MachineFailure(Request):
+    """Failure of a machine."""
+
+    machine: Annotated[Name, About("name of the machine in the shop")]
+    repair_min: Annotated[
+        float,
+        Interval(gt=SHORTEST_REPAIR, le=LONGEST_REPAIR),
+        About("time of the repair, min", unit="min", name="repair"),
+    ]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FactoryChanges(Request):
+    """Orders to a live shop; omitted fields change nothing."""
+
+    pace: Annotated[
+        float | None,
+        Interval(ge=LEAST, le=MOST),
+        About("simulated seconds per wall-clock second"),
+    ] = None
+    failure: Annotated[MachineFailure | None, About("let a machine fail now")] = None
+    is_ended: Annotated[bool, About("end the run; its result counts until now")] = False

@@ -21,6 +21,7 @@ from service.rest import (
     advice,
     agent,
     cycle_times,
+    factories,
     files,
     health,
     jobs,
@@ -103,7 +104,8 @@ def _routed() -> FastAPI:
     # The most frequently used first: routes are tried in this order.
     for routes in (
         advice.ROUTES, jobs.ROUTES, live.CONTROL, live.TRIALS, programs.ROUTES,
-        simulations.ROUTES, verifications.ROUTES, cycle_times.ROUTES, files.ROUTES,
+        simulations.ROUTES, factories.ROUTES, factories.SHOPS,
+        verifications.ROUTES, cycle_times.ROUTES, files.ROUTES,
         knowledge.EVALUATIONS, knowledge.REVIEWS, knowledge.CORRECTIONS, knowledge.OUTCOMES,
         library.MACHINES, library.MATERIALS, monitors.ROUTES,
         health.ROUTES, pages.ROUTES,

@@ -93,7 +93,7 @@ async def change_control(
     """Request changes, which take effect within a tenth of a second and appear as events."""
     require_changes(body)
     words = {name: value for name, value in dumped(body).items() if value is not None}
-    return await _ordered(
+    return await ordered(
         request, data_folder, jobs.get(data_folder, id, JobKind.CONTROL), words
     )
 
@@ -111,7 +111,7 @@ async def change_trial(
     pace = {} if body.pace is None else {"pace": body.pace}
     # Inputs first: a new cutter enters the work with them.
     acts = [{name: True} for name in ("restart", "end") if getattr(body, name)]
-    return await _ordered(request, data_folder, job, *filter(None, ({**inputs, **pace}, *acts)))
+    return await ordered(request, data_folder, job, *filter(None, ({**inputs, **pace}, *acts)))
 
 
 def _inputs(data_folder: DataFolder, job: Job) -> Inputs:
@@ -121,7 +121,7 @@ def _inputs(data_folder: DataFolder, job: Job) -> Inputs:
     return inputs if status is None else changed(inputs, **status["inputs"])
 
 
-async def _ordered(
+async def ordered(
     request: Request, data_folder: DataFolder, job: Job, *orders: Mapping[str, Any]
 ) -> Response:
     """Pass change requests on to the process that runs the job."""
@@ -164,7 +164,9 @@ def _add_common(routes: APIRouter, kind: JobKind) -> None:
     async def log(request: Request, data_folder: InDataFolder, id: Id) -> Response:
         """List the last events, oldest first."""
         jobs.get(data_folder, id, kind)
-        events = await run_in_threadpool(_events, LiveFolder(path=data_folder.job_folder(id)))
+        events = await run_in_threadpool(
+            past_events, LiveFolder(path=data_folder.job_folder(id))
+        )
         return json_reply(request, {"events": events})
 
     @routes.get("/{id}/events", summary="Stream events", response_class=Response,
@@ -224,7 +226,8 @@ async def report(request: Request, data_folder: InDataFolder, id: Id) -> Respons
     return report_reply(request, data_folder.job_folder(id) / REPORT, id=id)
 
 
-def _events(folder: LiveFolder) -> list[dict[str, Any]]:
+def past_events(folder: LiveFolder) -> list[dict[str, Any]]:
+    """Return the last events of a run, oldest first."""
     found: list[dict[str, Any]] = []
     offset = 0
     while (read := read_on(folder.events, offset)).lines:

@@ -426,6 +426,7 @@ PLACES = {
     JobKind.REVIEW: "reviews",
     JobKind.VERIFICATION: "verifications",
     JobKind.CYCLE_TIME: "cycle-times",
+    JobKind.FACTORY: "factories",
 }
 """Path segment of the results by kind of job."""
 

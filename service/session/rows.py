@@ -61,6 +61,11 @@ class RunUpdate:
     """Rows, one for each revolution or quarter of a second."""
     events: tuple[LoopEvent, ...] = ()
 
+    @property
+    def rows(self) -> Floats:
+        """Rows in the units of the columns, (M, C)."""
+        return rows_of(self.moments)
+
 
 LIT = 1.0
 """Shortest time for which the power warning stays on, in s, so that it can be seen."""

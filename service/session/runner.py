@@ -6,16 +6,17 @@ for a long time. Running state.
 """
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from enum import StrEnum
 from typing import Any, Protocol
 
 from service.live.folder import LiveFolder
 from service.live.journal import append, read_on
 from service.live.playback import TICK
 from service.live.series import SeriesWriter
-from service.session.rows import COLUMNS, RunUpdate, rows_of
+from service.session.rows import COLUMNS
 from simulator.motion.segments import Floats
 from stepnc_model.errors import StepNcError
 
@@ -38,6 +39,39 @@ FULL = "full"
 """Kind of event that reports that no more rows are kept for display."""
 
 
+class SessionEvent(Protocol):
+    """Event of a run."""
+
+    @property
+    def time(self) -> float:
+        """Machine time, in seconds."""
+        ...
+
+    @property
+    def kind(self) -> StrEnum:
+        """Kind of the event."""
+        ...
+
+    @property
+    def text(self) -> str:
+        """Description for people."""
+        ...
+
+
+class SessionUpdate(Protocol):
+    """Rows and events of a run since the last call."""
+
+    @property
+    def rows(self) -> Floats:
+        """Rows in the units of the columns, (M, C)."""
+        ...
+
+    @property
+    def events(self) -> Sequence[SessionEvent]:
+        """Events, ascending in time."""
+        ...
+
+
 class LiveSession(Protocol):
     """Run that can be advanced, watched and changed."""
 
@@ -55,7 +89,7 @@ class LiveSession(Protocol):
         """Advance to a time, in s; return False when the run has ended."""
         ...
 
-    def taken(self) -> RunUpdate:
+    def taken(self) -> SessionUpdate:
         """Return rows and events since the last call."""
         ...
 
@@ -80,6 +114,8 @@ class LiveRunner:
 
     run: LiveSession
     folder: LiveFolder
+    columns: Sequence[str] = tuple(COLUMNS)
+    """Columns of the rows; the first is the time."""
     pace: float
     """Simulated seconds per wall-clock second; 0: as fast as possible."""
     now: Callable[[], float] = time.monotonic
@@ -105,7 +141,7 @@ class LiveRunner:
             When results cannot be written.
         """
         self._touched_at = self.now()
-        with SeriesWriter(self.folder.series, list(COLUMNS)) as series:
+        with SeriesWriter(self.folder.series, self.columns) as series:
             goes_on, due = True, self.run.time
             while goes_on:
                 begin = self.now()
@@ -144,8 +180,9 @@ class LiveRunner:
 
     def _publish(self, series: SeriesWriter) -> None:
         taken = self.run.taken()
-        if taken.moments:
-            self._keep(series, rows_of(taken.moments))
+        rows = taken.rows
+        if len(rows):
+            self._keep(series, rows)
         for event in taken.events:
             self._say(event.kind.value, event.text, at=event.time)
         told_at = self.clock().isoformat(timespec="milliseconds")

@@ -59,16 +59,18 @@ class JobKind(StrEnum):
     REVIEW = "review"
     VERIFICATION = "verification"
     CYCLE_TIME = "cycle-time"
+    FACTORY = "factory"
 
     @property
     def is_live(self) -> bool:
-        """Whether the job can be changed while it runs; such a job is not run twice."""
+        """Whether all jobs of the kind steer a machine and can be changed while they run."""
         return self in {JobKind.CONTROL, JobKind.TRIAL}
 
 
 PACED = (
-    f"(kind IN ('{JobKind.CONTROL.value}', '{JobKind.TRIAL.value}') OR (kind = "
-    f"'{JobKind.SIMULATION.value}' AND coalesce(json_extract(request, '$.pace'), 0) > 0))"
+    f"(kind IN ('{JobKind.CONTROL.value}', '{JobKind.TRIAL.value}') OR (kind IN "
+    f"('{JobKind.SIMULATION.value}', '{JobKind.FACTORY.value}') AND "
+    "coalesce(json_extract(request, '$.pace'), 0) > 0))"
 )
 """SQL condition for :attr:`Job.is_paced`."""
 
@@ -97,6 +99,11 @@ class Job:
     """Problem details (RFC 9457) of a failed job."""
     attempt: int
     is_cancelling: bool
+
+    @property
+    def is_live(self) -> bool:
+        """Whether the job can be changed while it runs; such a job is not run twice."""
+        return self.kind.is_live or (self.kind is JobKind.FACTORY and self.is_paced)
 
     @property
     def is_paced(self) -> bool:
@@ -291,7 +298,7 @@ def recover(data_folder: DataFolder) -> None:
     for job in running(data_folder):
         if job.is_cancelling:
             finish(data_folder, job, JobState.CANCELLED)
-        elif job.kind.is_live:
+        elif job.is_live:
             finish(
                 data_folder,
                 job,

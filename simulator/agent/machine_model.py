@@ -1,6 +1,6 @@
 """The device model of a machine of the library, by its file."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import cache
@@ -253,6 +253,8 @@ def machine_model(
     *,
     version: SchemaVersion = SchemaVersion.V2_7,
     names: NameSet = NameSet.MODERN,
+    more: tuple[MachineItem, ...] = (),
+    left_out: Collection[str] = (),
 ) -> MachineModel:
     """Device model of a machine.
 
@@ -261,10 +263,15 @@ def machine_model(
     machine : Machine
     version : SchemaVersion
     names : NameSet
+    more : tuple of MachineItem
+        Further data items, of components that the machine has.
+    left_out : collection of str
+        Short ids of data items that the device does not have.
     """
+    known = [item for item in (*_items_of(machine), *more) if item.id not in left_out]
     chosen = [
         item
-        for item in _items_of(machine)
+        for item in known
         if item.is_in(version) and not (item.is_sum and names is NameSet.PAPERS)
     ]
     root = etree.Element("Devices")
@@ -287,8 +294,8 @@ def machine_model(
         id = _id(item, machine, names)
         ids[id] = item
         words = {"category": item.category, "id": id, "type": item.type, "name": item.id}
-        more = {"subType": item.sub_type, "units": item.units}
-        words |= {key: text for key, text in more.items() if text}
+        given = {"subType": item.sub_type, "units": item.units}
+        words |= {key: text for key, text in given.items() if text}
         element = etree.SubElement(holder, "DataItem", words)
         if item.constant:
             constraints = etree.SubElement(element, "Constraints")
@@ -300,9 +307,7 @@ def machine_model(
         model=model,
         shown=tuple(sorted(shown, key=lambda each: each[0])),
         left_out=tuple(
-            item.type
-            for item in _items_of(machine)
-            if item.id not in present and not item.is_sum
+            item.type for item in known if item.id not in present and not item.is_sum
         ),
     )
 

@@ -56,6 +56,8 @@ class Listeners:
     """Called with each part that leaves a machine."""
     state: tuple[Callable[[StateSpent], None], ...] = ()
     """Called when a machine leaves a state."""
+    began: tuple[Callable[[int], None], ...] = ()
+    """Called with the index of a machine that has entered a state, at that time."""
     entered: tuple[Callable[[Batch], None], ...] = ()
     """Called with each batch that enters the shop, at its release."""
     left: tuple[Callable[[Batch, float], None], ...] = ()
@@ -66,6 +68,7 @@ class Listeners:
         return Listeners(
             part=self.part + other.part,
             state=self.state + other.state,
+            began=self.began + other.began,
             entered=self.entered + other.entered,
             left=self.left + other.left,
         )

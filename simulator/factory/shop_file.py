@@ -59,7 +59,49 @@ def read_shop(
     LibraryError
         When the file cannot be read, or a value is missing, unknown or out of its range.
     """
-    content = _content(path)
+    beside = path.parent
+
+    def machine_beside(word: str) -> Machine:
+        file = beside / word
+        return machine_named(str(file) if Path(word).suffix and file.is_file() else word)
+
+    return shop_of(
+        content_of(read_text(path), path),
+        path,
+        changes=changes,
+        machine_named=machine_beside,
+        program_named=lambda word: str(beside / word),
+    )
+
+
+def shop_of(
+    content: dict[str, Any],
+    path: Path,
+    *,
+    changes: Mapping[str, object] | None = None,
+    machine_named: Callable[[str], Machine],
+    program_named: Callable[[str], str],
+) -> Shop:
+    """Shop of the content of a shop file.
+
+    Parameters
+    ----------
+    content : dict
+        As the parser gave it; changed in place.
+    path : Path
+        Name of the file, for messages.
+    changes : mapping, optional
+        As in :func:`read_shop`.
+    machine_named : callable
+        Function from the word of a row to a machine.
+    program_named : callable
+        Function from the word of a step to the path of its program.
+
+    Raises
+    ------
+    LibraryError
+        When a value is missing, unknown or out of its range.
+    """
     for key, value in (changes or {}).items():
         _change(content, key, value, path)
     file = converted(content, ShopFile, path)
@@ -70,7 +112,7 @@ def read_shop(
         for machine in _machines(each, calendars, path, row, machine_named)
     )
     buffers = {row.name: _buffer(row) for row in file.buffer}
-    products = tuple(_product(row, file.groups, buffers, path) for row in file.product)
+    products = tuple(_product(row, file.groups, buffers, program_named) for row in file.product)
     _require_time(products, machines, path)
     return Shop(
         title=file.title or path.stem,
@@ -104,14 +146,19 @@ def _require_time(
                 )
 
 
-def _content(path: Path) -> dict[str, Any]:
-    """Content of a JSON or TOML file."""
-    text = read_text(path)
+def content_of(text: str, path: Path) -> dict[str, Any]:
+    """Content of the text of a shop file, JSON or TOML by its suffix.
+
+    Raises
+    ------
+    LibraryError
+        When it cannot be parsed.
+    """
     if path.suffix.lower() != ".json":
         return parsed(text, path)
     try:
         content = json.loads(text)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise LibraryError(f"is not valid JSON: {error}", path=str(path)) from error
     if not isinstance(content, dict):
         raise LibraryError("is not a table", path=str(path))
@@ -146,10 +193,8 @@ def _machines(
     """Machines of a row."""
     machine = None
     if row.machine:
-        beside = path.parent / row.machine
-        word = str(beside) if Path(row.machine).suffix and beside.is_file() else row.machine
         try:
-            machine = machine_named(word)
+            machine = machine_named(row.machine)
         except UnknownMachine as error:
             key = f"machine[{number}].machine"
             raise LibraryError(str(error), path=str(path), key=key) from error
@@ -190,7 +235,7 @@ def _product(
     row: ProductRow,
     groups: Mapping[str, tuple[str, ...]],
     buffers: dict[str, Buffer],
-    path: Path,
+    program_named: Callable[[str], str],
 ) -> Product:
     """Product; a step without a buffer gets an unlimited one of its own."""
     steps = []
@@ -206,7 +251,7 @@ def _product(
         steps.append(
             RouteStep(
                 machines=tuple(dict.fromkeys(machines)),
-                program=str(path.parent / step.program) if step.program else "",
+                program=program_named(step.program) if step.program else "",
                 load=load,
                 design=None if step.vary is None else step.vary.design,
                 into=into,

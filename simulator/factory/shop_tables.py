@@ -40,6 +40,9 @@ NEEDED = {
 }
 """Keys of each kind of distribution."""
 
+MOST_MACHINES = 10_000
+"""Most machines of a shop."""
+
 TASKS = frozenset({*HANDLING, MachineState.MACHINING, MachineState.REPAIR,
                    MachineState.MAINTENANCE})  # fmt: skip
 """States that may need a crew."""
@@ -293,6 +296,9 @@ class ShopFile(FileTable, frozen=True, kw_only=True):
         for key in ("machine", "product"):
             if not getattr(self, key):
                 raise KeyFault(key, f"missing; expected at least one [[{key}]]")
+        count = sum(int(row.count) for row in self.machine)
+        if count > MOST_MACHINES:
+            raise KeyFault("machine", f"{count} machines exceed {MOST_MACHINES}")
         machines = [name for row in self.machine for name in row.names]
         _require_once("machine", machines)
         for key in ("product", "buffer", "shift", "crew"):

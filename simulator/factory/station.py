@@ -85,6 +85,12 @@ class Station:
     """Batch on the machine."""
     holding_for: BatchBuffer | None = None
     """Buffer for whose room it waits."""
+    part: int | None = None
+    """Number of the part on the machine, in its batch."""
+    work: Machining | None = None
+    """Machining of the part."""
+    cut: float = 0.0
+    """Machining time of the part before the present state, s."""
     machined: float = 0.0
     """Machining time so far, s."""
     process: Process | None = None
@@ -94,6 +100,7 @@ class Station:
     _spent: list[tuple[float, float, float]] = field(init=False)
     _meter: PowerMeter = field(init=False)
     _listeners: tuple[Callable[[StateSpent], None], ...] = ()
+    _began: tuple[Callable[[int], None], ...] = ()
     _has_crews: bool = False
     _has_pauses: bool = False
     """Whether shifts or maintenance may begin between two parts."""
@@ -116,7 +123,7 @@ class Station:
         self._counts, self._meter = tally.machines[self.index], tally.meter
         self._seconds, self._joules = self._counts.seconds, self._counts.joules
         self._spent = tally.power.waiting
-        self._listeners = self.around.listeners.state
+        self._listeners, self._began = self.around.listeners.state, self.around.listeners.began
         for step in self.around.machining:
             self._counts.processes[step] = ProcessTally()
         for state in HANDLING:
@@ -158,11 +165,15 @@ class Station:
             self._spent.append((since, now, energy))
             for tell in self._listeners:
                 tell(StateSpent(self.index, before, since, now, energy))
+            if before is _MACHINING:
+                self.cut += now - since
             self.since = now
         if power != drawn:
             self._meter.change(power - drawn, now)
             self.power = power
         self.state = state
+        for begin in self._began:
+            begin(self.index)
 
     def close(self) -> None:
         """Record the time in the present state so far."""
@@ -174,7 +185,14 @@ class Station:
             self._spent.append((since, now, energy))
             for tell in self._listeners:
                 tell(StateSpent(self.index, self.state, since, now, energy))
+            if self.state is _MACHINING:
+                self.cut += now - since
             self.since = now
+
+    @property
+    def elapsed(self) -> float:
+        """Machining time of the part so far, s."""
+        return self.cut + (self.env.now - self.since if self.state is _MACHINING else 0.0)
 
     def wake(self) -> bool:
         """Wake the machine if it waits for a batch or its shift; whether it did."""
@@ -236,6 +254,7 @@ class Station:
             if row and self._has_pauses:
                 yield from self._between_parts()
             work = next(machining)
+            self.part, self.work, self.cut = part, work, 0.0
             part_setup, ejection = yield from self._part(work)
             is_good = not self._part_spoilt and (scrap == 0.0 or next(self._scrap) >= scrap)
             if is_good:
@@ -251,6 +270,7 @@ class Station:
                     part_setup, work.time, ejection, 0.0, work.energy, work.peak_power,
                     work.settings, is_good,
                 )  # fmt: skip
+        self.part, self.work = None, None
         ejection = yield from self._handle(MachineState.BATCH_EJECTION)
         if made is not None:
             self._tell(made._replace(batch_ejection=ejection))

@@ -1,0 +1,128 @@
+"""Job ``factory``: run a shop, live at a pace or as fast as possible with replications."""
+
+import json
+from collections.abc import Mapping
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+from service.factory.asked import MOST_PARTS, asked_source, require_asked, require_small
+from service.factory.cycles import PartCycles
+from service.factory.live import LiveShop
+from service.factory.output import factory_csv, factory_json, factory_page
+from service.factory.parts_file import PartTables
+from service.factory.plan import machining_plan
+from service.factory.replications import PartBound, ShopRun
+from service.factory.run import STATES, FactoryResult, require_folder, run_source
+from service.factory.source import ShopSource
+from service.factory.state_log import COLUMNS
+from service.factory.states_file import ShownStates, StateFile
+from service.files import write_atomically
+from service.jobs.task import REPORT, RunningJob
+from service.live.series import SeriesWriter
+from service.requests.factory import FactoryOrder, FactoryRequest
+from service.session.runner import LiveRunner
+from simulator.factory.measured import measures_of
+from simulator.factory.measures import over_replications
+from simulator.factory.records import Listeners
+from stepnc_model.errors import StepNcError
+from stepnc_model.units import hours_from_seconds
+
+TABLES = "tables"
+"""Folder of the tables of parts and the states, below that of the job."""
+
+FIGURES = "figures.csv"
+
+STATE_LOG = "states.bin"
+"""Changes of state of a live run, see :mod:`service.factory.state_log`."""
+
+
+def run(task: RunningJob) -> None:
+    """Run a shop and store tables, report and result.
+
+    Raises
+    ------
+    StepNcError
+        When the shop or a program is invalid, or its machines wait for each other.
+    """
+    order = task.request(FactoryOrder)
+    source = asked_source(task.data_folder, order)
+    if order.pace:
+        result = _live(task, order, source)
+    else:
+        request = FactoryRequest(
+            hours=order.hours,
+            warm_up_hours=order.warm_up_hours,
+            seed=order.seed,
+            replications=order.replications,
+            sweep=order.sweep,
+            has_energy=True,
+        )
+        result = run_source(
+            source,
+            request,
+            folder=task.folder / TABLES,
+            tell=task.tell,
+            most_parts=MOST_PARTS,
+            require=require_small,
+        )
+    write_atomically(task.folder / REPORT, factory_page(result).encode(errors="replace"))
+    write_atomically(task.folder / FIGURES, factory_csv(result).encode())
+    task.keep(json.loads(factory_json(result)))
+
+
+def _live(task: RunningJob, order: FactoryOrder, source: ShopSource) -> FactoryResult:
+    """Run a shop at a pace, and obey orders."""
+    shop = require_asked(source, order)
+    task.progress(0.0, "running the programs of the shop")
+    plan = machining_plan(shop, PartCycles(tell=task.tell), place=source.name)
+    folder = task.folder / TABLES
+    require_folder(folder, shop)
+    shown = ShownStates()
+    with ExitStack() as stack:
+        tables = stack.enter_context(PartTables(folder, shop, plan.materials, has_energy=True))
+        states = stack.enter_context(StateFile(folder / STATES, shop))
+        log = stack.enter_context(SeriesWriter(task.folder / STATE_LOG, COLUMNS))
+        live = LiveShop(
+            shop,
+            plan,
+            seed=order.seed,
+            programs=source.programs,
+            listeners=Listeners(
+                part=(tables.part, PartBound(MOST_PARTS).part),
+                state=(shown.state, states.state),
+            ),
+        )
+
+        def tell(status: Mapping[str, Any]) -> None:
+            log.add(live.changes())
+            hours = hours_from_seconds(live.time)
+            task.progress(live.time / shop.duration, f"{hours:.1f} of {status['hours']:g} h")
+
+        LiveRunner(
+            run=live, folder=task.live, columns=live.columns, pace=order.pace, tell=tell
+        ).go()
+        measures = measures_of(live.floor)
+    if not measures:
+        raise StepNcError("the run ended before its warm-up did: nothing was counted")
+    return FactoryResult(
+        shop=shop,
+        seed=order.seed,
+        replications=1,
+        measures=over_replications([measures]),
+        first=ShopRun(
+            measures=measures,
+            tally=live.floor.tally,
+            ended=live.time,
+            is_finished=live.floor.is_finished,
+        ),
+        states=shown.rows,
+        parts_written=tables.count,
+    )
+
+
+def table_of(folder: Path, machine: str) -> Path | None:
+    """File of the table of parts of a machine in the folder of a job; None: there is none."""
+    file = folder / TABLES / f"{machine}.csv"
+    is_name = Path(machine).name == machine
+    return file if is_name and file.is_file() else None
