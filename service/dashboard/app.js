@@ -2,7 +2,7 @@
 
 const PAGES = [
   ["plan", "Plan"], ["control", "Control"], ["machine", "Machine"],
-  ["verify", "Verify"], ["knowledge", "Knowledge"], ["jobs", "Jobs"],
+  ["factory", "Factory"], ["verify", "Verify"], ["knowledge", "Knowledge"], ["jobs", "Jobs"],
 ];
 const KEY = "stepnc.key", THEME = "stepnc.theme";
 /** HTTP status codes of a service that is starting or stopping */

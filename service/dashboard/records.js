@@ -11,6 +11,7 @@ export const KINDS = {
   "evaluation": ["evaluation", (id) => `/dashboard/knowledge.html?evaluation=${id}`],
   "verification": ["verification", (id) => `/dashboard/verify.html?id=${id}`],
   "cycle-time": ["cycle time", (id) => `/dashboard/verify.html?cycle=${id}`],
+  "factory": ["factory", (id) => `/dashboard/factory.html?id=${id}`],
   "review": ["review", (id) => `/dashboard/knowledge.html?review=${id}`],
 };
 

@@ -106,6 +106,8 @@ class LiveShop:
             programs=programs,
             stages=Stages(shop),
         )
+        self._told_at, self._told = 0.0, self.view.energies()
+        self._rows.append(self._row())
         self._changes += [
             (0.0, row, STATES.index(each.state)) for row, each in enumerate(self.floor.stations)
         ]
@@ -195,11 +197,18 @@ class LiveShop:
         self._say(ShopEventKind.ORDER, text)
 
     def _row(self) -> list[float]:
+        """Row whose powers are means since the last row, so that they add up to the energy."""
+        before, since = self._told, self.time - self._told_at
+        energies = self.view.energies()
         powers = [station.power for station in self.floor.stations]
+        # At the end of the warm-up energies begin anew.
+        if since > 0.0 and all(now >= own for now, own in zip(energies, before, strict=True)):
+            powers = [(now - own) / since for now, own in zip(energies, before, strict=True)]
+        self._told_at, self._told = self.time, energies
         return [
             self.time,
             kw_from_watts(sum(powers)),
-            kwh_from_joules(sum(self.view.energies())),
+            kwh_from_joules(sum(energies)),
             float(self.floor.tally.inside),
             float(sum(each.good for each in self.floor.tally.products)),
             *powers,

@@ -27,7 +27,7 @@ from service.rest.context import (
     page_reply,
     queued,
 )
-from service.rest.factory_views import ShopView, StatesView
+from service.rest.factory_views import SampleShopView, StatesView
 from service.rest.jobs import EVENTS
 from service.rest.live import ordered, past_events
 from service.rest.replies import file_reply, json_reply, report_reply
@@ -62,7 +62,7 @@ Bars = Annotated[int, Query(ge=1, le=2000, description="most bars of each machin
 MachineName = Annotated[str, Path(max_length=200, description="name of a machine of the shop")]
 
 
-@SHOPS.get("", response_model=list[ShopView], summary="List the sample shops")
+@SHOPS.get("", response_model=list[SampleShopView], summary="List the sample shops")
 async def shops(request: Request) -> Response:
     """List the sample shops with their text; an installed package has none."""
 

@@ -5,7 +5,7 @@ from pydantic import Field
 from service.rest.views import View
 
 
-class ShopView(View):
+class SampleShopView(View):
     """Sample shop."""
 
     name: str

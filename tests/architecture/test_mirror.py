@@ -37,6 +37,8 @@ TOGETHER = {
     "service/rest/monitor_views.py": "held against the document in rest/test_monitors.py",
     "service/contents_output.py": "printed in test_plan_output.py and test_output_json.py",
     "service/library_output.py": "printed in test_plan_output.py and test_output_json.py",
+    "service/factory/live_status.py": "read in tests/service/factory/test_live.py",
+    "service/rest/factory_views.py": "held against the document in rest/test_factories.py",
     "service/requests/advice.py": "fields only; read in rest/test_bodies.py and storage",
     "service/requests/blocks.py": "fields only; read in tests/service/blocks",
     "service/requests/recording.py": "fields only; read in tests/service/recording",

@@ -9,9 +9,11 @@ from pathlib import Path
 import pytest
 
 from service.cli.serve import USUAL_RATE
+from service.factory import asked
 from service.http_protocol import HEAD_S
 from service.jobs.runner import LONGEST, LONGEST_PACED, MOST_PACED
 from service.live.series import MOST_BYTES
+from service.requests.factory import MOST_REPLICATIONS
 from service.rest.settings import Settings
 from service.rest.verifications import PLACES_SHOWN
 from service.session.runner import FORGOTTEN_AFTER, MOST_ROWS
@@ -52,6 +54,10 @@ def test_bounds_are_those_of_the_program() -> None:
         f"{MOST_LOGGED // 1_000_000} million rows in Parquet, "
         f"{MOST_ELEMENTS // 1_000_000} million elements in XML",
         f"{PLACES_SHOWN // 1000} 000 places",
+        f"{asked.LARGEST >> 10} KB; {asked.MOST_MACHINES} machines, {asked.MOST_STEPS} steps, "
+        f"{asked.MOST_RUNS} programs times kinds of machines, {asked.MOST_BATCH // 1000} 000 "
+        f"parts a batch; {asked.MOST_HOURS / 1000:g} 000 simulated hours and "
+        f"{MOST_REPLICATIONS} replications; {asked.MOST_PARTS // 1_000_000} million parts",
     ):
         assert words in PAGE
     assert (OWNERS, MOST_ROWS, FORGOTTEN_AFTER) == (4, MOST_SAMPLES, 3600.0)

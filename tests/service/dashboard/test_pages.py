@@ -23,7 +23,7 @@ def test_a_page_works_on_its_second_visit_and_after_a_reload(page: Page) -> None
             )
             expect(page.locator(controls)).to_be_visible()
         page.reload()
-        expect(page.get_by_role("navigation").get_by_role("link")).to_have_count(6)
+        expect(page.get_by_role("navigation").get_by_role("link")).to_have_count(7)
         expect(page.locator("#program-example option")).not_to_have_count(1)
 
 

@@ -64,8 +64,9 @@ def test_rows_hold_powers_and_energy(tmp_path: Path) -> None:
     rows = live.taken().rows
     assert live.columns[:3] == ("time_s", "power_kw", "energy_kwh")
     assert live.columns[5:] == ("power_w:saw 1", "power_w:mill-1", "power_w:mill-2")
-    assert rows[:, 0].tolist() == [5.0, 30.0]
-    assert rows[:, 5].tolist() == [300.0, 1000.0]
+    assert rows[:, 0].tolist() == [0.0, 5.0, 30.0]
+    assert rows[:, 5].tolist() == pytest.approx([200.0, 300.0, (5 * 300 + 20 * 1000) / 25])
+    assert rows[-1, 2] == pytest.approx((23_000 + 2 * 500 * 30) / 3.6e6)
     assert live.taken().rows.shape == (0, len(live.columns))
 
 

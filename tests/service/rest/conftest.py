@@ -7,6 +7,7 @@ import httpx
 import pytest
 
 from kbe.store import open_store
+from tests.service.factory.shops import TIMED
 from tests.service.rest.samples import SAMPLE, SLOT
 from tests.service.rest.server import Server, made, over
 from tests.service.shop import outcomes
@@ -45,6 +46,7 @@ class Done:
     file: str
     verification: str
     cycle: str
+    factory: str
 
 
 @pytest.fixture(scope="session")
@@ -72,6 +74,7 @@ def done(service: Server, log: bytes) -> Done:
             "trial": ("/v1/trials", {"pace": 100.0}),
             "evaluation": ("/v1/evaluations", {}),
             "review": ("/v1/reviews", {}),
+            "factory": ("/v1/factories", {"shop": TIMED.format(hours=1), "pace": 1000.0}),
             "cycle": (
                 "/v1/cycle-times",
                 {"program_id": slot, "log_id": file, "machine": SLOT_MACHINE},

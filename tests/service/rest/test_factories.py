@@ -71,7 +71,7 @@ def test_a_live_shop_obeys_and_its_failure_counts(client: httpx.Client, live: st
     assert kinds[:4] == ["order", "failed", "repair", "repaired"]
     series = client.get(f"{path}/series", params={"signals": "power_kw,power_w:saw"}).json()
     assert series["is_growing"]
-    assert max(series["signals"]["power_w:saw"]["high"]) == 1000.0
+    assert max(series["signals"]["power_w:saw"]["high"]) == pytest.approx(1000.0)
     states = client.get(f"{path}/states").json()
     saw = states["machines"][0]
     assert saw["name"] == "saw"

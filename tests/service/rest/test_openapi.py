@@ -36,7 +36,7 @@ OF = {
     "programs": "program", "advice": "advice", "simulations": "simulation",
     "control-runs": "control", "trials": "trial", "evaluations": "evaluation",
     "reviews": "review", "jobs": "simulation", "verifications": "verification",
-    "files": "file", "cycle-times": "cycle",
+    "files": "file", "cycle-times": "cycle", "factories": "factory",
 }  # fmt: skip
 """what of the things that were made is at a path"""
 

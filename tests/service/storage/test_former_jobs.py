@@ -35,7 +35,7 @@ KINDS: dict[JobKind, type[Request]] = {
     JobKind.REVIEW: ReviewRequest,
 }
 
-NEWER = {JobKind.VERIFICATION, JobKind.CYCLE_TIME}
+NEWER = {JobKind.VERIFICATION, JobKind.CYCLE_TIME, JobKind.FACTORY}
 """Kinds that the earlier version did not have."""
 
 
