@@ -166,7 +166,8 @@ def test_the_result_is_downloaded(page: Page, watched: Watched, tmp_path: Path) 
     with page.context.expect_page() as report:
         page.locator("#open-report").click()
     expect(report.value.locator("h1")).to_have_text("deep.parquet")
-    expect(report.value.locator("#plan .scatterlayer .point").first).to_be_visible()
+    point = report.value.locator("#plan .scatterlayer .point").first
+    expect(point).to_be_visible(timeout=LATE)
 
 
 def test_a_run_brings_its_program_and_is_opened_again(page: Page, watched: Watched) -> None:
