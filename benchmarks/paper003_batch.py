@@ -2,21 +2,28 @@
 
 Fig. 11 prints feed (m/s), spindle speed (rev/s, negative clockwise) and depth (mm) of ten parts
 with their machining times. The pocket has no printed dimension: its side, one number, is fitted
-to the ten times. Then the lines of time over 1/feed, also with the spindle speed; the two slots
-of §4.3; and the interpolated cycles beside direct runs with settings drawn as in §4.2.
+to the ten times. Then the lines of time over 1/feed, also with the spindle speed; the columns
+of Fig. 11 beside those of batches in a shop, also of the two slots of §4.3; the slots
+themselves; and the interpolated cycles beside direct runs with settings drawn as in §4.2.
 """
 
 import argparse
 import csv
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import perf_counter
+from typing import TextIO
 
 import numpy as np
 
 from service.chosen import material_for
 from service.factory.cycles import PartCycles
+from service.factory.parts_file import COLUMNS
+from service.factory.run import run_factory
+from service.requests.factory import FactoryRequest
 from simulator.factory.cycle import PartCycle, drawn_energies
 from simulator.factory.interpolated import SettingRange, SettingsDesign
 from simulator.library import load_machine
@@ -36,6 +43,9 @@ SIDES = (90.0, 91.0, 92.0, 92.1, 92.2, 92.3, 92.4, 93.0, 94.0)
 LOW, HIGH = (30.0, 75.4 / (2.0 * pi), 2.5), (90.0, 226.2 / (2.0 * pi), 3.5)
 """mm/s, rev/s and mm of §4.2"""
 RUNS = 200
+NAMES = tuple(name for name in COLUMNS if name != "material")
+"""Columns of Fig. 11, in the order of its print."""
+MILL = "MILLING_MACHINE_1"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,6 +135,7 @@ def main(arguments: list[str] | None = None) -> None:
     ours = times(cycles, Program.load(POCKET), parts)
     _print_parts(parts, told, ours)
     _print_lines(parts, told, ours)
+    _print_columns()
     _print_slots(cycles)
     _print_interpolation(cycles)
 
@@ -154,6 +165,39 @@ def _print_lines(parts: tuple[PrintedPart, ...], told: Floats, ours: Floats) -> 
 
 def _of(found: Line, row: int) -> str:
     return f"{found.coefficients[row]:.4g} ± {found.errors[row]:.2g}"
+
+
+def _print_columns() -> None:
+    """Columns of Fig. 11, print beside batches of ten that a shop has made."""
+    with PRINT.open(encoding="ascii") as file:
+        columns = {"print": dict(zip(NAMES, _columns(file).values(), strict=True))}
+    for name in ("paper003", "paper003_cases"):
+        with TemporaryDirectory() as folder:
+            run_factory(
+                EXAMPLES / "shops" / f"{name}.toml", FactoryRequest(), folder=Path(folder)
+            )
+            with (Path(folder) / f"{MILL}.csv").open(encoding="utf-8") as file:
+                columns[name] = _columns(file)
+    print(f"\n{'least to greatest':20}{'print':>25}{'pocket':>25}{'cases 1 and 2':>25}")
+    for name in NAMES[1:]:
+        shown = [_ends(found.get(name, ())) for found in columns.values()]
+        print(f"{name:20}" + "".join(f"{each:>25}" for each in shown))
+
+
+def _columns(file: TextIO) -> dict[str, tuple[float, ...]]:
+    """Numbers of the columns of a table; what stands in one part of a batch only, there."""
+    rows = list(csv.DictReader(file))
+    return {
+        name: tuple(float(row[name]) for row in rows if row[name] not in {"", "0"})
+        if name != "id"
+        else ()
+        for name in rows[0]
+        if name != "material"
+    }
+
+
+def _ends(values: Sequence[float]) -> str:
+    return f"{min(values):.6g} to {max(values):.6g}" if values else ""
 
 
 def _print_slots(cycles: PartCycles) -> None:

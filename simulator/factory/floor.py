@@ -176,7 +176,9 @@ class Floor:
         for tell in self.listeners.left:
             tell(batch, self.env.now)
         self.in_shop -= 1
-        is_over = not self.in_shop and not any(stock.left for stock in self.raw)
+        is_over = not self.in_shop and not any(
+            stock.left or stock.buffer.items for stock in self.raw
+        )
         if is_over and not self._end.triggered:
             self._end.succeed()
 

@@ -63,6 +63,8 @@ def numbered(data: bytes, chance: random.Random) -> bytes:
 def referred(data: bytes, chance: random.Random) -> bytes:
     """References that lead in circles, nowhere, or to something else."""
     found = sorted(set(re.findall(rb"#\d+", data)))
+    if not found:
+        return data
     for _ in range(chance.randrange(1, 6)):
         one, other = chance.choice(found), chance.choice([*found, b"#99999999999999999999"])
         data = re.sub(one + rb"(?=[,)])", other, data, count=chance.randrange(1, 4))

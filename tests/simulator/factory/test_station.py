@@ -211,6 +211,17 @@ def test_a_machine_added_changes_no_number_of_another(tmp_path: Path) -> None:
     assert len(own) > 400
 
 
+def test_all_orders_are_made(tmp_path: Path) -> None:
+    rows = ROW.format(name="a")
+    text = PLAIN.format(machines=rows, products=OTHER.replace('["b"]', '["a"]'))
+    text = text.replace("batch = 4\n", "batch = 4\nbatches = 3\n")
+    text = text.replace('name = "q"\n', 'name = "q"\nbatches = 2\n')
+    run = ran(shop_of(text, tmp_path))
+    assert run.floor.is_finished
+    assert [each.product for each in run.parts].count(0) == 12
+    assert [each.product for each in run.parts].count(1) == 2
+
+
 def test_seeds_and_replications_differ_and_repeat(tmp_path: Path) -> None:
     shop = shop_of(PLAIN.format(machines=ROW.format(name="a"), products=""), tmp_path)
     one = shown(ran(shop, seed=1))
