@@ -31,6 +31,7 @@ SLOW = (
     "service/control/test_recorded_run.py",
     "service/dashboard",
     "service/factory/test_cycle_tables.py",
+    "service/factory/test_documents.py",
     "service/factory/test_factory.py",
     "service/factory/test_published.py",
     "service/factory/test_serve.py",

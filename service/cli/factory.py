@@ -70,6 +70,8 @@ def _factory(options: argparse.Namespace) -> int:
         result = run_factory(options.shop, request, folder=options.output, tell=tell)
     if options.output is not None:
         tell(f"written: {options.output} ({result.parts_written} parts)")
+    if request.documents:
+        tell(f"MTConnect documents: {result.documents_written}")
     if options.report:
         report = options.output / REPORT
         write_atomically(report, factory_page(result).encode())

@@ -7,6 +7,7 @@ from math import inf
 from pathlib import Path
 
 from service.factory.cycles import PartCycles
+from service.factory.documents import FirstParts, PartDocuments
 from service.factory.parts_file import PartTables
 from service.factory.plan import machining_plan
 from service.factory.replications import (
@@ -33,6 +34,9 @@ from stepnc_model.units import hours_from_seconds
 
 STATES = "states.parquet"
 
+DOCUMENTS = "mtconnect"
+"""Folder of the documents of parts."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FactoryResult:
@@ -48,6 +52,8 @@ class FactoryResult:
     states: Sequence[StateSpent]
     """First states of the first replication, for a picture."""
     parts_written: int = 0
+    documents_written: int = 0
+    """MTConnect documents of parts."""
     cases: tuple[SweptCase, ...] = ()
     """Combinations of a sweep; the figures above are those of the file itself."""
 
@@ -115,9 +121,17 @@ def run_source(
             )
             states = stack.enter_context(StateFile(folder / STATES, shop))
             listeners = listeners.plus(Listeners(part=(tables.part,), state=(states.state,)))
+        chosen = FirstParts(request.documents)
+        if request.documents:
+            listeners = listeners.plus(Listeners(part=(chosen.part,)))
         if most_parts < inf:
             listeners = listeners.plus(Listeners(part=(PartBound(most_parts).part,)))
         first = _first(shop, plan, request, listeners, tell)
+    written = 0
+    if folder is not None and request.documents:
+        place = folder / DOCUMENTS
+        maker = PartDocuments(shop, plan, Streams(seed=request.seed), tell=tell)
+        written = maker.write(chosen.parts, place)
     runs = [first.measures]
     cases: list[SweptCase] = []
     others = request.replications - 1 + request.replications * len(swept)
@@ -139,6 +153,7 @@ def run_source(
         first=first,
         states=shown.rows,
         parts_written=0 if tables is None else tables.count,
+        documents_written=written,
         cases=tuple(cases),
     )
 

@@ -127,7 +127,7 @@ def simulate(
         tools=virtual.setup.tools or {},
         samples=0 if run.file is None else run.file.rows,
         trace=None if run.trace is None else run.trace.trace(),
-        deviation=virtual.setup.deviation,
+        deviation=_deviation(request, virtual.machine),
     )
 
 

@@ -5,8 +5,9 @@ without another run: it is a sum over the movements, each times one uniform fact
 W.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,15 @@ PARTS = 100
 
 MOST_DRAWN = 1 << 20
 """Greatest number of random numbers drawn at once, 8 MB."""
+
+
+class Factors(NamedTuple):
+    """Factors on the motor powers of the movements of one part."""
+
+    traverse: Floats
+    """Of each rapid movement, in order, (T,)."""
+    feed: Floats
+    """Of each feed movement, in order, (F,)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -136,3 +146,19 @@ def drawn_energies(
         part = energies[first : first + rows]
         part += rng.uniform(-1.0, 1.0, (len(part), len(widths))) @ widths
     return energies
+
+
+def drawn_factors(
+    cycle: PartCycle, deviation: PowerDeviation, rng: np.random.Generator
+) -> Iterator[Factors]:
+    """Factors of the movements of one part after another, without end.
+
+    A generator in the same state gives :func:`drawn_energies` the same factors.
+    """
+    traverse, feed = len(cycle.traverse_energies), len(cycle.feed_energies)
+    while True:
+        drawn = rng.uniform(-1.0, 1.0, traverse + feed)
+        yield Factors(
+            traverse=1.0 + deviation.traverse * drawn[:traverse],
+            feed=1.0 + deviation.feed * drawn[traverse:],
+        )

@@ -62,7 +62,7 @@ class MachiningPlan:
         product, step, machine = place
         spec = shop.machines[machine]
         load = shop.products[product].steps[step].load
-        purpose = f"machining {shop.products[product].name} {step}"
+        purpose = purpose_of(shop, place)
         if load is not None:
             return _timed(load, streams, spec.name, purpose)
         deviation = None if spec.machine is None else spec.machine.deviation
@@ -71,6 +71,12 @@ class MachiningPlan:
             return _drawn(self.tables[place], deviation, draw)
         found = self.cycles[place]
         return _repeated(found) if deviation is None else _deviating(found, deviation, draw)
+
+
+def purpose_of(shop: Shop, place: Place) -> str:
+    """Purpose of the random numbers of the machining of a step."""
+    product, step, _ = place
+    return f"machining {shop.products[product].name} {step}"
 
 
 def _timed(load: StateLoad, streams: Streams, owner: str, purpose: str) -> Iterator[Machining]:

@@ -42,18 +42,34 @@ class SeededDeviation:
             raise ValueError(f"seed {self.seed} must be at least 0")
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class GivenDeviation:
+    """Power deviation of one run whose factors were drawn before."""
+
+    factors: Floats
+    """Factor on the motor powers of each movement of the run, in order, (M,)."""
+
+
 def movement_of(segments: Segments) -> Ints:
     """Number of the movement to which each segment belongs, (N,), from 0 in steps of 1."""
     is_new = (np.diff(segments.block) != 0) | np.diff(segments.is_rapid)
     return np.concatenate(([0], np.cumsum(is_new))).astype(np.int64)
 
 
-def movement_factors(seeded: SeededDeviation, is_rapid: Bools, *, first: int) -> Floats:
+def movement_kinds(segments: Segments) -> Bools:
+    """Whether each movement of a stretch is a rapid, (M,)."""
+    _, begins = np.unique(movement_of(segments), return_index=True)
+    return segments.is_rapid[begins]
+
+
+def movement_factors(
+    deviation: SeededDeviation | GivenDeviation, is_rapid: Bools, *, first: int
+) -> Floats:
     """Factors on the motor powers of consecutive movements.
 
     Parameters
     ----------
-    seeded : SeededDeviation
+    deviation : SeededDeviation or GivenDeviation
     is_rapid : (M,) array of bool
         Whether each movement is a rapid.
     first : int
@@ -64,9 +80,11 @@ def movement_factors(seeded: SeededDeviation, is_rapid: Bools, *, first: int) ->
     (M,) array
         Within 1 ± the half-width of its kind.
     """
-    words = np.random.SeedSequence([seeded.seed, *b"power of movements"])
+    if isinstance(deviation, GivenDeviation):
+        return deviation.factors[first : first + len(is_rapid)]
+    words = np.random.SeedSequence([deviation.seed, *b"power of movements"])
     key = np.asarray(words.generate_state(2, np.uint64), dtype=np.uint64)
     drawn = uniform(key, first, len(is_rapid))
-    width = np.where(is_rapid, seeded.deviation.traverse, seeded.deviation.feed)
+    width = np.where(is_rapid, deviation.deviation.traverse, deviation.deviation.feed)
     factors: Floats = 1.0 + width * (2.0 * drawn - 1.0)
     return factors

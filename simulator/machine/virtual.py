@@ -32,7 +32,13 @@ from simulator.machine.acts import (
     WorkingstepTo,
 )
 from simulator.machine.cutting import CuttingEdge
-from simulator.machine.deviation import SeededDeviation, movement_factors, movement_of
+from simulator.machine.deviation import (
+    GivenDeviation,
+    SeededDeviation,
+    movement_factors,
+    movement_kinds,
+    movement_of,
+)
 from simulator.machine.samples import Episode, EpisodeCourse, EpisodeState, Execution
 from simulator.machine.spindle_course import SpindleCourse, following, ramped, standing
 from simulator.machine.tooth_loads import ToothOptions
@@ -222,7 +228,7 @@ class MachineSetup:
     """Options for forces of single teeth; None for mean forces over a revolution."""
     zero: Zero | None = None
     """Position of the program zero; None: travel is not checked."""
-    deviation: SeededDeviation | None = None
+    deviation: SeededDeviation | GivenDeviation | None = None
     """Random deviation of motor powers; None: powers are those of the model."""
 
 
@@ -429,9 +435,8 @@ class VirtualMachine:
         if self.setup.deviation is None:
             return None
         movement = movement_of(segments)
-        _, begins = np.unique(movement, return_index=True)
         factors = movement_factors(
-            self.setup.deviation, segments.is_rapid[begins], first=self._movements
+            self.setup.deviation, movement_kinds(segments), first=self._movements
         )
         self._movements += len(factors)
         return factors[movement]
