@@ -133,7 +133,8 @@ def _hours(lead: float, good: int) -> float | None:
 
 
 def _line(view: ShopView, energy: float) -> dict[str, Any]:
-    tally, meter = view.floor.tally, view.floor.tally.meter
+    tally = view.floor.tally
+    power = sum(station.power for station in view.floor.stations)
     warm_up = view.shop.warm_up
     span = view.time - (warm_up if view.time >= warm_up else 0.0)
     good = sum(each.good for each in tally.products)
@@ -143,8 +144,8 @@ def _line(view: ShopView, energy: float) -> dict[str, Any]:
         "wip_parts": tally.inside,
         "throughput_h": good / hours_from_seconds(span) if span > 0.0 else None,
         "lead_time_h": _hours(sum(each.lead for each in tally.products), good),
-        "power_kw": kw_from_watts(meter.power),
-        "peak_kw": kw_from_watts(max(meter.peak, meter.power)),
+        "power_kw": kw_from_watts(power),
+        "peak_kw": kw_from_watts(tally.power.peak(view.time)),
         "energy_kwh": kwh_from_joules(energy),
         "energy_per_part_kwh": kwh_from_joules(energy / good) if good else None,
     }

@@ -97,7 +97,6 @@ class Floor:
             station.close()
         for buffer in self.buffers.values():
             buffer.close()
-        self.tally.meter.change(0.0, self.env.now)
         self.tally.close(self.env.now)
 
     def _buffer(self, name: str, capacity: float) -> BatchBuffer:

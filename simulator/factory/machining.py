@@ -81,8 +81,10 @@ def purpose_of(shop: Shop, place: Place) -> str:
 
 def _timed(load: StateLoad, streams: Streams, owner: str, purpose: str) -> Iterator[Machining]:
     """Machining of which only time and power are known."""
+    power, new = load.power, tuple.__new__
     for time in streams.numbers(load.time, owner, purpose):
-        yield Machining(time, load.power * time, load.power)
+        # Half the time of the constructor of a named tuple.
+        yield new(Machining, (time, power * time, power, AS_PROGRAMMED))
 
 
 def _repeated(found: ProgramCycle) -> Iterator[Machining]:

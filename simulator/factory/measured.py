@@ -68,7 +68,7 @@ def _line(floor: Floor, span: float) -> list[Measure]:
         Quantity.ENERGY_PER_PART: kwh_from_joules(_ratio(energy, good)),
         Quantity.MEAN_POWER: kw_from_watts(energy / span),
         Quantity.DEMAND: kw_from_watts(tally.power.demand(floor.env.now)),
-        Quantity.PEAK_POWER: kw_from_watts(tally.meter.peak),
+        Quantity.MINUTE_PEAK: kw_from_watts(tally.power.peak(floor.env.now)),
     }
     return _measures(Level.LINE, "", values)
 

@@ -49,6 +49,7 @@ class Quantity(StrEnum):
     MEAN_POWER = "mean kW"
     PEAK_POWER = "peak kW"
     DEMAND = "peak 15 min kW"
+    MINUTE_PEAK = "peak 1 min kW"
     TIME = "machining s"
     PART_ENERGY = "energy kJ"
 

@@ -54,12 +54,19 @@ class PowerSeries:
 
         Of a shorter time it is the mean.
         """
-        energies = self.energies()
-        group = max(1, round(DEMAND / self.step))
-        count = int((now - self.begin) / (group * self.step) + 1e-9) * group
+        return self._greatest(now, max(1, round(DEMAND / self.step)))
+
+    def peak(self, now: float) -> float:
+        """Greatest mean power over a whole interval until now, or a shorter time, W."""
+        return self._greatest(now, 1)
+
+    def _greatest(self, now: float, group: int) -> float:
+        """Greatest mean power over a number of intervals, W."""
+        energies, length = self.energies(), group * self.step
+        count = int((now - self.begin) / length + 1e-9) * group
         if count == 0:
-            return float(energies.sum() / (now - self.begin))
-        return float(energies[:count].reshape(-1, group).sum(axis=1).max() / DEMAND)
+            return float(energies.sum() / (now - self.begin)) if now > self.begin else 0.0
+        return float(energies[:count].reshape(-1, group).sum(axis=1).max() / length)
 
     def flush(self) -> None:
         """Add the states that wait."""

@@ -19,7 +19,7 @@ from simulator.factory.shop import Counting, Product, ShopMachine
 from simulator.factory.states import HANDLING, TRANSITIONS, MachineState
 from simulator.factory.store import Batch, BatchBuffer, Course, RawStock, oldest
 from simulator.factory.streams import Streams
-from simulator.factory.tally import MachineTally, PowerMeter, ProcessTally, Tally
+from simulator.factory.tally import MachineTally, ProcessTally, Tally
 from simulator.factory.upkeep import (
     Breakdown,
     DueMaintenance,
@@ -98,9 +98,14 @@ class Station:
     _seconds: dict[MachineState, float] = field(init=False)
     _joules: dict[MachineState, float] = field(init=False)
     _spent: list[tuple[float, float, float]] = field(init=False)
-    _meter: PowerMeter = field(init=False)
+    _ahead: list[tuple[MachineState, float, float]] = field(default_factory=list)
+    """States of the part on the machine that are yet to come: with power and begin."""
+    _is_plain: bool = False
+    """Whether nothing can happen within a part, so that it passes in one go."""
     _listeners: tuple[Callable[[StateSpent], None], ...] = ()
     _began: tuple[Callable[[int], None], ...] = ()
+    _is_heard: bool = False
+    """Whether anybody listens to its states."""
     _has_crews: bool = False
     _has_pauses: bool = False
     """Whether shifts or maintenance may begin between two parts."""
@@ -120,10 +125,11 @@ class Station:
         name, spec = self.spec.name, self.spec
         self.power = spec.idle_power
         tally = self.around.tally
-        self._counts, self._meter = tally.machines[self.index], tally.meter
+        self._counts = tally.machines[self.index]
         self._seconds, self._joules = self._counts.seconds, self._counts.joules
         self._spent = tally.power.waiting
         self._listeners, self._began = self.around.listeners.state, self.around.listeners.began
+        self._is_heard = bool(self._listeners or self._began)
         for step in self.around.machining:
             self._counts.processes[step] = ProcessTally()
         for state in HANDLING:
@@ -131,9 +137,9 @@ class Station:
             self._powers[state] = spec.handling[state].power
         self._upkeep = upkeep_of(spec, self.streams)
         self._has_crews = bool(self.around.crews)
+        self._is_plain = not (self._has_crews or self._began or self._upkeep.by_clock)
         self._has_pauses = spec.calendar is not None or bool(self._upkeep.maintenance)
         self._scrap = iter(self.streams.generator(name, "scrap").random, None)
-        self.around.tally.meter.change(self.power, self.env.now)
         self.process = self.env.process(self._run())
         for pending in self._upkeep.by_clock:
             self.env.process(self._fails_by_clock(pending))
@@ -145,8 +151,8 @@ class Station:
 
     # States
 
-    def enter(self, state: MachineState, power: float) -> None:
-        """Leave the present state for another.
+    def enter(self, state: MachineState, power: float, now: float) -> None:
+        """Leave the present state for another at a time in s.
 
         Raises
         ------
@@ -157,37 +163,44 @@ class Station:
         before, since, drawn = self.state, self.since, self.power
         if state not in TRANSITIONS[before]:
             raise RuntimeError(f"{self.spec.name}: no transition {before} -> {state}")
-        now = self.env.now
         if now > since:
-            energy = drawn * (now - since)
-            self._seconds[before] += now - since
+            spent = now - since
+            energy = drawn * spent
+            self._seconds[before] += spent
             self._joules[before] += energy
             self._spent.append((since, now, energy))
-            for tell in self._listeners:
-                tell(StateSpent(self.index, before, since, now, energy))
-            if before is _MACHINING:
-                self.cut += now - since
+            if self._is_heard:
+                self._say(before, since, now, energy)
             self.since = now
-        if power != drawn:
-            self._meter.change(power - drawn, now)
-            self.power = power
-        self.state = state
-        for begin in self._began:
-            begin(self.index)
+        self.state, self.power = state, power
+        if self._is_heard:
+            for begin in self._began:
+                begin(self.index)
+
+    def _say(self, state: MachineState, since: float, now: float, energy: float) -> None:
+        """Tell listeners of the time in a state."""
+        for tell in self._listeners:
+            tell(StateSpent(self.index, state, since, now, energy))
+        if state is _MACHINING:
+            self.cut += now - since
 
     def close(self) -> None:
         """Record the time in the present state so far."""
+        self._advance(self.env.now)
         now, since = self.env.now, self.since
         if now > since:
             energy = self.power * (now - since)
             self._seconds[self.state] += now - since
             self._joules[self.state] += energy
             self._spent.append((since, now, energy))
-            for tell in self._listeners:
-                tell(StateSpent(self.index, self.state, since, now, energy))
-            if self.state is _MACHINING:
-                self.cut += now - since
+            self._say(self.state, since, now, energy)
             self.since = now
+
+    def _advance(self, now: float) -> None:
+        """Pass through the states of a part in one go until a time in s."""
+        ahead = self._ahead
+        while ahead and ahead[0][2] <= now:
+            self.enter(*ahead.pop(0))
 
     @property
     def elapsed(self) -> float:
@@ -211,7 +224,14 @@ class Station:
             Time of the repair.
         spoils : bool
             Whether a part that is being machined is scrapped.
+
+        Raises
+        ------
+        ValueError
+            If no listener hears of states as they begin: such a machine is not interrupted.
         """
+        if self._is_plain:
+            raise ValueError(f"{self.spec.name} passes parts in one go: nobody listens")
         can_fail = MachineState.FAILED in TRANSITIONS[self.state] and self._repaired is None
         if can_fail and self.process is not None:
             self._repaired = self.env.event()
@@ -226,7 +246,7 @@ class Station:
             found = self._next_batch()
             if found is None:
                 if self.state is not MachineState.STARVED:
-                    self.enter(MachineState.STARVED, self.spec.idle_power)
+                    self.enter(MachineState.STARVED, self.spec.idle_power, self.env.now)
                 yield from self._sleep()
                 continue
             yield from self._make(*found)
@@ -246,7 +266,7 @@ class Station:
         step = (batch.product, batch.step)
         product = self.around.products[batch.product]
         scrap = product.steps[batch.step].scrap
-        machining = self.around.machining[step]
+        machining, process = self.around.machining[step], self._counts.processes[step]
         setup = yield from self._handle(MachineState.BATCH_SETUP)
         good: list[int] = []
         made: PartMade | None = None
@@ -259,7 +279,11 @@ class Station:
             is_good = not self._part_spoilt and (scrap == 0.0 or next(self._scrap) >= scrap)
             if is_good:
                 good.append(part)
-            self._count(step, work, is_good=is_good)
+            process.parts += 1
+            process.good += is_good
+            process.time += work.time
+            process.energy += work.energy
+            process.peak = max(process.peak, work.peak_power)
             if len(self._spent) > WAITING:
                 self.around.tally.power.flush()
             if self.around.listeners.part:
@@ -277,14 +301,6 @@ class Station:
         batch.parts = good
         yield from self._hand_over(batch, step)
 
-    def _count(self, step: tuple[int, int], work: Machining, *, is_good: bool) -> None:
-        process = self._counts.processes[step]
-        process.parts += 1
-        process.good += is_good
-        process.time += work.time
-        process.energy += work.energy
-        process.peak = max(process.peak, work.peak_power)
-
     def _tell(self, made: PartMade) -> None:
         for tell in self.around.listeners.part:
             tell(made)
@@ -299,12 +315,12 @@ class Station:
             room = behind.put(batch)
             if room is not None:
                 self.holding_for = behind
-                self.enter(MachineState.BLOCKED, self.spec.idle_power)
+                self.enter(MachineState.BLOCKED, self.spec.idle_power, self.env.now)
                 self.around.stuck(self)
                 yield from self._until(room)
                 self.holding_for = None
         self.held = None
-        self.enter(MachineState.IDLING, self.spec.idle_power)
+        self.enter(MachineState.IDLING, self.spec.idle_power, self.env.now)
 
     def _part(self, work: Machining) -> Generator[Event, Any, tuple[float, float]]:
         """Set up, machine and eject a part; the times of set-up and ejection."""
@@ -315,38 +331,33 @@ class Station:
             self._release()
             ejection = yield from self._handle(MachineState.PART_EJECTION)
             return setup, ejection
-        # The same without crews: one generator for a part is faster than one for each state.
-        env, times, powers = self.env, self._times, self._powers
-        setup = next(times[_PART_SETUP])
-        self.enter(_PART_SETUP, powers[_PART_SETUP])
-        try:
-            yield env.timeout(setup)
-        except Interrupt as interrupt:
-            yield from self._interrupted(interrupt, self.since + setup - env.now)
-        if self._upkeep.failure_at < self.machined + work.time:
+        if not self._is_plain or self._upkeep.failure_at < self.machined + work.time:
+            setup = yield from self._handle(MachineState.PART_SETUP)
             yield from self._machine(work)
-        else:
-            seconds = work.time
-            self._part_spoilt = False
-            self.enter(_MACHINING, work.energy / seconds if seconds > 0.0 else 0.0)
-            try:
-                yield env.timeout(seconds)
-            except Interrupt as interrupt:
-                yield from self._interrupted(interrupt, self.since + seconds - env.now)
-            self.machined += seconds
-        ejection = next(times[_PART_EJECTION])
-        self.enter(_PART_EJECTION, powers[_PART_EJECTION])
-        try:
-            yield env.timeout(ejection)
-        except Interrupt as interrupt:
-            yield from self._interrupted(interrupt, self.since + ejection - env.now)
+            ejection = yield from self._handle(MachineState.PART_EJECTION)
+            return setup, ejection
+        # Nobody looks and nothing interrupts: one event for the part instead of three.
+        now, times, powers, seconds = self.env.now, self._times, self._powers, work.time
+        setup, ejection = next(times[_PART_SETUP]), next(times[_PART_EJECTION])
+        self.enter(_PART_SETUP, powers[_PART_SETUP], now)
+        power = work.energy / seconds if seconds > 0.0 else 0.0
+        self._part_spoilt = False
+        self._ahead = [
+            (_MACHINING, power, now + setup),
+            (_PART_EJECTION, powers[_PART_EJECTION], now + setup + seconds),
+        ]
+        yield self.env.timeout(setup + seconds + ejection)
+        for state, power, begin in self._ahead:
+            self.enter(state, power, begin)
+        self._ahead = []
+        self.machined += seconds
         return setup, ejection
 
     def _handle(self, state: MachineState) -> Generator[Event, Any, float]:
         """Set up or eject, with a crew where the state needs one; the time that it took."""
         yield from self._claim(state)
         seconds = next(self._times[state])
-        self.enter(state, self._powers[state])
+        self.enter(state, self._powers[state], self.env.now)
         yield from self._spend(seconds)
         self._release()
         return seconds
@@ -355,7 +366,11 @@ class Station:
         """Machine a part, with the failures that come by machining time."""
         seconds = work.time
         self._part_spoilt = False
-        self.enter(MachineState.MACHINING, work.energy / seconds if seconds > 0.0 else 0.0)
+        self.enter(
+            MachineState.MACHINING,
+            work.energy / seconds if seconds > 0.0 else 0.0,
+            self.env.now,
+        )
         while self._upkeep.failure_at < self.machined + seconds:
             before = self._upkeep.failure_at - self.machined
             yield from self._spend(before)
@@ -372,7 +387,7 @@ class Station:
             return
         self._member_of, self._member = crew, crew.claim()
         if self._member is not None:
-            self.enter(MachineState.WAITING, self.spec.idle_power)
+            self.enter(MachineState.WAITING, self.spec.idle_power, self.env.now)
             yield from self._until(self._member)
 
     def _release(self) -> None:
@@ -412,7 +427,7 @@ class Station:
         while (due := self._due()) is not None or not self._is_open():
             if not self._is_open():
                 if self.state is not MachineState.OFF:
-                    self.enter(MachineState.OFF, 0.0)
+                    self.enter(MachineState.OFF, 0.0, self.env.now)
                 yield from self._sleep()
             elif due is not None:
                 yield from self._maintain(due)
@@ -426,7 +441,7 @@ class Station:
 
     def _maintain(self, due: DueMaintenance) -> Course:
         yield from self._claim(MachineState.MAINTENANCE)
-        self.enter(MachineState.MAINTENANCE, self.spec.idle_power)
+        self.enter(MachineState.MAINTENANCE, self.spec.idle_power, self.env.now)
         yield self.env.timeout(next(due.durations))
         self._release()
         self._upkeep.maintained(due, self.machined, self.env.now)
@@ -451,7 +466,7 @@ class Station:
         """Fail, and be repaired."""
         state, power = self.state, self.power
         self._repaired = self._repaired or self.env.event()
-        self.enter(MachineState.FAILED, self.spec.idle_power)
+        self.enter(MachineState.FAILED, self.spec.idle_power, self.env.now)
         crew = self.around.crews.get(MachineState.REPAIR)
         if crew is not None and crew is self._member_of:
             # One member is enough: who works here, or was asked for, repairs.
@@ -460,11 +475,11 @@ class Station:
             member = None if crew is None else crew.claim()
         if member is not None and not member.processed:
             yield member
-        self.enter(MachineState.REPAIR, self.spec.idle_power)
+        self.enter(MachineState.REPAIR, self.spec.idle_power, self.env.now)
         yield self.env.timeout(breakdown.repair)
         if crew is not None:
             crew.release()
-        self.enter(state, power)
+        self.enter(state, power, self.env.now)
         is_spoilt = breakdown.spoils and state is MachineState.MACHINING
         self._part_spoilt = self._part_spoilt or is_spoilt
         self._repaired.succeed()

@@ -24,6 +24,11 @@ class ProcessTally:
     peak: float = 0.0
     """W"""
 
+    def reset(self) -> None:
+        """Begin anew."""
+        self.parts = self.good = 0
+        self.time = self.energy = self.peak = 0.0
+
 
 @dataclass(slots=True, eq=False)
 class MachineTally:
@@ -41,8 +46,8 @@ class MachineTally:
         """Begin anew."""
         for state in MachineState:
             self.seconds[state] = self.joules[state] = 0.0
-        for step in self.processes:
-            self.processes[step] = ProcessTally()
+        for process in self.processes.values():
+            process.reset()
 
 
 @dataclass(slots=True, eq=False)
@@ -55,32 +60,12 @@ class ProductTally:
 
 
 @dataclass(slots=True, eq=False)
-class PowerMeter:
-    """Sum of the powers of all machines. Running state."""
-
-    power: float = 0.0
-    """W"""
-    peak: float = 0.0
-    """Greatest sum that lasted, W."""
-    since: float = 0.0
-    """Time of the last change, s."""
-
-    def change(self, difference: float, now: float) -> None:
-        """Add a difference; changes at one time count as one."""
-        if now > self.since:
-            self.peak = max(self.peak, self.power)
-            self.since = now
-        self.power += difference
-
-
-@dataclass(slots=True, eq=False)
 class Tally:
     """Counts of a shop."""
 
     shop: Shop
     machines: list[MachineTally] = field(default_factory=list)
     products: list[ProductTally] = field(default_factory=list)
-    meter: PowerMeter = field(default_factory=PowerMeter)
     power: PowerSeries = field(init=False)
     inside: int = 0
     """Parts in the shop."""
@@ -117,5 +102,5 @@ class Tally:
         for machine in self.machines:
             machine.reset()
         self.products[:] = [ProductTally() for _ in self.products]
-        self.meter.peak, self.area, self.since = 0.0, 0.0, now
+        self.area, self.since = 0.0, now
         self.power.restart(now)

@@ -14,7 +14,7 @@ from simulator.errors import Deadlock
 from simulator.factory.floor import Floor
 from simulator.factory.machining import MachiningPlan
 from simulator.factory.measures import Level, Quantity
-from simulator.factory.records import Listeners, PartMade
+from simulator.factory.records import Listeners, PartMade, StateSpent
 from simulator.factory.states import TRANSITIONS, MachineState
 from simulator.factory.streams import Streams
 from tests.simulator.factory.shops import Ran, ran, shop_of
@@ -179,7 +179,7 @@ def test_an_illegal_transition_is_refused(folder: Path) -> None:
     station = run.floor.stations[0]
     station.state = MachineState.PART_SETUP
     with pytest.raises(RuntimeError, match="no transition part set-up -> starved"):
-        station.enter(MachineState.STARVED, 0.0)
+        station.enter(MachineState.STARVED, 0.0, run.floor.env.now)
 
 
 PLAIN = """
@@ -199,6 +199,11 @@ name = "{name}"
 [machine.handling]
 part_setup_s = {{ kind = "uniform", low = 5, high = 9 }}
 """
+FAILURE = """
+[[machine.failure]]
+every_h = { kind = "exponential", mean = 2 }
+repair_min = 7
+"""
 OTHER = '[[product]]\nname = "q"\n[[product.step]]\nmachines = ["b"]\ntime_s = 77\n'
 
 
@@ -209,6 +214,25 @@ def test_a_machine_added_changes_no_number_of_another(tmp_path: Path) -> None:
     own = [each._replace(machine=0, batch=0) for each in both.parts if each.product == 0]
     assert own == [each._replace(batch=0) for each in alone.parts]
     assert len(own) > 400
+
+
+def test_a_part_in_one_event_is_that_of_three(tmp_path: Path) -> None:
+    rows = ROW.format(name="a") + FAILURE
+    shop = shop_of(PLAIN.format(machines=rows, products=""), tmp_path)
+    found = []
+    for began in ((), (lambda _: None,)):
+        parts: list[PartMade] = []
+        states: list[StateSpent] = []
+        listeners = Listeners(part=(parts.append,), state=(states.append,), began=began)
+        floor = Floor(shop, MachiningPlan(), Streams(seed=1), listeners)
+        floor.run(shop.duration)
+        floor.close()
+        energy = sum(floor.tally.machines[0].joules.values())
+        found.append(([each.end for each in parts], [each.state for each in states], energy))
+    assert found[0][0] == pytest.approx(found[1][0])
+    assert found[0][1] == found[1][1]
+    assert found[0][2] == pytest.approx(found[1][2])
+    assert MachineState.REPAIR in found[0][1]
 
 
 def test_all_orders_are_made(tmp_path: Path) -> None:
@@ -299,7 +323,12 @@ def test_a_failure_interrupts_and_the_rest_is_made_later(tmp_path: Path) -> None
 
     def ends(fail_at: float | None) -> list[float]:
         parts: list[PartMade] = []
-        floor = Floor(shop, MachiningPlan(), Streams(seed=3), Listeners(part=(parts.append,)))
+        floor = Floor(
+            shop,
+            MachiningPlan(),
+            Streams(seed=3),
+            Listeners(part=(parts.append,), began=(lambda _: None,)),
+        )
         if fail_at is not None:
             floor.run(fail_at)
             assert floor.stations[0].fail(600.0)
@@ -307,6 +336,9 @@ def test_a_failure_interrupts_and_the_rest_is_made_later(tmp_path: Path) -> None
         floor.run(20_000.0)
         return [each.end for each in parts]
 
+    plain = Floor(shop, MachiningPlan(), Streams(seed=3), Listeners())
+    with pytest.raises(ValueError, match="nobody listens"):
+        plain.stations[0].fail(600.0)
     calm, hit = ends(None), ends(1_000.0)
     for before, after in zip(calm, hit, strict=False):
         assert after == pytest.approx(before if before < 1_000.0 else before + 600.0)
