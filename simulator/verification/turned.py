@@ -108,6 +108,8 @@ class LoggedBar:
 
     def __init__(self, cell: float, stock: Stock, shapes: Mapping[int, Shape | None]) -> None:
         self.bar = TurningStock(stock, cell)
+        self.possible = TurningStock(stock, cell)
+        """What is left if the tool went everywhere that it may have gone unseen."""
         self._shapes = shapes
         self._steps = SampleSteps(stock.high[2])
         self._nearest = unmet(self.bar.outer.shape)
@@ -132,12 +134,16 @@ class LoggedBar:
                 continue
             points = position[kept]
             shape = self._shapes.get(int(part.samples.tool[0]))
+            for end in np.flatnonzero(part.unseen > self.bar.cell).tolist():
+                around = _box_around(position[end - 1], position[end], float(part.unseen[end]))
+                _cut(self.possible, lines(around, speed=1.0), shape)
             cut = _cut(self.bar, lines(list(points), speed=1.0), shape)
             if cut.any():
                 index = kept[_nearest(points, self.bar, cut)]
                 nose = shape.nose_radius if isinstance(shape, Insert) else 0.0
-                bend = _bend_within(part.bend, position, PIECE + nose)
-                self._nearest.meet(cut, replace(part, bend=bend), index)
+                square = _squares(position, PIECE + nose)
+                step, bend = (_greatest_beside(each, square) for each in (part.step, part.bend))
+                self._nearest.meet(cut, replace(part, step=step, bend=bend), index)
 
 
 def turned_places(part: TurnedPart, logged: LoggedBar) -> SurfacePlaces:
@@ -185,15 +191,28 @@ def _cut(bar: TurningStock, segments: Segments, shape: Shape | None) -> Bools:
     return np.asarray((outer - bar.outer > CHANGED) | (bar.inner - inner > CHANGED))
 
 
-def _bend_within(bend: Floats, position: Floats, reach: float) -> Floats:
-    """Greatest bend within a reach along the path, (N,), mm: an insert cuts beside its tip."""
+def _box_around(start: Floats, end: Floats, reach: float) -> list[Floats]:
+    """Corners of a box around a line, (3,) each, that lie a distance beside it, mm."""
+    way = float(np.linalg.norm(end - start))
+    along = (end - start) * (reach / way)
+    across = np.array([-along[2], 0.0, along[0]])
+    corners = (start - along + across, end + along + across, end + along - across)
+    return [start, *corners, start - along - across, start]
+
+
+def _squares(position: Floats, reach: float) -> Ints:
+    """Stretch of a length of way to which each sample belongs, (N,), ascending by one."""
     way = np.linalg.norm(np.diff(position, axis=0), axis=1)
-    square = np.floor(np.append(0.0, np.cumsum(way)) / reach).astype(np.int64)
-    _, square = np.unique(square, return_inverse=True)
+    square = np.floor(np.append(0.0, np.cumsum(way)) / reach)
+    return np.asarray(np.unique(square, return_inverse=True)[1], dtype=np.int64)
+
+
+def _greatest_beside(values: Floats, square: Ints) -> Floats:
+    """Greatest value in the stretch of each sample and beside it: an insert cuts there too."""
     greatest = np.zeros(int(square.max()) + 3)
-    np.maximum.at(greatest, square + 1, bend)
-    widened = np.maximum(np.maximum(greatest[:-2], greatest[1:-1]), greatest[2:])
-    return np.asarray(widened[square])
+    np.maximum.at(greatest, square + 1, values)
+    beside = np.maximum(np.maximum(greatest[:-2], greatest[1:-1]), greatest[2:])
+    return np.asarray(beside[square])
 
 
 def _nearest(points: Floats, bar: TurningStock, cut: Bools) -> Ints:
@@ -246,13 +265,29 @@ def compared_profiles(
     })
     place = np.column_stack([points.radius, points.z])
     away = profile_distance(place, np.column_stack([other, bar.z]), bar.cell)
+    deviation = (-points.sign if is_bore else points.sign) * away
+    limit = np.where(points.is_face, bar.cell, 0.0) + rounding_uncertainty(logged.facts) + LIMIT
+    is_left = _is_left(points, bar, logged, is_bore=is_bore)
+    # Of material that the tool may have cut unseen it is not known whether it is there.
+    unknown = np.where((deviation > 0.0) & ~is_left, deviation, 0.0)
     return ProfileComparison(
         points=points,
         position=np.column_stack([points.radius, np.zeros(len(place)), points.z]),
-        deviation=(-points.sign if is_bore else points.sign) * away,
-        uncertainty=np.where(points.is_face, bar.cell, 0.0)
-        + (rounding_uncertainty(logged.facts) + LIMIT),
+        deviation=deviation,
+        uncertainty=np.asarray(np.maximum(limit, unknown)),
     )
+
+
+def _is_left(
+    points: ProfilePoints, bar: TurningStock, logged: LoggedBar, *, is_bore: bool
+) -> Bools:
+    """Whether material before a place is surely left, (P,), wherever the tool went unseen."""
+    possible, after = logged.possible, np.minimum(points.cell + 1, len(bar.z) - 1)
+    if is_bore:
+        inner = np.maximum(possible.inner[points.cell], possible.inner[after])
+        return np.asarray(inner < points.radius - CHANGED)
+    outer = np.minimum(possible.outer[points.cell], possible.outer[after])
+    return np.asarray(outer > points.radius + CHANGED)
 
 
 def has_bore(bar: TurningStock, logged: LoggedBar) -> bool:
