@@ -32,6 +32,9 @@ BESIDE_WALLS = 0.5
 """Width of the strip along walls where floors are not compared, mm: there a height says
 nothing about where the wall is."""
 
+SHIFT = 0.5
+"""Distance, mm, by which an error may have moved the corners of a log along a surface."""
+
 MOST_SEGMENTS = 12
 """Most segments within a step whose radii are looked at."""
 
@@ -152,7 +155,7 @@ def wall_uncertainty(logged: LoggedPart, uncertainty: Floats) -> Floats:
     """Uncertainty of walls, (P,), mm, that also counts what the tool may have cut unseen."""
     away = logged.targets.away
     unknown = np.where(away > 0.0, away - logged.possible.away, 0.0)
-    return np.maximum(uncertainty, np.minimum(unknown, away))
+    return np.asarray(uncertainty + np.clip(unknown, 0.0, np.maximum(away, 0.0)))
 
 
 def _wall_places(part: ProgrammedPart, logged: LoggedPart) -> SurfacePlaces:
@@ -183,8 +186,10 @@ def path_uncertainty(
 ) -> Floats:
     """Return the uncertainty by the way between samples at stations of a path, mm.
 
-    Corners and arcs count within a step, and a further reach in mm, before and behind.
+    Corners and arcs count within a step, ``SHIFT`` and a further reach in mm, before and
+    behind.
     """
+    reach += SHIFT
     low, high = station - step - reach, station + step + reach
     turned = np.concatenate(([0.0], np.cumsum(path.turn)))
     first, last = path.station.searchsorted(low), path.station.searchsorted(high, "right")
@@ -246,9 +251,7 @@ def floor_cells(
             grid.heights[column, row],
         ]),
         deviation=deviation[column, row] * lean,
-        uncertainty=np.maximum(
-            beside + rounding_uncertainty(logged.facts) + 10.0 * SAGITTA, unknown
-        ),
+        uncertainty=beside + rounding_uncertainty(logged.facts) + 10.0 * SAGITTA + unknown,
         area=grid.dx * grid.dy / lean,
     )
 

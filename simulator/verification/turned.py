@@ -250,6 +250,12 @@ class ProfileComparison:
     """(P,), mm: excess positive, gouge negative."""
     uncertainty: Floats
     """Uncertainty by rounding and cells, (P,), mm."""
+    beside: Ints
+    """Cells of the logged part to which a place and what is nearest to it belong, (P, 3)."""
+
+    def greatest(self, values: Floats) -> Floats:
+        """Greatest of the values of the cells beside each place, (P,)."""
+        return np.asarray(values[self.beside].max(axis=1))
 
 
 def compared_profiles(
@@ -264,7 +270,7 @@ def compared_profiles(
         for name in ProfilePoints.__slots__
     })
     place = np.column_stack([points.radius, points.z])
-    away = profile_distance(place, np.column_stack([other, bar.z]), bar.cell)
+    away, line = nearest_on(place, np.column_stack([other, bar.z]), bar.cell)
     deviation = (-points.sign if is_bore else points.sign) * away
     limit = np.where(points.is_face, bar.cell, 0.0) + rounding_uncertainty(logged.facts) + LIMIT
     is_left = _is_left(points, bar, logged, is_bore=is_bore)
@@ -274,7 +280,8 @@ def compared_profiles(
         points=points,
         position=np.column_stack([points.radius, np.zeros(len(place)), points.z]),
         deviation=deviation,
-        uncertainty=np.asarray(np.maximum(limit, unknown)),
+        uncertainty=np.asarray(limit + unknown),
+        beside=np.column_stack([points.cell, line, line + 1]),
     )
 
 
@@ -304,7 +311,7 @@ def _side(part: TurnedPart, logged: LoggedBar, *, is_bore: bool) -> SurfacePlace
     segment, is_cut = path.segment[np.maximum(chord, 0)], chord >= 0
     noses = [run.cutter.nose_radius for run in path.runs if isinstance(run.cutter, Insert)]
     reach = PIECE + max(noses, default=0.0)
-    step = logged.nearest.step[points.cell]
+    step = found.greatest(logged.nearest.step)
     bend = path_uncertainty(path, part.station[points.cell], step, reach=reach)
     return SurfacePlaces(
         is_wall=points.is_face,
@@ -357,12 +364,19 @@ def _steps(radius: Floats, other: Floats, bar: TurningStock) -> ProfilePoints:
 
 
 def profile_distance(points: Floats, profile: Floats, cell: float) -> Floats:
-    """Distance of points from a profile of lines, (C,), mm; at most ``FAR``."""
-    start, piece, _, _ = pieces_of(profile, cell)
+    """Distance of points from a profile of lines, (P,), mm; at most ``FAR``."""
+    return nearest_on(points, profile, cell)[0]
+
+
+def nearest_on(points: Floats, profile: Floats, cell: float) -> tuple[Floats, Ints]:
+    """Distance of points from a profile of lines, mm, at most ``FAR``, and the nearest line."""
+    start, piece, line, _ = pieces_of(profile, cell)
     best = cKDTree(start + 0.5 * piece).query(points, k=3)[1]
-    start, piece = start[best], piece[best]
-    square = np.maximum(np.sum(piece * piece, axis=2), 1e-18)
-    share = np.clip(np.sum((points[:, None] - start) * piece, axis=2) / square, 0.0, 1.0)
-    near = start + share[:, :, None] * piece
-    away = np.linalg.norm(points[:, None] - near, axis=2).min(axis=1)
-    return np.asarray(np.minimum(away, FAR))
+    begin, along = start[best], piece[best]
+    square = np.maximum(np.sum(along * along, axis=2), 1e-18)
+    share = np.clip(np.sum((points[:, None] - begin) * along, axis=2) / square, 0.0, 1.0)
+    near = begin + share[:, :, None] * along
+    away = np.linalg.norm(points[:, None] - near, axis=2)
+    chosen = away.argmin(axis=1)
+    rows = np.arange(len(points))
+    return np.asarray(np.minimum(away[rows, chosen], FAR)), line[best[rows, chosen]]
