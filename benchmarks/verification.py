@@ -10,7 +10,9 @@ import resource
 import tempfile
 import time
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -370,20 +372,29 @@ def _fast(speed: Floats) -> Floats:
 
 
 def lengths(folder: Path, most: int) -> None:
-    """Print time and memory for logs of growing length."""
+    """Print time and memory for logs of growing length, each in a process of its own."""
     program = prepared(BRACKET, REQUEST)
     duration = len(run_log(program, rate=1.0, feed=lambda speed: speed).time)
     for positions in (most // 10, most):
         log = run_log(program, rate=positions / duration, feed=lambda speed: speed)
         path = log.write(folder / "long.parquet", program)
-        begin = time.perf_counter()
-        verified(path, program, REQUEST)
-        seconds = time.perf_counter() - begin
-        memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+        count = len(log.time)
+        del log
+        with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+            seconds, memory = pool.submit(measured, path).result()
         print(
-            f"{len(log.time)} positions: {seconds:.1f} s, "
-            f"{1e6 * seconds / len(log.time):.1f} µs each; peak memory {memory:.0f} MB"
+            f"{count} positions: {seconds:.1f} s, {1e6 * seconds / count:.1f} µs each; "
+            f"peak memory {memory:.0f} MB"
         )
+
+
+def measured(path: Path) -> tuple[float, float]:
+    """Time in s and peak memory in MB of a verification."""
+    program = prepared(BRACKET, REQUEST)
+    begin = time.perf_counter()
+    verified(path, program, REQUEST)
+    seconds = time.perf_counter() - begin
+    return seconds, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
 
 
 def main(arguments: list[str] | None = None) -> None:

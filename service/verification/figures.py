@@ -10,6 +10,9 @@ from simulator.verification.deviation import SurfacePlaces
 MOST_POINTS = 12_000
 """Most points of a figure; the greatest deviations are always among them."""
 
+ANGLES = 40
+"""Angles around the axis at which a turned profile is shown in space."""
+
 PIXELS = 300
 """Pixels of the plan along its longer side; each shows the greatest deviation in it."""
 
@@ -40,17 +43,32 @@ def plan_figure(found: Verification) -> go.Figure:
 
 
 def space_figure(found: Verification) -> go.Figure:
-    """Figure of the surface in space."""
+    """Figure of the surface in space; a turned profile goes around its axis."""
     places, limit = found.places, _limit(found)
-    shown = places[_chosen(places)]
-    x, y, z = shown.position.T
+    if found.is_turned:
+        shown = places[_chosen(places, most=MOST_POINTS // ANGLES)]
+        position, deviation = _turned_around(shown)
+    else:
+        shown = places[_chosen(places)]
+        position, deviation = shown.position, shown.deviation
+    x, y, z = position.T
     trace = go.Scatter3d(
-        x=x, y=y, z=z, mode="markers", marker=_marker(shown.deviation, limit, 2.0),
+        x=x, y=y, z=z, mode="markers", marker=_marker(deviation, limit, 2.0),
         hovertemplate="%{x:.2f}, %{y:.2f}, %{z:.2f} mm: %{marker.color:.4f} mm<extra></extra>",
     )  # fmt: skip
     figure = go.Figure(trace)
     figure.update_layout(height=560, template="plotly_white", scene_aspectmode="data")
     return figure
+
+
+def _turned_around(places: SurfacePlaces) -> tuple[Floats, Floats]:
+    """Positions of a turned profile at angles around the axis, (N, 3), and their deviations."""
+    angle = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)[:, None]
+    radius, _, z = places.position.T
+    position = np.stack(
+        (radius * np.cos(angle), radius * np.sin(angle), z + 0.0 * angle), axis=2
+    )
+    return position.reshape(-1, 3), np.tile(places.deviation, ANGLES)
 
 
 def _limit(found: Verification) -> float:
@@ -59,15 +77,14 @@ def _limit(found: Verification) -> float:
     return float(max(size.max(initial=0.0), ROOM * found.tolerance))
 
 
-def _chosen(places: SurfacePlaces) -> Ints:
+def _chosen(places: SurfacePlaces, *, most: int = MOST_POINTS) -> Ints:
     """Rows of places to show: spread evenly, and those with the greatest deviations."""
-    count = len(places)
-    if count <= MOST_POINTS:
+    count, half = len(places), most // 2
+    if count <= most:
         return np.arange(count)
-    even = np.linspace(0, count - 1, MOST_POINTS // 2).astype(np.int64)
-    size = np.abs(places.deviation)
-    most = np.argpartition(size, -(MOST_POINTS // 2))[-(MOST_POINTS // 2) :]
-    return np.unique(np.concatenate((even, most)))
+    even = np.linspace(0, count - 1, half).astype(np.int64)
+    greatest = np.argpartition(np.abs(places.deviation), -half)[-half:]
+    return np.unique(np.concatenate((even, greatest)))
 
 
 def _marker(deviation: Floats, limit: float, size: float) -> dict[str, object]:
