@@ -120,6 +120,8 @@ class LogFile:
     """Whether a program ran at the end."""
     work_offsets: list[str] = field(default_factory=list)
     """Names of the work offsets that the log shows, in their order."""
+    foreign: set[str] = field(default_factory=set)
+    """Workingsteps that the program does not have."""
 
     def __post_init__(self) -> None:
         self.name = self.name or str(self.path)
@@ -201,7 +203,7 @@ class LogFile:
         """
         self.rows = self.equal_times = self.unknown = self.completed = 0
         self.is_running = False
-        self.work_offsets = []
+        self.work_offsets, self.foreign = [], set()
         waiting: list[LoggedSamples] = []
         last = -inf
         for batch in self._batches(self._kinds()):
@@ -298,6 +300,8 @@ class LogFile:
             return [None], np.zeros(batch.num_rows, dtype=np.int64)
         words = batch.column(WORKINGSTEP).dictionary_encode()
         known = words.dictionary.to_pylist()
+        if isinstance(self.names, ProgramNames):
+            self.foreign |= {word for word in known if word} - self.names.workingsteps.keys()
         index = words.indices.fill_null(len(known)).to_numpy(zero_copy_only=False)
         return [*known, None], np.asarray(index, dtype=np.int64)
 

@@ -341,12 +341,15 @@ def _findings(file: LogFile, facts: LogFacts, tools: set[int]) -> list[Finding]:
         )
     if file.is_running:
         found.append("the log ends while a program runs: what came later is missing")
+    if file.foreign:
+        shown = ", ".join(sorted(file.foreign)[:MOST_SHOWN])
+        found.append(f"the log names workingsteps that the program does not have: {shown}")
     if file.unknown:
         found.append(f"{file.unknown} rows lack a position: interpolated over time")
     if facts.gaps:
         found.append(
             f"{facts.gaps} gaps of up to {facts.longest_gap:.3g} s in which the tool moved: "
-            "what it did there is not known"
+            "what it did there is not known, and what it may have cut there is left"
         )
     missing = sorted(tools - facts.tools)
     if missing:

@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from simulator.motion.segments import Floats, Ints
+from simulator.motion.segments import Bools, Floats, Ints
 from simulator.removal.cutter import Cutter
 from simulator.removal.zmap import HeightGrid, ZMap
 from simulator.verification.path import rows_between
@@ -22,6 +22,10 @@ from stepnc_model.program import Stock
 
 GAP = 3.0
 """Multiple of the usual time between samples from which samples are missing."""
+
+ELSEWHERE = 10.0
+"""Multiple of the usual time between samples from which the tool may have been elsewhere than
+on the line between them."""
 
 LONGEST_LOSS = 2.0
 """Longest time, s, in which the tool is taken to have gone on unseen. In longer gaps it may
@@ -131,6 +135,22 @@ class SampledStretch:
     unseen: Floats
     """Distance from the line to each sample, (N,), mm, to which the tool may have gone where
     samples are missing; 0 where none is."""
+    is_gap: Bools
+    """Whether so many are missing before a sample that the tool was elsewhere, (N,): what is
+    on the line is not taken as cut."""
+
+    @property
+    def is_unseen(self) -> Bools:
+        """Whether the way to a sample is not wholly known, (N,)."""
+        return np.asarray(self.is_gap | (self.unseen > 0.0))
+
+    def blocks(self) -> Iterator[Ints]:
+        """Samples at which the tool had moved, in blocks without a gap."""
+        moves = np.linalg.norm(np.diff(self.samples.position, axis=0), axis=1) > STILL
+        kept = np.flatnonzero(np.append(True, moves))
+        for block in np.split(kept, np.flatnonzero(self.is_gap[kept])):
+            if len(block) > 1:
+                yield block
 
 
 class ReferencePart(Protocol):
@@ -186,6 +206,8 @@ class SampleSteps:
                 bend=whole.bend[rows],
                 rise=whole.rise[rows],
                 unseen=whole.unseen[rows],
+                # No line leads from the tool before.
+                is_gap=np.where(part == part[0], False, whole.is_gap[rows]),
             )
 
     def _begin(self, samples: LoggedSamples) -> None:
@@ -223,6 +245,7 @@ class SampleSteps:
             bend=_to_ends(bend),
             rise=_to_ends(rise),
             unseen=np.concatenate(([0.0], unseen)),
+            is_gap=np.append(False, is_gap & (seconds > ELSEWHERE * self.facts.interval)),
         )
 
 
@@ -281,27 +304,22 @@ class LoggedPart:
 
     def _cut(self, part: SampledStretch, cutter: Cutter) -> None:
         """Remove the sweep of consecutive samples with one tool."""
-        samples = part.samples
         self._consider(part, cutter)
-        moves = np.linalg.norm(np.diff(samples.position, axis=0), axis=1) > STILL
-        kept = np.concatenate(([True], moves))
-        points = samples.position[kept]
-        if len(points) < 2:
-            return
-        first = self._left.number
-        self._left.cut(cutter, points)
-        approach(self.targets, self._left.profile(cutter), rows_between(points), first)
-        ends = np.flatnonzero(kept)[1:]
-        for row, nearest in (
-            (self.targets.row, self._walls),
-            (self._left.map.grid.owner, self._floors),
-        ):
-            where = np.nonzero(row >= first)
-            nearest.meet(where, part, ends[row[where] - first])
+        for block in part.blocks():
+            points = part.samples.position[block]
+            first = self._left.number
+            self._left.cut(cutter, points)
+            approach(self.targets, self._left.profile(cutter), rows_between(points), first)
+            for row, nearest in (
+                (self.targets.row, self._walls),
+                (self._left.map.grid.owner, self._floors),
+            ):
+                where = np.nonzero(row >= first)
+                nearest.meet(where, part, block[1:][row[where] - first])
 
     def _consider(self, part: SampledStretch, cutter: Cutter) -> None:
         """Note where the tool may have been while samples are missing."""
-        ends = np.flatnonzero(part.unseen > 0.0)
+        ends = np.flatnonzero(part.is_unseen)
         if not len(ends):
             return
         points = np.stack((part.samples.position[ends - 1], part.samples.position[ends]))
@@ -310,7 +328,8 @@ class LoggedPart:
         rows[:, UNSEEN] = part.unseen[ends]
         approach(self.possible, self._left.profile(cutter), rows, 0)
         grid = self._left.map.grid
-        for row in rows[rows[:, UNSEEN] > 0.5 * self._left.map.cell]:
+        is_wide = part.is_gap[ends] | (part.unseen[ends] > 0.5 * self._left.map.cell)
+        for row in rows[is_wide]:
             lower_near(self.possible_heights, grid, row, 0.5 * cutter.diameter + row[UNSEEN])
 
 

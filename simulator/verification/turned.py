@@ -23,10 +23,10 @@ from simulator.verification.deviation import (
     rounding_uncertainty,
 )
 from simulator.verification.logged import (
-    STILL,
     LogFacts,
     LoggedSamples,
     NearestSamples,
+    SampledStretch,
     SampleSteps,
     unmet,
 )
@@ -127,23 +127,26 @@ class LoggedBar:
     def add(self, samples: LoggedSamples) -> None:
         """Cut along more samples, which are later than those before."""
         for part in self._steps.pieces(samples):
-            position = part.samples.position
-            moves = np.linalg.norm(np.diff(position, axis=0), axis=1) > STILL
-            kept = np.flatnonzero(np.concatenate(([True], moves)))
-            if len(kept) < 2:
-                continue
-            points = position[kept]
             shape = self._shapes.get(int(part.samples.tool[0]))
-            for end in np.flatnonzero(part.unseen > self.bar.cell).tolist():
-                around = _box_around(position[end - 1], position[end], float(part.unseen[end]))
+            position = part.samples.position
+            is_wide = part.is_gap | (part.unseen > self.bar.cell)
+            for end in np.flatnonzero(is_wide).tolist():
+                reach = max(float(part.unseen[end]), self.bar.cell)
+                around = _box_around(position[end - 1], position[end], reach)
                 _cut(self.possible, lines(around, speed=1.0), shape)
-            cut = _cut(self.bar, lines(list(points), speed=1.0), shape)
-            if cut.any():
-                index = kept[_nearest(points, self.bar, cut)]
-                nose = shape.nose_radius if isinstance(shape, Insert) else 0.0
-                square = _squares(position, PIECE + nose)
-                step, bend = (_greatest_beside(each, square) for each in (part.step, part.bend))
-                self._nearest.meet(cut, replace(part, step=step, bend=bend), index)
+            for block in part.blocks():
+                self._cut_block(part, block, shape)
+
+    def _cut_block(self, part: SampledStretch, block: Ints, shape: Shape | None) -> None:
+        """Cut along samples of one tool without a gap."""
+        points = part.samples.position[block]
+        cut = _cut(self.bar, lines(list(points), speed=1.0), shape)
+        if cut.any():
+            nose = shape.nose_radius if isinstance(shape, Insert) else 0.0
+            square = _squares(part.samples.position, PIECE + nose)
+            step, bend = (_greatest_beside(each, square) for each in (part.step, part.bend))
+            index = block[_nearest(points, self.bar, cut)]
+            self._nearest.meet(cut, replace(part, step=step, bend=bend), index)
 
 
 def turned_places(part: TurnedPart, logged: LoggedBar) -> SurfacePlaces:
@@ -273,9 +276,7 @@ def compared_profiles(
     away, line = nearest_on(place, np.column_stack([other, bar.z]), bar.cell)
     deviation = (-points.sign if is_bore else points.sign) * away
     limit = np.where(points.is_face, bar.cell, 0.0) + rounding_uncertainty(logged.facts) + LIMIT
-    is_left = _is_left(points, bar, logged, is_bore=is_bore)
-    # Of material that the tool may have cut unseen it is not known whether it is there.
-    unknown = np.where((deviation > 0.0) & ~is_left, deviation, 0.0)
+    unknown = _unknown(bar, logged, points, deviation, is_bore=is_bore)
     return ProfileComparison(
         points=points,
         position=np.column_stack([points.radius, np.zeros(len(place)), points.z]),
@@ -285,16 +286,34 @@ def compared_profiles(
     )
 
 
-def _is_left(
-    points: ProfilePoints, bar: TurningStock, logged: LoggedBar, *, is_bore: bool
-) -> Bools:
-    """Whether material before a place is surely left, (P,), wherever the tool went unseen."""
-    possible, after = logged.possible, np.minimum(points.cell + 1, len(bar.z) - 1)
+def _unknown(
+    bar: TurningStock,
+    logged: LoggedBar,
+    points: ProfilePoints,
+    deviation: Floats,
+    *,
+    is_bore: bool,
+) -> Floats:
+    """How much of an excess the tool may have cut while samples were missing, (P,), mm."""
+    left, possible = logged.bar, logged.possible
     if is_bore:
-        inner = np.maximum(possible.inner[points.cell], possible.inner[after])
-        return np.asarray(inner < points.radius - CHANGED)
-    outer = np.minimum(possible.outer[points.cell], possible.outer[after])
-    return np.asarray(outer > points.radius + CHANGED)
+        profile, radius = np.maximum(left.inner, possible.inner), bar.inner
+        is_less = (profile > left.inner + CHANGED).any()
+    else:
+        profile, radius = np.minimum(left.outer, possible.outer), bar.outer
+        is_less = (profile < left.outer - CHANGED).any()
+    if not is_less:
+        return np.zeros(len(deviation))
+    place = np.column_stack([points.radius, points.z])
+    away = profile_distance(place, np.column_stack([profile, bar.z]), bar.cell)
+    after = np.minimum(points.cell + 1, len(radius) - 1)
+    beside = (profile[points.cell], profile[after])
+    if is_bore:
+        is_left = np.maximum(*beside) < points.radius - CHANGED
+    else:
+        is_left = np.minimum(*beside) > points.radius + CHANGED
+    least = np.where(is_left, away, 0.0)
+    return np.asarray(np.clip(deviation - least, 0.0, np.maximum(deviation, 0.0)))
 
 
 def has_bore(bar: TurningStock, logged: LoggedBar) -> bool:
