@@ -10,7 +10,9 @@ import resource
 import tempfile
 import time
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +26,7 @@ from service.verification.run import Verification, verified
 from simulator.motion.control import control_model
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import Bools, Floats, Ints, axis_limits
-from simulator.removal.cutter import Cutter
+from simulator.removal.cutter import Cutter, Insert
 from simulator.verification.sweep import FAR
 
 BRACKET = Path(__file__).parents[1] / "examples" / "parts" / "bracket.stpnc"
@@ -50,6 +52,13 @@ class RunLog:
         """Whether a position is of a workingstep, (N,)."""
         names = [each.workingstep for each in program.steps]
         return np.asarray(self.workingstep == names.index(workingstep))
+
+    def only(self, rows: Bools) -> "RunLog":
+        """Some of the positions."""
+        return RunLog(
+            time=self.time[rows], position=self.position[rows], tool=self.tool[rows],
+            workingstep=self.workingstep[rows], block=self.block[rows],
+        )  # fmt: skip
 
     def write(self, path: Path, program: PreparedProgram) -> Path:
         """Write the log as Parquet."""
@@ -110,10 +119,12 @@ class InjectedError:
     workingstep: str
     """Surface on which it must be found."""
     make: Callable[[RunLog, PreparedProgram], RunLog]
+    tool: int = 0
+    """Tool whose radius is measured larger; 0: none."""
     radius: float = 0.0
-    """Amount by which the tool of the finished pockets is larger, mm."""
-    is_exact: bool = True
-    """Whether the size must be found within the uncertainty."""
+    """Amount by which its radius, or that of its nose, is larger, mm."""
+    is_growing: bool = False
+    """Whether the error grows from 0 to its size over the log."""
 
 
 def offset(size: float, workingstep: str = "FINISH POCKET", *, axis: int = 0) -> InjectedError:
@@ -132,22 +143,41 @@ def offset(size: float, workingstep: str = "FINISH POCKET", *, axis: int = 0) ->
     )
 
 
-def skipped_pass(log: RunLog, program: PreparedProgram) -> RunLog:
-    """Lift the tool over the last long cut of the step."""
-    rows = log.within(program, "MILL STEP") & (log.position[:, 2] < -7.9)
-    blocks, counts = np.unique(log.block[rows], return_counts=True)
-    position = log.position.copy()
-    position[rows & (log.block == blocks[counts.argmax()]), 2] += 20.0
-    return replace(log, position=position)
+def skipped_pass(workingstep: str, size: float, *, axis: int, below: float) -> InjectedError:
+    """The longest cut of a workingstep is lifted by 20 mm.
+
+    Parameters
+    ----------
+    workingstep : str
+    size : float, mm
+        Material that it leaves; at most what is measured.
+    axis : int
+        Axis along which the tool is lifted.
+    below : float, mm
+        Greatest coordinate of cuts along this axis.
+    """
+
+    def make(log: RunLog, program: PreparedProgram) -> RunLog:
+        rows = log.within(program, workingstep) & (log.position[:, axis] < below)
+        blocks, counts = np.unique(log.block[rows], return_counts=True)
+        position = log.position.copy()
+        position[rows & (log.block == blocks[counts.argmax()]), axis] += 20.0
+        return replace(log, position=position)
+
+    return InjectedError(name="skipped pass", size=size, workingstep=workingstep, make=make)
 
 
-def backlash(log: RunLog, _: PreparedProgram) -> RunLog:
-    """Leave X behind by 0.02 mm wherever it moves down."""
-    step = np.sign(np.diff(log.position[:, 0], prepend=log.position[0, 0]))
-    moved = np.maximum.accumulate(np.where(step != 0.0, np.arange(len(step)), 0))
-    position = log.position.copy()
-    position[:, 0] += np.where(step[moved] < 0.0, 0.02, 0.0)
-    return replace(log, position=position)
+def backlash(workingstep: str, sign: float) -> InjectedError:
+    """X stays behind by 0.02 mm wherever it moves up (1) or down (-1)."""
+
+    def make(log: RunLog, _: PreparedProgram) -> RunLog:
+        step = np.sign(np.diff(log.position[:, 0], prepend=log.position[0, 0]))
+        moved = np.maximum.accumulate(np.where(step != 0.0, np.arange(len(step)), 0))
+        position = log.position.copy()
+        position[:, 0] -= np.where(step[moved] == sign, sign * 0.02, 0.0)
+        return replace(log, position=position)
+
+    return InjectedError(name="backlash of X", size=0.02, workingstep=workingstep, make=make)
 
 
 def drift(log: RunLog, _: PreparedProgram) -> RunLog:
@@ -157,17 +187,33 @@ def drift(log: RunLog, _: PreparedProgram) -> RunLog:
     return replace(log, position=position)
 
 
-def lost_second(log: RunLog, program: PreparedProgram) -> RunLog:
-    """Lose a second in which the tool goes around a corner of the open pocket."""
-    rows = np.flatnonzero(log.within(program, "FINISH OPEN POCKET"))
-    low = rows[log.position[rows, 2] < -9.9]
-    turns = np.flatnonzero(np.diff(log.block[low]) != 0)
-    middle = log.time[low[turns[len(turns) // 2]]]
-    kept = np.abs(log.time - middle) > 0.5
-    return RunLog(
-        time=log.time[kept], position=log.position[kept], tool=log.tool[kept],
-        workingstep=log.workingstep[kept], block=log.block[kept],
-    )  # fmt: skip
+def lost_second(workingstep: str, *, axis: int, below: float) -> InjectedError:
+    """A second is lost in which the tool goes around a corner, in the middle of a workingstep.
+
+    Parameters
+    ----------
+    workingstep : str
+    axis : int
+    below : float, mm
+        Greatest coordinate of cuts along this axis.
+    """
+
+    def make(log: RunLog, program: PreparedProgram) -> RunLog:
+        rows = np.flatnonzero(log.within(program, workingstep))
+        low = rows[log.position[rows, axis] < below]
+        turns = np.flatnonzero(np.diff(log.block[low]) != 0)
+        middle = log.time[low[turns[len(turns) // 2]]]
+        return log.only(np.abs(log.time - middle) > 0.5)
+
+    return InjectedError(name="lost second", size=0.0, workingstep="", make=make)
+
+
+def jittered(log: RunLog, _: PreparedProgram) -> RunLog:
+    """Stamps are off by up to 0.4 of the interval, and 5 % of the samples are missing."""
+    random = np.random.default_rng(4)
+    interval = float(np.median(np.diff(log.time)))
+    time_ = log.time + interval * random.uniform(-0.4, 0.4, len(log.time))
+    return replace(log, time=time_).only(random.uniform(size=len(log.time)) > 0.05)
 
 
 def clean(log: RunLog, _: PreparedProgram) -> RunLog:
@@ -176,32 +222,51 @@ def clean(log: RunLog, _: PreparedProgram) -> RunLog:
 
 
 CLEAN = InjectedError(name="none", size=0.0, workingstep="", make=clean)
+JITTER = InjectedError(
+    name="none; jitter, 5 % missing", size=0.0, workingstep="", make=jittered
+)
 OFFSETS = (offset(0.3), offset(0.15), offset(0.0254))
+TURNED_OFFSETS = tuple(offset(size, "FINISH CONTOUR") for size in (0.3, 0.15, 0.0254))
 ERRORS = (
     CLEAN,
+    JITTER,
     *OFFSETS,
     offset(0.0254, "FINISH CONTOUR"),
+    skipped_pass("MILL STEP", FAR, axis=2, below=-7.9),
+    backlash("FINISH POCKET", -1.0),
     InjectedError(
-        name="skipped pass", size=FAR, workingstep="MILL STEP", make=skipped_pass
-    ),
-    InjectedError(name="backlash of X", size=0.02, workingstep="FINISH POCKET", make=backlash),
-    InjectedError(
-        name="drift of X to 0.05", size=0.04, workingstep="FINISH POCKET", make=drift,
-        is_exact=False,
+        name="drift of X to 0.05", size=0.05, workingstep="FINISH POCKET", make=drift,
+        is_growing=True,
     ),
     InjectedError(
-        name="radius of T4", size=0.05, workingstep="FINISH POCKET", make=clean, radius=0.05
+        name="radius of T4", size=0.05, workingstep="FINISH POCKET", make=clean, tool=4,
+        radius=0.05,
     ),
-    InjectedError(name="lost second", size=0.0, workingstep="", make=lost_second),
+    lost_second("FINISH OPEN POCKET", axis=2, below=-9.9),
 )  # fmt: skip
 
+ALLOWANCE = 0.5
+"""Material that roughing leaves on the contour of the shaft, mm."""
 
 SHAFT_ERRORS = (
     CLEAN,
-    *(offset(size, "FINISH CONTOUR") for size in (0.3, 0.15, 0.0254)),
+    JITTER,
+    *TURNED_OFFSETS,
     offset(0.0254, "FINISH FACE", axis=2),
     offset(0.15, "THREAD RELIEF"),
-)
+    skipped_pass("FINISH CONTOUR", ALLOWANCE, axis=0, below=26.9),
+    backlash("FINISH CONTOUR", 1.0),
+    InjectedError(
+        name="drift of X to 0.05", size=0.05, workingstep="FINISH CONTOUR", make=drift,
+        is_growing=True,
+    ),
+    InjectedError(
+        # At 45° the surface lies before the tip by the radius of the nose times √2 - 1.
+        name="nose radius of T2 by 0.05", size=0.05 * (2.0**0.5 - 1.0),
+        workingstep="FINISH CONTOUR", make=clean, tool=2, radius=0.05,
+    ),
+    lost_second("FINISH CONTOUR", axis=0, below=26.9),
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -210,12 +275,12 @@ class FoundError:
 
     error: InjectedError
     spots: tuple[tuple[str, DeviationSpot], ...]
-    """Deviations beyond their uncertainty, with their workingsteps; the greatest first."""
+    """Deviations beyond their uncertainty, with their workingsteps; the surest first."""
     verification: Verification
 
     @property
     def spot(self) -> DeviationSpot | None:
-        """Greatest deviation on the surface where the error must be found."""
+        """Surest deviation on the surface where the error must be found."""
         own = [spot for name, spot in self.spots if name == self.error.workingstep]
         return own[0] if own else None
 
@@ -226,9 +291,8 @@ class FoundError:
             return not self.spots
         if self.spot is None:
             return False
-        if not self.error.is_exact:
-            return self.spot.size >= 0.5 * self.error.size
-        return abs(self.spot.size - self.error.size) <= self.spot.uncertainty
+        share = self.spot.time / self.verification.facts.end if self.error.is_growing else 1.0
+        return abs(self.spot.size - share * self.error.size) <= self.spot.uncertainty
 
 
 def found(
@@ -241,11 +305,8 @@ def found(
 ) -> FoundError:
     """Put an error into a log, and verify it."""
     path = error.make(log, program).write(folder / "log.parquet", program)
-    if error.radius:
-        four = program.cutters[4]
-        assert isinstance(four, Cutter)
-        wide = replace(four, diameter=four.diameter + 2.0 * error.radius)
-        program = replace(program, cutters=program.cutters | {4: wide})
+    if error.tool:
+        program = widened(program, error.tool, error.radius)
     result = verified(path, program, request)
     spots = [
         (row.workingstep, spot)
@@ -253,8 +314,20 @@ def found(
         for spot in (row.gouge, row.excess)
         if spot.is_beyond
     ]
-    spots.sort(key=lambda pair: -pair[1].size)
+    spots.sort(key=lambda pair: pair[1].uncertainty - pair[1].size)
     return FoundError(error=error, spots=tuple(spots), verification=result)
+
+
+def widened(program: PreparedProgram, tool: int, radius: float) -> PreparedProgram:
+    """Let a tool be measured larger than programmed, in its radius or that of its nose."""
+    shape = program.cutters[tool]
+    assert shape is not None
+    wide: Cutter | Insert
+    if isinstance(shape, Cutter):
+        wide = replace(shape, diameter=shape.diameter + 2.0 * radius)
+    else:
+        wide = replace(shape, nose_radius=shape.nose_radius + radius)
+    return replace(program, cutters=program.cutters | {tool: wide})
 
 
 def shown(case: FoundError) -> str:
@@ -278,7 +351,8 @@ def errors(folder: Path) -> None:
     for program, request, rate, cases in (
         (bracket, REQUEST, 100.0, ERRORS),
         (shaft, SHAFT_REQUEST, 100.0, SHAFT_ERRORS),
-        (bracket, REQUEST, 10.0, (CLEAN, *OFFSETS[:2])),
+        (bracket, REQUEST, 10.0, (CLEAN, JITTER, *OFFSETS[:2])),
+        (shaft, SHAFT_REQUEST, 10.0, (CLEAN, JITTER, *TURNED_OFFSETS[:2])),
     ):
         is_fast = rate < 50.0
         log = run_log(program, rate=rate, feed=_fast if is_fast else _slow)
@@ -298,20 +372,29 @@ def _fast(speed: Floats) -> Floats:
 
 
 def lengths(folder: Path, most: int) -> None:
-    """Print time and memory for logs of growing length."""
+    """Print time and memory for logs of growing length, each in a process of its own."""
     program = prepared(BRACKET, REQUEST)
     duration = len(run_log(program, rate=1.0, feed=lambda speed: speed).time)
     for positions in (most // 10, most):
         log = run_log(program, rate=positions / duration, feed=lambda speed: speed)
         path = log.write(folder / "long.parquet", program)
-        begin = time.perf_counter()
-        verified(path, program, REQUEST)
-        seconds = time.perf_counter() - begin
-        memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+        count = len(log.time)
+        del log
+        with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+            seconds, memory = pool.submit(measured, path).result()
         print(
-            f"{len(log.time)} positions: {seconds:.1f} s, "
-            f"{1e6 * seconds / len(log.time):.1f} µs each; peak memory {memory:.0f} MB"
+            f"{count} positions: {seconds:.1f} s, {1e6 * seconds / count:.1f} µs each; "
+            f"peak memory {memory:.0f} MB"
         )
+
+
+def measured(path: Path) -> tuple[float, float]:
+    """Time in s and peak memory in MB of a verification."""
+    program = prepared(BRACKET, REQUEST)
+    begin = time.perf_counter()
+    verified(path, program, REQUEST)
+    seconds = time.perf_counter() - begin
+    return seconds, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -57,6 +57,13 @@ def print_entries(kind: str, entries: Sequence[Machine | WorkMaterial]) -> None:
         print_table(MATERIALS, [each for each in entries if isinstance(each, WorkMaterial)])
 
 
+CONTROL = (
+    "fir, unless --control names another; not identified on a machine: its filter times follow "
+    "from the axes' acceleration and jerk (docs/models.md); compare yours with stepnc blockfit"
+)
+"""Which control model a machine of the library has, and where it comes from."""
+
+
 def print_entry(entry: Machine | WorkMaterial) -> None:
     """Print the data of one machine or material."""
     print_line(f"{entry.name}: {entry.title}")
@@ -100,6 +107,7 @@ def _machine_facts(machine: Machine) -> list[Fact]:
     if machine.block_time is not None:
         of = f" ({machine.block_time_source})" if machine.block_time_source else ""
         facts.append(("block time ms", f"{1e3 * machine.block_time:g}{of}"))
+    facts.append(("motion control", CONTROL))
     for mode in machine.modes:
         of = mode.tool or (f"{mode.tool_diameter:g} mm" if mode.tool_diameter else "")
         facts.append((

@@ -92,7 +92,11 @@ class RunRequest(Request):
     units: FileUnits = ISO
     control: Annotated[
         ControlModelName,
-        About("motion control of the path: exact-stop, junction or fir", flag="--control"),
+        About(
+            "motion control of the path: exact-stop (every block from rest to rest), junction "
+            "or fir; none was identified on a machine of the library",
+            flag="--control",
+        ),
     ] = ControlModelName.FIR
     filter_s: Annotated[
         Name,

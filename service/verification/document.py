@@ -17,6 +17,7 @@ from simulator.agent.machine_model import machine_model
 from simulator.agent.model import DeviceModel
 from simulator.agent.names import NameSet
 from simulator.client.columns import TIME, WORDS
+from simulator.client.document import read_document
 from simulator.motion.segments import Ints
 from simulator.spec import Machine
 from stepnc_model.errors import StepNcError
@@ -26,7 +27,7 @@ SUFFIXES = DOCUMENTS | LINES
 
 
 def table_of(path: Path, machine: Machine, columns: Sequence[str]) -> pa.Table:
-    """Read columns of a document of streams or an SHDR log of a machine.
+    """Read columns of a document of streams of any agent, or an SHDR log of a machine.
 
     Parameters
     ----------
@@ -49,7 +50,21 @@ def table_of(path: Path, machine: Machine, columns: Sequence[str]) -> pa.Table:
             return _table(_joined(feeds), model, columns)
         except StepNcError as error:
             refused = refused or error
+    if path.suffix.lower() in DOCUMENTS:
+        return _of_any_agent(path, columns)
     raise refused or StepNcError(f"{path}: no observations")
+
+
+def _of_any_agent(path: Path, columns: Sequence[str]) -> pa.Table:
+    """Rows of a document of another agent, by the types of its data items."""
+    rows = read_document(path).rows()
+    known = [name for name in (TIME, *columns) if rows and name in rows[0]]
+    return pa.table({
+        name: pa.array(
+            [row[name] for row in rows], pa.string() if name in WORDS else pa.float64()
+        )
+        for name in known
+    })
 
 
 def _joined(feeds: Iterator[RunFeed]) -> RunFeed:

@@ -15,6 +15,9 @@ MOST_IN_PLAN = 5_000
 """Most points in the plan, each of which is an element of the page: the policy of served
 reports forbids the faster drawing by WebGL, which compiles functions from text."""
 
+ANGLES = 40
+"""Angles around the axis at which a turned profile is shown in space."""
+
 PIXELS = 300
 """Pixels of the plan along its longer side; each shows the greatest deviation in it."""
 
@@ -45,17 +48,32 @@ def plan_figure(found: Verification) -> go.Figure:
 
 
 def space_figure(found: Verification) -> go.Figure:
-    """Figure of the surface in space."""
+    """Figure of the surface in space; a turned profile goes around its axis."""
     places, limit = found.places, _limit(found)
-    shown = places[_chosen(places, MOST_POINTS)]
-    x, y, z = shown.position.T
+    if found.is_turned:
+        shown = places[_chosen(places, MOST_POINTS // ANGLES)]
+        position, deviation = _turned_around(shown)
+    else:
+        shown = places[_chosen(places, MOST_POINTS)]
+        position, deviation = shown.position, shown.deviation
+    x, y, z = position.T
     trace = go.Scatter3d(
-        x=x, y=y, z=z, mode="markers", marker=_marker(shown.deviation, limit, 2.0),
+        x=x, y=y, z=z, mode="markers", marker=_marker(deviation, limit, 2.0),
         hovertemplate="%{x:.2f}, %{y:.2f}, %{z:.2f} mm: %{marker.color:.4f} mm<extra></extra>",
     )  # fmt: skip
     figure = go.Figure(trace)
     figure.update_layout(height=560, template="plotly_white", scene_aspectmode="data")
     return figure
+
+
+def _turned_around(places: SurfacePlaces) -> tuple[Floats, Floats]:
+    """Positions of a turned profile at angles around the axis, (N, 3), and their deviations."""
+    angle = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)[:, None]
+    radius, _, z = places.position.T
+    position = np.stack(
+        (radius * np.cos(angle), radius * np.sin(angle), z + 0.0 * angle), axis=2
+    )
+    return position.reshape(-1, 3), np.tile(places.deviation, ANGLES)
 
 
 def _limit(found: Verification) -> float:

@@ -23,7 +23,20 @@ from simulator.verification.logged import LoggedSamples, joined
 from stepnc_model.errors import StepNcError
 
 TOOL, WORKINGSTEP = "tool_number", "workingstep"
+WORK_POSITIONS = tuple(f"path_position_{axis}" for axis in "xyz")
+"""Columns of the tip of the tool in work coordinates, as PATH_POSITION tells it."""
+OFFSETS = tuple(f"work_offset_{axis}_mm" for axis in "xyz")
+"""Columns of the position of the program's zero on the axes."""
+LENGTH = "tool_length_offset_mm"
+"""Column of the length of the tool, by which Z of the axes lies above the tip."""
+WORK_OFFSET = "work_offset"
+"""Column of the name or number of the work offset in effect."""
 COMPLETED = "PROGRAM_COMPLETED"
+
+COLUMNS = (
+    *POSITIONS, TOOL, WORKINGSTEP, EXECUTION, WORK_OFFSET, *WORK_POSITIONS, *OFFSETS, LENGTH,
+)  # fmt: skip
+"""Columns that are read of a document."""
 
 PIECE = 65_536
 """Samples that are taken together."""
@@ -94,6 +107,8 @@ class LogFile:
     """Machine whose data items a document has."""
     zero: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Position of the program's zero on the axes, mm."""
+    is_zero_given: bool = False
+    """Whether the user states the zero, so that the log's own is not used."""
     rows: int = 0
     equal_times: int = 0
     """Rows with the time of the row before."""
@@ -103,6 +118,10 @@ class LogFile:
     """Programs that were completed."""
     is_running: bool = False
     """Whether a program ran at the end."""
+    work_offsets: list[str] = field(default_factory=list)
+    """Names of the work offsets that the log shows, in their order."""
+    foreign: set[str] = field(default_factory=set)
+    """Workingsteps that the program does not have."""
 
     def __post_init__(self) -> None:
         self.name = self.name or str(self.path)
@@ -110,6 +129,8 @@ class LogFile:
         self._names = (
             headings(self.path) if self._document is None else self._document.column_names
         )
+        self._has_work_positions = self._has_values(WORK_POSITIONS)
+        self._has_offsets = self._has_values(OFFSETS)
         for needed in (TIME, *self._positions):
             if needed not in self._names:
                 raise StepNcError(f"{self.name}: no column {needed}")
@@ -123,8 +144,20 @@ class LogFile:
             )
 
     @property
+    def zero_source(self) -> str:
+        """Where the zero comes from, if the log tells it."""
+        if self._has_work_positions and not self.is_zero_given:
+            return "the tip of the tool in work coordinates, as PATH_POSITION tells it"
+        if self._has_offsets and not self.is_zero_given:
+            length = f" and {LENGTH}" if LENGTH in self._names else ""
+            return f"positions of the axes less work_offset_x_mm, _y_mm, _z_mm{length}"
+        return ""
+
+    @property
     def _positions(self) -> tuple[str, ...]:
-        """Columns of the axes; a lathe without Y stays at 0."""
+        """Columns of the positions; a lathe without Y stays at 0."""
+        if self._has_work_positions and not self.is_zero_given:
+            return WORK_POSITIONS
         axes = None if self.machine is None else {axis.name for axis in self.machine.axes}
         if axes is None or not axes:
             return POSITIONS
@@ -138,10 +171,24 @@ class LogFile:
         if suffix not in SUFFIXES or self.machine is None:
             known = ", ".join(sorted(TABLES | SUFFIXES))
             raise StepNcError(f"{self.name}: expected positions in a file of {known}")
-        return table_of(self.path, self.machine, (*POSITIONS, TOOL, WORKINGSTEP, EXECUTION))
+        return table_of(self.path, self.machine, COLUMNS)
 
-    def _batches(self) -> Iterator[pa.RecordBatch]:
-        kinds = self._kinds()
+    def _has_values(self, columns: tuple[str, ...]) -> bool:
+        """Whether the log has some columns, and a value in each."""
+        if not set(columns) <= set(self._names):
+            return False
+        missing = set(columns)
+        for batch in self._batches(dict.fromkeys(columns, pa.float64())):
+            missing -= {
+                name
+                for name in missing
+                if np.isfinite(batch.column(name).to_numpy(zero_copy_only=False)).any()
+            }
+            if not missing:
+                return True
+        return False
+
+    def _batches(self, kinds: Mapping[str, pa.DataType]) -> Iterator[pa.RecordBatch]:
         if self._document is None:
             return batches(self.path, kinds)
         return iter(self._document.select(list(kinds)).to_batches(max_chunksize=PIECE))
@@ -156,11 +203,13 @@ class LogFile:
         """
         self.rows = self.equal_times = self.unknown = self.completed = 0
         self.is_running = False
+        self.work_offsets, self.foreign = [], set()
         waiting: list[LoggedSamples] = []
         last = -inf
-        for batch in self._batches():
+        for batch in self._batches(self._kinds()):
             part = self._samples(batch)
             self._count_programs(batch)
+            self._note_work_offsets(batch)
             self._require_ascending(part.time, last)
             last = float(part.time[-1])
             self.rows += len(part)
@@ -187,7 +236,35 @@ class LogFile:
             kinds[WORKINGSTEP] = pa.string()
         if EXECUTION in self._names:
             kinds[EXECUTION] = pa.string()
+        if WORK_OFFSET in self._names:
+            kinds[WORK_OFFSET] = pa.string()
+        if self._has_offsets and self._positions != WORK_POSITIONS:
+            kinds |= dict.fromkeys(OFFSETS, pa.float64())
+            if LENGTH in self._names:
+                kinds[LENGTH] = pa.float64()
         return kinds
+
+    def _note_work_offsets(self, batch: pa.RecordBatch) -> None:
+        """Note the work offsets that are in effect one after another."""
+        if WORK_OFFSET not in self._names:
+            return
+        words = batch.column(WORK_OFFSET).dictionary_encode()
+        index = words.indices.drop_null().to_numpy()
+        known = words.dictionary.to_pylist()
+        for each in index[np.append(True, np.diff(index) != 0)[: len(index)]].tolist():
+            if self.work_offsets[-1:] != [known[each]]:
+                self.work_offsets.append(known[each])
+
+    def _offset(self, batch: pa.RecordBatch) -> Floats:
+        """Position of the program's zero on the axes at each row, (N, 3), mm."""
+        offset = np.tile(np.array(self.zero), (batch.num_rows, 1))
+        if OFFSETS[0] not in batch.schema.names:
+            return offset
+        for axis, name in enumerate(OFFSETS):
+            offset[:, axis] = batch.column(name).to_numpy(zero_copy_only=False)
+        if LENGTH in batch.schema.names:
+            offset[:, 2] += batch.column(LENGTH).to_numpy(zero_copy_only=False)
+        return offset
 
     def _count_programs(self, batch: pa.RecordBatch) -> None:
         """Count the programs that are completed, and note whether one runs at the end."""
@@ -204,10 +281,10 @@ class LogFile:
 
     def _samples(self, batch: pa.RecordBatch) -> LoggedSamples:
         position = np.zeros((batch.num_rows, len(POSITIONS)))
-        for axis, name in enumerate(POSITIONS):
-            if name in self._positions:
-                position[:, axis] = batch.column(name).to_numpy(zero_copy_only=False)
-        position -= np.array(self.zero)
+        for name in self._positions:
+            axis = "xyz".index(name[0] if name in POSITIONS else name[-1])
+            position[:, axis] = batch.column(name).to_numpy(zero_copy_only=False)
+        position -= self._offset(batch)
         words, index = self._words(batch)
         tools = self._tools(batch, words, index)
         return LoggedSamples(
@@ -223,6 +300,8 @@ class LogFile:
             return [None], np.zeros(batch.num_rows, dtype=np.int64)
         words = batch.column(WORKINGSTEP).dictionary_encode()
         known = words.dictionary.to_pylist()
+        if isinstance(self.names, ProgramNames):
+            self.foreign |= {word for word in known if word} - self.names.workingsteps.keys()
         index = words.indices.fill_null(len(known)).to_numpy(zero_copy_only=False)
         return [*known, None], np.asarray(index, dtype=np.int64)
 
@@ -275,7 +354,8 @@ class LogFile:
 
     def _lacking(self, position: Floats) -> str:
         lacking = np.flatnonzero(~np.isfinite(position).any(axis=0))
-        return POSITIONS[int(lacking[0])] if len(lacking) else POSITIONS[0]
+        names = WORK_POSITIONS if self._positions == WORK_POSITIONS else POSITIONS
+        return names[int(lacking[0])] if len(lacking) else names[0]
 
 
 def thinned(pieces: Iterator[LoggedSamples], *, most: int) -> Sequence[Floats]:

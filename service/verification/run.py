@@ -46,6 +46,9 @@ SURVEYED = 4096
 
 FIT = "fit"
 
+MOST_SHOWN = 8
+"""Most names in a message."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Verification:
@@ -177,7 +180,10 @@ def verified(
     StepNcError
         When the log cannot be read, or is not of this program.
     """
-    file = LogFile(path=log, name=name, names=program.names, machine=program.machine)
+    file = LogFile(
+        path=log, name=name, names=program.names, machine=program.machine,
+        is_zero_given=bool(request.zero),
+    )  # fmt: skip
     file.zero, findings = _zero(request.zero, file, program)
     try:
         found = compared_with_program(program, file, request.cell_mm, tell)
@@ -240,7 +246,10 @@ def verified_without_program(
     if request.zero == FIT:
         raise StepNcError("--zero fit needs a program (--program): the zero is fitted to it")
     steps = LogSteps(tools=frozenset(setup.cutters))
-    file = LogFile(path=log, name=name, names=steps, machine=setup.machine)
+    file = LogFile(
+        path=log, name=name, names=steps, machine=setup.machine,
+        is_zero_given=bool(request.zero),
+    )  # fmt: skip
     if request.zero:
         file.zero = _given_zero(request.zero)
     try:
@@ -332,12 +341,15 @@ def _findings(file: LogFile, facts: LogFacts, tools: set[int]) -> list[Finding]:
         )
     if file.is_running:
         found.append("the log ends while a program runs: what came later is missing")
+    if file.foreign:
+        shown = ", ".join(sorted(file.foreign)[:MOST_SHOWN])
+        found.append(f"the log names workingsteps that the program does not have: {shown}")
     if file.unknown:
         found.append(f"{file.unknown} rows lack a position: interpolated over time")
     if facts.gaps:
         found.append(
             f"{facts.gaps} gaps of up to {facts.longest_gap:.3g} s in which the tool moved: "
-            "what it did there is not known"
+            "what it did there is not known, and what it may have cut there is left"
         )
     missing = sorted(tools - facts.tools)
     if missing:
@@ -345,4 +357,12 @@ def _findings(file: LogFile, facts: LogFacts, tools: set[int]) -> list[Finding]:
         found.append(
             f"the log never shows {shown}: its tool changes or workingsteps are missing"
         )
-    return [Finding(severity=Severity.WARNING, message=text) for text in found]
+    notes = [f"zero from the log: {file.zero_source}"] if file.zero_source else []
+    if len(file.work_offsets) > 1:
+        shown = ", ".join(file.work_offsets[:MOST_SHOWN])
+        message = f"the work offset changes in the log: {shown}"
+        (notes if file.zero_source else found).append(message)
+    return [
+        *(Finding(severity=Severity.NOTE, message=text) for text in notes),
+        *(Finding(severity=Severity.WARNING, message=text) for text in found),
+    ]

@@ -27,6 +27,12 @@ def read_stl(path: Path) -> Floats:
     """
     content = read_bytes(path)
     triangles = _binary(content) if _is_binary(content) else _text(path, content)
+    if not len(triangles) and len(content) >= HEADER:
+        count = int.from_bytes(content[HEADER - 4 : HEADER], "little")
+        raise StepNcError(
+            f"{path}: no triangles as text, and as a binary file its {count} triangles need "
+            f"{HEADER + RECORD * count} bytes; it has {len(content)}: is it cut off?"
+        )
     if not len(triangles):
         raise StepNcError(f"{path}: no triangles: expected an STL file")
     _require_few(path, len(triangles))

@@ -55,6 +55,9 @@ BY_TYPE = {
     ("Path", "LINE_NUMBER", "ABSOLUTE"): "line",
     ("Path", "LINE_NUMBER", ""): "line",
     ("Path", "TOOL_NUMBER", ""): "tool_number",
+    ("Path", "WORK_OFFSET", ""): "work_offset",
+    ("Path", "PATH_POSITION", "ACTUAL"): "path_position",
+    ("Path", "PATH_POSITION", ""): "path_position",
     ("ProcessOccurrence", "PROCESS_KIND_ID", "ISO_STEP_EXECUTABLE"): "workingstep",
 }
 """columns by component, type and sub type"""
@@ -64,8 +67,11 @@ EXECUTION = "execution"
 RUNNING = frozenset({"ACTIVE", "WAIT", "FEED_HOLD", "INTERRUPTED"})
 """words of ``execution`` while a program runs; a tool change is a wait"""
 
-WORDS = frozenset({"execution", "program", "workingstep"})
+WORDS = frozenset({"execution", "program", "workingstep", "work_offset"})
 """columns of texts"""
+
+PLACES = frozenset({"path_position"})
+"""values of three coordinates; each has a column whose name ends with its axis"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,6 +82,8 @@ class RecordedColumn:
     id: str
     units: str
     is_text: bool
+    axis: int | None = None
+    """Index of the coordinate in a value of three; None: the value is the number."""
 
 
 def columns_of(items: Iterable[ClientItem]) -> tuple[RecordedColumn, ...]:
@@ -87,6 +95,19 @@ def columns_of(items: Iterable[ClientItem]) -> tuple[RecordedColumn, ...]:
     for item in items:
         name = column_name(item)
         if not name and item.category != "SAMPLE":
+            continue
+        if name in PLACES:
+            for axis, letter in enumerate("xyz"):
+                found.setdefault(
+                    f"{name}_{letter}",
+                    RecordedColumn(
+                        name=f"{name}_{letter}",
+                        id=item.id,
+                        units=item.units.removesuffix("_3D"),
+                        is_text=False,
+                        axis=axis,
+                    ),
+                )
             continue
         name = name if name and name not in found else item.id
         found[name] = RecordedColumn(
@@ -119,6 +140,7 @@ class RowMaker:
     _open: float | None = None
 
     def __post_init__(self) -> None:
+        self._places = {each.id for each in self.columns if each.axis is not None}
         self._numeric = {each.id: not each.is_text for each in self.columns}
 
     def rows(self, observations: Iterable[ClientObservation]) -> list[Mapping[str, Cell]]:
@@ -131,7 +153,8 @@ class RowMaker:
             is_numeric = self._numeric.get(each.id)
             if is_numeric is None:
                 continue
-            self._held[each.id] = _number(each.value) if is_numeric else each.value
+            is_whole = not is_numeric or each.id in self._places
+            self._held[each.id] = each.value if is_whole else _number(each.value)
             if is_numeric and each.value is not None:
                 self._open = each.time
         return found
@@ -156,8 +179,15 @@ class RowMaker:
             self.begin = time
         row: dict[str, Cell] = {TIME: round(time - self.begin, 6)}
         for each in self.columns:
-            row[each.name] = self._held.get(each.id, None if each.is_text else nan)
+            held = self._held.get(each.id, None if each.is_text else nan)
+            row[each.name] = held if each.axis is None else _coordinate(held, each.axis)
         return row
+
+
+def _coordinate(held: Cell, axis: int) -> float:
+    """One of three numbers that a text holds; NaN where it does not."""
+    words = held.split() if isinstance(held, str) else []
+    return _number(words[axis]) if len(words) == 3 else nan
 
 
 def _number(text: str | None) -> float:

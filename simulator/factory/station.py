@@ -341,12 +341,13 @@ class Station:
         setup, ejection = next(times[_PART_SETUP]), next(times[_PART_EJECTION])
         self.enter(_PART_SETUP, powers[_PART_SETUP], now)
         power = work.energy / seconds if seconds > 0.0 else 0.0
+        whole = setup + seconds + ejection
         self._part_spoilt = False
         self._ahead = [
             (_MACHINING, power, now + setup),
-            (_PART_EJECTION, powers[_PART_EJECTION], now + setup + seconds),
+            (_PART_EJECTION, powers[_PART_EJECTION], now + whole - ejection),
         ]
-        yield self.env.timeout(setup + seconds + ejection)
+        yield self.env.timeout(whole)
         for state, power, begin in self._ahead:
             self.enter(state, power, begin)
         self._ahead = []

@@ -32,6 +32,9 @@ BESIDE_WALLS = 0.5
 """Width of the strip along walls where floors are not compared, mm: there a height says
 nothing about where the wall is."""
 
+SHIFT = 0.5
+"""Distance, mm, by which an error may have moved the corners of a log along a surface."""
+
 MOST_SEGMENTS = 12
 """Most segments within a step whose radii are looked at."""
 
@@ -148,6 +151,13 @@ def rounding_uncertainty(facts: LogFacts) -> float:
     return facts.rounding / sqrt(2.0)
 
 
+def wall_uncertainty(logged: LoggedPart, uncertainty: Floats) -> Floats:
+    """Uncertainty of walls, (P,), mm, that also counts what the tool may have cut unseen."""
+    away = logged.targets.away
+    unknown = np.where(away > 0.0, away - logged.possible.away, 0.0)
+    return np.asarray(uncertainty + np.clip(unknown, 0.0, np.maximum(away, 0.0)))
+
+
 def _wall_places(part: ProgrammedPart, logged: LoggedPart) -> SurfacePlaces:
     path, walls = part.path, part.walls
     position = np.column_stack([walls.targets.x, walls.targets.y, walls.targets.z])
@@ -162,7 +172,7 @@ def _wall_places(part: ProgrammedPart, logged: LoggedPart) -> SurfacePlaces:
         is_wall=np.ones(len(position), dtype=np.bool_),
         position=position,
         deviation=logged.targets.away - walls.rest,
-        uncertainty=bend + rounding_uncertainty(logged.facts) + EXACT,
+        uncertainty=wall_uncertainty(logged, bend + rounding_uncertainty(logged.facts) + EXACT),
         area=walls.area,
         workingstep=steps,
         block=path.block[segment],
@@ -176,8 +186,10 @@ def path_uncertainty(
 ) -> Floats:
     """Return the uncertainty by the way between samples at stations of a path, mm.
 
-    Corners and arcs count within a step, and a further reach in mm, before and behind.
+    Corners and arcs count within a step, ``SHIFT`` and a further reach in mm, before and
+    behind.
     """
+    reach += SHIFT
     low, high = station - step - reach, station + step + reach
     turned = np.concatenate(([0.0], np.cumsum(path.turn)))
     first, last = path.station.searchsorted(low), path.station.searchsorted(high, "right")
@@ -228,6 +240,9 @@ def floor_cells(
     deviation, is_lateral = _floor_deviation(grid, logged)
     width = max(grid.dx, grid.dy) + 0.5 * logged.facts.step
     beside = np.where(is_lateral[column, row], width, 0.0)
+    # Of material that the tool may have cut unseen it is not known whether it is there.
+    unseen = logged.map.grid.heights - logged.possible_heights
+    unknown = np.clip(unseen[column, row], 0.0, np.maximum(deviation[column, row], 0.0))
     return FloorCells(
         cells=(column, row),
         position=np.column_stack([
@@ -236,7 +251,7 @@ def floor_cells(
             grid.heights[column, row],
         ]),
         deviation=deviation[column, row] * lean,
-        uncertainty=beside + rounding_uncertainty(logged.facts) + 10.0 * SAGITTA,
+        uncertainty=beside + rounding_uncertainty(logged.facts) + 10.0 * SAGITTA + unknown,
         area=grid.dx * grid.dy / lean,
     )
 

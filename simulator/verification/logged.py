@@ -12,16 +12,24 @@ from typing import Protocol
 
 import numpy as np
 
-from simulator.motion.segments import Floats, Ints
+from simulator.motion.segments import Bools, Floats, Ints
 from simulator.removal.cutter import Cutter
-from simulator.removal.zmap import ZMap
+from simulator.removal.zmap import HeightGrid, ZMap
 from simulator.verification.path import rows_between
 from simulator.verification.surface import PartSweep
-from simulator.verification.sweep import WallTargets, approach, renewed
+from simulator.verification.sweep import UNSEEN, WallTargets, approach, renewed
 from stepnc_model.program import Stock
 
 GAP = 3.0
 """Multiple of the usual time between samples from which samples are missing."""
+
+ELSEWHERE = 10.0
+"""Multiple of the usual time between samples from which the tool may have been elsewhere than
+on the line between them."""
+
+LONGEST_LOSS = 2.0
+"""Longest time, s, in which the tool is taken to have gone on unseen. In longer gaps it may
+have rested: some logs have a row only where a position changes."""
 
 AROUND = 2
 """Samples before and after one whose steps count for its uncertainty."""
@@ -124,6 +132,25 @@ class SampledStretch:
     """Greatest distance of the path from the lines around each, (N,), mm, by how they turn."""
     rise: Floats
     """Greatest vertical way between samples around each, (N,), mm."""
+    unseen: Floats
+    """Distance from the line to each sample, (N,), mm, to which the tool may have gone where
+    samples are missing; 0 where none is."""
+    is_gap: Bools
+    """Whether so many are missing before a sample that the tool was elsewhere, (N,): what is
+    on the line is not taken as cut."""
+
+    @property
+    def is_unseen(self) -> Bools:
+        """Whether the way to a sample is not wholly known, (N,)."""
+        return np.asarray(self.is_gap | (self.unseen > 0.0))
+
+    def blocks(self) -> Iterator[Ints]:
+        """Samples at which the tool had moved, in blocks without a gap."""
+        moves = np.linalg.norm(np.diff(self.samples.position, axis=0), axis=1) > STILL
+        kept = np.flatnonzero(np.append(True, moves))
+        for block in np.split(kept, np.flatnonzero(self.is_gap[kept])):
+            if len(block) > 1:
+                yield block
 
 
 class ReferencePart(Protocol):
@@ -178,6 +205,9 @@ class SampleSteps:
                 step=whole.step[rows],
                 bend=whole.bend[rows],
                 rise=whole.rise[rows],
+                unseen=whole.unseen[rows],
+                # No line leads from the tool before.
+                is_gap=np.where(part == part[0], False, whole.is_gap[rows]),
             )
 
     def _begin(self, samples: LoggedSamples) -> None:
@@ -191,14 +221,13 @@ class SampleSteps:
         lines = np.diff(samples.position, axis=0)
         way = np.linalg.norm(lines, axis=1)
         seconds = np.diff(samples.time)
-        speed = np.divide(way, seconds, out=np.zeros(len(way)), where=seconds > 0.0)
         is_gap = (seconds > GAP * self.facts.interval) & (way > STILL)
         if is_gap.any():
             self.facts.gaps += int(is_gap.sum())
             longest = float(seconds[is_gap].max())
             self.facts.longest_gap = max(self.facts.longest_gap, longest)
-            fast = _greatest_around(np.where(is_gap, 0.0, speed))
-            way = np.where(is_gap, np.maximum(way, fast * seconds), way)
+        straight = way
+        way = _with_missing(way, seconds, self.facts.interval)
         is_usual = (samples.position[1:, 2] < self._top) & ~is_gap
         if is_usual.any():
             usual = float(np.quantile(way[is_usual], 0.99))
@@ -207,8 +236,16 @@ class SampleSteps:
         around = _greatest_around(way)
         bend = _greatest_around(0.5 * around * np.sin(0.5 * turn))
         rise = _greatest_around(np.where(is_gap, way, np.abs(lines[:, 2])))
+        # Places to which the way from one end to the other is as long form an ellipse.
+        unseen = 0.5 * np.sqrt(np.maximum(way * way - straight * straight, 0.0))
+        unseen = np.where((way > straight) & (straight > STILL), unseen, 0.0)
         return SampledStretch(
-            samples=samples, step=_to_ends(around), bend=_to_ends(bend), rise=_to_ends(rise)
+            samples=samples,
+            step=_to_ends(around),
+            bend=_to_ends(bend),
+            rise=_to_ends(rise),
+            unseen=np.concatenate(([0.0], unseen)),
+            is_gap=np.append(False, is_gap & (seconds > ELSEWHERE * self.facts.interval)),
         )
 
 
@@ -228,6 +265,10 @@ class LoggedPart:
         self, part: ReferencePart, stock: Stock, cutters: Mapping[int, Cutter | None]
     ) -> None:
         self.targets = renewed(part.targets)
+        self.possible = renewed(part.targets)
+        """The same points, as the tool may have approached them where samples are missing."""
+        self.possible_heights = np.full(part.map.grid.heights.shape, np.inf)
+        """Heights to which it may have cut there."""
         self._left = PartSweep(stock, cell=part.map.cell)
         self._cutters = cutters
         self._steps = SampleSteps(stock.high[2])
@@ -263,22 +304,52 @@ class LoggedPart:
 
     def _cut(self, part: SampledStretch, cutter: Cutter) -> None:
         """Remove the sweep of consecutive samples with one tool."""
-        samples = part.samples
-        moves = np.linalg.norm(np.diff(samples.position, axis=0), axis=1) > STILL
-        kept = np.concatenate(([True], moves))
-        points = samples.position[kept]
-        if len(points) < 2:
+        self._consider(part, cutter)
+        for block in part.blocks():
+            points = part.samples.position[block]
+            first = self._left.number
+            self._left.cut(cutter, points)
+            approach(self.targets, self._left.profile(cutter), rows_between(points), first)
+            for row, nearest in (
+                (self.targets.row, self._walls),
+                (self._left.map.grid.owner, self._floors),
+            ):
+                where = np.nonzero(row >= first)
+                nearest.meet(where, part, block[1:][row[where] - first])
+
+    def _consider(self, part: SampledStretch, cutter: Cutter) -> None:
+        """Note where the tool may have been while samples are missing."""
+        ends = np.flatnonzero(part.is_unseen)
+        if not len(ends):
             return
-        first = self._left.number
-        self._left.cut(cutter, points)
-        approach(self.targets, self._left.profile(cutter), rows_between(points), first)
-        ends = np.flatnonzero(kept)[1:]
-        for row, nearest in (
-            (self.targets.row, self._walls),
-            (self._left.map.grid.owner, self._floors),
-        ):
-            where = np.nonzero(row >= first)
-            nearest.meet(where, part, ends[row[where] - first])
+        points = np.stack((part.samples.position[ends - 1], part.samples.position[ends]))
+        points[:, :, 2] -= part.unseen[ends]
+        rows = np.concatenate([rows_between(points[:, each]) for each in range(len(ends))])
+        rows[:, UNSEEN] = part.unseen[ends]
+        approach(self.possible, self._left.profile(cutter), rows, 0)
+        grid = self._left.map.grid
+        is_wide = part.is_gap[ends] | (part.unseen[ends] > 0.5 * self._left.map.cell)
+        for row in rows[is_wide]:
+            lower_near(self.possible_heights, grid, row, 0.5 * cutter.diameter + row[UNSEEN])
+
+
+def lower_near(heights: Floats, grid: HeightGrid, row: Floats, reach: float) -> None:
+    """Lower heights within a distance of a line in plan to the lower end of the line, mm."""
+    low, high = np.minimum(row[0:2], row[3:5]) - reach, np.maximum(row[0:2], row[3:5]) + reach
+    size, corner = np.array([grid.dx, grid.dy]), np.array([grid.x, grid.y])
+    first = np.maximum(np.floor((low - corner) / size), 0).astype(int)
+    last = np.minimum(np.ceil((high - corner) / size), heights.shape).astype(int)
+    if (last <= first).any():
+        return
+    columns, rows = (slice(a, b) for a, b in zip(first, last, strict=True))
+    x = grid.x + (np.arange(first[0], last[0]) + 0.5)[:, None] * grid.dx - row[0]
+    y = grid.y + (np.arange(first[1], last[1]) + 0.5)[None, :] * grid.dy - row[1]
+    along = row[3:5] - row[0:2]
+    square = max(float(along @ along), STILL * STILL)
+    share = np.clip((x * along[0] + y * along[1]) / square, 0.0, 1.0)
+    is_near = np.hypot(x - share * along[0], y - share * along[1]) <= reach
+    part = heights[columns, rows]
+    part[is_near] = np.minimum(part[is_near], min(row[2], row[5]))
 
 
 def joined(parts: Sequence[LoggedSamples]) -> LoggedSamples:
@@ -333,6 +404,22 @@ def unmet(shape: tuple[int, ...]) -> NearestSamples:
         rise=np.zeros(shape),
         workingstep=np.full(shape, -1, dtype=np.int64),
     )
+
+
+def _with_missing(way: Floats, seconds: Floats, interval: float) -> Floats:
+    """Way between samples, mm; where samples are missing, at least that of their neighbours.
+
+    The tool may have gone around a corner, or there and back.
+    """
+    if interval <= 0.0:
+        return way
+    counts = np.round(seconds / interval)
+    is_whole = counts <= 1.0
+    is_lost = ~is_whole & (seconds <= LONGEST_LOSS)
+    if not is_lost.any():
+        return way
+    usual = _greatest_around(np.where(is_whole, way, 0.0))
+    return np.where(is_lost, np.maximum(way, usual * counts), way)
 
 
 def _to_ends(values: Floats) -> Floats:

@@ -16,6 +16,7 @@ from simulator.verification.deviation import (
     SurfacePlaces,
     floor_cells,
     rounding_uncertainty,
+    wall_uncertainty,
 )
 from simulator.verification.logged import LoggedPart
 from simulator.verification.mesh import edges_of, raise_to, section_at
@@ -152,7 +153,7 @@ def required_places(part: RequiredPart, logged: LoggedPart) -> SurfacePlaces:
         )),
         deviation=np.concatenate((targets.away, floors.deviation)),
         uncertainty=np.concatenate((
-            logged.walls.bend + part.sag + rounding + EXACT,
+            wall_uncertainty(logged, logged.walls.bend + part.sag + rounding + EXACT),
             height + floors.uncertainty,
         )),
         area=np.concatenate((part.area, floors.area)),

@@ -163,7 +163,7 @@ def _side(part: RequiredBar, logged: LoggedBar, *, is_bore: bool) -> SurfacePlac
         is_wall=points.is_face,
         position=found.position,
         deviation=found.deviation,
-        uncertainty=nearest.bend[points.cell] + found.uncertainty,
+        uncertainty=found.greatest(nearest.bend) + found.uncertainty,
         area=points.area,
         workingstep=by,
         block=np.zeros(len(by), dtype=np.int64),

@@ -27,6 +27,10 @@ TOUCHED = 1e-6
 """Height, mm, by which a tip must be below a point to reach it."""
 
 
+UNSEEN = 6
+"""Column of a row with the distance, mm, by which the tool may have left the line unseen."""
+
+
 class WallTargets(NamedTuple):
     """Points on walls, sorted by squares of the plane, with what came nearest to each."""
 
@@ -76,9 +80,9 @@ def approach(targets: WallTargets, profile: CutterProfile, rows: Floats, number:
     number : int
         Number of the first row.
     """
-    reach = profile.radius + FAR
     for index in range(len(rows)):
         row = rows[index]
+        reach = profile.radius + FAR + row[UNSEEN]
         low_x, high_x = min(row[0], row[3]) - reach, max(row[0], row[3]) + reach
         low_y, high_y = min(row[1], row[4]) - reach, max(row[1], row[4]) + reach
         first = max(floor((low_x - targets.low_x) / BIN), 0)
@@ -119,7 +123,7 @@ def _approach(
         share = begin if climb > 0.0 else end
         if square > 0.0:
             share = min(max((x * along_x + y * along_y) / square, begin), end)
-        away = hypot(x - share * along_x, y - share * along_y)
+        away = hypot(x - share * along_x, y - share * along_y) - row[UNSEEN]
         if away - profile.radius >= targets.away[point]:
             continue
         tip = row[2] + share * climb

@@ -23,10 +23,10 @@ from simulator.verification.deviation import (
     rounding_uncertainty,
 )
 from simulator.verification.logged import (
-    STILL,
     LogFacts,
     LoggedSamples,
     NearestSamples,
+    SampledStretch,
     SampleSteps,
     unmet,
 )
@@ -108,6 +108,8 @@ class LoggedBar:
 
     def __init__(self, cell: float, stock: Stock, shapes: Mapping[int, Shape | None]) -> None:
         self.bar = TurningStock(stock, cell)
+        self.possible = TurningStock(stock, cell)
+        """What is left if the tool went everywhere that it may have gone unseen."""
         self._shapes = shapes
         self._steps = SampleSteps(stock.high[2])
         self._nearest = unmet(self.bar.outer.shape)
@@ -125,19 +127,26 @@ class LoggedBar:
     def add(self, samples: LoggedSamples) -> None:
         """Cut along more samples, which are later than those before."""
         for part in self._steps.pieces(samples):
-            position = part.samples.position
-            moves = np.linalg.norm(np.diff(position, axis=0), axis=1) > STILL
-            kept = np.flatnonzero(np.concatenate(([True], moves)))
-            if len(kept) < 2:
-                continue
-            points = position[kept]
             shape = self._shapes.get(int(part.samples.tool[0]))
-            cut = _cut(self.bar, lines(list(points), speed=1.0), shape)
-            if cut.any():
-                index = kept[_nearest(points, self.bar, cut)]
-                nose = shape.nose_radius if isinstance(shape, Insert) else 0.0
-                bend = _bend_within(part.bend, position, PIECE + nose)
-                self._nearest.meet(cut, replace(part, bend=bend), index)
+            position = part.samples.position
+            is_wide = part.is_gap | (part.unseen > self.bar.cell)
+            for end in np.flatnonzero(is_wide).tolist():
+                reach = max(float(part.unseen[end]), self.bar.cell)
+                around = _box_around(position[end - 1], position[end], reach)
+                _cut(self.possible, lines(around, speed=1.0), shape)
+            for block in part.blocks():
+                self._cut_block(part, block, shape)
+
+    def _cut_block(self, part: SampledStretch, block: Ints, shape: Shape | None) -> None:
+        """Cut along samples of one tool without a gap."""
+        points = part.samples.position[block]
+        cut = _cut(self.bar, lines(list(points), speed=1.0), shape)
+        if cut.any():
+            nose = shape.nose_radius if isinstance(shape, Insert) else 0.0
+            square = _squares(part.samples.position, PIECE + nose)
+            step, bend = (_greatest_beside(each, square) for each in (part.step, part.bend))
+            index = block[_nearest(points, self.bar, cut)]
+            self._nearest.meet(cut, replace(part, step=step, bend=bend), index)
 
 
 def turned_places(part: TurnedPart, logged: LoggedBar) -> SurfacePlaces:
@@ -185,15 +194,28 @@ def _cut(bar: TurningStock, segments: Segments, shape: Shape | None) -> Bools:
     return np.asarray((outer - bar.outer > CHANGED) | (bar.inner - inner > CHANGED))
 
 
-def _bend_within(bend: Floats, position: Floats, reach: float) -> Floats:
-    """Greatest bend within a reach along the path, (N,), mm: an insert cuts beside its tip."""
+def _box_around(start: Floats, end: Floats, reach: float) -> list[Floats]:
+    """Corners of a box around a line, (3,) each, that lie a distance beside it, mm."""
+    way = float(np.linalg.norm(end - start))
+    along = (end - start) * (reach / way)
+    across = np.array([-along[2], 0.0, along[0]])
+    corners = (start - along + across, end + along + across, end + along - across)
+    return [start, *corners, start - along - across, start]
+
+
+def _squares(position: Floats, reach: float) -> Ints:
+    """Stretch of a length of way to which each sample belongs, (N,), ascending by one."""
     way = np.linalg.norm(np.diff(position, axis=0), axis=1)
-    square = np.floor(np.append(0.0, np.cumsum(way)) / reach).astype(np.int64)
-    _, square = np.unique(square, return_inverse=True)
+    square = np.floor(np.append(0.0, np.cumsum(way)) / reach)
+    return np.asarray(np.unique(square, return_inverse=True)[1], dtype=np.int64)
+
+
+def _greatest_beside(values: Floats, square: Ints) -> Floats:
+    """Greatest value in the stretch of each sample and beside it: an insert cuts there too."""
     greatest = np.zeros(int(square.max()) + 3)
-    np.maximum.at(greatest, square + 1, bend)
-    widened = np.maximum(np.maximum(greatest[:-2], greatest[1:-1]), greatest[2:])
-    return np.asarray(widened[square])
+    np.maximum.at(greatest, square + 1, values)
+    beside = np.maximum(np.maximum(greatest[:-2], greatest[1:-1]), greatest[2:])
+    return np.asarray(beside[square])
 
 
 def _nearest(points: Floats, bar: TurningStock, cut: Bools) -> Ints:
@@ -231,6 +253,12 @@ class ProfileComparison:
     """(P,), mm: excess positive, gouge negative."""
     uncertainty: Floats
     """Uncertainty by rounding and cells, (P,), mm."""
+    beside: Ints
+    """Cells of the logged part to which a place and what is nearest to it belong, (P, 3)."""
+
+    def greatest(self, values: Floats) -> Floats:
+        """Greatest of the values of the cells beside each place, (P,)."""
+        return np.asarray(values[self.beside].max(axis=1))
 
 
 def compared_profiles(
@@ -245,14 +273,47 @@ def compared_profiles(
         for name in ProfilePoints.__slots__
     })
     place = np.column_stack([points.radius, points.z])
-    away = profile_distance(place, np.column_stack([other, bar.z]), bar.cell)
+    away, line = nearest_on(place, np.column_stack([other, bar.z]), bar.cell)
+    deviation = (-points.sign if is_bore else points.sign) * away
+    limit = np.where(points.is_face, bar.cell, 0.0) + rounding_uncertainty(logged.facts) + LIMIT
+    unknown = _unknown(bar, logged, points, deviation, is_bore=is_bore)
     return ProfileComparison(
         points=points,
         position=np.column_stack([points.radius, np.zeros(len(place)), points.z]),
-        deviation=(-points.sign if is_bore else points.sign) * away,
-        uncertainty=np.where(points.is_face, bar.cell, 0.0)
-        + (rounding_uncertainty(logged.facts) + LIMIT),
+        deviation=deviation,
+        uncertainty=np.asarray(limit + unknown),
+        beside=np.column_stack([points.cell, line, line + 1]),
     )
+
+
+def _unknown(
+    bar: TurningStock,
+    logged: LoggedBar,
+    points: ProfilePoints,
+    deviation: Floats,
+    *,
+    is_bore: bool,
+) -> Floats:
+    """How much of an excess the tool may have cut while samples were missing, (P,), mm."""
+    left, possible = logged.bar, logged.possible
+    if is_bore:
+        profile, radius = np.maximum(left.inner, possible.inner), bar.inner
+        is_less = (profile > left.inner + CHANGED).any()
+    else:
+        profile, radius = np.minimum(left.outer, possible.outer), bar.outer
+        is_less = (profile < left.outer - CHANGED).any()
+    if not is_less:
+        return np.zeros(len(deviation))
+    place = np.column_stack([points.radius, points.z])
+    away = profile_distance(place, np.column_stack([profile, bar.z]), bar.cell)
+    after = np.minimum(points.cell + 1, len(radius) - 1)
+    beside = (profile[points.cell], profile[after])
+    if is_bore:
+        is_left = np.maximum(*beside) < points.radius - CHANGED
+    else:
+        is_left = np.minimum(*beside) > points.radius + CHANGED
+    least = np.where(is_left, away, 0.0)
+    return np.asarray(np.clip(deviation - least, 0.0, np.maximum(deviation, 0.0)))
 
 
 def has_bore(bar: TurningStock, logged: LoggedBar) -> bool:
@@ -269,7 +330,7 @@ def _side(part: TurnedPart, logged: LoggedBar, *, is_bore: bool) -> SurfacePlace
     segment, is_cut = path.segment[np.maximum(chord, 0)], chord >= 0
     noses = [run.cutter.nose_radius for run in path.runs if isinstance(run.cutter, Insert)]
     reach = PIECE + max(noses, default=0.0)
-    step = logged.nearest.step[points.cell]
+    step = found.greatest(logged.nearest.step)
     bend = path_uncertainty(path, part.station[points.cell], step, reach=reach)
     return SurfacePlaces(
         is_wall=points.is_face,
@@ -322,12 +383,19 @@ def _steps(radius: Floats, other: Floats, bar: TurningStock) -> ProfilePoints:
 
 
 def profile_distance(points: Floats, profile: Floats, cell: float) -> Floats:
-    """Distance of points from a profile of lines, (C,), mm; at most ``FAR``."""
-    start, piece, _, _ = pieces_of(profile, cell)
+    """Distance of points from a profile of lines, (P,), mm; at most ``FAR``."""
+    return nearest_on(points, profile, cell)[0]
+
+
+def nearest_on(points: Floats, profile: Floats, cell: float) -> tuple[Floats, Ints]:
+    """Distance of points from a profile of lines, mm, at most ``FAR``, and the nearest line."""
+    start, piece, line, _ = pieces_of(profile, cell)
     best = cKDTree(start + 0.5 * piece).query(points, k=3)[1]
-    start, piece = start[best], piece[best]
-    square = np.maximum(np.sum(piece * piece, axis=2), 1e-18)
-    share = np.clip(np.sum((points[:, None] - start) * piece, axis=2) / square, 0.0, 1.0)
-    near = start + share[:, :, None] * piece
-    away = np.linalg.norm(points[:, None] - near, axis=2).min(axis=1)
-    return np.asarray(np.minimum(away, FAR))
+    begin, along = start[best], piece[best]
+    square = np.maximum(np.sum(along * along, axis=2), 1e-18)
+    share = np.clip(np.sum((points[:, None] - begin) * along, axis=2) / square, 0.0, 1.0)
+    near = begin + share[:, :, None] * along
+    away = np.linalg.norm(points[:, None] - near, axis=2)
+    chosen = away.argmin(axis=1)
+    rows = np.arange(len(points))
+    return np.asarray(np.minimum(away[rows, chosen], FAR)), line[best[rows, chosen]]

@@ -54,3 +54,26 @@ def test_a_damaged_document_is_refused(tmp_path: Path) -> None:
     path.write_text("<a>", encoding="utf-8")
     with pytest.raises(StepNcError, match=r"run\.xml"):
         table_of(path, VMC15, POSITIONS)
+
+
+OTHER = """\
+<MTConnectStreams xmlns="urn:mtconnect.org:MTConnectStreams:1.7"><Streams>
+<DeviceStream name="m">
+<ComponentStream component="Path" name="path" componentId="p"><Samples>
+<PathPosition dataItemId="tip" sequence="1"
+ timestamp="2026-01-01T00:00:00Z">1 2 3</PathPosition>
+<PathPosition dataItemId="tip" sequence="2"
+ timestamp="2026-01-01T00:00:01Z">2 2 3</PathPosition>
+</Samples><Events>
+<ToolNumber dataItemId="t" sequence="3" timestamp="2026-01-01T00:00:00Z">3</ToolNumber>
+</Events></ComponentStream></DeviceStream></Streams></MTConnectStreams>
+"""
+
+
+def test_a_document_of_another_agent_is_read_by_its_types(tmp_path: Path) -> None:
+    path = tmp_path / "run.xml"
+    path.write_text(OTHER, encoding="utf-8")
+    file = LogFile(path=path, names=ONE, machine=VMC15)
+    (samples,) = file.pieces()
+    assert samples.position.tolist() == [[1.0, 2.0, 3.0], [2.0, 2.0, 3.0]]
+    assert "PATH_POSITION" in file.zero_source

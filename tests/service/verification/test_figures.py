@@ -5,9 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.verification import found, offset
+from benchmarks.verification import SHAFT_REQUEST, found, offset
 from service.verification.figures import MOST_POINTS, plan_figure, space_figure
-from tests.service.verification.runs import REQUEST, fast_log, program
+from service.verification.run import verified
+from tests.service.verification.runs import REQUEST, fast_log, program, shaft, shaft_log
 
 
 def test_the_greatest_deviation_is_in_the_plan(tmp_path: Path) -> None:
@@ -21,3 +22,13 @@ def test_the_greatest_deviation_is_in_the_plan(tmp_path: Path) -> None:
     assert {floors.type, walls.type} == {"heatmap", "scatter"}
     (points,) = space_figure(answer.verification).data
     assert len(points.x) <= MOST_POINTS
+
+
+def test_a_turned_part_is_round_in_space(tmp_path: Path) -> None:
+    moved = offset(0.15, "FINISH CONTOUR").make(shaft_log(), shaft())
+    log = moved.write(tmp_path / "log.parquet", shaft())
+    (points,) = space_figure(verified(log, shaft(), SHAFT_REQUEST)).data
+    assert len(points.x) <= MOST_POINTS
+    assert points.x.min() == pytest.approx(-points.x.max(), rel=0.01)
+    assert points.y.max() == pytest.approx(points.x.max(), rel=0.01)
+    assert np.abs(points.marker.color).max() >= 0.15 - 1e-6

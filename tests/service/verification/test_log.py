@@ -97,3 +97,40 @@ def test_a_lathe_without_y_stays_in_its_plane(tmp_path: Path) -> None:
     file = LogFile(path=path, names=ONE, machine=load_machine("lathe22"))
     (samples,) = file.pieces()
     assert samples.position.tolist() == [[1.0, 0.0, 3.0], [2.0, 0.0, 3.0]]
+
+
+WORK = ",path_position_x,path_position_y,path_position_z"
+
+
+def test_work_coordinates_of_the_log_are_used(tmp_path: Path) -> None:
+    file = log_of(tmp_path, f"{HEAD}{WORK}\n0,301,202,403,1,2,3\n1,302,202,403,2,2,3\n")
+    (samples,) = file.pieces()
+    assert samples.position.tolist() == [[1.0, 2.0, 3.0], [2.0, 2.0, 3.0]]
+    assert "PATH_POSITION" in file.zero_source
+    given = LogFile(path=file.path, names=ONE, zero=(300.0, 200.0, 400.0), is_zero_given=True)
+    (samples,) = given.pieces()
+    assert samples.position.tolist() == [[1.0, 2.0, 3.0], [2.0, 2.0, 3.0]]
+    assert given.zero_source == ""
+
+
+def test_work_coordinates_without_values_are_not_used(tmp_path: Path) -> None:
+    (samples,) = log_of(tmp_path, f"{HEAD}{WORK}\n0,1,2,3,,,\n1,2,2,3,,,\n").pieces()
+    assert samples.position[0].tolist() == [1.0, 2.0, 3.0]
+
+
+def test_offsets_of_the_log_are_taken_off(tmp_path: Path) -> None:
+    more = ",work_offset_x_mm,work_offset_y_mm,work_offset_z_mm,tool_length_offset_mm"
+    rows = "0,1,2,3,100,0,-300,50\n1,2,2,3,101,0,-300,60\n"
+    file = log_of(tmp_path, f"{HEAD}{more}\n{rows}")
+    (samples,) = file.pieces()
+    assert samples.position.tolist() == [[-99.0, 2.0, 253.0], [-99.0, 2.0, 243.0]]
+    assert "work_offset_x_mm, _y_mm, _z_mm and tool_length_offset_mm" in file.zero_source
+
+
+def test_work_offsets_are_noted_in_their_order(tmp_path: Path) -> None:
+    rows = "\n".join(
+        f"{row},{row},0,0,{name}" for row, name in enumerate(("", "1", "1", "2", "1"))
+    )
+    file = log_of(tmp_path, f"{HEAD},work_offset\n{rows}\n")
+    list(file.pieces())
+    assert file.work_offsets == ["1", "2", "1"]

@@ -4,7 +4,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
 import pytest
+from pyarrow import parquet
 
 from benchmarks.verification import (
     CLEAN,
@@ -128,3 +130,23 @@ def test_a_stock_beside_the_path_is_refused(tmp_path: Path) -> None:
     beside = Stock(low=(1000.0, 0.0, -40.0), high=(1100.0, 90.0, 0.0))
     with pytest.raises(StepNcError, match="leaves no wall"):
         verified(path, replace(program(), stock=beside), REQUEST)
+
+
+def test_a_long_gap_cuts_nothing_and_is_told(tmp_path: Path) -> None:
+    log = fast_log()
+    rows = np.flatnonzero(log.within(program(), "FINISH POCKET"))
+    begin = log.time[rows[len(rows) // 4]]
+    lost = log.only((log.time < begin) | (log.time > begin + 20.0))
+    answer = verified(lost.write(tmp_path / "log.parquet", program()), program(), REQUEST)
+    assert answer.volumes.gouge < 20.0
+    assert any("1 gaps of up to 20" in each.message for each in answer.findings)
+
+
+def test_workingsteps_of_another_program_are_told(tmp_path: Path) -> None:
+    path = fast_log().write(tmp_path / "log.parquet", program())
+    table = parquet.read_table(path)
+    names = [f"{name} 2" for name in table.column("workingstep").to_pylist()]
+    at = table.column_names.index("workingstep")
+    parquet.write_table(table.set_column(at, "workingstep", pa.array(names)), path)
+    answer = verified(path, program(), REQUEST)
+    assert any("does not have: " in each.message for each in answer.findings)

@@ -49,3 +49,10 @@ def test_damaged_files_are_refused(tmp_path: Path, text: str, message: str) -> N
     path.write_text(text, encoding="utf-8")
     with pytest.raises(StepNcError, match=message):
         read_stl(path)
+
+
+def test_a_file_that_is_cut_off_says_what_it_lacks(tmp_path: Path) -> None:
+    path = write_stl(tmp_path / "box.stl", BOX)
+    path.write_bytes(path.read_bytes()[:300])
+    with pytest.raises(StepNcError, match="its 12 triangles need 684 bytes; it has 300"):
+        read_stl(path)

@@ -1,6 +1,7 @@
 """Columns of what machines tell."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import isnan
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from simulator.agent.machine_model import machine_model
 from simulator.agent.model import without_namespaces
 from simulator.agent.names import NameSet
 from simulator.client.columns import Cell, RecordedColumn, RowMaker, columns_of
-from simulator.client.connection import ClientObservation, items_of
+from simulator.client.connection import ClientItem, ClientObservation, items_of
 from simulator.library import load_machine
 from simulator.timeline import COLUMNS
 
@@ -78,3 +79,24 @@ def test_a_row_is_a_moment_and_holds_what_is_known() -> None:
     assert [row["state"] for row in rows] == ["ACTIVE", "ACTIVE", None]
     assert isnan(rows[2]["x"])  # type: ignore[arg-type]
     assert isnan(rows[2]["y"])  # type: ignore[arg-type]
+
+
+def test_a_position_of_the_path_has_a_column_for_each_axis() -> None:
+    item = ClientItem(
+        id="tip", name="", category="SAMPLE", type="PATH_POSITION", sub_type="ACTUAL",
+        units="MILLIMETER_3D", component="Path", component_name="", device="m",
+    )  # fmt: skip
+    offset = replace(item, id="wo", category="EVENT", type="WORK_OFFSET", sub_type="", units="")
+    columns = columns_of([item, offset])
+    names = ["path_position_x", "path_position_y", "path_position_z", "work_offset"]
+    assert [each.name for each in columns] == names
+    assert columns[0].units == "MILLIMETER"
+    maker = RowMaker(columns=columns)
+    rows = maker.rows([
+        ClientObservation("wo", 1, 0.0, "1"),
+        ClientObservation("tip", 2, 0.0, "1.5 -2 3"),
+        ClientObservation("tip", 3, 1.0, "1.5 -2"),
+        ClientObservation("tip", 4, 2.0, None),
+    ])
+    assert [rows[0][name] for name in names] == [1.5, -2.0, 3.0, "1"]
+    assert isnan(float(rows[1]["path_position_z"] or 0.0))
