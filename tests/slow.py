@@ -76,6 +76,7 @@ SLOW = (
     "simulator/physics/test_tooth_forces.py",
     "simulator/removal/test_lathe_carve.py",
     "simulator/test_matching.py",
+    "simulator/verification/test_honesty.py",
     "stepnc_model/part21/test_hostile.py",
     "stepnc_model/part21/test_reader_faults.py",
     "stepnc_model/post/test_linuxcnc.py",

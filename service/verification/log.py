@@ -363,7 +363,8 @@ def thinned(pieces: Iterator[LoggedSamples], *, most: int) -> Sequence[Floats]:
     kept: list[Floats] = []
     stride, offset = 1, 0
     for piece in pieces:
-        kept.append(piece.position[offset % stride :: stride])
+        # A copy, as a view would keep the whole piece.
+        kept.append(piece.position[offset % stride :: stride].copy())
         offset = (offset - len(piece)) % stride
         while sum(map(len, kept)) > most:
             kept = [np.concatenate(kept)[::2]]

@@ -90,7 +90,7 @@ BENT = (
 
 def print_verification(found: Verification) -> None:
     """Print deviations, volumes, tolerance bands and what the log can resolve."""
-    print_line(f"{found.log}: positions of {found.program} on {found.machine.name}")
+    print_line(f"{found.log}: positions against {found.program} on {found.machine.name}")
     rows = list(surface_deviations(found))
     for line in table(
         SURFACES, rows, width=screen_width(), colour=lambda row: _colour(row, found.tolerance)

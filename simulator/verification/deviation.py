@@ -126,7 +126,7 @@ def compared_volumes(part: ReferencePart, logged: LoggedPart) -> ComparedVolumes
     return ComparedVolumes(
         programmed=raw - part.map.volume,
         logged=raw - logged.map.volume,
-        gouge=float(-np.minimum(more, 0.0).sum()),
+        gouge=float(np.maximum(-more, 0.0).sum()),
         excess=float(np.maximum(more, 0.0).sum()),
     )
 

@@ -180,7 +180,7 @@ def turned_volumes(
     return ComparedVolumes(
         programmed=disc * float((raw - area).sum()),
         logged=disc * float((raw - other).sum()),
-        gouge=float(-np.minimum(more, 0.0).sum()),
+        gouge=float(np.maximum(-more, 0.0).sum()),
         excess=float(np.maximum(more, 0.0).sum()),
     )
 

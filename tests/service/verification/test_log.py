@@ -74,6 +74,8 @@ def test_the_zero_is_taken_off(tmp_path: Path) -> None:
 
 def test_a_survey_is_bounded_and_spread(tmp_path: Path) -> None:
     rows = "\n".join(f"{row},{row},0,0" for row in range(5000))
+    parts = thinned(log_of(tmp_path, f"{HEAD}\n{rows}").pieces(), most=10_000)
+    assert all(part.base is None for part in parts), "a view keeps its whole piece"
     kept = np.concatenate(thinned(log_of(tmp_path, f"{HEAD}\n{rows}").pieces(), most=100))
     assert 50 <= len(kept) <= 100
     assert np.ptp(kept[:, 0]) > 4800.0
