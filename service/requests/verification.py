@@ -30,8 +30,8 @@ class VerificationRequest(Request):
     zero: Annotated[
         Name,
         About(
-            "position of the program's zero on the axes in mm, x,y,z (default: 0,0,0: the log "
-            "has positions of the program); fit: to the program, in whole millimetres",
+            "position of the program's zero on the axes in mm, x,y,z (default: as the log "
+            "tells it, or else 0,0,0); fit: to the program, in whole millimetres",
             flag="--zero", metavar="X,Y,Z",
         ),
     ] = ""  # fmt: skip
