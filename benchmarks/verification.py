@@ -253,6 +253,7 @@ SHAFT_ERRORS = (
     *TURNED_OFFSETS,
     offset(0.0254, "FINISH FACE", axis=2),
     offset(0.15, "THREAD RELIEF"),
+    offset(0.0254, "THREAD RELIEF"),
     skipped_pass("FINISH CONTOUR", ALLOWANCE, axis=0, below=26.9),
     backlash("FINISH CONTOUR", 1.0),
     InjectedError(
@@ -266,6 +267,9 @@ SHAFT_ERRORS = (
     ),
     lost_second("FINISH CONTOUR", axis=0, below=26.9),
 )  # fmt: skip
+
+SHORT_OFFSETS = (offset(0.15, "THREAD RELIEF"), offset(0.15, "FINISH FACE", axis=2))
+"""Errors on surfaces that are made between few samples."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -282,6 +286,16 @@ class FoundError:
         """Surest deviation on the surface where the error must be found."""
         own = [spot for name, spot in self.spots if name == self.error.workingstep]
         return own[0] if own else None
+
+    @property
+    def least(self) -> float:
+        """Least uncertainty where the error must be found, mm."""
+        return min(
+            spot.uncertainty
+            for row in surface_deviations(self.verification)
+            if row.workingstep == self.error.workingstep
+            for spot in (row.gouge, row.excess)
+        )
 
     @property
     def is_right(self) -> bool:
@@ -334,6 +348,8 @@ def shown(case: FoundError) -> str:
     spot, error = case.spot or (case.spots[0][1] if case.spots else None), case.error
     injected = f"{error.size:.4f}" if error.size else ""
     answer = "right" if case.is_right else "WRONG"
+    if spot is None and error.size:
+        return f"| {error.name} | {injected} | not found, ± {case.least:.4f} | | | no |"
     if spot is None:
         return f"| {error.name} | {injected} | nothing | | | {answer} |"
     place = ", ".join(f"{each:.1f}" for each in spot.position)
@@ -351,7 +367,7 @@ def errors(folder: Path) -> None:
         (bracket, REQUEST, 100.0, ERRORS),
         (shaft, SHAFT_REQUEST, 100.0, SHAFT_ERRORS),
         (bracket, REQUEST, 10.0, (CLEAN, JITTER, *OFFSETS[:2])),
-        (shaft, SHAFT_REQUEST, 10.0, (CLEAN, JITTER, *TURNED_OFFSETS[:2])),
+        (shaft, SHAFT_REQUEST, 10.0, (CLEAN, JITTER, *TURNED_OFFSETS[:2], *SHORT_OFFSETS)),
     ):
         is_fast = rate < 50.0
         log = run_log(program, rate=rate, feed=_fast if is_fast else _slow)

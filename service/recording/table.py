@@ -78,7 +78,8 @@ def batches(path: Path, kinds: Mapping[str, pa.DataType]) -> Iterator[pa.RecordB
 
 def _pieces(path: Path, kinds: Mapping[str, pa.DataType]) -> Iterator[pa.RecordBatch]:
     if path.suffix.lower() == ".parquet":
-        with parquet.ParquetFile(path) as file:
+        # Buffers of the reader would keep the columns of the whole file.
+        with parquet.ParquetFile(path, pre_buffer=False) as file:
             yield from file.iter_batches(ROWS, columns=list(kinds))
         return
     mark = _delimiter(_first_line(path))

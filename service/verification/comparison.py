@@ -24,7 +24,11 @@ from simulator.verification.deviation import (
 )
 from simulator.verification.logged import LogFacts, LoggedPart, LoggedSamples, NearestSamples
 from simulator.verification.required import required_part, required_places
-from simulator.verification.revolved import required_bar, required_turned_places
+from simulator.verification.revolved import (
+    RequiredBar,
+    required_bar,
+    required_turned_places,
+)
 from simulator.verification.surface import EXACT, programmed_part
 from simulator.verification.turned import (
     LoggedBar,
@@ -101,11 +105,7 @@ def _turned(
     program: PreparedProgram, file: LogFile, cell: float | None, tell: Tell
 ) -> ComparedParts:
     part = turned_part(program.path, program.stock, cell=cell)
-    required = (
-        None
-        if program.required is None
-        else required_bar(program.required, program.stock, cell=cell)
-    )
+    required = _required_profile(program, cell)
     left = LoggedBar(part.bar.cell, program.stock, program.cutters)
     for piece in _told(file, left, tell):
         left.add(piece)
@@ -122,6 +122,16 @@ def _turned(
         step=_usual(left.nearest),
         cell=part.bar.cell,
     )
+
+
+def _required_profile(program: PreparedProgram, cell: float | None) -> RequiredBar | None:
+    """Profile of the required part, if one is given."""
+    if program.required is None:
+        return None
+    try:
+        return required_bar(program.required, program.stock, cell=cell)
+    except ValueError as error:
+        raise StepNcError(f"{program.required_name}: {error}") from error
 
 
 def _milled_required(

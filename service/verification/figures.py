@@ -62,7 +62,12 @@ def space_figure(found: Verification) -> go.Figure:
         hovertemplate="%{x:.2f}, %{y:.2f}, %{z:.2f} mm: %{marker.color:.4f} mm<extra></extra>",
     )  # fmt: skip
     figure = go.Figure(trace)
-    figure.update_layout(height=560, template="plotly_white", scene_aspectmode="data")
+    # One scale for all axes; the longest has length 1, so that a long shaft is seen whole.
+    across, along, up = (np.ptp(position, axis=0) / np.ptp(position, axis=0).max()).tolist()
+    figure.update_layout(
+        height=560, template="plotly_white", scene_aspectmode="manual",
+        scene_aspectratio={"x": across, "y": along, "z": up},
+    )  # fmt: skip
     return figure
 
 

@@ -33,7 +33,7 @@ def _nominal(row: SurfaceDeviation) -> str | None:
     """Least and greatest deviation from the nominal feature."""
     if row.nominal is None:
         return None
-    return " to ".join(f"{each + 0.0:+.4f}" for each in row.nominal)
+    return " to ".join(f"{round(each, 4) + 0.0:+.4f}" for each in row.nominal)
 
 
 SURFACES: tuple[Column[Row], ...] = (

@@ -54,6 +54,8 @@ class PreparedProgram:
     """Shapes of the tools by number."""
     required: Floats | None = None
     """Triangles of the required part, (T, 3, 3), mm; None: the nominal features count."""
+    required_name: str = ""
+    """File of the required part, for messages."""
 
     @property
     def is_turned(self) -> bool:
@@ -174,7 +176,9 @@ def with_required(program: PreparedProgram, path: Path) -> PreparedProgram:
     StepNcError
         When the file is invalid, or has another part.
     """
-    return replace(program, required=required_triangles(path, program.stock))
+    return replace(
+        program, required=required_triangles(path, program.stock), required_name=str(path)
+    )
 
 
 def required_triangles(path: Path, stock: Stock) -> Floats:

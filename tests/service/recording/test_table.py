@@ -2,11 +2,12 @@
 
 from pathlib import Path
 
+import numpy as np
 import pyarrow as pa
 import pytest
 from pyarrow import parquet
 
-from service.recording.table import BLOCK, batches, headings
+from service.recording.table import BLOCK, ROWS, batches, headings
 from stepnc_model.errors import StepNcError
 
 KINDS = {"b": pa.string(), "a": pa.float64()}
@@ -49,6 +50,15 @@ def test_a_long_file_comes_in_pieces(tmp_path: Path) -> None:
     pieces = [len(batch) for batch in batches(file, KINDS)]
     assert sum(pieces) == count
     assert len(pieces) > 1
+
+
+def test_memory_does_not_grow_with_a_parquet_file(tmp_path: Path) -> None:
+    file = tmp_path / "run.parquet"
+    values = np.random.default_rng(1).uniform(size=64 * ROWS)
+    parquet.write_table(pa.table({"a": values}), file, row_group_size=ROWS)
+    kept = pa.total_allocated_bytes()
+    most = max(pa.total_allocated_bytes() - kept for _ in batches(file, {"a": pa.float64()}))
+    assert most < file.stat().st_size / 4
 
 
 @pytest.mark.parametrize("name", ["missing.csv", "missing.parquet"])

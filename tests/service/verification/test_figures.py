@@ -27,7 +27,11 @@ def test_the_greatest_deviation_is_in_the_plan(tmp_path: Path) -> None:
 def test_a_turned_part_is_round_in_space(tmp_path: Path) -> None:
     moved = offset(0.15, "FINISH CONTOUR").make(shaft_log(), shaft())
     log = moved.write(tmp_path / "log.parquet", shaft())
-    (points,) = space_figure(verified(log, shaft(), SHAFT_REQUEST)).data
+    figure = space_figure(verified(log, shaft(), SHAFT_REQUEST))
+    (points,) = figure.data
+    shape = figure.layout.scene.aspectratio
+    assert shape.z == 1.0
+    assert shape.x == pytest.approx(np.ptp(points.x) / np.ptp(points.z))
     assert len(points.x) <= MOST_POINTS
     assert points.x.min() == pytest.approx(-points.x.max(), rel=0.01)
     assert points.y.max() == pytest.approx(points.x.max(), rel=0.01)

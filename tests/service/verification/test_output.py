@@ -1,8 +1,10 @@
 """Text and JSON of a verification."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from service.recording.table import headings
@@ -27,6 +29,14 @@ def test_text_and_json_say_the_same(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert not body["has_errors"]
     assert {"gouge_mm", "excess_mm", "gouge_at_mm"} <= set(body["surfaces"][0])
     assert body["resolution"]["square_corner_mm"] == pytest.approx(0.5893 + 0.001, abs=1e-3)
+
+
+def test_no_number_is_a_negative_zero(tmp_path: Path) -> None:
+    whole = clean(tmp_path)
+    found = replace(whole, nominal=np.where(np.isfinite(whole.nominal), -1e-6, np.nan))
+    page = verification_page(found)
+    assert "+0.0000 to +0.0000" in page
+    assert "-0.0000" not in page
 
 
 def test_the_page_has_both_pictures_and_loads_nothing(tmp_path: Path) -> None:

@@ -14,9 +14,12 @@ from benchmarks.verification import (
     OFFSETS,
     SHAFT_ERRORS,
     SHAFT_REQUEST,
+    SHORT_OFFSETS,
     RunLog,
     found,
     offset,
+    run_log,
+    shown,
 )
 from service.verification.facts import surface_deviations
 from service.verification.run import VerificationInputs, verified, verify
@@ -113,6 +116,16 @@ def test_measured_tools_must_be_of_the_program(tmp_path: Path) -> None:
 def test_errors_on_a_turned_part(error: object, tmp_path: Path) -> None:
     case = next(each for each in SHAFT_ERRORS if each is error)
     assert found(case, shaft_log(), shaft(), folder=tmp_path, request=SHAFT_REQUEST).is_right
+
+
+@pytest.mark.parametrize("error", SHORT_OFFSETS, ids=lambda error: error.name)
+def test_short_surfaces_are_uncertain_at_10_hz(error: object, tmp_path: Path) -> None:
+    case = next(each for each in SHORT_OFFSETS if each is error)
+    log = run_log(shaft(), rate=10.0, feed=lambda speed: np.full_like(speed, 1000.0 / 60.0))
+    answer = found(case, log, shaft(), folder=tmp_path, request=SHAFT_REQUEST)
+    assert not answer.spots
+    assert answer.least > case.size
+    assert "not found" in shown(answer)
 
 
 def test_the_predicted_deflection_is_added_to_walls(tmp_path: Path) -> None:
