@@ -93,7 +93,7 @@ def times(cycles: PartCycles, program: Program, parts: tuple[PrintedPart, ...]) 
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Line:
+class FittedLine:
     """Least squares line of times."""
 
     coefficients: Floats
@@ -103,14 +103,14 @@ class Line:
     """Root mean square of the residuals, s."""
 
 
-def line(columns: list[Floats], seconds: Floats) -> Line:
+def line(columns: list[Floats], seconds: Floats) -> FittedLine:
     """Least squares of times over an intercept and some columns."""
     matrix = np.stack([np.ones(len(seconds)), *columns], axis=1)
     solved = np.linalg.lstsq(matrix, seconds)[0].astype(np.float64)
     left = seconds - matrix @ solved
     variance = float(left @ left) / (len(seconds) - matrix.shape[1])
     errors = np.sqrt(variance * np.diag(np.linalg.inv(matrix.T @ matrix)))
-    return Line(coefficients=solved, errors=errors, rms=float(np.sqrt(np.mean(left**2))))
+    return FittedLine(coefficients=solved, errors=errors, rms=float(np.sqrt(np.mean(left**2))))
 
 
 def slowness(parts: tuple[PrintedPart, ...]) -> Floats:
@@ -163,7 +163,7 @@ def _print_lines(parts: tuple[PrintedPart, ...], told: Floats, ours: Floats) -> 
         print(f"{'residual, rms s':38}{one.rms:17.3f}{other.rms:17.3f}")
 
 
-def _of(found: Line, row: int) -> str:
+def _of(found: FittedLine, row: int) -> str:
     return f"{found.coefficients[row]:.4g} ± {found.errors[row]:.2g}"
 
 

@@ -7,7 +7,7 @@ from math import inf
 from pathlib import Path
 
 from service.factory.cycles import PartCycles
-from service.factory.documents import FirstParts, PartDocuments
+from service.factory.documents import ChosenPart, FirstParts, PartDocuments
 from service.factory.parts_file import PartTables
 from service.factory.plan import machining_plan
 from service.factory.replications import (
@@ -109,37 +109,18 @@ def run_source(
     cycles = PartCycles(tell=tell)
     plan = machining_plan(shop, cycles, place=source.name)
     plans = [machining_plan(each, cycles, place=source.name) for _, each in swept]
-    if folder is not None:
-        require_folder(folder, shop)
-    shown = ShownStates()
-    with ExitStack() as stack:
-        listeners = Listeners(state=(shown.state,))
-        tables = None
-        if folder is not None:
-            tables = stack.enter_context(
-                PartTables(folder, shop, plan.materials, has_energy=request.has_energy)
-            )
-            states = stack.enter_context(StateFile(folder / STATES, shop))
-            listeners = listeners.plus(Listeners(part=(tables.part,), state=(states.state,)))
-        chosen = FirstParts(request.documents)
-        if request.documents:
-            listeners = listeners.plus(Listeners(part=(chosen.part,)))
-        if most_parts < inf:
-            listeners = listeners.plus(Listeners(part=(PartBound(most_parts).part,)))
-        first = _first(shop, plan, request, listeners, tell)
+    made = _first(shop, plan, request, folder, most_parts=most_parts, tell=tell)
     written = 0
     if folder is not None and request.documents:
-        place = folder / DOCUMENTS
         maker = PartDocuments(shop, plan, Streams(seed=request.seed), tell=tell)
-        written = maker.write(chosen.parts, place)
-    runs = [first.measures]
+        written = maker.write(made.chosen, folder / DOCUMENTS)
+    runs = [made.run.measures]
     cases: list[SweptCase] = []
     others = request.replications - 1 + request.replications * len(swept)
     if others:
         with processes(others) as pool:
-            numbers = range(1, request.replications)
             work = Replications(pool=pool, seed=request.seed, tell=tell, most_parts=most_parts)
-            runs += work.measures(shop, plan, numbers)
+            runs += work.measures(shop, plan, range(1, request.replications))
             for (changes, case), own in zip(swept, plans, strict=True):
                 found = work.measures(case, own, range(request.replications))
                 cases.append(
@@ -150,9 +131,9 @@ def run_source(
         seed=request.seed,
         replications=request.replications,
         measures=over_replications(runs),
-        first=first,
-        states=shown.rows,
-        parts_written=0 if tables is None else tables.count,
+        first=made.run,
+        states=made.states,
+        parts_written=made.parts_written,
         documents_written=written,
         cases=tuple(cases),
     )
@@ -175,14 +156,55 @@ def require_folder(folder: Path, shop: Shop) -> None:
             raise StepNcError(f"machine '{machine.name}': its name cannot name a file")
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FirstReplication:
+    """First replication, and what was kept of it."""
+
+    run: ShopRun
+    states: Sequence[StateSpent]
+    """First states, for a picture."""
+    chosen: Sequence[ChosenPart]
+    """Parts of which documents are asked for."""
+    parts_written: int
+
+
 def _first(
-    shop: Shop, plan: MachiningPlan, request: FactoryRequest, listeners: Listeners, tell: Tell
-) -> ShopRun:
+    shop: Shop,
+    plan: MachiningPlan,
+    request: FactoryRequest,
+    folder: Path | None,
+    *,
+    most_parts: float,
+    tell: Tell,
+) -> FirstReplication:
     """First replication, with its outputs."""
     ticker = Ticker(tell)
     hours = hours_from_seconds(shop.duration)
+    shown, chosen = ShownStates(), FirstParts(request.documents)
+    listeners = Listeners(state=(shown.state,))
+    if request.documents:
+        listeners = listeners.plus(Listeners(part=(chosen.part,)))
+    if most_parts < inf:
+        listeners = listeners.plus(Listeners(part=(PartBound(most_parts).part,)))
 
     def told(share: float) -> None:
         ticker(lambda: f"{bar(share)}  {share * hours:.0f} of {hours:g} h")
 
-    return run_shop(shop, plan, Streams(seed=request.seed), listeners=listeners, told=told)
+    tables = None
+    with ExitStack() as stack:
+        if folder is not None:
+            require_folder(folder, shop)
+            tables = stack.enter_context(
+                PartTables(folder, shop, plan.materials, has_energy=request.has_energy)
+            )
+            states = stack.enter_context(StateFile(folder / STATES, shop))
+            files = Listeners(part=(tables.part,), state=(states.state,))
+            # Tables first: what a bound refuses was made.
+            listeners = files.plus(listeners)
+        run = run_shop(shop, plan, Streams(seed=request.seed), listeners=listeners, told=told)
+    return FirstReplication(
+        run=run,
+        states=shown.rows,
+        chosen=chosen.parts,
+        parts_written=0 if tables is None else tables.count,
+    )
