@@ -269,7 +269,7 @@ SHAFT_ERRORS = (
 )  # fmt: skip
 
 SHORT_OFFSETS = (offset(0.15, "THREAD RELIEF"), offset(0.15, "FINISH FACE", axis=2))
-"""Errors on surfaces that are made between few samples."""
+"""Errors of a groove, at whose bottom the tool turns back between samples, and of a face."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

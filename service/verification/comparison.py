@@ -106,7 +106,7 @@ def _turned(
 ) -> ComparedParts:
     part = turned_part(program.path, program.stock, cell=cell)
     required = _required_profile(program, cell)
-    left = LoggedBar(part.bar.cell, program.stock, program.cutters)
+    left = LoggedBar(part.bar, program.stock, program.cutters)
     for piece in _told(file, left, tell):
         left.add(piece)
     places = turned_places(part, left)
@@ -165,7 +165,7 @@ def _turned_required(
     setup: RequiredSetup, file: LogFile, cell: float | None, tell: Tell
 ) -> ComparedParts:
     part = required_bar(setup.required, setup.stock, cell=cell)
-    left = LoggedBar(part.bar.cell, setup.stock, setup.cutters)
+    left = LoggedBar(part.bar, setup.stock, setup.cutters)
     for piece in _told(file, left, tell):
         left.add(piece)
     places = required_turned_places(part, left)

@@ -6,7 +6,7 @@ between samples there. Units mm and s.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from math import pi
 from typing import Protocol
 
@@ -111,6 +111,13 @@ class NearestSamples:
     """Greatest vertical way between samples around it, mm."""
     workingstep: Ints
     """Index of the workingstep of the log; -1 where it is unknown."""
+
+    def followed_by(self, other: "NearestSamples") -> "NearestSamples":
+        """These places and then others."""
+        return NearestSamples(**{
+            each.name: np.concatenate([getattr(self, each.name), getattr(other, each.name)])
+            for each in fields(NearestSamples)
+        })
 
     def meet(self, where: object, part: "SampledStretch", index: Ints) -> None:
         """Note that samples of a stretch came nearest to some places."""

@@ -157,17 +157,17 @@ def required_turned_places(part: RequiredBar, logged: LoggedBar) -> SurfacePlace
 
 def _side(part: RequiredBar, logged: LoggedBar, *, is_bore: bool) -> SurfacePlaces:
     found = compared_profiles(part.bar, logged, is_bore=is_bore)
-    points, nearest = found.points, logged.nearest
-    by = nearest.workingstep[points.cell]
+    points, nearest = found.points, found.nearest
+    by = nearest.workingstep
     return SurfacePlaces(
         is_wall=points.is_face,
         position=found.position,
         deviation=found.deviation,
-        uncertainty=found.greatest(nearest.bend) + found.uncertainty,
+        uncertainty=nearest.bend + found.uncertainty,
         area=points.area,
         workingstep=by,
         block=np.zeros(len(by), dtype=np.int64),
-        time=nearest.time[points.cell],
+        time=nearest.time,
         cut_by=by,
     )
 

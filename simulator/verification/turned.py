@@ -94,25 +94,73 @@ def turned_part(path: ProgrammedPath, stock: Stock, *, cell: float | None = None
     return TurnedPart(path=path, bar=bar, chord=chord, station=station)
 
 
+class LoggedFaces:
+    """Which samples made the faces of one profile. Running state.
+
+    A face is made by many samples but lies in one cell, so that its points are kept by
+    themselves: the samples that change the distance of the profile from a point made it.
+
+    Parameters
+    ----------
+    place : (F, 2) array, mm
+        Radius and z of points on the faces of the part that is compared with.
+    """
+
+    def __init__(self, place: Floats) -> None:
+        self.nearest = unmet(place.shape[:1])
+        self._place = place
+        self._away = np.full(len(place), np.nan)
+
+    def meet(
+        self, profile: Floats, cell: float, points: Floats, block: Ints, part: SampledStretch
+    ) -> None:
+        """Note that samples of a stretch have cut a profile.
+
+        Parameters
+        ----------
+        profile : (C, 2) array, mm
+            Radius and z of the profile after the cut.
+        cell : float, mm
+        points : (N, 3) array, mm
+            Positions of the samples.
+        block : (N,) array of int
+            Samples of the stretch.
+        part : SampledStretch
+        """
+        if not len(self._place):
+            return
+        away = profile_distance(self._place, profile, cell)
+        # A face is known to a cell.
+        is_new = ~(np.abs(away - self._away) <= cell)
+        if is_new.any():
+            self._away[is_new] = away[is_new]
+            near = cKDTree(points[:, [0, 2]]).query(self._place[is_new])[1]
+            self.nearest.meet(is_new, part, block[near])
+
+
 class LoggedBar:
     """Bar that logged positions leave. Running state.
 
     Parameters
     ----------
-    cell : float, mm
-        Length of a cell along the axis.
+    reference : TurningStock
+        Bar that it is compared with.
     stock : Stock
     shapes : mapping
         Shapes of tools by number; other tools remove nothing.
     """
 
-    def __init__(self, cell: float, stock: Stock, shapes: Mapping[int, Shape | None]) -> None:
-        self.bar = TurningStock(stock, cell)
-        self.possible = TurningStock(stock, cell)
+    def __init__(
+        self, reference: TurningStock, stock: Stock, shapes: Mapping[int, Shape | None]
+    ) -> None:
+        self.bar = TurningStock(stock, reference.cell)
+        self.possible = TurningStock(stock, reference.cell)
         """What is left if the tool went everywhere that it may have gone unseen."""
         self._shapes = shapes
         self._steps = SampleSteps(stock.high[2])
         self._nearest = unmet(self.bar.outer.shape)
+        self._outer_faces = LoggedFaces(face_places(reference.outer, reference))
+        self._bore_faces = LoggedFaces(face_places(reference.inner, reference))
 
     @property
     def facts(self) -> LogFacts:
@@ -123,6 +171,10 @@ class LoggedBar:
     def nearest(self) -> NearestSamples:
         """Samples nearest to the surface of each cell."""
         return self._nearest
+
+    def nearest_faces(self, *, is_bore: bool) -> NearestSamples:
+        """Samples that made the points of :func:`face_places`."""
+        return (self._bore_faces if is_bore else self._outer_faces).nearest
 
     def add(self, samples: LoggedSamples) -> None:
         """Cut along more samples, which are later than those before."""
@@ -145,8 +197,14 @@ class LoggedBar:
             nose = shape.nose_radius if isinstance(shape, Insert) else 0.0
             square = _squares(part.samples.position, PIECE + nose)
             step, bend = (_greatest_beside(each, square) for each in (part.step, part.bend))
-            index = block[_nearest(points, self.bar, cut)]
-            self._nearest.meet(cut, replace(part, step=step, bend=bend), index)
+            part = replace(part, step=step, bend=bend)
+            self._nearest.meet(cut, part, block[_nearest(points, self.bar, cut)])
+            for faces, radius in (
+                (self._outer_faces, self.bar.outer),
+                (self._bore_faces, self.bar.inner),
+            ):
+                profile = np.column_stack([radius, self.bar.z])
+                faces.meet(profile, self.bar.cell, points, block, part)
 
 
 def turned_places(part: TurnedPart, logged: LoggedBar) -> SurfacePlaces:
@@ -253,12 +311,8 @@ class ProfileComparison:
     """(P,), mm: excess positive, gouge negative."""
     uncertainty: Floats
     """Uncertainty by rounding and cells, (P,), mm."""
-    beside: Ints
-    """Cells of the logged part to which a place and what is nearest to it belong, (P, 3)."""
-
-    def greatest(self, values: Floats) -> Floats:
-        """Greatest of the values of the cells beside each place, (P,)."""
-        return np.asarray(values[self.beside].max(axis=1))
+    nearest: NearestSamples
+    """Samples that made what is nearest to each place, (P,)."""
 
 
 def compared_profiles(
@@ -282,8 +336,27 @@ def compared_profiles(
         position=np.column_stack([points.radius, np.zeros(len(place)), points.z]),
         deviation=deviation,
         uncertainty=np.asarray(limit + unknown),
-        beside=np.column_stack([points.cell, line, line + 1]),
+        nearest=_made_by(logged, points.cell, line, is_bore=is_bore),
     )
+
+
+def _made_by(logged: LoggedBar, cell: Ints, line: Ints, *, is_bore: bool) -> NearestSamples:
+    """Samples that made places of cells, and then of faces, (P,).
+
+    The way between samples is the greatest of the cell of a place and of those whose line is
+    nearest to it.
+    """
+    cells, faces = logged.nearest, logged.nearest_faces(is_bore=is_bore)
+    count = len(cell) - len(faces.step)
+    beside = np.column_stack([cell, line, line + 1])[:count]
+    along = NearestSamples(
+        time=cells.time[cell[:count]],
+        step=cells.step[beside].max(axis=1),
+        bend=cells.bend[beside].max(axis=1),
+        rise=cells.rise[beside].max(axis=1),
+        workingstep=cells.workingstep[cell[:count]],
+    )
+    return along.followed_by(faces)
 
 
 def _unknown(
@@ -330,8 +403,8 @@ def _side(part: TurnedPart, logged: LoggedBar, *, is_bore: bool) -> SurfacePlace
     segment, is_cut = path.segment[np.maximum(chord, 0)], chord >= 0
     noses = [run.cutter.nose_radius for run in path.runs if isinstance(run.cutter, Insert)]
     reach = PIECE + max(noses, default=0.0)
-    step = found.greatest(logged.nearest.step)
-    bend = path_uncertainty(path, part.station[points.cell], step, reach=reach)
+    station = _stations(part, found, chord)
+    bend = path_uncertainty(path, station, found.nearest.step, reach=reach)
     return SurfacePlaces(
         is_wall=points.is_face,
         position=found.position,
@@ -340,9 +413,28 @@ def _side(part: TurnedPart, logged: LoggedBar, *, is_bore: bool) -> SurfacePlace
         area=points.area,
         workingstep=np.where(is_cut, path.workingstep[segment], -1),
         block=np.where(is_cut, path.block[segment], 0),
-        time=logged.nearest.time[points.cell],
-        cut_by=logged.nearest.workingstep[points.cell],
+        time=found.nearest.time,
+        cut_by=found.nearest.workingstep,
     )
+
+
+def _stations(part: TurnedPart, found: ProfileComparison, chord: Ints) -> Floats:
+    """Way along the path to places on one profile, (P,), mm.
+
+    A face lies in one cell but along many chords, of those of the run that made it.
+    """
+    path, station = part.path, part.station[found.points.cell].copy()
+    first = 0
+    for points in path.chords:
+        last = first + len(points) - 1
+        own = np.flatnonzero(found.points.is_face & (chord >= first) & (chord < last))
+        if len(own):
+            starts, pieces, rows, along = pieces_of(points, PIECE)
+            middle = starts + 0.5 * pieces
+            near = cKDTree(middle[:, [0, 2]]).query(found.position[own][:, [0, 2]])[1]
+            station[own] = path.chord_station[first + rows[near]] + along[near]
+        first = last
+    return station
 
 
 def _along(radius: Floats, other: Floats, bar: TurningStock) -> ProfilePoints:
@@ -360,15 +452,32 @@ def _along(radius: Floats, other: Floats, bar: TurningStock) -> ProfilePoints:
     )
 
 
-def _steps(radius: Floats, other: Floats, bar: TurningStock) -> ProfilePoints:
-    """Points on faces, between cells whose radii differ by more than their length."""
+def _face_points(radius: Floats, cell: float) -> tuple[Ints, Floats, Floats]:
+    """Points between cells whose radii differ by more than their length.
+
+    Returns
+    -------
+    (F,) array of int, (F,) array, (F,) array
+        Cell before each, its radius in mm, and the height in mm that it stands for.
+    """
     step = np.diff(radius)
-    rows = np.flatnonzero(np.abs(step) > 2.0 * STEEP * bar.cell)
+    rows = np.flatnonzero(np.abs(step) > 2.0 * STEEP * cell)
     counts = np.ceil(np.abs(step[rows]) / PIECE).astype(np.int64)
-    cell = np.repeat(rows, counts)
-    index = np.arange(len(cell)) - np.repeat(np.cumsum(counts) - counts, counts)
-    wide = step[cell] / np.repeat(counts, counts)
-    level = radius[cell] + (index + 0.5) * wide
+    before = np.repeat(rows, counts)
+    index = np.arange(len(before)) - np.repeat(np.cumsum(counts) - counts, counts)
+    wide = step[before] / np.repeat(counts, counts)
+    return before, radius[before] + (index + 0.5) * wide, wide
+
+
+def face_places(radius: Floats, bar: TurningStock) -> Floats:
+    """Radius and z of points on the faces of a profile, (F, 2), mm."""
+    before, level, _ = _face_points(radius, bar.cell)
+    return np.column_stack([level, bar.z[before] + 0.5 * bar.cell])
+
+
+def _steps(radius: Floats, other: Floats, bar: TurningStock) -> ProfilePoints:
+    """Points on faces, as :func:`face_places` has them."""
+    cell, level, wide = _face_points(radius, bar.cell)
     low = np.minimum(other[cell], other[cell + 1])
     high = np.maximum(other[cell], other[cell + 1])
     return ProfilePoints(

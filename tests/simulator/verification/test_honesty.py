@@ -76,13 +76,13 @@ def milled_required(samples: LoggedSamples) -> SurfacePlaces:
 
 
 def turned(samples: LoggedSamples) -> SurfacePlaces:
-    left = LoggedBar(TURNED.bar.cell, test_revolved.BAR, {1: test_revolved.INSERT})
+    left = LoggedBar(TURNED.bar, test_revolved.BAR, {1: test_revolved.INSERT})
     left.add(samples)
     return turned_places(TURNED, left)
 
 
 def turned_required(samples: LoggedSamples) -> SurfacePlaces:
-    left = LoggedBar(BAR.bar.cell, test_revolved.BAR, {1: test_revolved.INSERT})
+    left = LoggedBar(BAR.bar, test_revolved.BAR, {1: test_revolved.INSERT})
     left.add(samples)
     return required_turned_places(BAR, left)
 

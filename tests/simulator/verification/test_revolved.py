@@ -33,7 +33,7 @@ def required(profile: tuple[tuple[float, float], ...] = PROFILE) -> RequiredBar:
 
 def places_of(points: Floats) -> SurfacePlaces:
     part = required()
-    left = LoggedBar(part.bar.cell, BAR, {1: INSERT})
+    left = LoggedBar(part.bar, BAR, {1: INSERT})
     left.add(samples_at(points))
     return required_turned_places(part, left)
 
@@ -73,7 +73,7 @@ def test_an_offset_in_radius_is_an_excess_on_the_diameter(size: float) -> None:
 
 def test_what_lies_behind_the_part_does_not_count() -> None:
     part = required()
-    left = LoggedBar(part.bar.cell, BAR, {1: INSERT})
+    left = LoggedBar(part.bar, BAR, {1: INSERT})
     left.add(samples_at(sampled(WAY, 0.1)))
     found = turned_volumes(part.bar, left, BAR, low=part.low)
     assert found.excess == pytest.approx(0.0, abs=1.0)
@@ -98,7 +98,7 @@ def test_a_programmed_profile_is_compared_with_the_mesh() -> None:
         cutter=INSERT, tool=1, workingstep=0, segments=lines([list(p) for p in WAY], speed=5.0)
     )
     part = turned_part(programmed_path([run]), BAR)
-    left = LoggedBar(part.bar.cell, BAR, {1: INSERT})
+    left = LoggedBar(part.bar, BAR, {1: INSERT})
     left.add(samples_at(sampled(WAY, 0.1)))
     places = turned_places(part, left)
     wider = tuple((z, r - 0.1 if r else 0.0) for z, r in PROFILE)

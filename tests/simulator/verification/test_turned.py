@@ -26,7 +26,7 @@ PART = turned_part(programmed_path([RUN]), BAR)
 
 
 def logged(points: Floats) -> LoggedBar:
-    left = LoggedBar(PART.bar.cell, BAR, {1: INSERT})
+    left = LoggedBar(PART.bar, BAR, {1: INSERT})
     left.add(samples_at(points))
     return left
 
@@ -52,6 +52,26 @@ def test_an_offset_along_the_axis_is_a_gouge_on_the_face_to_a_cell() -> None:
     face = places[places.is_wall & places.is_beyond]
     assert len(face)
     assert -face.deviation.min() == pytest.approx(0.15, abs=PART.bar.cell)
+
+
+def test_a_face_is_known_between_its_ends_however_far_the_tool_moves_there() -> None:
+    """Ten samples make a face in one cell; before and behind it the steps are long."""
+    way = ((35.0, 0.0, -0.4), (25.0, 0.0, -0.4), (-0.4, 0.0, -0.4), (-0.4, 0.0, 9.6))
+    run = ProgrammedRun(
+        cutter=INSERT, tool=1, workingstep=0,
+        segments=lines([list(each) for each in way], speed=5.0),
+    )  # fmt: skip
+    part = turned_part(programmed_path([run]), BAR)
+    points = [sampled(way[:2], 9.0), sampled(way[1:3], 1.7)[1:], sampled(way[2:], 9.0)[1:]]
+    left = LoggedBar(part.bar, BAR, {1: INSERT})
+    left.add(samples_at(np.concatenate(points) + np.array([0.0, 0.0, 0.15])))
+    places = turned_places(part, left)
+    face = places[places.is_wall & (places.position[:, 2] > -1.0)]
+    is_between = (face.position[:, 0] > 6.0) & (face.position[:, 0] < 14.0)
+    assert face[is_between].uncertainty.max() < 2.0 * part.bar.cell
+    assert face[is_between].deviation == pytest.approx(0.15, abs=part.bar.cell)
+    # At the centre the tool may have turned away before.
+    assert face[face.position[:, 0] < 1.0].uncertainty.min() > 1.0
 
 
 def test_volumes_are_those_of_rings() -> None:
