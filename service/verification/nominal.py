@@ -15,9 +15,9 @@ from simulator.verification.nominal import (
     profile_side,
     wall_deviation,
 )
+from simulator.verification.profile import profile_distance
 from simulator.verification.revolved import RequiredBar, profile_deviation
 from simulator.verification.sweep import FAR
-from simulator.verification.turned import profile_distance
 from stepnc_model.toolpath.milling.contour import Chain
 from stepnc_model.toolpath.milling.nominal import NominalWall, nominal_walls
 from stepnc_model.toolpath.turning.nominal import nominal_outlines

@@ -15,13 +15,8 @@ from simulator.motion.segments import Bools, Floats
 from simulator.removal.lathe import TurningStock
 from simulator.verification.deviation import SurfacePlaces
 from simulator.verification.mesh import edges_of
-from simulator.verification.turned import (
-    CELL,
-    LoggedBar,
-    compared_profiles,
-    has_bore,
-    profile_distance,
-)
+from simulator.verification.profile import profile_distance
+from simulator.verification.turned import CELL, LoggedBar, compared_profiles, has_bore
 from stepnc_model.program import Stock
 
 ROUND = 0.01
