@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from simpy import Environment, Event
 
 from simulator.factory.shop import Crew
-from simulator.factory.store import Course
 
 
 @dataclass(slots=True, eq=False)
@@ -37,17 +36,10 @@ class CrewOnDuty:
     def release(self) -> None:
         """Give a member back."""
         self.busy -= 1
-        self._serve()
+        self.serve()
 
-    def _serve(self) -> None:
+    def serve(self) -> None:
+        """Let free members begin with tasks that wait."""
         while self.waiting and self.busy < self.crew.members and self._is_open:
             self.busy += 1
             self.waiting.popleft().succeed()
-
-    def hours(self) -> Course:
-        """SimPy process that begins work when the shift does."""
-        calendar = self.crew.calendar
-        while calendar is not None:
-            now = self.start + self.env.now
-            yield self.env.timeout(calendar.next_change(now) - now)
-            self._serve()

@@ -11,11 +11,13 @@ from simulator.errors import Deadlock
 from simulator.factory.crews import CrewOnDuty
 from simulator.factory.machining import Machining, MachiningPlan
 from simulator.factory.records import Listeners
+from simulator.factory.shifts import changes_of_shift
 from simulator.factory.shop import Shop
 from simulator.factory.states import MachineState
-from simulator.factory.station import Station, Steps, Surroundings
+from simulator.factory.station import Station
 from simulator.factory.store import Batch, BatchBuffer, RawStock
 from simulator.factory.streams import Streams
+from simulator.factory.surroundings import Steps, Surroundings
 from simulator.factory.tally import Tally
 
 
@@ -52,7 +54,10 @@ class Floor:
             self.raw.append(RawStock(buffer, product, row, numbers, entered=self._entered))
         crews = [CrewOnDuty(self.env, crew, shop.start) for crew in shop.crews]
         for on_duty in crews:
-            self.env.process(on_duty.hours())
+            if (calendar := on_duty.crew.calendar) is not None:
+                self.env.process(
+                    changes_of_shift(self.env, calendar, shop.start, on_duty.serve)
+                )
         for index in range(len(shop.machines)):
             self.stations.append(self._station(index, crews))
         for stock in self.raw:
@@ -181,8 +186,9 @@ class Floor:
         if is_over and not self._end.triggered:
             self._end.succeed()
 
-    def _require_movement(self, station: Station) -> None:
+    def _require_movement(self, index: int) -> None:
         """End the run where a machine can never hand over its batch."""
+        station = self.stations[index]
         found: dict[int, Station] = {}
         if not self._can_move(station, found) and not self._end.triggered:
             # Raised by `run`, as SimPy makes exceptions of processes anew.

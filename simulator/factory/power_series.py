@@ -4,8 +4,8 @@ Each state of a machine spreads its energy evenly over its time, machining too, 
 energy is exact and intervals shorter than a part are smooth.
 """
 
+from array import array
 from dataclasses import dataclass, field
-from itertools import chain
 
 import numpy as np
 
@@ -30,8 +30,8 @@ class PowerSeries:
     """Length of an interval, s."""
     _energy: Floats = field(init=False)
     """Energy in each interval, (N,), J."""
-    waiting: list[tuple[float, float, float]] = field(default_factory=list)
-    """Begin, end and energy of states that are yet to be added, s and J."""
+    waiting: "array[float]" = field(default_factory=lambda: array("d"))
+    """Begin, end and energy, in s and J, of each state that is yet to be added."""
 
     def __post_init__(self) -> None:
         span = self.end - self.begin
@@ -40,7 +40,7 @@ class PowerSeries:
 
     def restart(self, begin: float) -> None:
         """Begin anew at a later time."""
-        self.waiting.clear()
+        del self.waiting[:]
         self.begin = begin
         self.__post_init__()
 
@@ -72,8 +72,8 @@ class PowerSeries:
         """Add the states that wait."""
         if not self.waiting:
             return
-        rows = np.fromiter(chain.from_iterable(self.waiting), np.float64, 3 * len(self.waiting))
-        self.waiting.clear()
+        rows = np.array(self.waiting)
+        del self.waiting[:]
         begin, end, energy = rows.reshape(-1, 3).T
         first, last = (begin - self.begin) / self.step, (end - self.begin) / self.step
         power = energy / (end - begin)

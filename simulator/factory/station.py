@@ -6,20 +6,23 @@ maintenance begin between two parts. A failure interrupts whatever the machine d
 it goes on where it stopped, unless the part is spoilt.
 """
 
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from array import array
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any
 
 from simpy import Environment, Event, Interrupt, Process
 
 from simulator.factory.crews import CrewOnDuty
 from simulator.factory.machining import Machining
-from simulator.factory.records import Listeners, PartMade, StateSpent
-from simulator.factory.shop import Counting, Product, ShopMachine
+from simulator.factory.records import PartMade, StateSpent
+from simulator.factory.shifts import changes_of_shift
+from simulator.factory.shop import Counting, ShopMachine
 from simulator.factory.states import HANDLING, TRANSITIONS, MachineState
-from simulator.factory.store import Batch, BatchBuffer, Course, RawStock, oldest
+from simulator.factory.store import Batch, BatchBuffer, Course, oldest
 from simulator.factory.streams import Streams
-from simulator.factory.tally import MachineTally, ProcessTally, Tally
+from simulator.factory.surroundings import Surroundings
+from simulator.factory.tally import MachineTally, ProcessTally
 from simulator.factory.upkeep import (
     Breakdown,
     DueMaintenance,
@@ -27,42 +30,15 @@ from simulator.factory.upkeep import (
     Upkeep,
     breakdown_of,
     upkeep_of,
+    wakes_when_due,
 )
 
-WAITING = 2_000
-"""States whose energies are added to the power over time together."""
+WAITING = 3 * 2_000
+"""Numbers of states whose energies are added to the power over time together."""
 
 _PART_SETUP, _MACHINING, _PART_EJECTION = (
     MachineState.PART_SETUP, MachineState.MACHINING, MachineState.PART_EJECTION,
 )  # fmt: skip
-
-Steps: TypeAlias = frozenset[tuple[int, int]]
-"""Indices of product and step."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Surroundings:
-    """What a machine meets in its shop."""
-
-    products: Sequence[Product]
-    supplies: Sequence[tuple[BatchBuffer, Steps]]
-    """Buffers from which it takes batches, with the steps that it can do."""
-    raw: Sequence[RawStock]
-    """Raw stocks among them that never run out."""
-    behind: Mapping[tuple[int, int], BatchBuffer]
-    """Buffer behind each step; none behind the last."""
-    machining: Mapping[tuple[int, int], Iterator[Machining]]
-    """Machining of one part after another, by step."""
-    crews: Mapping[MachineState, CrewOnDuty]
-    """Crews by the states that need a member."""
-    tally: Tally
-    finished: Callable[[Batch], None]
-    """Called with each batch that leaves the shop."""
-    started: Callable[[Batch], None]
-    """Called with each batch that leaves the raw stock."""
-    stuck: Callable[["Station"], None]
-    """Called when the machine waits for room."""
-    listeners: Listeners
 
 
 @dataclass(slots=True, eq=False)
@@ -97,9 +73,10 @@ class Station:
     _counts: MachineTally = field(init=False)
     _seconds: dict[MachineState, float] = field(init=False)
     _joules: dict[MachineState, float] = field(init=False)
-    _spent: list[tuple[float, float, float]] = field(init=False)
-    _ahead: list[tuple[MachineState, float, float]] = field(default_factory=list)
-    """States of the part on the machine that are yet to come: with power and begin."""
+    _spent: "array[float]" = field(init=False)
+    _passing: tuple[float, float, float] | None = None
+    """Begin of machining and of ejection, s, and power of machining, W, of the part that passes
+    in one go."""
     _is_plain: bool = False
     """Whether nothing can happen within a part, so that it passes in one go."""
     _listeners: tuple[Callable[[StateSpent], None], ...] = ()
@@ -144,10 +121,10 @@ class Station:
         for pending in self._upkeep.by_clock:
             self.env.process(self._fails_by_clock(pending))
         if spec.calendar is not None:
-            self.env.process(self._changes_of_shift())
+            self.env.process(changes_of_shift(self.env, spec.calendar, self.start, self.wake))
         for due in self._upkeep.maintenance:
             if due.counts is Counting.CLOCK:
-                self.env.process(self._wakes_when_due(due))
+                self.env.process(wakes_when_due(self.env, due, self.wake))
 
     # States
 
@@ -159,48 +136,45 @@ class Station:
         RuntimeError
             If the transition is not legal.
         """
-        # Each part passes here three times, so calls are spared.
-        before, since, drawn = self.state, self.since, self.power
-        if state not in TRANSITIONS[before]:
-            raise RuntimeError(f"{self.spec.name}: no transition {before} -> {state}")
-        if now > since:
-            spent = now - since
-            energy = drawn * spent
-            self._seconds[before] += spent
-            self._joules[before] += energy
-            self._spent.append((since, now, energy))
-            if self._is_heard:
-                self._say(before, since, now, energy)
-            self.since = now
+        if state not in TRANSITIONS[self.state]:
+            raise RuntimeError(f"{self.spec.name}: no transition {self.state} -> {state}")
+        self._record(now)
         self.state, self.power = state, power
         if self._is_heard:
             for begin in self._began:
                 begin(self.index)
 
-    def _say(self, state: MachineState, since: float, now: float, energy: float) -> None:
-        """Tell listeners of the time in a state."""
-        for tell in self._listeners:
-            tell(StateSpent(self.index, state, since, now, energy))
-        if state is _MACHINING:
-            self.cut += now - since
-
     def close(self) -> None:
         """Record the time in the present state so far."""
         self._advance(self.env.now)
-        now, since = self.env.now, self.since
-        if now > since:
-            energy = self.power * (now - since)
-            self._seconds[self.state] += now - since
-            self._joules[self.state] += energy
-            self._spent.append((since, now, energy))
-            self._say(self.state, since, now, energy)
-            self.since = now
+        self._record(self.env.now)
+
+    def _record(self, now: float) -> None:
+        """Record the time in the present state until a time in s."""
+        state, since = self.state, self.since
+        if now <= since:
+            return
+        spent = now - since
+        energy = self.power * spent
+        self._seconds[state] += spent
+        self._joules[state] += energy
+        self._spent.extend((since, now, energy))
+        self.since = now
+        if self._is_heard:
+            for tell in self._listeners:
+                tell(StateSpent(self.index, state, since, now, energy))
+            if state is _MACHINING:
+                self.cut += spent
 
     def _advance(self, now: float) -> None:
-        """Pass through the states of a part in one go until a time in s."""
-        ahead = self._ahead
-        while ahead and ahead[0][2] <= now:
-            self.enter(*ahead.pop(0))
+        """Enter the states of a part that passes in one go, until a time in s."""
+        if self._passing is None:
+            return
+        machining, ejection, power = self._passing
+        if self.state is _PART_SETUP and machining <= now:
+            self.enter(_MACHINING, power, machining)
+        if self.state is _MACHINING and ejection <= now:
+            self.enter(_PART_EJECTION, self._powers[_PART_EJECTION], ejection)
 
     @property
     def elapsed(self) -> float:
@@ -264,42 +238,95 @@ class Station:
             self.around.started(batch)
         self.held = batch
         step = (batch.product, batch.step)
-        product = self.around.products[batch.product]
-        scrap = product.steps[batch.step].scrap
-        machining, process = self.around.machining[step], self._counts.processes[step]
         setup = yield from self._handle(MachineState.BATCH_SETUP)
-        good: list[int] = []
-        made: PartMade | None = None
-        for row, part in enumerate(batch.parts):
-            if row and self._has_pauses:
-                yield from self._between_parts()
-            work = next(machining)
-            self.part, self.work, self.cut = part, work, 0.0
-            part_setup, ejection = yield from self._part(work)
-            is_good = not self._part_spoilt and (scrap == 0.0 or next(self._scrap) >= scrap)
-            if is_good:
-                good.append(part)
-            process.parts += 1
-            process.good += is_good
-            process.time += work.time
-            process.energy += work.energy
-            process.peak = max(process.peak, work.peak_power)
-            if len(self._spent) > WAITING:
-                self.around.tally.power.flush()
-            if self.around.listeners.part:
-                if made is not None:
-                    self._tell(made)
-                made = PartMade(
-                    self.index, *step, batch.number, part, self.env.now, 0.0 if row else setup,
-                    part_setup, work.time, ejection, 0.0, work.energy, work.peak_power,
-                    work.settings, is_good,
-                )  # fmt: skip
+        good, made = yield from self._make_parts(batch, step, setup)
         self.part, self.work = None, None
         ejection = yield from self._handle(MachineState.BATCH_EJECTION)
         if made is not None:
             self._tell(made._replace(batch_ejection=ejection))
         batch.parts = good
         yield from self._hand_over(batch, step)
+
+    def _make_parts(  # noqa: PLR0912, PLR0915 (a call for each part is a tenth of its time)
+        self, batch: Batch, step: tuple[int, int], batch_setup: float
+    ) -> Generator[Event, Any, tuple[list[int], PartMade | None]]:
+        """Machine the parts of a batch; the good ones, and the last that is yet to be told."""
+        env, timeout, spent = self.env, self.env.timeout, self._spent
+        seconds, joules = self._seconds, self._joules
+        machining, process = self.around.machining[step], self._counts.processes[step]
+        setups, ejections = self._times[_PART_SETUP], self._times[_PART_EJECTION]
+        setup_power, ejection_power = self._powers[_PART_SETUP], self._powers[_PART_EJECTION]
+        scrap = self.around.products[step[0]].steps[step[1]].scrap
+        upkeep, is_plain, has_pauses = self._upkeep, self._is_plain, self._has_pauses
+        has_listeners, is_heard = bool(self.around.listeners.part), self._is_heard
+        good: list[int] = []
+        made: PartMade | None = None
+        # Whether the part before has just passed in one go, and when.
+        follows, end = False, 0.0
+        for row, part in enumerate(batch.parts):
+            if has_pauses and row:
+                yield from self._between_parts()
+                follows = False
+            work = next(machining)
+            time, energy, peak, _ = work
+            is_good = True
+            if not is_plain or upkeep.failure_at < self.machined + time:
+                self.part, self.work, self.cut = part, work, 0.0
+                setup, ejection = yield from self._part(work)
+                is_good, follows = not self._part_spoilt, False
+            else:
+                # Nobody looks and nothing interrupts: one event for the part instead of three.
+                setup, ejection = next(setups), next(ejections)
+                begin = end if follows else env.now
+                whole = setup + time + ejection
+                cutting, leaving, end = begin + setup, begin + (whole - ejection), begin + whole
+                power = energy / time if time > 0.0 else 0.0
+                if follows:
+                    self.state, self.power = _PART_SETUP, setup_power
+                else:
+                    self.enter(_PART_SETUP, setup_power, begin)
+                self._passing = (cutting, leaving, power)
+                yield timeout(whole)
+                follows = not is_heard and self.since == begin < cutting < leaving < end
+                if follows:
+                    # As entering one after the other would.
+                    setup_energy = setup_power * (cutting - begin)
+                    cut_energy = power * (leaving - cutting)
+                    ejection_energy = ejection_power * (end - leaving)
+                    seconds[_PART_SETUP] += cutting - begin
+                    seconds[_MACHINING] += leaving - cutting
+                    seconds[_PART_EJECTION] += end - leaving
+                    joules[_PART_SETUP] += setup_energy
+                    joules[_MACHINING] += cut_energy
+                    joules[_PART_EJECTION] += ejection_energy
+                    spent.extend((
+                        begin, cutting, setup_energy, cutting, leaving, cut_energy,
+                        leaving, end, ejection_energy,
+                    ))  # fmt: skip
+                    self.state, self.power, self.since = _PART_EJECTION, ejection_power, end
+                else:
+                    self._advance(end)
+                self._passing = None
+                self.machined += time
+            if scrap and is_good:
+                is_good = next(self._scrap) >= scrap
+            if is_good:
+                good.append(part)
+            process.parts += 1
+            process.good += is_good
+            process.time += time
+            process.energy += energy
+            process.peak = max(process.peak, peak)
+            if len(spent) > WAITING:
+                self.around.tally.power.flush()
+            if has_listeners:
+                if made is not None:
+                    self._tell(made)
+                made = PartMade(
+                    self.index, *step, batch.number, part, env.now, 0.0 if row else batch_setup,
+                    setup, time, ejection, 0.0, energy, peak, work.settings, is_good,
+                )  # fmt: skip
+        return good, made
 
     def _tell(self, made: PartMade) -> None:
         for tell in self.around.listeners.part:
@@ -316,7 +343,7 @@ class Station:
             if room is not None:
                 self.holding_for = behind
                 self.enter(MachineState.BLOCKED, self.spec.idle_power, self.env.now)
-                self.around.stuck(self)
+                self.around.stuck(self.index)
                 yield from self._until(room)
                 self.holding_for = None
         self.held = None
@@ -331,36 +358,22 @@ class Station:
             self._release()
             ejection = yield from self._handle(MachineState.PART_EJECTION)
             return setup, ejection
-        if not self._is_plain or self._upkeep.failure_at < self.machined + work.time:
-            setup = yield from self._handle(MachineState.PART_SETUP)
-            yield from self._machine(work)
-            ejection = yield from self._handle(MachineState.PART_EJECTION)
-            return setup, ejection
-        # Nobody looks and nothing interrupts: one event for the part instead of three.
-        now, times, powers, seconds = self.env.now, self._times, self._powers, work.time
-        setup, ejection = next(times[_PART_SETUP]), next(times[_PART_EJECTION])
-        self.enter(_PART_SETUP, powers[_PART_SETUP], now)
-        power = work.energy / seconds if seconds > 0.0 else 0.0
-        whole = setup + seconds + ejection
-        self._part_spoilt = False
-        self._ahead = [
-            (_MACHINING, power, now + setup),
-            (_PART_EJECTION, powers[_PART_EJECTION], now + whole - ejection),
-        ]
-        yield self.env.timeout(whole)
-        for state, power, begin in self._ahead:
-            self.enter(state, power, begin)
-        self._ahead = []
-        self.machined += seconds
+        setup = yield from self._handle(MachineState.PART_SETUP)
+        yield from self._machine(work)
+        ejection = yield from self._handle(MachineState.PART_EJECTION)
         return setup, ejection
 
     def _handle(self, state: MachineState) -> Generator[Event, Any, float]:
         """Set up or eject, with a crew where the state needs one; the time that it took."""
-        yield from self._claim(state)
+        if self._has_crews:
+            yield from self._claim(state)
         seconds = next(self._times[state])
         self.enter(state, self._powers[state], self.env.now)
-        yield from self._spend(seconds)
-        self._release()
+        if self._is_plain:
+            yield self.env.timeout(seconds)
+        else:
+            yield from self._spend(seconds)
+            self._release()
         return seconds
 
     def _machine(self, work: Machining) -> Course:
@@ -446,20 +459,6 @@ class Station:
         yield self.env.timeout(next(due.durations))
         self._release()
         self._upkeep.maintained(due, self.machined, self.env.now)
-
-    def _changes_of_shift(self) -> Course:
-        """SimPy process that wakes the machine when its shift begins or ends."""
-        calendar = self.spec.calendar
-        while calendar is not None:
-            now = self.start + self.env.now
-            yield self.env.timeout(calendar.next_change(now) - now)
-            self.wake()
-
-    def _wakes_when_due(self, due: DueMaintenance) -> Course:
-        """SimPy process that wakes a machine without work for its maintenance."""
-        while True:
-            yield self.env.timeout(max(due.at - self.env.now, 0.0) or due.every)
-            self.wake()
 
     # Failures
 

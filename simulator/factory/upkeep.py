@@ -4,14 +4,15 @@ Failures by machining time come when the machine has cut for so long; failures b
 interrupt it. After a maintenance failures by machining time count anew.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from math import inf
 from typing import NamedTuple
 
-from simpy import Interrupt
+from simpy import Environment, Interrupt
 
 from simulator.factory.shop import Counting, ShopMachine
+from simulator.factory.store import Course
 from simulator.factory.streams import Streams
 
 
@@ -134,3 +135,10 @@ def breakdown_of(interrupt: Interrupt) -> Breakdown:
     if not isinstance(cause, Breakdown):
         raise TypeError(f"an interrupt of a machine by {cause!r}")
     return cause
+
+
+def wakes_when_due(env: Environment, due: DueMaintenance, wake: Callable[[], bool]) -> Course:
+    """SimPy process that wakes a machine without work for its maintenance."""
+    while True:
+        yield env.timeout(max(due.at - env.now, 0.0) or due.every)
+        wake()

@@ -1,0 +1,41 @@
+"""What a machine meets in its shop: buffers, crews, machining, counts, and who listens."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from simulator.factory.crews import CrewOnDuty
+from simulator.factory.machining import Machining
+from simulator.factory.records import Listeners
+from simulator.factory.shop import Product
+from simulator.factory.states import MachineState
+from simulator.factory.store import Batch, BatchBuffer, RawStock
+from simulator.factory.tally import Tally
+
+Steps: TypeAlias = frozenset[tuple[int, int]]
+"""Indices of product and step."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Surroundings:
+    """What a machine meets in its shop."""
+
+    products: Sequence[Product]
+    supplies: Sequence[tuple[BatchBuffer, Steps]]
+    """Buffers from which it takes batches, with the steps that it can do."""
+    raw: Sequence[RawStock]
+    """Raw stocks among them that never run out."""
+    behind: Mapping[tuple[int, int], BatchBuffer]
+    """Buffer behind each step; none behind the last."""
+    machining: Mapping[tuple[int, int], Iterator[Machining]]
+    """Machining of one part after another, by step."""
+    crews: Mapping[MachineState, CrewOnDuty]
+    """Crews by the states that need a member."""
+    tally: Tally
+    finished: Callable[[Batch], None]
+    """Called with each batch that leaves the shop."""
+    started: Callable[[Batch], None]
+    """Called with each batch that leaves the raw stock."""
+    stuck: Callable[[int], None]
+    """Called with the index of the machine when it waits for room."""
+    listeners: Listeners
