@@ -6,6 +6,9 @@ from pathlib import Path
 
 from stepnc_model.errors import StepNcError
 
+PROGRAMS = frozenset({".stpnc", ".stp", ".step", ".p21", ".238"})
+"""Suffixes of STEP-NC programs; other files are NC code."""
+
 Names = Mapping[Path, str]
 """Names that owners gave to files."""
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from service.chosen import machine_for, require_axes
+from service.file_names import PROGRAMS
 from service.files import require_place, write_lines
 from service.paths.toolpaths import paths_of, with_feeds
 from service.reading import Tell, read_program, silent
@@ -25,9 +26,6 @@ from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.post.blocks import Block, Circular, Linear
 from stepnc_model.post.dialects import write
 from stepnc_model.post.neutral import blocks_of
-
-PROGRAMS = frozenset({".stpnc", ".stp", ".step", ".p21", ".238"})
-"""Suffixes of STEP-NC programs; other files are NC code."""
 
 MOST_STRETCHES = 20
 """Stretches of blocks that are listed, those that lose most first."""

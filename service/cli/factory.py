@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from service.cli.options import OK, Commands, add_json
+from service.cli.options import OK, Commands, add_cluster, add_json
 
 if TYPE_CHECKING:
     from service.requests.factory import FactoryRequest
@@ -46,6 +46,7 @@ def _factory_options(parser: argparse.ArgumentParser) -> None:
         help="run the shop at a pace, each machine as a device of one MTConnect agent",
     )
     add_options(parser, LiveFactoryRequest)
+    add_cluster(parser)
     add_json(parser)
     parser.set_defaults(run=_factory)
 
@@ -53,6 +54,7 @@ def _factory_options(parser: argparse.ArgumentParser) -> None:
 def _factory(options: argparse.Namespace) -> int:
     """Run the command ``stepnc factory``."""
     from service.cli.machine import interruptible
+    from service.execution.pools import pools_of
     from service.factory.output import factory_json, factory_page, print_factory
     from service.factory.run import run_factory
     from service.files import write_atomically
@@ -67,7 +69,10 @@ def _factory(options: argparse.Namespace) -> int:
     if options.output is None and (options.report or request.documents or request.has_energy):
         raise StepNcError("--report, --documents and --energy write files: name a folder, -o")
     with interruptible():
-        result = run_factory(options.shop, request, folder=options.output, tell=tell)
+        pools = pools_of(options.cluster)
+        result = run_factory(
+            options.shop, request, folder=options.output, pools=pools, tell=tell
+        )
     if options.output is not None:
         tell(f"written: {options.output} ({result.parts_written} parts)")
     if request.documents:

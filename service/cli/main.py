@@ -25,6 +25,7 @@ from service.cli.options import (
     OK,
     CommandParser,
     Commands,
+    add_cluster,
     add_file,
     add_json,
     add_knowledge,
@@ -127,9 +128,20 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
     from service.requests.fields import add_options
 
     add = parser.add_argument
-    add("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
+    add(
+        "file",
+        type=Path,
+        metavar="FILE",
+        help="a STEP-NC program (Part 21), or a folder of them",
+    )
     add_options(parser, AdviceRequest)
-    add("-o", "--output", type=Path, metavar="FILE", help="default: FILE.optimised.stpnc")
+    add(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="FILE",
+        help="default: FILE.optimised.stpnc; of a folder: another folder",
+    )
     add("--in-place", action="store_true", help="overwrite the input file")
     add(
         "--holding",
@@ -146,6 +158,7 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
     add_knowledge(parser, "supplies accepted corrections of k_c")
     add("--dry-run", action="store_true", help="write no STEP-NC file")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
+    add_cluster(parser)
     add_json(parser)
     parser.set_defaults(run=_optimise)
 
@@ -209,7 +222,12 @@ def _optimise(options: argparse.Namespace) -> int:
     from service.requests.advice import AdviceRequest
     from service.requests.fields import from_options
     from service.terminal import tell, write_out
+    from stepnc_model.errors import StepNcError
 
+    if options.file.is_dir():
+        return _optimise_folder(options)
+    if options.cluster:
+        raise StepNcError("--cluster runs the programs of a folder: name a folder")
     outcome = usecases.optimise(
         from_options(AdviceRequest, options),
         usecases.AdviceFiles(
@@ -237,6 +255,48 @@ def _optimise(options: argparse.Namespace) -> int:
         return INFEASIBLE
     is_passed = confirmation is not None and bool(confirmation.passed)
     return LIMIT_EXCEEDED if is_passed or outcome.plan.faults else OK
+
+
+def _optimise_folder(options: argparse.Namespace) -> int:
+    """Run the command ``optimise`` for the programs of a folder."""
+    from service.cli.machine import interruptible
+    from service.execution.pools import pools_of
+    from service.folder_advice.ledger import ProgramStatus
+    from service.folder_advice.output import folder_advice_json, print_folder_advice
+    from service.folder_advice.run import FolderFiles, optimise_folder
+    from service.requests.advice import AdviceRequest
+    from service.requests.fields import from_options
+    from service.terminal import tell, write_out
+    from stepnc_model.errors import StepNcError
+
+    if options.output is None or options.in_place or options.report is not None:
+        raise StepNcError(
+            f"{options.file}: is a folder: name another folder with -o, without --in-place and "
+            "--report"
+        )
+    files = FolderFiles(
+        folder=options.file,
+        output=options.output,
+        dry_run=options.dry_run,
+        holding=options.holding,
+        tools=options.tools,
+        knowledge=options.kb,
+    )
+    request = from_options(AdviceRequest, options)
+    with interruptible():
+        found = optimise_folder(request, files, pools=pools_of(options.cluster), tell=tell)
+    if options.json:
+        write_out(folder_advice_json(found))
+    else:
+        print_folder_advice(found)
+    for status, code in (
+        (ProgramStatus.BAD, BAD_INPUT),
+        (ProgramStatus.INFEASIBLE, INFEASIBLE),
+        (ProgramStatus.EXCEEDED, LIMIT_EXCEEDED),
+    ):
+        if found.has(status):
+            return code
+    return OK
 
 
 def _check(options: argparse.Namespace) -> int:

@@ -64,6 +64,18 @@ def text(word: str) -> str:
     return word
 
 
+def add_cluster(parser: argparse.ArgumentParser) -> None:
+    """Add the option that names a Dask cluster."""
+    parser.add_argument(
+        "--cluster",
+        type=text,
+        default="",
+        metavar="ADDRESS",
+        help="run on the Dask cluster of this scheduler, tcp://127.0.0.1:8786 or, beyond this "
+        "machine, tls://HOST:PORT (default: on processes of this machine)",
+    )
+
+
 def add_knowledge(parser: argparse.ArgumentParser, why: str) -> None:
     """Add the option that names the knowledge base."""
     parser.add_argument(

@@ -1,15 +1,10 @@
 """Replications of a shop: independent runs, the first one with outputs, others on processes."""
 
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf
-from multiprocessing import get_context
-from os import cpu_count
-from signal import SIG_IGN, SIGINT, signal
 
-from service.lifeline import end_with_parent
+from service.execution.executors import Pools, results
 from service.progress import Ticker
 from service.reading import Tell
 from simulator.factory.floor import Floor
@@ -102,57 +97,41 @@ def run_shop(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Replications:
-    """Replications that run on an executor."""
+    """Replications that run on executors."""
 
-    pool: Executor
+    pools: Pools
     seed: int
     tell: Tell
     most_parts: float = inf
     """Most parts of a run."""
 
     def measures(
-        self, shop: Shop, plan: MachiningPlan, numbers: Sequence[int]
-    ) -> list[tuple[Measure, ...]]:
-        """Measures of the replications of given numbers, in order.
+        self, cases: Sequence[tuple[Shop, MachiningPlan, Sequence[int]]]
+    ) -> list[list[tuple[Measure, ...]]]:
+        """Measures of the replications of given numbers of each shop, in order.
 
         Raises
         ------
         Deadlock
             If machines of one of them wait for each other.
+        StepNcError
+            If executors are lost again and again.
         """
         ticker = Ticker(self.tell)
-        waiting = [
-            self.pool.submit(
-                _measures,
-                shop,
-                plan,
-                Streams(seed=self.seed, replication=number),
-                self.most_parts,
-            )
+        tasks = [
+            (shop, plan, Streams(seed=self.seed, replication=number), self.most_parts)
+            for shop, plan, numbers in cases
             for number in numbers
         ]
-        for count, _ in enumerate(as_completed(waiting), start=1):
-            ticker(lambda done=count: f"{done} of {len(waiting)} replications")  # type: ignore[misc]
-        return [each.result() for each in waiting]
-
-
-@contextmanager
-def processes(count: int) -> Iterator[Executor]:
-    """Executor with a process for each processor, at most a given number."""
-    workers = max(1, min(count, cpu_count() or 1))
-    context = get_context("forkserver")
-    with ProcessPoolExecutor(workers, mp_context=context, initializer=_deaf) as pool:
-        try:
-            yield pool
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-
-
-def _deaf() -> None:
-    """Leave Ctrl-C to the main process, and end with it."""
-    end_with_parent()
-    signal(SIGINT, SIG_IGN)
+        found: dict[int, tuple[Measure, ...]] = {}
+        if not tasks:
+            return [[] for _ in cases]
+        work = results(self.pools, _measures, tasks, tell=self.tell, what="replications")
+        for index, measures in work:
+            found[index] = measures
+            ticker(lambda: f"{len(found)} of {len(tasks)} replications")
+        rows = iter(range(len(tasks)))
+        return [[found[next(rows)] for _ in numbers] for _, _, numbers in cases]
 
 
 def _measures(

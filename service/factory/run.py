@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import inf
 from pathlib import Path
 
+from service.execution.executors import Pools, processes
 from service.factory.cycles import PartCycles
 from service.factory.documents import ChosenPart, FirstParts, PartDocuments
 from service.factory.parts_file import PartTables
@@ -14,7 +15,6 @@ from service.factory.replications import (
     PartBound,
     Replications,
     ShopRun,
-    processes,
     run_shop,
 )
 from service.factory.source import ShopSource, chosen_shop, source_of_file
@@ -59,22 +59,28 @@ class FactoryResult:
 
 
 def run_factory(
-    file: Path, request: FactoryRequest, *, folder: Path | None = None, tell: Tell = silent
+    file: Path,
+    request: FactoryRequest,
+    *,
+    folder: Path | None = None,
+    pools: Pools = processes,
+    tell: Tell = silent,
 ) -> FactoryResult:
     """Run a shop file.
 
     Parameters and errors are those of :func:`run_source`.
     """
-    return run_source(source_of_file(file), request, folder=folder, tell=tell)
+    return run_source(source_of_file(file), request, folder=folder, pools=pools, tell=tell)
 
 
-def run_source(
+def run_source(  # noqa: PLR0913 (each is a choice of the caller)
     source: ShopSource,
     request: FactoryRequest,
     *,
     folder: Path | None = None,
     tell: Tell = silent,
     most_parts: float = inf,
+    pools: Pools = processes,
     require: Callable[[Shop], None] = lambda _: None,
 ) -> FactoryResult:
     """Run a shop.
@@ -88,6 +94,8 @@ def run_source(
     tell : callable
     most_parts : float
         Most parts that the machines of a run may make together.
+    pools : callable
+        Makes the executors of all replications but the first.
     require : callable
         Check of the shop, and of each that a sweep makes of it.
 
@@ -114,28 +122,26 @@ def run_source(
     if folder is not None and request.documents:
         maker = PartDocuments(shop, plan, Streams(seed=request.seed), tell=tell)
         written = maker.write(made.chosen, folder / DOCUMENTS)
-    runs = [made.run.measures]
-    cases: list[SweptCase] = []
-    others = request.replications - 1 + request.replications * len(swept)
-    if others:
-        with processes(others) as pool:
-            work = Replications(pool=pool, seed=request.seed, tell=tell, most_parts=most_parts)
-            runs += work.measures(shop, plan, range(1, request.replications))
-            for (changes, case), own in zip(swept, plans, strict=True):
-                found = work.measures(case, own, range(request.replications))
-                cases.append(
-                    SweptCase(changes=tuple(changes.items()), measures=over_replications(found))
-                )
+    numbers = range(request.replications)
+    work = Replications(pools=pools, seed=request.seed, tell=tell, most_parts=most_parts)
+    others, *found = work.measures([
+        (shop, plan, numbers[1:]),
+        *((case, own, numbers) for (_, case), own in zip(swept, plans, strict=True)),
+    ])
+    cases = tuple(
+        SweptCase(changes=tuple(changes.items()), measures=over_replications(runs))
+        for (changes, _), runs in zip(swept, found, strict=True)
+    )
     return FactoryResult(
         shop=shop,
         seed=request.seed,
         replications=request.replications,
-        measures=over_replications(runs),
+        measures=over_replications([made.run.measures, *others]),
         first=made.run,
         states=made.states,
         parts_written=made.parts_written,
         documents_written=written,
-        cases=tuple(cases),
+        cases=cases,
     )
 
 

@@ -82,6 +82,8 @@ TOGETHER = {
     "simulator/factory/tally.py": "added up in test_station.py",
     "simulator/factory/upkeep.py": "held against a closed form in test_queueing.py",
     "service/cli/factory.py": "run in tests/service/factory/test_factory.py",
+    "service/execution/pools.py": "asked in tests/service/execution/test_cluster.py",
+    "service/folder_advice/output.py": "printed in tests/service/folder_advice/test_cli.py",
     "service/factory/figures.py": "drawn in tests/service/factory/test_factory.py",
     "service/factory/output.py": "printed in tests/service/factory/test_factory.py",
     "service/factory/parts_file.py": "read in tests/service/factory/test_factory.py",

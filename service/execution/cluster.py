@@ -1,0 +1,166 @@
+"""Dask cluster as an executor.
+
+Dask's workers run what they are sent, so that beyond this machine only encrypted connections
+with certificates are taken; their files stand in Dask's own configuration. A worker that is
+lost costs only its tasks, which Dask gives to another. A scheduler that is lost forgets
+everything: the work is then submitted again by its owner.
+"""
+
+from collections.abc import Iterator
+from concurrent.futures import BrokenExecutor, Executor
+from contextlib import contextmanager
+from functools import partial
+from importlib.metadata import version
+from ipaddress import ip_address
+from pathlib import Path
+from platform import python_version
+from urllib.parse import urlsplit
+
+from service.execution.executors import Pools
+from stepnc_model.errors import StepNcError
+
+SCHEMES = ("tcp", "tls")
+
+PATIENCE = 10.0
+"""Longest time, s, to wait for the scheduler, and for a first worker."""
+
+EXTRA = "pip install 'stepnc-optimiser[cluster]'"
+
+
+def cluster_pools(address: str) -> Pools:
+    """Executors of the cluster whose scheduler has an address.
+
+    Raises
+    ------
+    StepNcError
+        If Dask is not installed, or the cluster is not usable.
+    """
+    _require_address(address)
+    try:
+        import distributed  # noqa: F401, PLC0415
+    except ImportError as error:
+        raise StepNcError(f"--cluster {address}: Dask is not installed: {EXTRA}") from error
+    _require_certificates(address)
+    with cluster(address):
+        pass
+    return partial(cluster, address)
+
+
+@contextmanager
+def cluster(address: str, *, patience: float = PATIENCE) -> Iterator[Executor]:
+    """Executor of a cluster.
+
+    Parameters
+    ----------
+    address : str
+        Address of the scheduler: ``tcp://HOST:PORT`` on this machine, else ``tls://HOST:PORT``.
+    patience : float, s
+        Longest time to wait for the scheduler, and for a first worker.
+
+    Raises
+    ------
+    StepNcError
+        If the cluster does not answer, has no worker, or workers have other versions.
+    BrokenExecutor
+        Within it, if tasks were lost with their workers.
+    """
+    from distributed import Client, KilledWorker  # noqa: PLC0415 (Dask takes a second)
+    from distributed.comm.core import CommClosedError  # noqa: PLC0415
+
+    try:
+        client = Client(address, timeout=patience, set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:
+        raise StepNcError(
+            f"--cluster {address}: no scheduler answers ({_first_line(error)}); start one with "
+            "`dask scheduler`, and workers with `dask worker ADDRESS`"
+        ) from error
+    try:
+        try:
+            client.wait_for_workers(1, timeout=patience)
+        except TimeoutError as error:
+            raise StepNcError(
+                f"--cluster {address}: has no worker; start one with `dask worker {address}`"
+            ) from error
+        _require_versions(address, client.run(versions, on_error="return"))
+        yield client.get_executor(pure=False)
+    except (KilledWorker, CommClosedError) as error:
+        raise BrokenExecutor(_first_line(error)) from error
+    finally:
+        client.close(timeout=patience)
+
+
+def versions() -> dict[str, str]:
+    """Versions that client and workers must share."""
+    return {"Python": ".".join(python_version().split(".")[:2])} | {
+        name: version(name) for name in ("stepnc-optimiser", "numpy", "distributed")
+    }
+
+
+def _require_versions(address: str, found: dict[str, object]) -> None:
+    """Refuse workers of other versions: they may not understand what they are sent.
+
+    Raises
+    ------
+    StepNcError
+        With the worker, both versions and what to do.
+    """
+    own = versions()
+    for worker, theirs in found.items():
+        if not isinstance(theirs, dict):
+            raise StepNcError(
+                f"--cluster {address}: worker {worker} cannot run it ({_first_line(theirs)}): "
+                "install stepnc-optimiser there"
+            )
+        for name, wanted in own.items():
+            if theirs.get(name) != wanted:
+                raise StepNcError(
+                    f"--cluster {address}: worker {worker} has {name} {theirs.get(name)}, here "
+                    f"it is {wanted}: install the same version on both"
+                )
+
+
+def _require_address(address: str) -> None:
+    """Refuse what is no address of a scheduler, or is not encrypted off this machine."""
+    try:
+        parts = urlsplit(address)
+        host, port = parts.hostname, parts.port
+    except ValueError:
+        host = port = None
+    if not host or not port or parts.scheme not in SCHEMES:
+        raise StepNcError(
+            f"--cluster {address}: must be tcp://HOST:PORT or tls://HOST:PORT of a scheduler"
+        )
+    if parts.scheme == "tcp" and not _is_loopback(host):
+        raise StepNcError(
+            f"--cluster {address}: beyond this machine only tls:// is taken, since workers run "
+            "whatever they are sent; name the certificates in Dask's configuration, "
+            "distributed.comm.tls"
+        )
+
+
+def _require_certificates(address: str) -> None:
+    """Refuse an encrypted connection without certificates."""
+    import dask  # noqa: PLC0415
+
+    if not address.startswith("tls:"):
+        return
+    for key in ("ca-file", "client.cert", "client.key"):
+        place = dask.config.get(f"distributed.comm.tls.{key}", None)
+        if not place or not Path(place).is_file():
+            found = f"names no file: {place}" if place else "is not set"
+            raise StepNcError(
+                f"--cluster {address}: distributed.comm.tls.{key} {found} in Dask's "
+                "configuration, which an encrypted connection needs"
+            )
+
+
+def _is_loopback(host: str) -> bool:
+    """Whether a host is this machine."""
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def _first_line(error: object) -> str:
+    return (str(error).strip() or type(error).__name__).splitlines()[0]

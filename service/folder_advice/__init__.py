@@ -1,0 +1,1 @@
+"""Advice for all programs of a folder."""
