@@ -75,8 +75,8 @@ test: $(READY)
 
 SEED := $(or $(SEED),$(shell date +%s))
 
-# No test may depend on its order, its worker or its folder: one process, all quick tests in one
-# of all orders, and a clone of what is committed that nobody else may enter (mktemp: mode 0700).
+# No test may depend on its order, its worker or its folder: all quick tests in one of all
+# orders, and a clone of what is committed that nobody else may enter (mktemp: mode 0700).
 # It borrows the environment; modules that are installed there come after those of the clone.
 shuffled: $(READY)
 	@echo "make shuffled SEED=$(SEED)"
@@ -85,7 +85,7 @@ shuffled: $(READY)
 	ln -s "$(abspath $(VENV))" "$$folder/clone/.venv" && \
 	if [ -d ../shared ]; then ln -s "$$(cd ../shared && pwd)" "$$folder/shared"; fi && \
 	cd "$$folder/clone" && export PYTHONPATH="$$PWD" && $(COMPILE) && \
-	.venv/bin/python -m pytest -p no:xdist -m "not slow" --shuffle $(SEED)
+	.venv/bin/python -m pytest -n auto -m "not slow" --shuffle $(SEED)
 
 check: $(READY)
 	$(BIN)/ruff format --check .

@@ -154,7 +154,7 @@ class Floor:
 
     def _wake_taker(self, buffer: BatchBuffer) -> None:
         """Wake the machine that has waited longest for a batch."""
-        takers = self._takers.get(id(buffer), ())
+        takers = [each for each in self._takers.get(id(buffer), ()) if each.asleep is not None]
         starved = [each for each in takers if each.state is MachineState.STARVED]
         for each in sorted(starved, key=lambda station: station.since):
             if each.wake():

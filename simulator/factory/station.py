@@ -74,9 +74,8 @@ class Station:
     _seconds: dict[MachineState, float] = field(init=False)
     _joules: dict[MachineState, float] = field(init=False)
     _spent: "array[float]" = field(init=False)
-    _passing: tuple[float, float, float] | None = None
-    """Begin of machining and of ejection, s, and power of machining, W, of the part that passes
-    in one go."""
+    _passing: tuple[float, float, Machining] | None = None
+    """Begin of machining and of ejection, s, and work, of the part that passes in one go."""
     _is_plain: bool = False
     """Whether nothing can happen within a part, so that it passes in one go."""
     _listeners: tuple[Callable[[StateSpent], None], ...] = ()
@@ -87,7 +86,8 @@ class Station:
     _has_pauses: bool = False
     """Whether shifts or maintenance may begin between two parts."""
     _powers: dict[MachineState, float] = field(default_factory=dict)
-    _asleep: Event | None = None
+    asleep: Event | None = None
+    """Event for which it waits without a batch or outside its shift."""
     _repaired: Event | None = None
     _upkeep: Upkeep = field(init=False)
     _times: dict[MachineState, Iterator[float]] = field(default_factory=dict)
@@ -170,9 +170,9 @@ class Station:
         """Enter the states of a part that passes in one go, until a time in s."""
         if self._passing is None:
             return
-        machining, ejection, power = self._passing
+        machining, ejection, work = self._passing
         if self.state is _PART_SETUP and machining <= now:
-            self.enter(_MACHINING, power, machining)
+            self.enter(_MACHINING, _power(work), machining)
         if self.state is _MACHINING and ejection <= now:
             self.enter(_PART_EJECTION, self._powers[_PART_EJECTION], ejection)
 
@@ -183,10 +183,10 @@ class Station:
 
     def wake(self) -> bool:
         """Wake the machine if it waits for a batch or its shift; whether it did."""
-        if self._asleep is None:
+        if self.asleep is None:
             return False
-        self._asleep.succeed()
-        self._asleep = None
+        self.asleep.succeed()
+        self.asleep = None
         return True
 
     def fail(self, repair: float, *, spoils: bool = False) -> bool:
@@ -269,8 +269,8 @@ class Station:
                 follows = False
             work = next(machining)
             time, energy, peak, _ = work
-            is_good = True
-            if not is_plain or upkeep.failure_at < self.machined + time:
+            is_good, machined = True, self.machined + time
+            if not is_plain or upkeep.failure_at < machined:
                 self.part, self.work, self.cut = part, work, 0.0
                 setup, ejection = yield from self._part(work)
                 is_good, follows = not self._part_spoilt, False
@@ -280,34 +280,34 @@ class Station:
                 begin = end if follows else env.now
                 whole = setup + time + ejection
                 cutting, leaving, end = begin + setup, begin + (whole - ejection), begin + whole
-                power = energy / time if time > 0.0 else 0.0
                 if follows:
                     self.state, self.power = _PART_SETUP, setup_power
                 else:
                     self.enter(_PART_SETUP, setup_power, begin)
-                self._passing = (cutting, leaving, power)
+                self._passing = (cutting, leaving, work)
                 yield timeout(whole)
                 follows = not is_heard and self.since == begin < cutting < leaving < end
                 if follows:
                     # As entering one after the other would.
-                    setup_energy = setup_power * (cutting - begin)
-                    cut_energy = power * (leaving - cutting)
-                    ejection_energy = ejection_power * (end - leaving)
-                    seconds[_PART_SETUP] += cutting - begin
-                    seconds[_MACHINING] += leaving - cutting
-                    seconds[_PART_EJECTION] += end - leaving
+                    setup_energy, ejection_energy = (
+                        setup_power * setup,
+                        ejection_power * ejection,
+                    )
+                    seconds[_PART_SETUP] += setup
+                    seconds[_MACHINING] += time
+                    seconds[_PART_EJECTION] += ejection
                     joules[_PART_SETUP] += setup_energy
-                    joules[_MACHINING] += cut_energy
+                    joules[_MACHINING] += energy
                     joules[_PART_EJECTION] += ejection_energy
                     spent.extend((
-                        begin, cutting, setup_energy, cutting, leaving, cut_energy,
+                        begin, cutting, setup_energy, cutting, leaving, energy,
                         leaving, end, ejection_energy,
                     ))  # fmt: skip
                     self.state, self.power, self.since = _PART_EJECTION, ejection_power, end
                 else:
                     self._advance(end)
                 self._passing = None
-                self.machined += time
+                self.machined = machined
             if scrap and is_good:
                 is_good = next(self._scrap) >= scrap
             if is_good:
@@ -380,11 +380,7 @@ class Station:
         """Machine a part, with the failures that come by machining time."""
         seconds = work.time
         self._part_spoilt = False
-        self.enter(
-            MachineState.MACHINING,
-            work.energy / seconds if seconds > 0.0 else 0.0,
-            self.env.now,
-        )
+        self.enter(_MACHINING, _power(work), self.env.now)
         while self._upkeep.failure_at < self.machined + seconds:
             before = self._upkeep.failure_at - self.machined
             yield from self._spend(before)
@@ -432,8 +428,8 @@ class Station:
 
     def _sleep(self) -> Course:
         """Wait until the machine is woken."""
-        self._asleep = self.env.event()
-        yield from self._until(self._asleep)
+        self.asleep = self.env.event()
+        yield from self._until(self.asleep)
 
     # Between parts: shift and maintenance
 
@@ -493,3 +489,8 @@ class Station:
             self.fail(breakdown.repair, spoils=breakdown.spoils)
             if self._repaired is not None:
                 yield self._repaired
+
+
+def _power(work: Machining) -> float:
+    """Mean power of machining, W."""
+    return work.energy / work.time if work.time > 0.0 else 0.0
