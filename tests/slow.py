@@ -30,6 +30,7 @@ SLOW = (
     "service/control/test_outcomes.py",
     "service/control/test_recorded_run.py",
     "service/dashboard",
+    "service/dataset/test_run.py",
     "service/factory/test_cycle_tables.py",
     "service/factory/test_documents.py",
     "service/factory/test_factory.py",

@@ -1,0 +1,52 @@
+"""``stepnc dataset``: many parts on the virtual machine, by a design of experiments."""
+
+import argparse
+from pathlib import Path
+
+from service.cli.options import OK, Commands
+
+
+def add_dataset_command(commands: Commands) -> None:
+    """Add it to ``stepnc``."""
+    parser = commands.add_parser(
+        "dataset", help="run parts by a design of experiments, as Parquet for learning"
+    )
+    add = parser.add_argument
+    add("design", type=Path, metavar="DESIGN", help="design file, .toml")
+    add(
+        "-n",
+        "--rows",
+        type=int,
+        metavar="ROWS",
+        help="number of rows (default: all combinations of a full factorial)",
+    )
+    add(
+        "-o",
+        "--output",
+        type=Path,
+        required=True,
+        metavar="FOLDER",
+        help="folder of the data set; rows that are there are kept",
+    )
+    add("--csv", action="store_true", help="write FOLDER/data.csv as well")
+    parser.set_defaults(run=_dataset)
+
+
+def _dataset(options: argparse.Namespace) -> int:
+    """Run the command ``stepnc dataset``."""
+    from service.cli.machine import interruptible
+    from service.dataset.run import make_dataset
+    from service.terminal import tell
+
+    with interruptible():
+        result = make_dataset(
+            options.design,
+            options.output,
+            rows=options.rows,
+            tell=tell,
+            has_csv=options.csv,
+        )
+    tell(f"written: {result.folder} ({result.rows} rows, {result.made} of them new)")
+    if result.csv is not None:
+        tell(f"CSV: {result.csv}")
+    return OK
