@@ -29,13 +29,19 @@ def add_dataset_command(commands: Commands) -> None:
         help="folder of the data set; rows that are there are kept",
     )
     add("--csv", action="store_true", help="write FOLDER/data.csv as well")
+    add(
+        "--programs",
+        action="store_true",
+        help="write the STEP-NC program of each row as FOLDER/programs/row-NNNNNN.stpnc",
+    )
     parser.set_defaults(run=_dataset)
 
 
 def _dataset(options: argparse.Namespace) -> int:
     """Run the command ``stepnc dataset``."""
     from service.cli.machine import interruptible
-    from service.dataset.run import make_dataset
+    from service.dataset.folder import PROGRAMS
+    from service.dataset.run import DatasetFiles, make_dataset
     from service.terminal import tell
 
     with interruptible():
@@ -44,9 +50,11 @@ def _dataset(options: argparse.Namespace) -> int:
             options.output,
             rows=options.rows,
             tell=tell,
-            has_csv=options.csv,
+            files=DatasetFiles(has_csv=options.csv, has_programs=options.programs),
         )
     tell(f"written: {result.folder} ({result.rows} rows, {result.made} of them new)")
     if result.csv is not None:
         tell(f"CSV: {result.csv}")
+    if options.programs:
+        tell(f"programs: {result.folder / PROGRAMS}")
     return OK

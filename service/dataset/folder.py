@@ -21,6 +21,11 @@ from stepnc_model.errors import StepNcError, WriteError
 
 MANIFEST = "manifest.json"
 CSV = "data.csv"
+PROGRAMS = "programs"
+"""Folder of the programs of the rows."""
+
+IN_METADATA = b"stepnc_manifest"
+"""Key of the manifest in the metadata of each partition."""
 
 PARTITION = 100
 """Rows of a partition."""
@@ -117,8 +122,13 @@ class DatasetFolder:
             When the disk refuses.
         """
         sink = pa.BufferOutputStream()
-        parquet.write_table(rows, sink, compression="zstd")
+        told = {IN_METADATA: json.dumps(self.manifest()).encode()}
+        parquet.write_table(rows.replace_schema_metadata(told), sink, compression="zstd")
         write_atomically(self.place(number), sink.getvalue().to_pybytes())
+
+    def program(self, number: int) -> Path:
+        """Path of the program of a row, by its number from 1."""
+        return self.path / PROGRAMS / f"row-{number:06d}.stpnc"
 
     def tables(self, rows: int) -> Iterator[pa.Table]:
         """The first rows that are there, partition by partition."""

@@ -1,17 +1,20 @@
-"""Use case of ``stepnc dataset``: rows of a design, made on processes, by partitions.
+"""Use case of ``stepnc dataset``: rows of a design, made by an executor, in partitions.
 
 Partitions are committed in order. A run that ends early keeps those that are whole; started
-again it goes on behind them.
+again it goes on behind them. The same happens within a run whose processes are ended by the
+system: what is not committed is submitted again, to a new executor.
 """
 
 import time
 from collections import deque
-from collections.abc import Mapping
-from concurrent.futures import Executor, Future
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
+from shutil import disk_usage
 from typing import Any
 
 import pyarrow as pa
@@ -20,6 +23,7 @@ from service.chosen import material_for
 from service.dataset.folder import PARTITION, DatasetFolder
 from service.dataset.rows import UNITS, DatasetRow, DatasetSource, table_of
 from service.factory.replications import processes
+from service.files import write_atomically
 from service.progress import Ticker
 from service.reading import Tell, read_program
 from service.rendering.columns import clock
@@ -33,7 +37,37 @@ AHEAD = 4
 """Partitions that are made at the same time."""
 
 MOST_ROWS = 10_000_000
+MOST_PROGRAMS = 100_000
+"""Rows of which programs are written."""
+
 MOST_PROCESSES = 64
+
+MOST_LOSSES = 3
+"""Times that an executor may be lost between two partitions."""
+
+LOST = (BrokenExecutor, CancelledError)
+"""Errors of work that was lost, whatever its rows: of killed processes, or of a cluster's."""
+
+PARQUET_BYTES, CSV_BYTES, BLOCK_BYTES = 200, 300, 4096
+"""Bytes of a row on the disk, measured and rounded up, and of the end of a file."""
+
+Pools = Callable[[], AbstractContextManager[Executor]]
+"""Makes an executor; called again after the executor was lost."""
+
+
+def own_processes() -> AbstractContextManager[Executor]:
+    """Executor of processes of this machine."""
+    return processes(MOST_PROCESSES)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DatasetFiles:
+    """What is written beside the partitions."""
+
+    has_csv: bool = False
+    """Whether to write ``data.csv``."""
+    has_programs: bool = False
+    """Whether to write the program of each row."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,8 +99,8 @@ def make_dataset(  # noqa: PLR0913 (each is a choice of the caller)
     *,
     rows: int | None,
     tell: Tell,
-    has_csv: bool = False,
-    pool: Executor | None = None,
+    files: DatasetFiles = DatasetFiles(),
+    pools: Pools = own_processes,
     partition: int = PARTITION,
 ) -> DatasetResult:
     """Make the rows of a design file that are not there yet.
@@ -81,43 +115,61 @@ def make_dataset(  # noqa: PLR0913 (each is a choice of the caller)
         Number of rows; None: all combinations of a full factorial.
     tell : callable
         Receives progress and findings.
-    has_csv : bool
-        Whether to write ``data.csv`` as well.
-    pool : Executor, optional
-        What runs the parts; processes of this machine unless another is given.
+    files : DatasetFiles
+        What to write beside the partitions.
+    pools : callable
+        Makes the executor that runs the parts; processes of this machine unless another is
+        given.
     partition : int
         Rows of a partition.
 
     Raises
     ------
     StepNcError
-        When the design, the folder or a part is not usable; whole partitions stay.
+        When the design, the folder or a part is not usable, or processes are ended again and
+        again; whole partitions stay.
     """
     began = time.monotonic()
     file = read_design(path)
     count = _row_count(file, rows, path)
     source = dataset_source(file, path)
+    _require_space(folder, count, source, files)
     home = DatasetFolder(folder, partition)
     if not home.is_made:
         source.require_possible(tell=tell)
     home.prepare(_manifest(file, source, partition))
     numbers = range(-(-count // partition))
     missing = [each for each in numbers if home.count(each) < home.size(each, count)]
-    made = 0
-    if missing:
-        maker = Maker(home=home, source=source, count=count, tell=tell)
-        if pool is not None:
-            made = maker.run(pool, missing)
-        else:
-            with processes(MOST_PROCESSES) as own:
-                made = maker.run(own, missing)
+    maker = Maker(home=home, source=source, count=count, tell=tell)
+    made = maker.run(pools, missing) if missing else 0
+    if files.has_programs:
+        write_programs(home, source, count, tell=tell)
     return DatasetResult(
         folder=folder,
         rows=count,
         made=made,
         seconds=time.monotonic() - began,
-        csv=home.write_csv(count) if has_csv else None,
+        csv=home.write_csv(count) if files.has_csv else None,
     )
+
+
+def write_programs(
+    home: DatasetFolder, source: DatasetSource, count: int, *, tell: Tell
+) -> None:
+    """Write the programs of the first rows that are not there yet.
+
+    Raises
+    ------
+    WriteError
+        When the disk refuses.
+    """
+    home.program(1).parent.mkdir(exist_ok=True)
+    ticker = Ticker(tell)
+    for row in source.design.rows(0, count):
+        place = home.program(row.number + 1)
+        if not place.exists():
+            write_atomically(place, source.program(row).file.data)
+        ticker(lambda row=row: f"{row.number + 1} of {count} programs")  # type: ignore[misc]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -129,8 +181,35 @@ class Maker:
     count: int
     tell: Tell
 
-    def run(self, pool: Executor, missing: list[int]) -> int:
-        """Make partitions in order, some ahead; returns the number of rows made."""
+    def run(self, pools: Pools, missing: list[int]) -> int:
+        """Make partitions in order; returns the number of rows made.
+
+        Raises
+        ------
+        StepNcError
+            When a part cannot run, or executors are lost again and again.
+        """
+        left, losses, made = missing, 0, 0
+        while left:
+            try:
+                with pools() as pool:
+                    for rows in self._partitions(pool, left):
+                        left, losses, made = left[1:], 0, made + rows
+            except LOST as error:
+                losses += 1
+                first = left[0] * self.home.rows
+                place = f"rows {first + 1} to {first + self.home.size(left[0], self.count)}"
+                if losses >= MOST_LOSSES:
+                    raise StepNcError(
+                        f"{place}: the processes that make them were ended {losses} times, as "
+                        "the system does when memory is short; the rows before are kept: free "
+                        "memory and start again"
+                    ) from error
+                self.tell(f"{place}: a process was ended from outside; they are made again")
+        return made
+
+    def _partitions(self, pool: Executor, missing: list[int]) -> Iterator[int]:
+        """Commit partitions in order, some made ahead; yields the new rows of each."""
         known = {number: self.home.count(number) for number in missing}
         total = sum(self.home.size(number, self.count) - known[number] for number in missing)
         begun, done, ticker = time.monotonic(), 0, Ticker(self.tell)
@@ -153,7 +232,7 @@ class Maker:
                     )
                 )
             self.home.write(part.number, self._joined(part, rows))
-        return total
+            yield len(rows)
 
     def _begun(self, pool: Executor, number: int, known: int) -> Partition:
         first = number * self.home.rows
@@ -223,22 +302,60 @@ def _row_count(file: DesignFile, rows: int | None, path: Path) -> int:
     StepNcError
         When there is no such number of rows.
     """
-    size = file.design.size
+    size, kind = file.design.size, file.design.kind
     if rows is None and size is None:
-        raise StepNcError(f"{path}: design '{file.design.kind}' has no end: give -n ROWS")
-    count = size if rows is None else rows
-    most = MOST_ROWS if size is None else min(size, MOST_ROWS)
-    if count is None or not 1 <= count <= most:
-        what = "" if size is None else ", the combinations of the design"
-        raise StepNcError(f"{path}: -n {count}: it must be 1 to {most}{what}")
+        raise StepNcError(f"{path}: design '{kind}' has no end: give -n ROWS")
+    count = rows if rows is not None else size or 0
+    if not 1 <= count <= MOST_ROWS:
+        what = f"-n {count}" if rows is not None else f"levels: {count} combinations"
+        raise StepNcError(f"{path}: {what}: it must be 1 to {MOST_ROWS}")
+    if size is not None and count != size:
+        raise StepNcError(
+            f"{path}: -n {count}: the full factorial has {size} combinations: leave -n out, or "
+            "change levels"
+        )
     return count
+
+
+def _require_space(
+    folder: Path, count: int, source: DatasetSource, files: DatasetFiles
+) -> None:
+    """Refuse more rows than the disk can hold.
+
+    Raises
+    ------
+    StepNcError
+        With the space that is needed and that is free.
+    """
+    if files.has_programs and count > MOST_PROGRAMS:
+        raise StepNcError(
+            f"-n {count} with --programs: it must be at most {MOST_PROGRAMS}, a file each"
+        )
+    size = PARQUET_BYTES + CSV_BYTES * files.has_csv
+    if files.has_programs:
+        size += BLOCK_BYTES + max(len(each.file.data) for each in source.programs)
+    place = next((each for each in (folder, *folder.absolute().parents) if each.exists()), None)
+    try:
+        free = disk_usage(place or Path("/")).free
+    except OSError as error:
+        raise StepNcError(f"{place}: {error.strerror}") from error
+    if count * size > free:
+        raise StepNcError(
+            f"-n {count}: the data set needs about {count * size / 1e9:.2g} GB, and "
+            f"{free / 1e9:.2g} GB are free for {folder}"
+        )
 
 
 def _manifest(file: DesignFile, source: DatasetSource, partition: int) -> Mapping[str, Any]:
     """What determines the rows."""
     design = file.design
-    ranges = {"feed_mm_s": design.feed, "spindle_rev_s": design.spindle_speed,
-              "depth_mm": design.depth}  # fmt: skip
+    ranges = {
+        "feed_mm_s": design.feed,
+        "spindle_rev_s": design.spindle_speed,
+        "depth_mm": design.depth,
+        "tool_diameter_mm": design.tool_diameter,
+        "flank_wear_mm": design.flank_wear,
+    }
     return {
         "design": design.kind.value,
         "seed": design.seed,

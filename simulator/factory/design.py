@@ -4,6 +4,8 @@ A row depends on the design and its own number alone, so that a data set can be 
 in pieces, and has the same rows. Uniform: independent draws. Latin hypercube: within each block
 of ``BLOCK`` rows every setting takes each of ``BLOCK`` equal parts of its range once. Full
 factorial: all combinations of levels, the last factor varying fastest. Units mm/s, rev/s, mm.
+A tool diameter replaces that of the program's tool; flank wear is that of each tool at the
+start.
 
 References
 ----------
@@ -20,7 +22,6 @@ from math import prod
 
 import numpy as np
 
-from simulator.factory.interpolated import SettingRange
 from simulator.factory.streams import Streams
 from simulator.motion.segments import Floats
 from stepnc_model.cut_settings import CutSettings
@@ -28,7 +29,7 @@ from stepnc_model.cut_settings import CutSettings
 BLOCK = 100
 """Rows of one Latin hypercube."""
 
-FACTORS, CATEGORIES = 6, 3
+FACTORS, CATEGORIES = 8, 3
 """Factors of a design; the first three are categories."""
 
 
@@ -41,6 +42,35 @@ class DesignKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class FactorRange:
+    """Range of a setting, from 0 on.
+
+    Raises
+    ------
+    ValueError
+        If it does not rise.
+    """
+
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.low < self.high:
+            raise ValueError(f"range {self.low:g} to {self.high:g} must rise from 0 on")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RowSettings:
+    """Settings of one part; None where the program's own value stays."""
+
+    cut: CutSettings
+    tool_diameter: float | None = None
+    """mm"""
+    flank_wear: float | None = None
+    """Flank wear of each tool when the program starts, mm; None: sharp."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DesignRow:
     """One row of a design."""
 
@@ -50,7 +80,7 @@ class DesignRow:
     """Place among the programs."""
     machine: int
     material: int
-    settings: CutSettings
+    settings: RowSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,11 +93,15 @@ class ExperimentDesign:
     """Number of programs among which a row chooses."""
     machines: int = 1
     materials: int = 1
-    feed: SettingRange | None = None
+    feed: FactorRange | None = None
     """mm/s"""
-    spindle_speed: SettingRange | None = None
+    spindle_speed: FactorRange | None = None
     """Size of the spindle speed, rev/s; the spindle turns clockwise, which is negative."""
-    depth: SettingRange | None = None
+    depth: FactorRange | None = None
+    """mm"""
+    tool_diameter: FactorRange | None = None
+    """mm"""
+    flank_wear: FactorRange | None = None
     """mm"""
     levels: int = 1
     """Values of each setting in a full factorial."""
@@ -78,9 +112,9 @@ class ExperimentDesign:
         return prod(self._counts) if self.kind is DesignKind.FULL_FACTORIAL else None
 
     @property
-    def ends(self) -> tuple[CutSettings, CutSettings]:
+    def ends(self) -> tuple[RowSettings, RowSettings]:
         """Least and greatest settings of the design."""
-        low, high = (self._settings(place, place, place) for place in (0.0, 1.0))
+        low, high = (self._settings([place] * len(self._ranges)) for place in (0.0, 1.0))
         return low, high
 
     def rows(self, first: int, last: int) -> Iterator[DesignRow]:
@@ -97,14 +131,18 @@ class ExperimentDesign:
             yield self._row(number, places)
 
     @property
+    def _ranges(self) -> tuple[FactorRange | None, ...]:
+        """Ranges of the settings, in the order of the factors."""
+        return (self.feed, self.spindle_speed, self.depth, self.tool_diameter, self.flank_wear)
+
+    @property
     def _counts(self) -> tuple[int, ...]:
         """Values of each factor of a full factorial."""
-        ranges = (self.feed, self.spindle_speed, self.depth)
-        settings = (1 if each is None else self.levels for each in ranges)
+        settings = (1 if each is None else self.levels for each in self._ranges)
         return (self.programs, self.machines, self.materials, *settings)
 
     def _places(self, first: int) -> Iterator[Floats]:
-        """Places of the rows from a number on, each from 0 to 1 for the six factors."""
+        """Places of the rows from a number on, each from 0 to 1 for all factors."""
         match self.kind:
             case DesignKind.UNIFORM:
                 return (self._stream(row, "row").random(FACTORS) for row in count(first))
@@ -119,7 +157,7 @@ class ExperimentDesign:
         return Streams(seed=self.seed, replication=number).generator("design", purpose)
 
     def _block(self, number: int) -> Floats:
-        """Latin hypercube of one block, (BLOCK, 6)."""
+        """Latin hypercube of one block, (BLOCK, FACTORS)."""
         stream = self._stream(number, "block")
         parts = np.stack([stream.permutation(BLOCK) for _ in range(FACTORS)], axis=1)
         places: Floats = (parts + stream.random(parts.shape)) / BLOCK
@@ -136,26 +174,30 @@ class ExperimentDesign:
         return places
 
     def _row(self, number: int, places: Floats) -> DesignRow:
-        program, machine, material, feed, speed, depth = places.tolist()
+        program, machine, material, *settings = places.tolist()
         return DesignRow(
             number=number,
             program=int(program * self.programs),
             machine=int(machine * self.machines),
             material=int(material * self.materials),
-            settings=self._settings(feed, speed, depth),
+            settings=self._settings(settings),
         )
 
-    def _settings(self, feed: float, speed: float, depth: float) -> CutSettings:
+    def _settings(self, places: list[float]) -> RowSettings:
         """Settings at places of their ranges."""
-        turning = _within(self.spindle_speed, speed)
-        return CutSettings(
-            feed=_within(self.feed, feed),
-            spindle_speed=None if turning is None else -turning,
-            depth=_within(self.depth, depth),
+        feed, turning, depth, diameter, wear = map(_within, self._ranges, places)
+        return RowSettings(
+            cut=CutSettings(
+                feed=feed,
+                spindle_speed=None if turning is None else -turning,
+                depth=depth,
+            ),
+            tool_diameter=diameter,
+            flank_wear=wear,
         )
 
 
-def _within(setting: SettingRange | None, place: float) -> float | None:
+def _within(setting: FactorRange | None, place: float) -> float | None:
     """Value at a place of a range."""
     if setting is None:
         return None

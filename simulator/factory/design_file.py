@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from simulator.factory.design import DesignKind, ExperimentDesign
-from simulator.factory.interpolated import SettingRange
+from simulator.factory.design import DesignKind, ExperimentDesign, FactorRange
 from simulator.library import load_machine
 from simulator.spec import Machine
 from simulator.toml_file import FileTable, KeyFault, quantity, read_toml, require_whole
@@ -17,10 +16,12 @@ from stepnc_model.units import rev_s_from_rad_s
 Feed = Annotated[float, quantity(0.001, 5_000, "mm/s")]
 Turning = Annotated[float, quantity(0.1, 50_000, "rad/s")]
 Depth = Annotated[float, quantity(0.001, 1_000, "mm")]
+ToolDiameter = Annotated[float, quantity(0.01, 2_000, "mm")]
+FlankWear = Annotated[float, quantity(0, 2, "mm")]
 Levels = Annotated[float, quantity(2, 1_000)]
 SeedNumber = Annotated[float, quantity(0, 2**53)]
 
-RANGES = ("feed_mm_s", "spindle_rad_s", "depth_mm")
+RANGES = ("feed_mm_s", "spindle_rad_s", "depth_mm", "tool_diameter_mm", "flank_wear_mm")
 CATEGORIES = ("program", "machine", "material")
 
 
@@ -33,6 +34,8 @@ class DesignTable(FileTable, frozen=True, kw_only=True):
     feed_mm_s: tuple[Feed, ...] = ()
     spindle_rad_s: tuple[Turning, ...] = ()
     depth_mm: tuple[Depth, ...] = ()
+    tool_diameter_mm: tuple[ToolDiameter, ...] = ()
+    flank_wear_mm: tuple[FlankWear, ...] = ()
     design: DesignKind = DesignKind.UNIFORM
     levels: Levels | None = None
     seed: SeedNumber = 1.0
@@ -95,6 +98,8 @@ def read_design(path: Path) -> DesignFile:
             feed=_range(table.feed_mm_s),
             spindle_speed=_range(tuple(map(rev_s_from_rad_s, table.spindle_rad_s))),
             depth=_range(table.depth_mm),
+            tool_diameter=_range(table.tool_diameter_mm),
+            flank_wear=_range(table.flank_wear_mm),
             levels=1 if table.levels is None else int(table.levels),
         ),
         programs=tuple(path.parent / name for name in programs),
@@ -113,5 +118,5 @@ def _place(name: str, folder: Path) -> str:
     return str(folder / name) if Path(name).suffix else name
 
 
-def _range(ends: tuple[float, ...]) -> SettingRange | None:
-    return SettingRange(low=ends[0], high=ends[1]) if ends else None
+def _range(ends: tuple[float, ...]) -> FactorRange | None:
+    return FactorRange(low=ends[0], high=ends[1]) if ends else None

@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
-from simulator.factory.design import BLOCK, DesignKind, ExperimentDesign
-from simulator.factory.interpolated import SettingRange
+from simulator.factory.design import BLOCK, DesignKind, ExperimentDesign, FactorRange
 
 FEED, SPEED, DEPTH = (
-    SettingRange(low=30.0, high=90.0),
-    SettingRange(low=12.0, high=36.0),
-    SettingRange(low=2.5, high=3.5),
+    FactorRange(low=30.0, high=90.0),
+    FactorRange(low=12.0, high=36.0),
+    FactorRange(low=2.5, high=3.5),
 )
 
 
@@ -36,8 +35,8 @@ def test_another_seed_gives_other_rows(kind: DesignKind) -> None:
 
 def test_uniform_rows_fill_the_ranges() -> None:
     rows = list(design(DesignKind.UNIFORM).rows(0, 2000))
-    feeds = np.array([row.settings.feed for row in rows])
-    speeds = np.array([row.settings.spindle_speed for row in rows])
+    feeds = np.array([row.settings.cut.feed for row in rows])
+    speeds = np.array([row.settings.cut.spindle_speed for row in rows])
     assert 30.0 <= feeds.min() < 30.2
     assert 89.8 < feeds.max() <= 90.0
     assert feeds.mean() == pytest.approx(60.0, abs=4 * 60.0 / np.sqrt(12 * 2000))
@@ -50,7 +49,7 @@ def test_uniform_rows_fill_the_ranges() -> None:
 def test_latin_hypercube_takes_each_part_of_a_range_once_a_block() -> None:
     rows = list(design(DesignKind.LATIN_HYPERCUBE).rows(BLOCK, 2 * BLOCK))
     for name, within in (("feed", FEED), ("depth", DEPTH)):
-        values = np.array([getattr(row.settings, name) for row in rows])
+        values = np.array([getattr(row.settings.cut, name) for row in rows])
         parts = np.floor(BLOCK * (values - within.low) / (within.high - within.low))
         assert sorted(parts) == list(range(BLOCK))
     assert sum(row.machine for row in rows) == BLOCK // 2
@@ -61,8 +60,8 @@ def test_full_factorial_is_every_combination_once() -> None:
     assert made.size == 2 * 3**3
     rows = list(made.rows(0, 54))
     assert len({(row.machine, row.settings) for row in rows}) == 54
-    assert {row.settings.feed for row in rows} == {30.0, 60.0, 90.0}
-    assert {row.settings.depth for row in rows} == {2.5, 3.0, 3.5}
+    assert {row.settings.cut.feed for row in rows} == {30.0, 60.0, 90.0}
+    assert {row.settings.cut.depth for row in rows} == {2.5, 3.0, 3.5}
     with pytest.raises(ValueError, match="55 rows exceed 54, all combinations"):
         list(made.rows(0, 55))
 
@@ -70,7 +69,7 @@ def test_full_factorial_is_every_combination_once() -> None:
 def test_settings_that_do_not_vary_stay_those_of_the_program() -> None:
     made = ExperimentDesign(kind=DesignKind.UNIFORM, seed=1, feed=FEED)
     (row,) = made.rows(0, 1)
-    assert row.settings.spindle_speed is None
-    assert row.settings.depth is None
+    assert row.settings.cut.spindle_speed is None
+    assert row.settings.cut.depth is None
     assert made.size is None
-    assert [each.feed for each in made.ends] == [30.0, 90.0]
+    assert [each.cut.feed for each in made.ends] == [30.0, 90.0]
