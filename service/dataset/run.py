@@ -189,12 +189,13 @@ class Maker:
         StepNcError
             When a part cannot run, or executors are lost again and again.
         """
-        left, losses, made = missing, 0, 0
+        left, losses, made = deque(missing), 0, 0
         while left:
             try:
                 with pools() as pool:
-                    for rows in self._partitions(pool, left):
-                        left, losses, made = left[1:], 0, made + rows
+                    for rows in self._partitions(pool, list(left)):
+                        left.popleft()
+                        losses, made = 0, made + rows
             except LOST as error:
                 losses += 1
                 first = left[0] * self.home.rows

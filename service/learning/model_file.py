@@ -1,13 +1,15 @@
 """Files of learned models: skops, never pickle, with a header that is read first.
 
 The file is what skops writes, a ZIP archive of JSON and arrays, with one more member: the
-header in JSON. It names target, columns, trained box and the version of scikit-learn, which has
-to be the one that is installed, for other versions may compute otherwise. Only the classes of
-``ALLOWED``, beside those that skops itself trusts, are ever made from a file.
+header in JSON. It has target, columns, trained box, baselines, residuals and the version of
+scikit-learn, which has to be the one that is installed, for other versions may compute
+otherwise. A power law is in the header alone. Only the classes of ``ALLOWED``, beside those
+that skops itself trusts, are ever made from a file.
 """
 
 import json
 import warnings
+from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -17,14 +19,15 @@ import sklearn
 import skops.io
 
 from service.files import read_bytes, write_atomically
-from service.learning.learned import LearnedModel
+from service.learning.learned import Baseline, LearnedModel
 from service.learning.models import ModelKind
-from service.learning.table import Features
+from service.learning.power_law import PowerLaw
+from service.learning.table import PHYSICS, Features
 from service.rendering.records import dump
 from stepnc_model.errors import StepNcError
 
 HEADER = "stepnc.json"
-FORMAT = "stepnc-model-1"
+FORMAT = "stepnc-model-2"
 
 MOST_BYTES = 1 << 30
 """Bytes of a model once it is unpacked."""
@@ -48,7 +51,8 @@ def save_model(model: LearnedModel, path: Path) -> None:
     WriteError
         When the disk refuses.
     """
-    buffer = BytesIO(skops.io.dumps(model.predictor, compression=ZIP_DEFLATED))
+    predictor = None if model.kind is ModelKind.POWER_LAW else model.predictor
+    buffer = BytesIO(skops.io.dumps(predictor, compression=ZIP_DEFLATED))
     with ZipFile(buffer, "a", ZIP_DEFLATED) as archive:
         archive.writestr(HEADER, dump(_header(model)))
     write_atomically(path, buffer.getvalue())
@@ -71,17 +75,24 @@ def load_model(path: Path) -> LearnedModel:
             f"{path}: made with scikit-learn {version}, but {sklearn.__version__} is "
             "installed: train it again"
         )
+    features = Features(
+        numbers=tuple(header["numbers"]),
+        names={name: tuple(values) for name, values in header["names"].items()},
+    )
+    kind, law = ModelKind(header["kind"]), _law(header["law"], features)
+    is_law = kind is ModelKind.POWER_LAW
     return LearnedModel(
-        kind=ModelKind(header["kind"]),
+        kind=kind,
         target=header["target"],
-        features=Features(
-            numbers=tuple(header["numbers"]),
-            names={name: tuple(values) for name, values in header["names"].items()},
-        ),
+        features=features,
+        physics=header["physics"],
         low=header["low"],
         high=header["high"],
         rows=header["rows"],
-        predictor=_predictor(data, path),
+        predictor=_law(header["predictor"], features) if is_law else _predictor(data, path),
+        baseline=Baseline(mean=header["mean"], law=law),
+        residuals=tuple(header["residuals"]),
+        manifest=header["manifest"],
     )
 
 
@@ -91,12 +102,29 @@ def _header(model: LearnedModel) -> dict[str, object]:
         "scikit_learn": sklearn.__version__,
         "kind": model.kind.value,
         "target": model.target,
+        "physics": model.physics,
         "numbers": model.features.numbers,
         "names": dict(model.features.names),
         "low": dict(model.low),
         "high": dict(model.high),
         "rows": model.rows,
+        "mean": model.baseline.mean,
+        "law": _law_values(model.baseline.law),
+        "predictor": (
+            _law_values(model.predictor) if isinstance(model.predictor, PowerLaw) else []
+        ),
+        "residuals": list(model.residuals),
+        "manifest": model.manifest,
     }
+
+
+def _law_values(law: PowerLaw) -> list[float]:
+    """Constant and coefficients of a power law."""
+    return [law.constant, *law.coefficients]
+
+
+def _law(values: list[float], features: Features) -> PowerLaw:
+    return PowerLaw(features=features, constant=values[0], coefficients=tuple(values[1:]))
 
 
 def _read_header(data: bytes, path: Path) -> dict[str, Any]:
@@ -109,8 +137,9 @@ def _read_header(data: bytes, path: Path) -> dict[str, Any]:
             header = json.loads(archive.read(HEADER))
     except (BadZipFile, KeyError, ValueError, NotImplementedError) as error:
         raise StepNcError(f"{path}: is no model of `stepnc learn`") from error
-    kinds = {"scikit_learn": str, "kind": str, "target": str, "numbers": list, "names": dict,
-             "low": dict, "high": dict, "rows": int}  # fmt: skip
+    kinds = {"scikit_learn": str, "kind": str, "target": str, "physics": str, "numbers": list,
+             "names": dict, "low": dict, "high": dict, "rows": int, "mean": float, "law": list,
+             "predictor": list, "residuals": list, "manifest": str}  # fmt: skip
     if not isinstance(header, dict) or header.get("format") != FORMAT:
         raise StepNcError(f"{path}: is no model of this version: train it again")
     for key, kind in kinds.items():
@@ -118,10 +147,35 @@ def _read_header(data: bytes, path: Path) -> dict[str, Any]:
             raise StepNcError(f"{path}: header: {key}: missing or damaged")
     if header["kind"] not in list(ModelKind):
         raise StepNcError(f"{path}: header: kind: unknown model")
-    for key in ("low", "high"):
-        if any(not isinstance(header[key].get(name), float) for name in header["numbers"]):
-            raise StepNcError(f"{path}: header: {key}: missing or damaged")
+    if header["physics"] not in {"", *PHYSICS.values()}:
+        raise StepNcError(f"{path}: header: physics: unknown column")
+    _require_numbers(header, path)
     return header
+
+
+def _require_numbers(header: Mapping[str, Any], path: Path) -> None:
+    """Refuse a header whose numbers are not those of its columns.
+
+    Raises
+    ------
+    StepNcError
+        With the first key that is damaged.
+    """
+    numbers, names = header["numbers"], header["names"]
+    if not all(isinstance(each, list) for each in names.values()):
+        raise StepNcError(f"{path}: header: names: missing or damaged")
+    columns = 1 + len(numbers) + sum(len(each) - 1 for each in names.values())
+    found = {
+        "law": (header["law"], columns),
+        "low": ([header["low"].get(name) for name in numbers], len(numbers)),
+        "high": ([header["high"].get(name) for name in numbers], len(numbers)),
+        "residuals": (header["residuals"], max(2, len(header["residuals"]))),
+    }
+    if header["kind"] == ModelKind.POWER_LAW:
+        found["predictor"] = (header["predictor"], columns)
+    for key, (values, count) in found.items():
+        if len(values) != count or not all(isinstance(each, float) for each in values):
+            raise StepNcError(f"{path}: header: {key}: missing or damaged")
 
 
 def _predictor(data: bytes, path: Path) -> Any:

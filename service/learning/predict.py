@@ -7,7 +7,8 @@ import pyarrow as pa
 
 from service.learning.learned import LearnedModel
 from service.learning.model_file import load_model
-from service.learning.table import Floats, read_table
+from service.learning.source import read_table
+from service.learning.table import Floats
 from service.requests.learning import PredictRequest
 from stepnc_model.errors import StepNcError
 
@@ -40,7 +41,8 @@ def predict(path: Path, request: PredictRequest, *, table: Path | None = None) -
             raise StepNcError("give a table or settings, not both")
         values = model.predicted(read_table(table), place=str(table))
         return PredictResult(model=model, values=values)
-    missing = [name for name in model.features.columns if name not in given]
+    wanted = (*model.features.columns, *([model.physics] if model.physics else []))
+    missing = [name for name in wanted if name not in given]
     if missing:
         flags = ", ".join(f"--{name.replace('_', '-')}" for name in missing)
         raise StepNcError(f"{path}: the model needs {flags} too")

@@ -32,8 +32,8 @@ class Score:
 class Scores:
     """Scores of predictions."""
 
-    r2: Score
-    """Coefficient of determination R²."""
+    r2: Score | None
+    """Coefficient of determination R²; None if the actual values are all the same."""
     mae: Score
     """Mean absolute error, in the unit of the target."""
     rmse: Score
@@ -48,7 +48,7 @@ def scores_of(actual: Floats, predicted: Floats, *, seed: int) -> Scores:
     Parameters
     ----------
     actual, predicted : (N,) array
-        Actual values vary, and none is zero.
+        No actual value is zero.
     seed : int
         Seed of the bootstrap.
     """
@@ -65,7 +65,21 @@ def scores_of(actual: Floats, predicted: Floats, *, seed: int) -> Scores:
         Score(value=float(each), low=float(least), high=float(most))
         for each, least, most in zip(value, low, high, strict=True)
     )
-    return Scores(r2=r2, mae=mae, rmse=rmse, mape=mape)
+    is_constant = np.ptp(actual) <= 1e-12 * abs(float(actual[0]))
+    return Scores(r2=None if is_constant else r2, mae=mae, rmse=rmse, mape=mape)
+
+
+def mean_score(values: Floats, rng: np.random.Generator) -> Score:
+    """Mean of values with the interval of its bootstrap."""
+    size = max(1, AT_ONCE // len(values))
+    drawn = [
+        values[rng.integers(0, len(values), (min(size, DRAWS - first), len(values)))].mean(
+            axis=1
+        )
+        for first in range(0, DRAWS, size)
+    ]
+    low, high = np.quantile(np.concatenate(drawn), (0.025, 0.975)).tolist()
+    return Score(value=float(values.mean()), low=low, high=high)
 
 
 def _figures(actual: Floats, predicted: Floats) -> Floats:

@@ -27,11 +27,14 @@ def law_table(
         "feed_mm_s": feed,
         "spindle_rad_s": speed,
         "depth_mm": depth,
+        "tool_diameter_mm": pa.nulls(count, pa.float64()),
+        "flank_wear_mm": pa.nulls(count, pa.float64()),
         "time_s": np.full(count, 10.0),
         "energy_j": 10.0 * power,
         "energy_exact_j": 10.0 * exact,
         "total_power_w": power,
         "total_power_exact_w": exact,
+        "cutting_power_w": 0.1 * feed * depth,
         "peak_power_w": 2.0 * exact,
     }
     return pa.table(columns, schema=SCHEMA)
@@ -41,3 +44,8 @@ def written(folder: Path, table: pa.Table) -> Path:
     path = folder / "data.parquet"
     parquet.write_table(table, path)
     return path
+
+
+def changed(table: pa.Table, name: str, values: object) -> pa.Table:
+    """Table with other values in a column."""
+    return table.set_column(table.column_names.index(name), name, pa.array(values))

@@ -44,6 +44,7 @@ def test_a_model_predicts_the_same_after_reading(tmp_path: Path, kind: ModelKind
     found = load_model(path)
     assert (found.kind, found.target, found.features) == (kind, model.target, model.features)
     assert (found.low, found.high, found.rows) == (model.low, model.high, 40)
+    assert (found.baseline, found.residuals) == (model.baseline, model.residuals)
     values = np.array([[50.0, 100.0, 3.0, 0.0], [60.0, 200.0, 3.0, 1.0]])
     assert found.predictor.predict(values) == pytest.approx(model.predictor.predict(values))
 
@@ -56,6 +57,11 @@ def test_a_model_predicts_the_same_after_reading(tmp_path: Path, kind: ModelKind
         ({"kind": "oracle"}, "header: kind"),
         ({"low": {}}, "header: low: missing"),
         ({"target": 3}, "header: target: missing"),
+        ({"law": [1.0]}, "header: law: missing"),
+        ({"predictor": []}, "header: predictor: missing"),
+        ({"residuals": [0.0, None]}, "header: residuals: missing"),
+        ({"names": {"machine": 3}}, "header: names: missing"),
+        ({"physics": "elsewhere"}, "header: physics: unknown column"),
     ],
 )
 def test_another_header_is_refused(
@@ -78,7 +84,7 @@ def test_a_file_that_is_no_model_is_refused(tmp_path: Path) -> None:
 
 def test_classes_outside_the_allow_list_are_never_made(tmp_path: Path) -> None:
     path = tmp_path / "model.skops"
-    save_model(learned(tmp_path), path)
+    save_model(learned(tmp_path, "mlp"), path)
     with ZipFile(path) as archive:
         header = archive.read(HEADER)
     crafted = BytesIO(skops.io.dumps(FunctionTransformer(json.dumps)))
