@@ -83,7 +83,7 @@ def test_pieces_teach_as_much_as_all_rows_at_once(
     train, test = part_of(rows, 0, 6_000), part_of(rows, 6_000, 6_200)
     whole = taught(kind, train)
     monkeypatch.setattr(models, "NETWORK_AT_ONCE", 1_000)
-    monkeypatch.setattr(models, "SEEN", 300_000)
+    monkeypatch.setattr(models, "SEEN", 600_000)
     pieces = taught(kind, train, piece=700)
     if kind is ModelKind.POWER_LAW:
         assert pieces.predict(test.values) == pytest.approx(whole.predict(test.values))
