@@ -2,7 +2,7 @@
 
 ``P = P_physics + a + (K − 1) · P_cut``, by least squares over runs; P_cut is what the physics
 says that the main drive needs for the cut. The axes feel k_c too, by their feed force: their
-share counts as part of the cut, which makes K − 1 about one hundredth too great. Units W.
+share counts as part of the cut, which makes K − 1 some thousandths too great. Units W.
 """
 
 from collections.abc import Iterable

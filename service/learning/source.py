@@ -34,15 +34,6 @@ class RowSource:
 
     path: Path
 
-    @property
-    def count(self) -> int | None:
-        """Number of rows; None: it is known only when all are read."""
-        if self.path.suffix == ".parquet" and self.path.is_file():
-            with _opened(self.path) as file:
-                rows: int = file.metadata.num_rows
-            return rows
-        return None
-
     def table(self, first: int, last: int) -> pa.Table:
         """Rows from number ``first``, counted from 0, to before ``last``, or to the end.
 

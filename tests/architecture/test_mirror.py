@@ -44,6 +44,7 @@ TOGETHER = {
     "service/requests/learning.py": "fields only; read in tests/service/learning",
     "service/learning/table.py": "refused in tests/service/learning/test_learn.py",
     "service/learning/learned.py": "its box is kept in tests/service/learning/test_predict.py",
+    "service/learning/recorded.py": "read in tests/service/learning/test_score.py",
     "service/learning/output.py": "printed in tests/service/cli/test_learning.py",
     "service/learning/figures.py": "drawn in tests/service/cli/test_learning.py",
     "service/cli/dataset.py": "run in tests/service/cli/test_learning.py",

@@ -1,4 +1,4 @@
-"""``stepnc dataset``, ``learn`` and ``predict`` as a user types them."""
+"""``stepnc dataset``, ``learn``, ``predict`` and ``score`` as a user types them."""
 
 import json
 from pathlib import Path
@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from service.cli.main import main
-from tests.service.learning.tables import law_table, written
+from tests.service.learning.tables import changed, law_table, written
+from tests.service.waiting import ROOT
 
 
 def run(*words: object) -> object:
@@ -47,6 +48,47 @@ def test_learn_in_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
     shown = json.loads(capsys.readouterr().out)
     assert set(shown["scores"]) == {"forest", "mean", "power-law", "physics"}
     assert shown["ceiling"] == shown["scores"]["physics"]["r2"]
+
+
+def test_a_learning_curve_is_printed_and_drawn(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data, page = written(tmp_path, law_table(200, noise=0.05)), tmp_path / "page.html"
+    asked = ("learn", data, "--model", "power-law", "--train", 80, "--test", 60, "--curve")
+    assert run(*asked, "--report", page) == 0
+    lines = capsys.readouterr().out.splitlines()
+    at = lines.index("learning curve, of the same test rows")
+    assert [line.split()[0] for line in lines[at + 3 : at + 6]] == ["20", "40", "80"]
+    text = page.read_text(encoding="utf-8")
+    assert "Learning curve" in text
+    assert "training rows" in text
+    assert run(*asked, "--json") == 0
+    curve = json.loads(capsys.readouterr().out)["curve"]
+    assert [each["rows"] for each in curve] == [20, 40, 80]
+
+
+def test_a_factor_on_k_c_is_written_for_the_knowledge_base(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    part = ROOT / "examples" / "parts" / "paper003_pocket.stpnc"
+    table = law_table(200, noise=0.005)
+    more = table["total_power_w"].to_numpy() + 0.15 * table["cutting_power_w"].to_numpy()
+    data, file = written(tmp_path, changed(table, "total_power_w", more)), tmp_path / "kc.json"
+    asked = ("learn", data, "--model", "power-law", "--train", 100, "--test", 60)
+    on = (*asked, "--on-physics", "--outcome", file, "--program", part)
+    assert run(*on) == 0
+    assert "k_c × 1.1" in capsys.readouterr().out
+    (outcome,) = json.loads(file.read_text(encoding="utf-8"))
+    assert (outcome["machine"], outcome["tool"]) == ("mill", "END MILL 8MM")
+    for words, message in (
+        ((*asked, "--on-physics", "--outcome", file), "--outcome and --program belong"),
+        ((*asked, "--outcome", file, "--program", part), "needs --on-physics"),
+        ((*on, "--target", "energy_j"), "no factor on k_c: it needs the target total_power_w"),
+    ):
+        file.unlink(missing_ok=True)
+        assert run(*words) == 3
+        assert message in capsys.readouterr().err
+        assert not file.exists()
 
 
 def test_a_bad_design_file_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
