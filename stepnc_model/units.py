@@ -51,6 +51,11 @@ def rev_s_from_rad_s(value: float) -> float:
     return value / (2.0 * pi)
 
 
+def rad_s_from_rev_s(value: float) -> float:
+    """Speed in rad/s from rev/s."""
+    return value * (2.0 * pi)
+
+
 def kwh_from_joules(energy: float) -> float:
     """Energy in kWh from J."""
     return energy / (WATTS_PER_KILOWATT * SECONDS_PER_HOUR)

@@ -14,8 +14,10 @@ from pathlib import Path
 from service.cli.agent import add_agent_command
 from service.cli.blocks import add_block_commands
 from service.cli.control import add_control_command
+from service.cli.dataset import add_dataset_command
 from service.cli.factory import add_factory_command
 from service.cli.kbe import add_knowledge_commands
+from service.cli.learning import add_learning_commands
 from service.cli.machine import add_machine_commands
 from service.cli.options import (
     BAD_INPUT,
@@ -85,6 +87,8 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     add_knowledge_commands(commands)
     add_control_command(commands)
     add_factory_command(commands)
+    add_dataset_command(commands)
+    add_learning_commands(commands)
     add_service_commands(commands)
     for kind in ("machines", "materials"):
         listing = commands.add_parser(kind, help=f"list the {kind}, or show one")

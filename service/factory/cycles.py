@@ -5,13 +5,13 @@ values of machine and material, and the settings.
 """
 
 from collections.abc import Hashable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from hashlib import sha256
 
 from service.reading import Tell, silent
 from service.requests.runs import SimulationRequest
 from service.simulation.run import machine_of
-from service.simulation.setup import prepared_program
+from service.simulation.setup import PreparedRun, prepared_program
 from simulator.factory.cycle import PartCycle, cycle_of
 from simulator.factory.interpolated import CycleTable, SettingsDesign, cycle_table
 from simulator.machine.interpreter import interpret
@@ -115,18 +115,20 @@ class PartCycles:
         return cycle_table(design, run, layers)
 
 
-def part_cycle(
+def part_cycle(  # noqa: PLR0913 (each is a choice of the caller)
     program: Program,
     machine: Machine,
     material: MaterialMatch,
     *,
     settings: CutSettings | None = None,
     workingsteps: tuple[str, ...] = (),
+    flank_wear: float = 0.0,
     tell: Tell = silent,
 ) -> PartCycle:
     """Run a program on the virtual machine and return its machining cycle.
 
-    The run is that of ``stepnc simulate`` without options: no wear, noise or deviation.
+    The run is that of ``stepnc simulate`` without options: wear does not grow, and there is no
+    noise or deviation.
 
     Parameters
     ----------
@@ -137,6 +139,8 @@ def part_cycle(
         Feed, spindle speed and depth instead of the program's own.
     workingsteps : tuple of str
         Ids of the workingsteps that get them; none: all that mill or turn.
+    flank_wear : float, mm
+        Flank wear of each tool.
     tell : callable
         Receives progress, and what the run found: a cut that is not modelled, a collision.
 
@@ -151,7 +155,7 @@ def part_cycle(
         for step in told.workingsteps:
             _require_possible(told, step, machine)
         prepared = prepared_program(told, machine, material, tell=tell)
-        virtual = machine_of(SimulationRequest(), prepared)
+        virtual = machine_of(SimulationRequest(), _worn(prepared, flank_wear))
     except StepNcError as error:
         raise StepNcError(f"{where}: {error}") from error
     try:
@@ -164,6 +168,15 @@ def part_cycle(
     for finding in (*prepared.findings, *virtual.findings):
         tell(f"{where}: {finding.message}")
     return cycle
+
+
+def _worn(prepared: PreparedRun, flank_wear: float) -> PreparedRun:
+    """Run whose tools are worn when the program starts."""
+    tools = {
+        number: replace(tool, flank_wear=flank_wear)
+        for number, tool in (prepared.tools or {}).items()
+    }
+    return replace(prepared, tools=tools) if prepared.tools is not None else prepared
 
 
 def place_text(program: Program, machine: Machine) -> str:

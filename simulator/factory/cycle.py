@@ -50,6 +50,9 @@ class PartCycle:
     """Energy drawn by the motors in each feed movement, in order, (F,), J."""
     profile: Floats
     """Share of the energy drawn until k/K of the time, (K + 1,), from 0 to 1."""
+    cutting_energy: float | None = None
+    """Energy of the main drive that goes into the cut, over its efficiency, J; None: not known,
+    as of interpolated cycles."""
 
 
 def cycle_of(episodes: Iterable[Episode], machine: Machine) -> PartCycle:
@@ -61,7 +64,7 @@ def cycle_of(episodes: Iterable[Episode], machine: Machine) -> PartCycle:
         All episodes of the run, in order.
     machine : Machine
     """
-    end, peak = 0.0, 0.0
+    end, peak, cut = 0.0, 0.0, 0.0
     times, spent, drawn = [np.zeros(1)], [np.zeros(0)], [MovementEnergies()]
     for episode in episodes:
         end = episode.end
@@ -71,6 +74,8 @@ def cycle_of(episodes: Iterable[Episode], machine: Machine) -> PartCycle:
         samples = sensed(episode, machine, places.times.ravel())
         watts = samples.total_power.reshape(places.times.shape)
         peak = max(peak, float(watts.max()))
+        edge = samples.cutting_power.reshape(places.times.shape)
+        cut += float((places.weights * edge).sum()) / machine.spindle.efficiency
         times.append(places.nodes[1:])
         spent.append((places.weights * watts).sum(axis=1))
         if episode.course is not None:
@@ -83,6 +88,7 @@ def cycle_of(episodes: Iterable[Episode], machine: Machine) -> PartCycle:
         traverse_energies=np.concatenate([each.traverse for each in drawn]),
         feed_energies=np.concatenate([each.feed for each in drawn]),
         profile=_profile(np.concatenate(times), used, end),
+        cutting_energy=cut,
     )
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmarks.local_cluster import LocalCluster, free_port, running_cluster
 from service.execution import cluster as cluster_module
 from service.execution.cluster import cluster, versions
 from service.execution.executors import processes, results
@@ -17,7 +18,6 @@ from service.execution.pools import pools_of
 from simulator.factory.shop_file import read_shop
 from stepnc_model.errors import StepNcError
 from tests.service.execution import work
-from tests.service.execution.clusters import LocalCluster, free_port, running_cluster
 
 TASKS = 150
 

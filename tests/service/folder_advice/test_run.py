@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.local_cluster import running_cluster
 from optimiser.modes import Mode
 from service.execution.pools import pools_of
 from service.folder_advice.ledger import LEDGER, ProgramStatus, known_rows
@@ -16,7 +17,6 @@ from service.folder_advice.run import FolderFiles, optimise_folder
 from service.requests.advice import AdviceRequest
 from service.usecases import AdviceFiles, optimise
 from stepnc_model.errors import StepNcError, WriteError
-from tests.service.execution.clusters import running_cluster
 
 PAPER = Path(__file__).parents[3] / "examples" / "parts" / "paper002.stpnc"
 REQUEST = AdviceRequest()

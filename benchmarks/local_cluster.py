@@ -27,15 +27,18 @@ class LocalCluster:
 
     @property
     def address(self) -> str:
+        """Address of the scheduler."""
         scheme = "tls" if self._options else "tcp"
         return f"{scheme}://127.0.0.1:{self._port}"
 
     def start_scheduler(self) -> None:
+        """Start the scheduler, at the same address each time."""
         self._scheduler = self._start(
             "scheduler", "--host", self.address.rpartition(":")[0], "--port", str(self._port)
         )
 
     def start_worker(self) -> None:
+        """Start one more worker."""
         self._started += 1
         self._workers.append(
             self._start(
@@ -54,10 +57,12 @@ class LocalCluster:
         end(self._workers.pop(index))
 
     def kill_scheduler(self) -> None:
+        """Kill the scheduler without a word."""
         if self._scheduler is not None:
             end(self._scheduler)
 
     def close(self) -> None:
+        """End everything."""
         for each in self._workers:
             end(each)
         self.kill_scheduler()

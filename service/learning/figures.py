@@ -1,0 +1,58 @@
+"""Figures of a learned model: predicted over simulated values, and the learning curve."""
+
+from collections.abc import Sequence
+
+import plotly.graph_objects as go
+
+from service.learning.learn import CurvePoint, LearnResult
+from service.learning.table import unit_of
+from service.panels import BLUE, GREY
+
+
+def scatter_figure(result: LearnResult) -> go.Figure:
+    """Predicted over simulated target of the test rows, with the line on which both agree."""
+    target = result.model.target
+    unit = unit_of(target)
+    ends = [
+        float(min(result.actual.min(), result.predicted.min())),
+        float(max(result.actual.max(), result.predicted.max())),
+    ]
+    figure = go.Figure()
+    figure.add_scatter(
+        x=ends, y=ends, mode="lines", line={"color": GREY}, name="equal", hoverinfo="skip"
+    )
+    figure.add_scatter(
+        x=result.actual.tolist(),
+        y=result.predicted.tolist(),
+        mode="markers",
+        marker={"color": BLUE, "size": 5},
+        name=result.model.kind.value,
+    )
+    figure.update_layout(template="plotly_white", height=520, margin={"t": 20})
+    word = "measured" if result.model.physics else "simulated"
+    figure.update_xaxes(title=f"{word} {target}, {unit}")
+    figure.update_yaxes(title=f"predicted {target}, {unit}")
+    return figure
+
+
+def curve_figure(curve: Sequence[CurvePoint], unit: str) -> go.Figure:
+    """Root mean squared error of the test rows over training rows, with its intervals."""
+    errors = [each.scores.rmse for each in curve]
+    figure = go.Figure()
+    figure.add_scatter(
+        x=[each.rows for each in curve],
+        y=[each.value for each in errors],
+        mode="lines+markers",
+        line={"color": BLUE},
+        error_y={
+            "type": "data",
+            "symmetric": False,
+            "array": [each.high - each.value for each in errors],
+            "arrayminus": [each.value - each.low for each in errors],
+        },
+    )
+    figure.update_layout(template="plotly_white", height=360, margin={"t": 20})
+    rows = [each.rows for each in curve]
+    figure.update_xaxes(title="training rows", type="log", tickvals=rows)
+    figure.update_yaxes(title=f"RMSE, {unit}", rangemode="tozero")
+    return figure

@@ -1,0 +1,324 @@
+"""Use case of ``stepnc learn``: a model, its scores, and those of what is simpler.
+
+Rows are read in pieces. Trees, Gaussian processes and networks of few rows hold them all; power
+laws and other networks only sums and the piece at hand.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from hashlib import sha256
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+
+from service.dataset.folder import IN_METADATA
+from service.learning.force_factor import ForceFactor, force_factor_of
+from service.learning.learned import Baseline, LearnedModel, quantiles_of
+from service.learning.models import (
+    IN_MEMORY,
+    ModelKind,
+    Pieces,
+    require_trainable,
+    trained,
+)
+from service.learning.power_law import fitted_law
+from service.learning.scores import Score, Scores, scores_of
+from service.learning.source import RowSource
+from service.learning.table import (
+    CUTTING,
+    PHYSICS,
+    TARGETS,
+    Features,
+    Floats,
+    LearningTable,
+    features_of,
+    joined,
+    learning_table,
+    require_columns,
+)
+from service.requests.fields import member_of, require_bounds
+from service.requests.learning import LearnRequest
+from stepnc_model.errors import StepNcError
+
+MEAN, PHYSICS_ALONE, FITTED = "mean", "physics", "k_c and idle power"
+"""Baselines: the mean of the training rows; the virtual machine without deviation, and with a
+factor on k_c and an offset of the idle power that fit the training rows."""
+
+FEWEST_OF_CURVE = 20
+"""Rows from which a learning curve begins."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScoredModel:
+    """Scores of one way to predict."""
+
+    name: str
+    scores: Scores
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CurvePoint:
+    """Scores of the model after some training rows."""
+
+    rows: int
+    scores: Scores
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LearnResult:
+    """A learned model with its test."""
+
+    model: LearnedModel
+    test: int
+    """Rows of the test."""
+    scored: tuple[ScoredModel, ...]
+    """The model first, then its baselines."""
+    ceiling: Score | None
+    """R² of the physics without deviation: no model of the settings can expect more. None where
+    the table has no physics, or the model stands on it."""
+    curve: tuple[CurvePoint, ...]
+    """Learning curve, by rising rows; empty if it was not asked for."""
+    warnings: tuple[str, ...]
+    factor: ForceFactor | None
+    """Factor on k_c of the training rows; None unless the model stands on the physics, and the
+    rows tell how much power is that of the cut."""
+    names: Mapping[str, tuple[str, ...]]
+    """Parts, machines and materials of all rows."""
+    actual: Floats
+    """Target of the test rows, (M,)."""
+    predicted: Floats
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LearningRows:
+    """Rows of a source that train and test."""
+
+    source: RowSource
+    features: Features
+    columns: tuple[str, ...]
+    """Columns that are read."""
+    names: Mapping[str, tuple[str, ...]]
+    """Parts, machines and materials."""
+    request: LearnRequest
+    manifest: str
+    """Digest of the manifest; empty: there is none."""
+
+    @property
+    def place(self) -> str:
+        """Where the rows are from, for messages."""
+        return str(self.source.path)
+
+    def pieces(self, first: int, last: int) -> Iterator[LearningTable]:
+        """Yield rows from number ``first``, counted from 0, to before ``last``, in pieces."""
+        at = first
+        for table in self.source.pieces(first, last, self.columns):
+            yield learning_table(
+                table, self.features, self.request.target, place=self.place, first=at
+            )
+            at += table.num_rows
+
+    def training(self, count: int) -> Pieces:
+        """Targets of the model: the rows' own, or over the physics."""
+        if not self.request.is_on_physics:
+            return lambda: self.pieces(0, count)
+        return lambda: (each.over_physics for each in self.pieces(0, count))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrainingFacts:
+    """What a pass over the training rows finds."""
+
+    low: Floats
+    """Least value of each feature, (F,)."""
+    high: Floats
+    mean: float
+    """Mean of the target."""
+
+
+def learn(path: Path, request: LearnRequest) -> LearnResult:
+    """Train a model on the first rows of a data set and test it on the next ones.
+
+    Raises
+    ------
+    StepNcError
+        When the request, the data set or its target is not usable.
+    """
+    require_bounds(request)
+    kind = member_of(ModelKind, request.model, "model")
+    target = request.target
+    if target not in TARGETS:
+        raise StepNcError(f"unknown target '{target}'; known: {', '.join(TARGETS)}")
+    if request.is_on_physics and target not in PHYSICS:
+        raise StepNcError(f"--on-physics: {target} has no physics; {', '.join(PHYSICS)} have")
+    require_trainable(kind, request.train)
+    if request.test > IN_MEMORY:
+        raise StepNcError(f"--test {request.test}: it must be at most {IN_MEMORY}")
+    rows = _rows(path, request)
+    facts = _facts(rows)
+    model_of = _trainer(rows, kind, facts)
+    test = joined(list(rows.pieces(request.train, request.train + request.test)))
+    _require_learnable(test.target, f"{path}: {target} of the test rows")
+    model, warned = model_of(request.train)
+    predicted = _prediction(model, test)
+    residuals = quantiles_of(test.target / predicted - 1.0)
+    factor = force_factor_of(rows.pieces(0, request.train)) if request.is_on_physics else None
+    named = {kind.value: predicted, **_baselines(model, test, factor)}
+    scored = tuple(
+        ScoredModel(name=name, scores=scores_of(test.target, each, seed=request.seed))
+        for name, each in named.items()
+    )
+    physics = next((each.scores.r2 for each in scored if each.name == PHYSICS_ALONE), None)
+    return LearnResult(
+        model=replace(model, residuals=residuals),
+        test=request.test,
+        scored=scored,
+        ceiling=None if request.is_on_physics else physics,
+        curve=tuple(_curve(model_of, test, request)) if request.has_curve else (),
+        warnings=warned,
+        factor=factor,
+        names=rows.names,
+        actual=test.target,
+        predicted=predicted,
+    )
+
+
+def _rows(path: Path, request: LearnRequest) -> LearningRows:
+    """Rows of a data set, which are enough and have the columns.
+
+    Raises
+    ------
+    StepNcError
+        When there are fewer, or a column is missing.
+    """
+    source, wanted, place = RowSource(path), request.train + request.test, str(path)
+    exact = PHYSICS.get(request.target, "")
+    needed = (request.target, *([exact] if request.is_on_physics else []))
+    count, first = 0, pa.table({})
+
+    def counted() -> Iterator[pa.Table]:
+        nonlocal count, first
+        for table in source.pieces(0, wanted):
+            require_columns(table, needed, place=place)
+            first = first if count else table
+            count += table.num_rows
+            yield table
+
+    features, names = features_of(counted(), place=place)
+    if count < wanted:
+        raise StepNcError(
+            f"{path}: {count} rows, but --train {request.train} and --test {request.test} need "
+            f"{wanted}: make more, or ask for less"
+        )
+    has_physics = bool(exact) and exact in first.column_names
+    manifest = (first.schema.metadata or {}).get(IN_METADATA)
+    return LearningRows(
+        source=source,
+        features=features,
+        columns=(
+            *features.columns,
+            request.target,
+            *([exact] if has_physics else []),
+            *([CUTTING] if CUTTING in first.column_names and request.target != CUTTING else []),
+        ),
+        names=names,
+        request=request,
+        manifest="" if manifest is None else sha256(manifest).hexdigest(),
+    )
+
+
+def _facts(rows: LearningRows) -> TrainingFacts:
+    """Bounds and mean of the training rows.
+
+    Raises
+    ------
+    StepNcError
+        When their target is constant.
+    """
+    low = np.full(len(rows.features.columns), np.inf)
+    high, least, most, total = -low, np.inf, -np.inf, 0.0
+    for piece in rows.pieces(0, rows.request.train):
+        low = np.minimum(low, piece.values.min(axis=0))
+        high = np.maximum(high, piece.values.max(axis=0))
+        least = min(least, float(piece.target.min()))
+        most = max(most, float(piece.target.max()))
+        total += float(piece.target.sum())
+    what = f"{rows.place}: {rows.request.target} of the training rows"
+    _require_learnable(np.array([least, most]), what)
+    return TrainingFacts(low=low, high=high, mean=total / rows.request.train)
+
+
+def _require_learnable(target: Floats, what: str) -> None:
+    """Refuse a target that is constant.
+
+    Raises
+    ------
+    StepNcError
+        With the value.
+    """
+    if np.ptp(target) <= 1e-12 * abs(float(target[0])):
+        raise StepNcError(f"{what}: all are {target[0]:g}: there is nothing to learn")
+
+
+Trainer = Callable[[int], tuple[LearnedModel, tuple[str, ...]]]
+"""Trains the model with some of the first rows; with what scikit-learn warned of."""
+
+
+def _trainer(rows: LearningRows, kind: ModelKind, facts: TrainingFacts) -> Trainer:
+    request, features = rows.request, rows.features
+    law = fitted_law(features, rows.pieces(0, request.train))
+    low, high = (dict(zip(features.numbers, each.tolist(), strict=False))
+                 for each in (facts.low, facts.high))  # fmt: skip
+
+    def train(count: int) -> tuple[LearnedModel, tuple[str, ...]]:
+        pieces = rows.training(count)
+        predictor, warned = trained(kind, features, pieces, rows=count, seed=request.seed)
+        return LearnedModel(
+            kind=kind,
+            target=request.target,
+            features=features,
+            physics=PHYSICS[request.target] if request.is_on_physics else "",
+            low=low,
+            high=high,
+            rows=count,
+            predictor=predictor,
+            baseline=Baseline(mean=facts.mean, law=law),
+            residuals=(),
+            manifest=rows.manifest,
+        ), warned
+
+    return train
+
+
+def _prediction(model: LearnedModel, rows: LearningTable) -> Floats:
+    """Predictions of rows; of those on the physics, times the physics."""
+    found = np.asarray(model.predictor.predict(rows.values), dtype=np.float64)
+    return found * rows.physics if model.physics and rows.physics is not None else found
+
+
+def _baselines(
+    model: LearnedModel, test: LearningTable, factor: ForceFactor | None
+) -> dict[str, Floats]:
+    """Predictions of the test rows by what is simpler."""
+    found = {MEAN: np.full(len(test), model.baseline.mean)}
+    if model.kind is not ModelKind.POWER_LAW or model.physics:
+        name = "power-law alone" if model.physics else ModelKind.POWER_LAW.value
+        found[name] = model.baseline.law.predict(test.values)
+    if test.physics is not None:
+        found[PHYSICS_ALONE] = test.physics
+        if factor is not None and test.cutting is not None:
+            found[FITTED] = factor.predict(test.physics, test.cutting)
+    return found
+
+
+def _curve(
+    model_of: Trainer, test: LearningTable, request: LearnRequest
+) -> Iterator[CurvePoint]:
+    """Scores after more and more training rows, each twice as many as before."""
+    sizes = [request.train]
+    while sizes[0] // 2 >= FEWEST_OF_CURVE:
+        sizes.insert(0, sizes[0] // 2)
+    for size in sizes:
+        predicted = _prediction(model_of(size)[0], test)
+        scores = scores_of(test.target, predicted, seed=request.seed)
+        yield CurvePoint(rows=size, scores=scores)

@@ -1,0 +1,50 @@
+"""Use case of ``stepnc predict``: the target of one part, or of the rows of a table."""
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import pyarrow as pa
+
+from service.learning.learned import LearnedModel
+from service.learning.model_file import load_model
+from service.learning.source import read_table
+from service.learning.table import Floats
+from service.requests.learning import PredictRequest
+from stepnc_model.errors import StepNcError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PredictResult:
+    """Predictions of a model."""
+
+    model: LearnedModel
+    values: Floats
+    """(N,), in the unit of the target's name"""
+
+
+def predict(path: Path, request: PredictRequest, *, table: Path | None = None) -> PredictResult:
+    """Predict the target of one part, or of each row of a table.
+
+    Raises
+    ------
+    StepNcError
+        When the model or the table is not usable, or settings lie outside the trained box.
+    """
+    model = load_model(path)
+    given = {
+        field.name: value
+        for field in fields(request)
+        if (value := getattr(request, field.name)) is not None
+    }
+    if table is not None:
+        if given:
+            raise StepNcError("give a table or settings, not both")
+        values = model.predicted(read_table(table), place=str(table))
+        return PredictResult(model=model, values=values)
+    wanted = (*model.features.columns, *([model.physics] if model.physics else []))
+    missing = [name for name in wanted if name not in given]
+    if missing:
+        flags = ", ".join(f"--{name.replace('_', '-')}" for name in missing)
+        raise StepNcError(f"{path}: the model needs {flags} too")
+    row = pa.table({name: [value] for name, value in given.items()})
+    return PredictResult(model=model, values=model.predicted(row, place=str(path)))

@@ -1,0 +1,75 @@
+"""Design files: read in canonical units, refused with key, value and bound."""
+
+from math import pi
+from pathlib import Path
+
+import pytest
+
+from simulator.errors import LibraryError
+from simulator.factory.design import DesignKind
+from simulator.factory.design_file import read_design
+
+WHOLE = """program = ["one.stpnc", "two.stpnc"]
+machine = "paper003"
+material = "aisi1018"
+feed_mm_s = [30, 90]
+spindle_rad_s = [75.4, 226.2]
+design = "latin-hypercube"
+seed = 7
+deviation = true
+"""
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "design.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_design_file_is_read(tmp_path: Path) -> None:
+    file = read_design(written(tmp_path, WHOLE))
+    design = file.design
+    assert file.programs == (tmp_path / "one.stpnc", tmp_path / "two.stpnc")
+    assert [each.name for each in file.machines] == ["paper003"]
+    assert file.materials == ("aisi1018",)
+    assert file.has_deviation
+    assert (design.kind, design.seed, design.programs) == (DesignKind.LATIN_HYPERCUBE, 7, 2)
+    assert design.feed is not None
+    assert (design.feed.low, design.feed.high) == (30.0, 90.0)
+    assert design.spindle_speed is not None
+    assert design.spindle_speed.high == pytest.approx(226.2 / (2 * pi))
+    assert design.depth is None
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("[30, 90]", "[90, 30]", r"feed_mm_s: \[90, 30\]: expected a lower and a greater"),
+        ("[30, 90]", "[30, 30]", r"feed_mm_s: \[30, 30\]"),
+        ("[30, 90]", "[30]", r"feed_mm_s: \[30\]"),
+        ("[30, 90]", "[-1, 90]", r"feed_mm_s\[1\]: -1 mm/s is below 0.001 mm/s"),
+        ('"latin-hypercube"', '"random"', "'random' is not one of uniform, latin-hypercube"),
+        ('"latin-hypercube"', '"full-factorial"', "levels: missing"),
+        ("seed = 7", "levels = 3", "levels: belongs to 'full-factorial'"),
+        ("seed = 7", "seed = 1.5", "seed: 1.5 is not a whole number"),
+        ("feed_mm_s", "feed_mm_min", "feed_mm_min: unknown key"),
+        ('machine = "paper003"\n', "", "machine: missing"),
+        ('["one.stpnc", "two.stpnc"]', '["a", "a"]', "program: expected one name"),
+        ("spindle_rad_s = [75.4, 226.2]\n", "", None),
+    ],
+)
+def test_a_bad_file_is_refused(tmp_path: Path, old: str, new: str, message: str | None) -> None:
+    text = WHOLE.replace(old, new)
+    assert text != WHOLE
+    path = written(tmp_path, text)
+    if message is None:
+        assert read_design(path).design.spindle_speed is None
+        return
+    with pytest.raises(LibraryError, match=message):
+        read_design(path)
+
+
+def test_a_design_without_ranges_is_refused(tmp_path: Path) -> None:
+    path = written(tmp_path, 'program = "one.stpnc"\nmachine = "paper003"\n')
+    with pytest.raises(LibraryError, match="nothing varies: give one of feed_mm_s"):
+        read_design(path)
