@@ -15,8 +15,8 @@ import structlog
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from service.errors import Forbidden, TooLarge, TooMany, Unauthorised, Unreadable
-from service.problem import plain_problem, problem_of
+from service.errors import Forbidden, TooLarge, Unauthorised, Unreadable
+from service.problem import plain_problem, problem_of, retry_after
 from service.rest.logs import RequestLog
 from service.rest.metrics import count
 from service.rest.rate import RateLimit
@@ -283,7 +283,8 @@ async def _refuse(send: Send, problem: dict[str, Any], error: StepNcError | None
     headers = [(b"content-type", b"application/problem+json")]
     if isinstance(error, Unauthorised):
         headers.append((b"www-authenticate", b"Bearer"))
-    if isinstance(error, TooMany):
-        headers.append((b"retry-after", str(int(error.wait) + 1).encode()))
+    wait = None if error is None else retry_after(error)
+    if wait is not None:
+        headers.append((b"retry-after", str(wait).encode()))
     await send({"type": "http.response.start", "status": problem["status"], "headers": headers})
     await send({"type": "http.response.body", "body": orjson.dumps(problem)})

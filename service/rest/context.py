@@ -44,7 +44,7 @@ PROBLEMS: dict[int | str, dict[str, Any]] = {
         (415, "The route does not accept the media type of the body"),
         (422, "The request cannot be carried out; the detail states value, bound and unit"),
         (429, "Too many requests; Retry-After says when to try again"),
-        (503, "Something that the service depends on does not answer"),
+        (503, "Something that the service depends on does not answer; Retry-After as for 429"),
         (507, "The disk is full"),
     )
 }

@@ -6,7 +6,6 @@ memory; a file gets its place, and an entry in lists, once its content was check
 
 import hashlib
 import os
-import sqlite3
 import tempfile
 import time
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ from typing import BinaryIO
 from service.errors import Conflict, NotFound, Unreadable
 from service.ids import new_id
 from service.live.storage import storing
+from service.storage.connection import Row
 from service.storage.folder import DataFolder
 from service.storage.idempotency import IdempotencyKey, made_before, remember
 from service.storage.pages import Page, PageCursor, page_of
@@ -107,7 +107,7 @@ class FileUpload:
 
     def __enter__(self) -> "FileUpload":
         with storing(self.name):
-            folder = self._data_folder.root / "files"
+            folder = self._data_folder.files / "files"
             descriptor, name = tempfile.mkstemp(prefix=".", suffix=self._suffix, dir=folder)
         self._file, self.path = os.fdopen(descriptor, "wb"), Path(name)
         return self
@@ -186,7 +186,7 @@ class FileUpload:
 
 def file_of(data_folder: DataFolder, stored: StoredFile) -> Path:
     """Path of a stored file."""
-    return data_folder.root / "files" / f"{stored.id}{stored.suffix}"
+    return data_folder.files / "files" / f"{stored.id}{stored.suffix}"
 
 
 def get(data_folder: DataFolder, id: str, kind: FileKind | None = None) -> StoredFile:
@@ -258,6 +258,6 @@ def remove(data_folder: DataFolder, id: str) -> None:
     file_of(data_folder, stored).unlink(missing_ok=True)
 
 
-def _stored(row: sqlite3.Row) -> StoredFile:
-    columns = {name: row[name] for name in row.keys()}  # noqa: SIM118 (a Row)
+def _stored(row: Row) -> StoredFile:
+    columns = dict(row)
     return StoredFile(**{**columns, "kind": FileKind(columns["kind"])})

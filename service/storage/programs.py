@@ -1,13 +1,13 @@
 """Storage of uploaded programs: their unchanged bytes, and their names."""
 
 import hashlib
-import sqlite3
 import time
 from dataclasses import dataclass
 
 from service.errors import Conflict, NotFound
 from service.files import write_atomically
 from service.ids import new_id
+from service.storage.connection import Row
 from service.storage.folder import DataFolder
 from service.storage.idempotency import IdempotencyKey, made_before, remember
 from service.storage.pages import Page, PageCursor, page_of
@@ -121,6 +121,8 @@ def remove(data_folder: DataFolder, id: str) -> None:
         When the program does not exist, or a job still uses it.
     """
     with data_folder.database.writing() as connection:
+        # No job may be queued meanwhile.
+        connection.lock(f"program {id}")
         busy = connection.execute(
             "SELECT id FROM jobs WHERE program = ? AND state IN ('queued', 'running')", (id,)
         ).fetchone()
@@ -139,5 +141,5 @@ def shown_name(name: str) -> str:
     return clean.strip(". ") or "program.stpnc"
 
 
-def _program(row: sqlite3.Row) -> StoredProgram:
-    return StoredProgram(**{name: row[name] for name in row.keys()})  # noqa: SIM118 (a Row)
+def _program(row: Row) -> StoredProgram:
+    return StoredProgram(**dict(row))

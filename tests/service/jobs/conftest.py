@@ -24,7 +24,8 @@ from tests.service.waiting import environment, until
 MAIN = """
 import sys
 from service.jobs.runner import main
-main(sys.argv[1], sys.argv[2], 1, int(sys.argv[3]))
+from service.storage.folder import FolderAddress
+main(FolderAddress(root=sys.argv[1], knowledge=sys.argv[2]), 1, int(sys.argv[3]))
 """
 
 IMPATIENT = f"""
