@@ -5,6 +5,7 @@ are dropped, and for a moment no new one is tried, so that a lost server is told
 of after a timeout each time. Running state.
 """
 
+import select
 import threading
 import time
 import weakref
@@ -103,8 +104,12 @@ class ServerDatabase:
         self._free = threading.BoundedSemaphore(MOST_CONNECTIONS)
         self._failed_at = -PAUSE
         try:
-            with self._lent() as raw, raw.transaction():
-                _migrate(ServerConnection(raw), self.place)
+            with self._lent() as raw:
+                connection = ServerConnection(raw)
+                # Most processes find everything made, and wait for nobody.
+                if _version(connection) != len(SCHEMA):
+                    with raw.transaction():
+                        _migrate(connection, self.place)
         except psycopg.Error as error:
             raise Unavailable(str(fault(error, self.place))) from error
 
@@ -149,7 +154,7 @@ class ServerDatabase:
                 since, raw = self._idle.pop()
             except IndexError:
                 return None
-            if time.monotonic() - since < IDLE:
+            if time.monotonic() - since < IDLE and not _has_news(raw):
                 return raw
             try:
                 raw.execute(b"SELECT 1")
@@ -178,6 +183,13 @@ class ServerDatabase:
             self._failed_at = time.monotonic()
             raise
         return raw
+
+
+def _has_news(raw: Raw) -> bool:
+    """Whether an idle connection has something to read: most often that it was closed."""
+    probe = select.poll()
+    probe.register(raw.fileno(), select.POLLIN)
+    return bool(probe.poll(0))
 
 
 def _close(idle: list[tuple[float, Raw]]) -> None:
@@ -228,6 +240,15 @@ def _answering() -> Iterator[None]:
         raise Unavailable(f"the database refuses: {type(error).__name__}") from error
 
 
+def _version(connection: ServerConnection) -> int:
+    """Return the version of the tables; 0 if there are none."""
+    row = connection.execute("SELECT to_regclass('version') IS NULL AS is_new").fetchone()
+    if row["is_new"]:
+        return 0
+    row = connection.execute("SELECT max(number) AS number FROM version").fetchone()
+    return int(row["number"] or 0)
+
+
 def _migrate(connection: ServerConnection, place: StoreLocation) -> None:
     """Create or upgrade the tables, within the transaction."""
     connection.execute("SELECT pg_advisory_xact_lock(?)", (LOCK,))
@@ -237,8 +258,7 @@ def _migrate(connection: ServerConnection, place: StoreLocation) -> None:
         raise Unavailable(f"{place.shown} {what}: create a database with ENCODING 'UTF8'")
     connection.execute(f"CREATE SCHEMA IF NOT EXISTS {SPACE}")
     connection.execute("CREATE TABLE IF NOT EXISTS version (number BIGINT NOT NULL)")
-    row = connection.execute("SELECT max(number) AS number FROM version").fetchone()
-    version = int(row["number"] or 0)
+    version = _version(connection)
     if version > len(SCHEMA):
         text = f"of version {version}; this program supports up to {len(SCHEMA)}"
         raise Unavailable(f"{place.shown} is {text}: install a newer program")

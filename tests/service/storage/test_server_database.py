@@ -187,11 +187,10 @@ def test_a_server_that_was_away_is_used_again(
 
 
 def test_a_connection_that_broke_while_idle_is_replaced_unseen(
-    new_database: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    new_database: str, tmp_path: Path
 ) -> None:
     data_folder = open_data_folder(tmp_path, database=new_database)
     kept = jobs.add(data_folder, ORDER)
-    monkeypatch.setattr(server_database, "IDLE", 0.0)
     with psycopg.connect(new_database, autocommit=True) as other:
         other.execute(
             "SELECT pg_terminate_backend(pid) FROM pg_stat_activity "

@@ -1,0 +1,262 @@
+"""Jobs of two hosts on one PostgreSQL database, while hosts are killed at random moments.
+
+Each host is ``stepnc serve`` in a process group and data folder of its own; the folder of
+files is shared. A client sends small jobs to either host and repeats what was not answered. A
+trigger of the database counts how often each job has ended. The database's own cost of a claim,
+and of a rate limit that all processes would share, is measured beside it.
+"""
+
+import argparse
+import json
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from random import Random
+from statistics import quantiles
+from uuid import UUID
+
+import psycopg
+
+from service.storage import jobs
+from service.storage.folder import DataFolder, open_data_folder
+from service.storage.jobs import JobKind, JobRequest
+from tests.postgres import started_server
+
+ROOT = Path(__file__).parents[1]
+
+AUDIT = """
+CREATE TABLE stepnc_service.ends (id TEXT, state TEXT, attempt BIGINT);
+CREATE FUNCTION stepnc_service.record_end() RETURNS trigger LANGUAGE plpgsql AS $$
+BEGIN
+  INSERT INTO stepnc_service.ends VALUES (NEW.id, NEW.state, NEW.attempt);
+  RETURN NULL;
+END $$;
+CREATE TRIGGER ends AFTER UPDATE ON stepnc_service.jobs FOR EACH ROW
+WHEN (OLD.state <> NEW.state AND NEW.state NOT IN ('queued', 'running'))
+EXECUTE FUNCTION stepnc_service.record_end()
+"""
+
+ANSWER = 5.0
+"""s that the client waits for an answer before it asks the other host"""
+
+
+@dataclass(kw_only=True)
+class Host:
+    """A server with its runner and jobs, in a process group of its own. Running state."""
+
+    data: Path
+    words: list[str]
+    port: int
+    process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> None:
+        """Start it, without waiting."""
+        self.data.mkdir(exist_ok=True)
+        command = [
+            sys.executable, "-c", "from service.cli.main import main; main()", "serve",
+            "--data", str(self.data), "--port", str(self.port), "--log-level", "warning",
+            *self.words,
+        ]  # fmt: skip
+        with (self.data / "log").open("ab") as log:
+            self.process = subprocess.Popen(
+                command, cwd=ROOT, stdout=log, stderr=log, start_new_session=True,
+                env={**os.environ, "PYTHONPATH": str(ROOT)},
+            )  # fmt: skip
+
+    def kill(self) -> None:
+        """Kill all of its processes at once."""
+        assert self.process is not None
+        os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.wait(20.0)
+
+
+@dataclass(kw_only=True)
+class Client:
+    """Sends jobs until each is accepted. Running state."""
+
+    ports: list[int]
+    random: Random
+    accepted: list[str] = field(default_factory=list)
+    repeated: int = 0
+
+    def send_all(self, count: int) -> None:
+        """Send so many jobs, one after the other."""
+        for number in range(count):
+            self.send(number)
+
+    def send(self, number: int) -> None:
+        """One job, under one idempotency key, to either host until one accepts it."""
+        for count in range(100_000):
+            port = self.random.choice(self.ports)
+            headers = {
+                "content-type": "application/json", "idempotency-key": str(UUID(int=number)),
+            }  # fmt: skip
+            request = urllib.request.Request(
+                f"http://127.0.0.1:{port}/v1/reviews", b"{}", headers, method="POST"
+            )
+            try:
+                with urllib.request.urlopen(request, timeout=ANSWER) as answer:
+                    self.accepted.append(json.loads(answer.read())["id"])
+                    self.repeated += count > 0
+                    return
+            except urllib.error.HTTPError as error:
+                if error.code not in {429, 503}:
+                    raise
+            except OSError:
+                """the host is gone, or ended before its answer came"""
+            time.sleep(0.05)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Print what was accepted, lost and repeated, and what a claim costs."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--jobs", type=int, default=1000)
+    parser.add_argument("--kills", type=int, default=30)
+    parser.add_argument("--seed", type=int, default=18)
+    options = parser.parse_args(arguments)
+    if not list(Path("/usr/lib/postgresql").glob("*/bin/initdb")):
+        print("left out: PostgreSQL is not installed (apt-get install postgresql)")
+        return
+    server = started_server()
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            place = Path(folder)
+            files = str(place / "files")
+            data_folder = open_data_folder(place / "c", database=server.url, files=files)
+            _claims(data_folder)
+            _limit(server.url)
+            _hosts(place, server.url, options)
+            data_folder.database.close()
+    finally:
+        server.stop("fast")
+        shutil.rmtree(server.folder)
+
+
+def _hosts(folder: Path, url: str, options: argparse.Namespace) -> None:
+    with psycopg.connect(url, autocommit=True) as connection:
+        connection.execute("TRUNCATE stepnc_service.jobs")
+        connection.execute(AUDIT)
+    words = ["--database", url, "--files", str(folder / "files"), "--jobs", "2"]
+    hosts = [Host(data=folder / name, words=words, port=_free_port()) for name in ("a", "b")]
+    for host in hosts:
+        host.start()
+    random = Random(options.seed)
+    client = Client(ports=[host.port for host in hosts], random=Random(options.seed))
+    sender = threading.Thread(target=client.send_all, args=(options.jobs,), daemon=True)
+    begin = time.monotonic()
+    sender.start()
+    kills = 0
+    try:
+        while sender.is_alive() or _waiting(url) or kills < options.kills:
+            time.sleep(random.uniform(0.5, 4.0))
+            if kills < options.kills:
+                host = random.choice(hosts)
+                host.kill()
+                # Now and then for longer than the lease, so that the other one takes over.
+                time.sleep(12.0 if kills % 10 == 9 else 0.0)
+                host.start()
+                kills += 1
+        elapsed = time.monotonic() - begin
+    finally:
+        for host in hosts:
+            host.kill()
+    _print(url, client, elapsed=elapsed, kills=kills)
+
+
+def _print(url: str, client: Client, *, elapsed: float, kills: int) -> None:
+    with psycopg.connect(url) as connection:
+        ends = connection.execute(
+            "SELECT id, state, attempt FROM stepnc_service.ends"
+        ).fetchall()
+    ids = [row[0] for row in ends]
+    accepted = set(client.accepted)
+    print(
+        f"jobs accepted: {len(accepted)}, of these after a repeated request: {client.repeated}"
+    )
+    print(f"hosts killed: {kills} times in {elapsed:.0f} s; {len(ids) / elapsed:.1f} jobs/s")
+    print(f"accepted but never ended: {len(accepted - set(ids))}")
+    print(f"ended more than once: {len(ids) - len(set(ids))}")
+    print(f"not accepted but run: {len(set(ids) - accepted)}")
+    print(f"succeeded: {sum(row[1] == 'succeeded' for row in ends)}; "
+          f"given up after {jobs.MOST_ATTEMPTS} lost attempts: "
+          f"{sum(row[1] == 'failed' for row in ends)}; "
+          f"run again after a kill: {sum(row[2] > 1 for row in ends)}")  # fmt: skip
+
+
+def _claims(data_folder: DataFolder) -> None:
+    """Cost of a job in the database alone: queue, claim and end it."""
+    asked = JobRequest(kind=JobKind.REVIEW, request={}, owner=jobs.LOCAL)
+    add = _timed(lambda: jobs.add(data_folder, asked), 500)
+    seconds: list[float] = []
+    ends: list[float] = []
+    for _ in range(500):
+        begin = time.perf_counter()
+        job = jobs.claim(data_folder, runner="bench")
+        seconds.append(time.perf_counter() - begin)
+        assert job is not None
+        begin = time.perf_counter()
+        jobs.finish(data_folder, job, jobs.JobState.SUCCEEDED)
+        ends.append(time.perf_counter() - begin)
+    print(f"{'in the database alone':28}{'p50 ms':>10}{'p99 ms':>10}")
+    for name, times in (("queue a job", add), ("claim a job", seconds), ("end a job", ends)):
+        print(f"{name:28}{_quantile(times, 50):10.2f}{_quantile(times, 99):10.2f}")
+
+
+def _limit(url: str) -> None:
+    """Cost of a request's token in a bucket that all web processes would share."""
+    with psycopg.connect(url, autocommit=True) as connection:
+        connection.execute(
+            "CREATE TABLE stepnc_service.bucket (key TEXT PRIMARY KEY, tokens REAL, at REAL)"
+        )
+        connection.execute("INSERT INTO stepnc_service.bucket VALUES ('k', 100, 0)")
+        connection.execute("SET synchronous_commit = off")
+        text = (
+            "UPDATE stepnc_service.bucket SET tokens = least(100, tokens + 1) - 1 "
+            "WHERE key = 'k'"
+        )
+        times = _timed(lambda: connection.execute(text), 2000)
+    print(f"{'a token of a shared bucket':28}{_quantile(times, 50):10.2f}"
+          f"{_quantile(times, 99):10.2f}")  # fmt: skip
+
+
+def _timed(call: Callable[[], object], count: int) -> list[float]:
+    found: list[float] = []
+    for _ in range(count):
+        begin = time.perf_counter()
+        call()
+        found.append(time.perf_counter() - begin)
+    return found
+
+
+def _quantile(seconds: list[float], percent: int) -> float:
+    return 1000.0 * quantiles(seconds, n=100)[percent - 1]
+
+
+def _waiting(url: str) -> bool:
+    with psycopg.connect(url) as connection:
+        row = connection.execute(
+            "SELECT 1 FROM stepnc_service.jobs WHERE state IN ('queued', 'running') LIMIT 1"
+        ).fetchone()
+    return row is not None
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+    return port
+
+
+if __name__ == "__main__":
+    main()
