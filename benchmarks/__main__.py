@@ -7,6 +7,7 @@ from benchmarks import (
     closed_loop,
     control_step,
     factory,
+    jobs_on_postgres,
     knowledge,
     monitored,
     paper003_batch,
@@ -46,6 +47,7 @@ for title, bench in (
     ("The knowledge base", knowledge),
     ("Verification of positions", verification),
     ("REST", rest),
+    ("Two hosts on one database", jobs_on_postgres),
     ("MTConnect", agent),
     ("A client's energy and time", monitored),
 ):

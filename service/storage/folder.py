@@ -180,9 +180,13 @@ def show_attempt(data_folder: DataFolder, id: str, attempt: int) -> None:
         When the disk refuses.
     """
     folder, own = data_folder.job_folder(id), data_folder.attempt_folder(id, attempt)
-    own.mkdir(mode=PRIVATE, exist_ok=True)
     if own == folder:
+        own.mkdir(mode=PRIVATE, exist_ok=True)
         return
+    if folder.is_dir() and not folder.is_symlink():
+        # Orders to a run may come before it has begun.
+        folder.rename(own)
+    own.mkdir(mode=PRIVATE, exist_ok=True)
     link = folder.with_name(f"{own.name}.link")
     link.unlink(missing_ok=True)
     link.symlink_to(own.name)

@@ -301,3 +301,17 @@ def test_a_host_that_was_taken_for_dead_changes_nothing_that_is_read(
     assert not first.attempt_folder(id, 1).exists()
     jobs.remove(first, id)
     assert list((tmp_path / "shared" / "jobs").iterdir()) == []
+
+
+def test_orders_that_came_before_the_run_are_found_by_it(
+    new_database: str, tmp_path: Path
+) -> None:
+    data_folder, _ = hosts(new_database, tmp_path)
+    id = jobs.add(data_folder, ORDER).id
+    data_folder.job_folder(id).mkdir()
+    (data_folder.job_folder(id) / "orders.jsonl").write_text("{}", "utf-8")
+    job = jobs.claim(data_folder)
+    assert job is not None
+    assert jobs.begin(data_folder, job)
+    for folder in (data_folder.attempt_folder(id, 1), data_folder.job_folder(id)):
+        assert (folder / "orders.jsonl").read_text("utf-8") == "{}"
