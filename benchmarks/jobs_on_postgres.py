@@ -28,10 +28,12 @@ from uuid import UUID
 
 import psycopg
 
+from kbe.store import open_store
 from service.storage import jobs
 from service.storage.folder import DataFolder, open_data_folder
 from service.storage.jobs import JobKind, JobRequest
 from tests.postgres import started_server
+from tests.service.shop import outcomes
 
 ROOT = Path(__file__).parents[1]
 
@@ -46,6 +48,8 @@ CREATE TRIGGER ends AFTER UPDATE ON stepnc_service.jobs FOR EACH ROW
 WHEN (OLD.state <> NEW.state AND NEW.state NOT IN ('queued', 'running'))
 EXECUTE FUNCTION stepnc_service.record_end()
 """
+
+OUTCOMES, BATCH = 20_000, 1000
 
 ANSWER = 5.0
 """s that the client waits for an answer before it asks the other host"""
@@ -136,6 +140,7 @@ def main(arguments: list[str] | None = None) -> None:
             data_folder = open_data_folder(place / "c", database=server.url, files=files)
             _claims(data_folder)
             _limit(server.url)
+            _outcomes(server.url)
             _hosts(place, server.url, options)
             data_folder.database.close()
     finally:
@@ -188,8 +193,10 @@ def _print(url: str, client: Client, *, elapsed: float, kills: int) -> None:
     print(f"accepted but never ended: {len(accepted - set(ids))}")
     print(f"ended more than once: {len(ids) - len(set(ids))}")
     print(f"not accepted but run: {len(set(ids) - accepted)}")
+    size = _size(url, "stepnc_service.jobs")
+    print(f"{size / max(len(ids), 1):.0f} bytes of the database for each job, with indexes")
     print(f"succeeded: {sum(row[1] == 'succeeded' for row in ends)}; "
-          f"given up after {jobs.MOST_ATTEMPTS} lost attempts: "
+          f"given up after {jobs.MOST_ATTEMPTS_SHARED} lost attempts: "
           f"{sum(row[1] == 'failed' for row in ends)}; "
           f"run again after a kill: {sum(row[2] > 1 for row in ends)}")  # fmt: skip
 
@@ -228,6 +235,25 @@ def _limit(url: str) -> None:
         times = _timed(lambda: connection.execute(text), 2000)
     print(f"{'a token of a shared bucket':28}{_quantile(times, 50):10.2f}"
           f"{_quantile(times, 99):10.2f}")  # fmt: skip
+
+
+def _outcomes(url: str) -> None:
+    """Rate and size of outcomes in the knowledge base of the same database."""
+    rows = list(outcomes(OUTCOMES))
+    with open_store(url) as store:
+        begin = time.perf_counter()
+        for first in range(0, OUTCOMES, BATCH):
+            store.add(rows[first : first + BATCH])
+        elapsed = time.perf_counter() - begin
+    size = _size(url, "outcome")
+    print(f"outcomes: {OUTCOMES / elapsed:.0f} per s in batches of {BATCH}; "
+          f"{size / OUTCOMES:.0f} bytes each with indexes")  # fmt: skip
+
+
+def _size(url: str, table: str) -> int:
+    with psycopg.connect(url) as connection:
+        row = connection.execute("SELECT pg_total_relation_size(%s)", (table,)).fetchone()
+    return 0 if row is None else int(row[0])
 
 
 def _timed(call: Callable[[], object], count: int) -> list[float]:

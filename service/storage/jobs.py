@@ -34,6 +34,10 @@ MOST_ATTEMPTS = 3
 """Largest number of attempts of a job whose runner was lost each time."""
 
 
+MOST_ATTEMPTS_SHARED = 10
+"""The same where several hosts take over from each other, as when all are restarted in turn."""
+
+
 class JobState(StrEnum):
     """State of a job."""
 
@@ -327,13 +331,14 @@ def abandoned(data_folder: DataFolder, *, lease: float) -> tuple[Job, ...]:
 
 def recover(data_folder: DataFolder, found: Sequence[Job]) -> None:
     """Queue or fail jobs of a runner that is gone; each by the first who comes."""
+    most = MOST_ATTEMPTS_SHARED if data_folder.database.is_shared else MOST_ATTEMPTS
     for job in found:
         if job.is_cancelling:
             finish(data_folder, job, JobState.CANCELLED)
         elif job.is_live:
             problem = lost("a live run cannot be resumed")
             finish(data_folder, job, JobState.FAILED, problem=problem)
-        elif job.attempt >= MOST_ATTEMPTS:
+        elif job.attempt >= most:
             finish(data_folder, job, JobState.FAILED, problem=lost(f"{job.attempt} attempts"))
         else:
             _update(

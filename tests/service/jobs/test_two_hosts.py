@@ -168,15 +168,9 @@ def test_killed_hosts_lose_no_job_and_no_job_has_two_results(shop: Shop) -> None
     assert sorted(row[0] for row in ends) == sorted(made)
     assert kills == KILLS
     attempts = {row[0]: row[2] for row in ends}
-    lost = [row[0] for row in ends if row[1] != "succeeded"]
-    for id in lost:
-        # Three kills have hit the same job, and its end says so.
-        problem = jobs.get(shop.data_folder, id).problem
-        assert problem is not None
-        assert problem["detail"].endswith(f"{jobs.MOST_ATTEMPTS} attempts"), problem
-    assert len(lost) <= KILLS // jobs.MOST_ATTEMPTS
+    assert {row[1] for row in ends} == {"succeeded"}
     assert max(attempts.values()) > 1
-    for id in set(made) - set(lost):
+    for id in made:
         folder = shop.data_folder.job_folder(id)
         assert folder.resolve().name == f"{id}.{attempts[id]}"
         assert (folder / "result.json").stat().st_size > 0
