@@ -245,6 +245,8 @@ def remove(data_folder: DataFolder, id: str) -> None:
     """
     stored = get(data_folder, id)
     with data_folder.database.writing() as connection:
+        # No job may be queued meanwhile.
+        connection.lock(f"file {id}")
         busy = connection.execute(
             "SELECT id FROM jobs WHERE state IN ('queued', 'running') "
             f"AND json_extract(request, '$.{FIELDS[stored.kind]}') = ?",

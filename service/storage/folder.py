@@ -187,13 +187,30 @@ def show_attempt(data_folder: DataFolder, id: str, attempt: int) -> None:
         # Orders to a run may come before it has begun.
         folder.rename(own)
     own.mkdir(mode=PRIVATE, exist_ok=True)
+    _link(folder, own)
+    for earlier in range(1, attempt):
+        shutil.rmtree(data_folder.attempt_folder(id, earlier), ignore_errors=True)
+
+
+def show_again(data_folder: DataFolder, id: str, attempt: int) -> None:
+    """Make an attempt's folder that of the job, should that of an earlier one be shown.
+
+    Raises
+    ------
+    OSError
+        When the disk refuses.
+    """
+    folder, own = data_folder.job_folder(id), data_folder.attempt_folder(id, attempt)
+    if own != folder and own.is_dir() and folder.resolve() != own.resolve():
+        _link(folder, own)
+
+
+def _link(folder: Path, own: Path) -> None:
+    """Replace the link that the folder of a job is."""
     link = folder.with_name(f"{own.name}.link")
     link.unlink(missing_ok=True)
     link.symlink_to(own.name)
     os.replace(link, folder)
-    for other in folder.parent.glob(f"{id}.*"):
-        if other != own:
-            shutil.rmtree(other, ignore_errors=True)
 
 
 def remove_results(data_folder: DataFolder, id: str) -> None:

@@ -63,7 +63,12 @@ def _is_there(connection: Connection, made: str) -> bool:
 def remember(connection: Connection, idempotency: IdempotencyKey | None, made: str) -> None:
     """Store what a request created, within the transaction that created it."""
     if idempotency is not None:
-        connection.execute("DELETE FROM requests WHERE created < ?", (time.time() - KEPT,))
+        # Two transactions that delete the same rows in another order would block each other.
+        connection.execute(
+            "DELETE FROM requests WHERE (owner, key) IN (SELECT owner, key FROM requests "
+            f"WHERE created < ?{connection.skip_locked})",
+            (time.time() - KEPT,),
+        )
         connection.execute(
             "INSERT INTO requests VALUES (?, ?, ?, ?, ?)",
             (idempotency.owner, idempotency.key, idempotency.fingerprint, made, time.time()),

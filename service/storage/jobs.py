@@ -17,7 +17,8 @@ from service.errors import Conflict, NotFound, TooMany
 from service.ids import new_id
 from service.live.storage import storing
 from service.storage.connection import Connection, Row
-from service.storage.folder import DataFolder, remove_results, show_attempt
+from service.storage.files import FIELDS
+from service.storage.folder import DataFolder, remove_results, show_again, show_attempt
 from service.storage.idempotency import IdempotencyKey, made_before, remember
 from service.storage.pages import Page, PageCursor, page_of
 
@@ -32,7 +33,6 @@ OWNERS = 4
 
 MOST_ATTEMPTS = 3
 """Largest number of attempts of a job whose runner was lost each time."""
-
 
 MOST_ATTEMPTS_SHARED = 10
 """The same where several hosts take over from each other, as when all are restarted in turn."""
@@ -73,9 +73,9 @@ class JobKind(StrEnum):
 
 
 PACED = (
-    f"(kind IN ('{JobKind.CONTROL.value}', '{JobKind.TRIAL.value}') OR (kind IN "
-    f"('{JobKind.SIMULATION.value}', '{JobKind.FACTORY.value}') AND "
-    "CAST(coalesce(json_extract(request, '$.pace'), '0') AS REAL) > 0))"
+    f"(kind IN ('{JobKind.CONTROL.value}', '{JobKind.TRIAL.value}') "
+    f"OR (kind IN ('{JobKind.SIMULATION.value}', '{JobKind.FACTORY.value}') "
+    "AND CAST(coalesce(json_extract(request, '$.pace'), '0') AS REAL) > 0))"
 )
 """SQL condition for :attr:`Job.is_paced`."""
 
@@ -140,7 +140,7 @@ def add(
     TooMany
         When too many jobs are queued.
     NotFound
-        When the program was deleted meanwhile.
+        When the program, or a file that the request names, was deleted meanwhile.
     """
     id = new_id()
     with data_folder.database.writing() as connection:
@@ -148,6 +148,7 @@ def add(
         if kept is None:
             _require_room(connection, asked.owner)
             _require_program(connection, asked.program)
+            _require_files(connection, asked.request)
             connection.execute(
                 "INSERT INTO jobs (id, kind, state, request, program, source, owner, created) "
                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
@@ -279,15 +280,12 @@ def claim(
 def begin(data_folder: DataFolder, job: Job) -> bool:
     """Make the folder of a claimed job; False if a later attempt has taken over."""
     with data_folder.database.writing() as connection:
-        is_current = connection.execute(
-            "UPDATE jobs SET message = '' WHERE id = ? AND attempt = ? AND state = 'running'",
-            (job.id, job.attempt),
-        ).rowcount
-        # The row is locked: no other attempt begins before this one is shown.
+        # The row is locked then: no other attempt begins before this one is shown.
+        is_current = _changed(connection, job, "message = ''", ())
         if is_current:
             with storing("folder of the job"):
                 show_attempt(data_folder, job.id, job.attempt)
-    return bool(is_current)
+    return is_current
 
 
 def tell(data_folder: DataFolder, job: Job, *, share: float, message: str) -> None:
@@ -306,7 +304,12 @@ def finish(
     said = None if problem is None else json.dumps(problem)
     share = ", share = 1" if state is JobState.SUCCEEDED else ""
     values = (state.value, time.time(), said)
-    _update(data_folder, job, f"state = ?, ended = ?, problem = ?{share}", values)
+    with data_folder.database.writing() as connection:
+        columns = f"state = ?, ended = ?, problem = ?{share}"
+        # Results of an earlier attempt are shown if its process was stopped while it began.
+        if _changed(connection, job, columns, values):
+            with storing("folder of the job"):
+                show_again(data_folder, job.id, job.attempt)
 
 
 def running(data_folder: DataFolder, *, runner: str = "") -> tuple[Job, ...]:
@@ -359,10 +362,19 @@ def lost(why: str) -> dict[str, Any]:
 def _update(data_folder: DataFolder, job: Job, columns: str, values: Sequence[object]) -> None:
     """Change a running job, unless a later attempt has taken over."""
     with data_folder.database.writing() as connection:
+        _changed(connection, job, columns, values)
+
+
+def _changed(
+    connection: Connection, job: Job, columns: str, values: Sequence[object]
+) -> bool:
+    """Change a running job; False if a later attempt has taken over."""
+    return bool(
         connection.execute(
             f"UPDATE jobs SET {columns} WHERE id = ? AND attempt = ? AND state = 'running'",
             (*values, job.id, job.attempt),
-        )
+        ).rowcount
+    )
 
 
 def _require_room(connection: Connection, owner: str) -> None:
@@ -385,6 +397,17 @@ def _require_program(connection: Connection, id: str) -> None:
     row = connection.execute("SELECT 1 FROM programs WHERE id = ?", (id,)).fetchone()
     if row is None:
         raise NotFound("program", id)
+
+
+def _require_files(connection: Connection, request: Mapping[str, Any]) -> None:
+    for kind, field in FIELDS.items():
+        id = request.get(field)
+        if not id:
+            continue
+        connection.share(f"file {id}")
+        row = connection.execute("SELECT 1 FROM files WHERE id = ?", (id,)).fetchone()
+        if row is None:
+            raise NotFound(kind.words, id)
 
 
 def _job(row: Row) -> Job:

@@ -8,7 +8,7 @@ SPACE = "stepnc_service"
 """Schema of the tables in the database, apart from the knowledge base's."""
 
 PACED = (
-    "(kind IN ('control-run', 'trial') OR (kind = 'simulation' "
+    "(kind IN ('control-run', 'trial') OR (kind IN ('simulation', 'factory') "
     "AND CAST(coalesce(json_extract(request, '$.pace'), '0') AS REAL) > 0))"
 )
 """Condition of the indexes of version 1: that of claims, or they are not used."""

@@ -23,7 +23,7 @@ def running(data_folder: DataFolder, **words: str) -> RunningJob:  # noqa: F811
     job = jobs.claim(data_folder, kinds=[JobKind.ADVICE])
     assert job is not None
     task = RunningJob(data_folder=data_folder, job=job)
-    task.folder.mkdir()
+    assert task.make_folder()
     return task
 
 

@@ -21,10 +21,8 @@ from service.requests.knowledge import ReviewRequest
 from service.storage import jobs
 from service.storage.folder import DataFolder, open_data_folder
 from service.storage.jobs import JobKind, JobRequest, JobState
-from tests.postgres import Server, ServerMaker, new_database, new_server, postgres_url
+from tests.postgres import Server, ServerMaker
 from tests.service.waiting import environment, until
-
-__all__ = ["new_database", "new_server", "postgres_url"]
 
 MAIN = """
 import os, sys
