@@ -114,7 +114,7 @@ class RunReader:
             with suppress(NotFound):
                 self._skip()
                 while self.clients:
-                    job = jobs.get(self._data_folder, self._id)
+                    job = await self._current()
                     # The job is read first, so that what it wrote before its end is not missed.
                     for message in self._news(job):
                         for client in self.clients:
@@ -127,6 +127,12 @@ class RunReader:
             self.is_finished = True
             for client in self.clients:
                 client.end()
+
+    async def _current(self) -> Job:
+        """Return the job as it is; nobody else waits while a server is slow to answer."""
+        if self._data_folder.database.is_shared:
+            return await asyncio.to_thread(jobs.get, self._data_folder, self._id)
+        return jobs.get(self._data_folder, self._id)
 
     def _skip(self) -> None:
         """Skip rows and events written so far; subscribers read those from the files."""

@@ -68,6 +68,13 @@ SCHEMA: tuple[tuple[str, ...], ...] = (
         )
         """,
         "CREATE INDEX files_by_kind ON files (kind, id)",
+        # Buckets of the rate limit; after a crash of the server they are full, and none is lost.
+        """
+        CREATE UNLOGGED TABLE rates (
+            client TEXT PRIMARY KEY, tokens DOUBLE PRECISION NOT NULL,
+            seen DOUBLE PRECISION NOT NULL
+        )
+        """,
         # Identity of the folder of files, which all hosts must share.
         "CREATE TABLE folder (id TEXT NOT NULL)",
     ),
