@@ -129,10 +129,11 @@ def _add_data(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--files",
-        type=Path,
-        metavar="DIR",
-        help="folder of programs and results, shared by the hosts of one --database "
-        "(default: --data)",
+        type=text,
+        default="",
+        metavar="PLACE",
+        help="folder of programs and results, or s3://… or another URL of fsspec, shared by "
+        "the hosts of one --database (default: --data)",
     )
 
 
@@ -148,7 +149,7 @@ def _serve(options: argparse.Namespace) -> int:
         data=str(_data(options)),
         knowledge=options.kb,
         database=_database(options),
-        files="" if options.files is None else str(options.files),
+        files=options.files,
         host=options.host,
         port=options.port,
         names=tuple(options.name),
@@ -208,8 +209,7 @@ def _data_folder(options: argparse.Namespace, *, is_made: bool = False) -> "Data
     folder, database = _data(options), _database(options)
     if not (is_made or database or (folder / DATABASE).is_file()):
         raise StepNcError(f"{folder}: not a data folder of the service; name it with --data")
-    files = "" if options.files is None else str(options.files)
-    return open_data_folder(folder, files=files, database=database)
+    return open_data_folder(folder, files=options.files, database=database)
 
 
 def _create(options: argparse.Namespace) -> int:

@@ -3,6 +3,7 @@
 import logging
 import signal
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from time import monotonic, sleep
 from types import FrameType
 from typing import Any, TypeVar
@@ -64,6 +65,7 @@ def main(folder: FolderAddress, id: str, attempt: int) -> None:
         signal.signal(signal.SIGTERM, _cancel)
         if task.make_folder():
             _work(job)(task)
+            _insisting(task.publish)
     except Cancelled:
         state = JobState.CANCELLED
     except StepNcError as error:
@@ -93,6 +95,9 @@ def _finish(task: RunningJob, state: JobState, problem: Mapping[str, Any] | None
     """Record the final state of a job."""
     if state is not JobState.SUCCEEDED:
         clear(task.folder, UNFINISHED)
+        # Rows of a run that was ended are kept, where there is room for them.
+        with suppress(Unavailable):
+            task.publish()
     _insisting(lambda: jobs.finish(task.data_folder, task.job, state, problem=problem))
 
 

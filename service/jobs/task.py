@@ -107,6 +107,17 @@ class RunningJob:
             clear(self.folder, UNFINISHED)
         return is_current
 
+    def publish(self) -> None:
+        """Show the results of this attempt to other hosts.
+
+        Raises
+        ------
+        Unavailable
+            When the store of files does not answer.
+        """
+        if self.data_folder.store is not None and self.folder.is_dir():
+            self.data_folder.store.publish_folder(self.folder)
+
     def program_file(self) -> tuple[Path, str]:
         """Return file and name of the program to run: an upload or an optimised program.
 
@@ -138,9 +149,9 @@ def program_file(data_folder: DataFolder, *, program: str, source: str) -> tuple
 
     name = programs.get(data_folder, program).name
     if not source:
-        return data_folder.program_file(program), name
+        return data_folder.fetched(data_folder.program_file(program)), name
     jobs.get(data_folder, source, JobKind.ADVICE)
-    file = data_folder.job_folder(source) / OPTIMISED
+    file = data_folder.fetched(data_folder.job_folder(source) / OPTIMISED)
     if not file.is_file():
         raise NotFound("optimised program of advice", source)
     return file, optimised_name(name)

@@ -150,6 +150,4 @@ class SharedRateLimit:
             self._swept_at = now
             rates.sweep(self._database, unused=self._burst / self._rate)
         most = max(self._burst // SHARE, 1)
-        return rates.take(
-            self._database, client, most=most, rate=self._rate, burst=self._burst
-        )
+        return rates.take(self._database, client, most=most, rate=self._rate, burst=self._burst)

@@ -28,7 +28,7 @@ class Settings:
     database: str = ""
     """Address of a PostgreSQL server that several hosts share; empty: a file."""
     files: str = ""
-    """Path of the folder of files that these hosts share; empty: the data folder."""
+    """Folder, or URL of a store, of the files that these hosts share; empty: in ``data``."""
     host: str = "127.0.0.1"
     port: int = 8000
     names: tuple[str, ...] = ()

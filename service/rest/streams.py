@@ -10,6 +10,7 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -102,7 +103,7 @@ class RunReader:
         self.clients: set[StreamClient] = set()
         self.is_finished = False
         self._data_folder, self._id = data_folder, id
-        self._folder = LiveFolder(path=data_folder.job_folder(id))
+        self._folder = LiveFolder(path=Path())
         self._row = 0
         self._offset = 0
         self._job: bytes = b""
@@ -112,6 +113,7 @@ class RunReader:
         """Poll and send until the job has ended or no subscriber is left."""
         try:
             with suppress(NotFound):
+                await self._current()
                 self._skip()
                 while self.clients:
                     job = await self._current()
@@ -129,10 +131,15 @@ class RunReader:
                 client.end()
 
     async def _current(self) -> Job:
-        """Return the job as it is; nobody else waits while a server is slow to answer."""
+        """Return the job as it is, and find its folder."""
         if self._data_folder.database.is_shared:
-            return await asyncio.to_thread(jobs.get, self._data_folder, self._id)
-        return jobs.get(self._data_folder, self._id)
+            # Nobody else waits while a server is slow to answer.
+            job = await asyncio.to_thread(jobs.get, self._data_folder, self._id)
+        else:
+            job = jobs.get(self._data_folder, self._id)
+        path = self._data_folder.run_folder(job.id, job.attempt)
+        self._folder = LiveFolder(path=path)
+        return job
 
     def _skip(self) -> None:
         """Skip rows and events written so far; subscribers read those from the files."""

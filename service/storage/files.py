@@ -166,6 +166,7 @@ class FileUpload:
             self.path.replace(place)
         kept = ""
         try:
+            self._data_folder.publish(place)
             with self._data_folder.database.writing() as connection:
                 known = made_before(connection, idempotency)
                 if known is None:
@@ -180,7 +181,7 @@ class FileUpload:
             kept = known or stored.id
         finally:
             if kept != stored.id:
-                place.unlink(missing_ok=True)
+                self._data_folder.discard(place)
         return stored if kept == stored.id else get(self._data_folder, kept)
 
 
@@ -212,7 +213,7 @@ def require_file(data_folder: DataFolder, id: str, kind: FileKind) -> Path:
     NotFound
         When the file or its content does not exist.
     """
-    path = file_of(data_folder, get(data_folder, id, kind))
+    path = data_folder.fetched(file_of(data_folder, get(data_folder, id, kind)))
     if not path.is_file():
         raise NotFound(f"content of {kind.words}", id)
     return path
@@ -257,7 +258,7 @@ def remove(data_folder: DataFolder, id: str) -> None:
             raise Conflict(f"job '{busy['id']}' uses {words} '{id}': cancel it first")
         if not connection.execute("DELETE FROM files WHERE id = ?", (id,)).rowcount:
             raise NotFound("file", id)
-    file_of(data_folder, stored).unlink(missing_ok=True)
+    data_folder.discard(file_of(data_folder, stored))
 
 
 def _stored(row: Row) -> StoredFile:

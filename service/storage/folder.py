@@ -2,7 +2,9 @@
 
 With a database on a server, several hosts share one folder of files. Each attempt of a job then
 writes into a folder of its own, and the job's folder is a link to the current one: a host that
-was taken for dead, and goes on, changes nothing that anybody reads.
+was taken for dead, and goes on, changes nothing that anybody reads. Instead of a folder they
+may share a store of files: attempts are then copied to it before their end is recorded, and
+the database alone says which one counts.
 """
 
 import os
@@ -18,6 +20,7 @@ from service.knowledge.place import named_place
 from service.live.storage import storing
 from service.storage.connection import Database
 from service.storage.database import FileDatabase
+from service.storage.file_store import FileStore, is_store
 
 PRIVATE = 0o700
 
@@ -37,7 +40,7 @@ class FolderAddress:
     root: str
     """Path of the folder."""
     files: str = ""
-    """Path of the folder of files; empty: the data folder."""
+    """Folder of files, or URL of a store of files; empty: the data folder."""
     database: str = ""
     """Address of a server; empty: a file in the folder."""
     knowledge: str = ""
@@ -52,7 +55,10 @@ class DataFolder:
     root: Path
     """Folder of this host."""
     files: Path
-    """Folder of programs, results and library; shared by all hosts of a database."""
+    """Folder of programs, results and library; shared by all hosts of a database, or copies
+    of what they share in a store."""
+    store: FileStore | None = None
+    """Store of files that the hosts share instead of a folder."""
     database: Database
     knowledge: str
     """Location of the knowledge base."""
@@ -72,12 +78,54 @@ class DataFolder:
     def job_folder(self, id: str) -> Path:
         """Folder of a job's results; raises the same errors as :meth:`program_file`."""
         _require_id("job", id)
-        return self.files / "jobs" / id
+        if self.store is None:
+            return self.files / "jobs" / id
+        with self.database.reading() as connection:
+            row = connection.execute("SELECT attempt FROM jobs WHERE id = ?", (id,)).fetchone()
+        if row is None:
+            raise NotFound("job", id)
+        return self.attempt_folder(id, row["attempt"])
+
+    def run_folder(self, id: str, attempt: int) -> Path:
+        """Folder of a job whose current attempt is known, which saves asking for it."""
+        return self.job_folder(id) if self.store is None else self.attempt_folder(id, attempt)
 
     def attempt_folder(self, id: str, attempt: int) -> Path:
         """Folder into which an attempt of a job writes."""
-        folder = self.job_folder(id)
+        _require_id("job", id)
+        folder = self.files / "jobs" / id
         return folder.with_name(f"{id}.{attempt}") if self.database.is_shared else folder
+
+    def fetched(self, path: Path) -> Path:
+        """Return a path below the folder of files; a file in a store is copied there.
+
+        Raises
+        ------
+        Unavailable
+            When the store does not answer.
+        """
+        if self.store is not None:
+            self.store.fetch(path)
+        return path
+
+    def publish(self, path: Path) -> None:
+        """Show a file to the other hosts; in a folder that they share, they see it anyway.
+
+        Raises
+        ------
+        Unavailable
+            When the store does not answer.
+        """
+        if self.store is not None:
+            self.store.publish(path)
+
+    def discard(self, path: Path) -> None:
+        """Delete a file here and in the store; failures are ignored."""
+        with suppress(OSError):
+            path.unlink(missing_ok=True)
+        if self.store is not None:
+            with suppress(Unavailable):
+                self.store.remove(path)
 
 
 def open_data_folder(
@@ -91,13 +139,15 @@ def open_data_folder(
         When the folder cannot be created, or its database cannot be opened.
     """
     address = FolderAddress(root=str(root), files=files, database=database, knowledge=knowledge)
+    # Nothing is made for a server that does not answer.
+    made = _data_folder(address) if database else None
     root, place = _folders(address)
     for folder, named in ((root, root), *((place / name, place) for name in FOLDERS)):
         try:
             folder.mkdir(mode=PRIVATE, parents=True, exist_ok=True)
         except OSError as error:
             raise Unavailable(f"{named}: {error.strerror or error}") from error
-    return _data_folder(address)
+    return made or _data_folder(address)
 
 
 def known_data_folder(address: FolderAddress) -> DataFolder:
@@ -119,19 +169,29 @@ def known_data_folder(address: FolderAddress) -> DataFolder:
 
 
 def _folders(address: FolderAddress) -> tuple[Path, Path]:
-    return Path(address.root), Path(address.files or address.root)
+    files = address.root if is_store(address.files) else address.files
+    return Path(address.root), Path(files or address.root)
 
 
 def _data_folder(address: FolderAddress) -> DataFolder:
     root, files = (folder.resolve() for folder in _folders(address))
     url = address.database
+    store = FileStore(address.files, files) if is_store(address.files) else None
+    if store is not None and not url:
+        raise Unavailable(f"--files {store.protocol}://… needs --database: it names the files")
     known = named_place(address.knowledge) or url or str(root / "knowledge.db")
     return DataFolder(
         root=root,
         files=files,
+        store=store,
         database=_server(url) if url else FileDatabase(root / DATABASE),
         knowledge=known,
-        address=replace(address, root=str(root), files=str(files), knowledge=known),
+        address=replace(
+            address,
+            root=str(root),
+            files=str(files) if store is None else address.files,
+            knowledge=known,
+        ),
     )
 
 
@@ -146,7 +206,7 @@ def _server(url: str) -> Database:
 
 
 def require_shared_files(data_folder: DataFolder) -> None:
-    """Refuse a folder of files that is not the one of the other hosts.
+    """Refuse files that are not those of the other hosts.
 
     Raises
     ------
@@ -155,20 +215,35 @@ def require_shared_files(data_folder: DataFolder) -> None:
     """
     if not data_folder.database.is_shared:
         return
-    mark = data_folder.files / MARK
+    store = data_folder.store
+    if store is not None and store.is_private:
+        raise Unavailable(
+            f"--files {store.protocol}://…: only one process sees these files; "
+            "name a folder or a store that all hosts share"
+        )
     with data_folder.database.writing() as connection, storing(MARK):
         connection.lock("folder")
         row = connection.execute("SELECT id FROM folder").fetchone()
-        here = mark.read_text("ascii").strip() if mark.is_file() else ""
+        here = _mark(data_folder)
         if row is None:
             here = here or new_id()
-            write_atomically(mark, f"{here}\n".encode())
+            write_atomically(data_folder.files / MARK, f"{here}\n".encode())
+            data_folder.publish(data_folder.files / MARK)
             connection.execute("INSERT INTO folder VALUES (?)", (here,))
         elif row["id"] != here:
+            place = data_folder.files if store is None else f"--files {store.protocol}://…"
             raise Unavailable(
-                f"{data_folder.files}: the hosts of this database keep their files in another "
+                f"{place}: the hosts of this database keep their files in another "
                 "folder; name the folder that they share with --files"
             )
+
+
+def _mark(data_folder: DataFolder) -> str:
+    """Return the identity of the files; empty if they have none."""
+    if data_folder.store is not None:
+        return (data_folder.store.read(MARK) or b"").decode("ascii", "replace").strip()
+    mark = data_folder.files / MARK
+    return mark.read_text("ascii").strip() if mark.is_file() else ""
 
 
 def show_attempt(data_folder: DataFolder, id: str, attempt: int) -> None:
@@ -181,6 +256,7 @@ def show_attempt(data_folder: DataFolder, id: str, attempt: int) -> None:
     """
     folder, own = data_folder.job_folder(id), data_folder.attempt_folder(id, attempt)
     if own == folder:
+        # The only attempt that counts, or the one that the database names.
         own.mkdir(mode=PRIVATE, exist_ok=True)
         return
     if folder.is_dir() and not folder.is_symlink():
@@ -213,14 +289,19 @@ def _link(folder: Path, own: Path) -> None:
     os.replace(link, folder)
 
 
-def remove_results(data_folder: DataFolder, id: str) -> None:
-    """Delete all folders of a job; failures are ignored."""
-    folder = data_folder.job_folder(id)
+def remove_results(data_folder: DataFolder, id: str, *, attempts: int) -> None:
+    """Delete the folders of all attempts of a job; failures are ignored."""
+    _require_id("job", id)
+    folder = data_folder.files / "jobs" / id
     if folder.is_symlink():
         with suppress(OSError):
             folder.unlink()
     for each in (folder, *folder.parent.glob(f"{id}.*")):
         shutil.rmtree(each, ignore_errors=True)
+    if data_folder.store is not None:
+        for attempt in range(1, attempts + 1):
+            with suppress(Unavailable):
+                data_folder.store.remove(data_folder.attempt_folder(id, attempt))
 
 
 def _require_id(thing: str, id: str) -> None:

@@ -228,11 +228,13 @@ def remove(data_folder: DataFolder, id: str) -> None:
     """
     with data_folder.database.writing() as connection:
         gone = connection.execute(
-            "DELETE FROM jobs WHERE id = ? AND state NOT IN ('queued', 'running')", (id,)
-        ).rowcount
-    if not gone:
+            "DELETE FROM jobs WHERE id = ? AND state NOT IN ('queued', 'running') "
+            "RETURNING attempt",
+            (id,),
+        ).fetchone()
+    if gone is None:
         raise Conflict(f"job '{id}' is {get(data_folder, id).state.value}: cancel it first")
-    remove_results(data_folder, id)
+    remove_results(data_folder, id, attempts=gone["attempt"])
 
 
 def claim(
@@ -365,9 +367,7 @@ def _update(data_folder: DataFolder, job: Job, columns: str, values: Sequence[ob
         _changed(connection, job, columns, values)
 
 
-def _changed(
-    connection: Connection, job: Job, columns: str, values: Sequence[object]
-) -> bool:
+def _changed(connection: Connection, job: Job, columns: str, values: Sequence[object]) -> bool:
     """Change a running job; False if a later attempt has taken over."""
     return bool(
         connection.execute(

@@ -214,9 +214,10 @@ def put(
         with _in_turn(data_folder, section):
             before = _changeable(data_folder, section, name, condition)
             write_atomically(file, data)
+            data_folder.publish(file)
             for other in before:
                 if other != file:
-                    other.unlink(missing_ok=True)
+                    data_folder.discard(other)
     return LibraryEntry(name=name, is_own=True, entry=entry, text=data)
 
 
@@ -237,7 +238,9 @@ def _changeable(
     data_folder: DataFolder, section: LibrarySection, name: str, condition: Condition
 ) -> list[Path]:
     """Return the files of a name that may be changed; the lock must be held."""
-    files = _own_files(data_folder, section, name)
+    if data_folder.store is not None:
+        data_folder.store.mirror(data_folder.files / section.value, at_once=True)
+    files = _files_of(data_folder, section, name)
     if not condition(_text(files[0]) if files else None):
         what = "has changed since it was read" if files else "does not exist"
         raise PreconditionFailed(f"{section.one} '{name}' {what}")
@@ -288,7 +291,7 @@ def remove(
             raise NotFound(section.one, name)
         # The preferred file is deleted last, so that no other becomes visible meanwhile.
         for file in reversed(files):
-            file.unlink(missing_ok=True)
+            data_folder.discard(file)
 
 
 def _suffix(section: LibrarySection, data: bytes) -> str:
@@ -301,6 +304,20 @@ def _own_file(data_folder: DataFolder, section: LibrarySection, name: str) -> Pa
 
 
 def _own_files(data_folder: DataFolder, section: LibrarySection, name: str) -> list[Path]:
+    """Files of a name as of now, preferred one first."""
+    _mirror(data_folder, section)
+    return _files_of(data_folder, section, name)
+
+
+def _mirror(data_folder: DataFolder, section: LibrarySection) -> None:
+    """Compare the files of a section with those in the store, if there is one."""
+    if data_folder.store is not None:
+        folder = data_folder.files / section.value
+        with locked(folder):
+            data_folder.store.mirror(folder)
+
+
+def _files_of(data_folder: DataFolder, section: LibrarySection, name: str) -> list[Path]:
     """Files of a name, preferred one first; a second one may remain after a power failure."""
     if not _NAME.fullmatch(name):
         return []
@@ -321,6 +338,7 @@ def _text(file: Path) -> bytes | None:
 
 def _names(data_folder: DataFolder, section: LibrarySection) -> list[str]:
     of_library = _library(section)
+    _mirror(data_folder, section)
     with storing(section.value):
         files = [
             path for path in (data_folder.files / section.value).iterdir()

@@ -54,6 +54,7 @@ def add(
     write_atomically(place, data)
     kept = ""
     try:
+        data_folder.publish(place)
         with data_folder.database.writing() as connection:
             known = made_before(connection, idempotency)
             if known is None:
@@ -68,7 +69,7 @@ def add(
         kept = known or program.id
     finally:
         if kept != program.id:
-            place.unlink(missing_ok=True)
+            data_folder.discard(place)
     return program if kept == program.id else get(data_folder, kept)
 
 
@@ -96,7 +97,7 @@ def require_file(data_folder: DataFolder, id: str) -> None:
         When the bytes or the program do not exist.
     """
     get(data_folder, id)
-    if not data_folder.program_file(id).is_file():
+    if not data_folder.fetched(data_folder.program_file(id)).is_file():
         raise NotFound(FILE, id)
 
 
@@ -131,7 +132,7 @@ def remove(data_folder: DataFolder, id: str) -> None:
         gone = connection.execute("DELETE FROM programs WHERE id = ?", (id,)).rowcount
         if not gone:
             raise NotFound("program", id)
-    data_folder.program_file(id).unlink(missing_ok=True)
+    data_folder.discard(data_folder.program_file(id))
 
 
 def shown_name(name: str) -> str:

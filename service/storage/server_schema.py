@@ -68,7 +68,7 @@ SCHEMA: tuple[tuple[str, ...], ...] = (
         )
         """,
         "CREATE INDEX files_by_kind ON files (kind, id)",
-        # Buckets of the rate limit; after a crash of the server they are full, and none is lost.
+        # Buckets of the rate limit; after a crash of the server all are full.
         """
         CREATE UNLOGGED TABLE rates (
             client TEXT PRIMARY KEY, tokens DOUBLE PRECISION NOT NULL,

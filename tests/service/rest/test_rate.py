@@ -96,9 +96,7 @@ def test_processes_of_one_database_admit_a_burst_together(
     new_database: str, at_once: int
 ) -> None:
     # The rate is so small that nothing flows in during the test.
-    limits = [
-        SharedRateLimit(ServerDatabase(new_database), 1e-6, burst=40) for _ in range(2)
-    ]
+    limits = [SharedRateLimit(ServerDatabase(new_database), 1e-6, burst=40) for _ in range(2)]
     assert asyncio.run(taken_by(limits, "a", at_once=at_once)) == 40
     assert asyncio.run(taken_by(limits, "b", at_once=at_once)) == 40
 
