@@ -250,7 +250,7 @@ async def parts(
     """Download the table of parts of a machine, first replication."""
     job = jobs.get(data_folder, id, JobKind.FACTORY)
     folder = data_folder.run_folder(job.id, job.attempt)
-    await fetched(data_folder, folder / TABLES / f"{Path(machine).name}.csv")
+    await fetched(data_folder, folder / TABLES / f"{FilePath(machine).name}.csv")
     file = table_of(folder, machine)
     if file is None:
         raise NotFound("table of parts", machine)

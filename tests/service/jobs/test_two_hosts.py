@@ -33,7 +33,7 @@ folder = FolderAddress(root=sys.argv[1], files=sys.argv[2], database=sys.argv[3]
 runner.main(folder, 2, os.getppid())
 """
 
-JOBS = 160
+JOBS = 100
 KILLS = 6
 
 AUDIT = """

@@ -14,14 +14,16 @@ from sqlalchemy.engine import make_url
 from service.errors import Conflict, NotFound, Unavailable
 from service.storage import jobs, programs, server_database
 from service.storage.database import FileDatabase
+from service.storage.files import FileKind, FileUpload
 from service.storage.folder import (
     DataFolder,
     FolderAddress,
     known_data_folder,
     open_data_folder,
     require_shared_files,
+    show_attempt,
 )
-from service.storage.jobs import JobKind, JobRequest
+from service.storage.jobs import JobKind, JobRequest, JobState
 from service.storage.server_database import ServerDatabase
 from service.storage.server_schema import PACED, SCHEMA
 from tests.postgres import Server, ServerMaker
@@ -50,6 +52,54 @@ def test_both_databases_have_the_same_tables(tmp_path: Path, new_database: str) 
         assert columns(file, table) == columns(server, table), table
     # A file has row ids of its own.
     assert [*columns(file, "jobs"), "rowid"] == columns(server, "jobs")
+
+
+@pytest.mark.parametrize("kind", JobKind)
+@pytest.mark.parametrize("pace", [None, 0.0, 2.0])
+def test_each_kind_of_work_is_claimed_alike_by_both_databases(
+    data_folder: DataFolder, kind: JobKind, pace: float | None
+) -> None:
+    words = {} if pace is None else {"pace": pace}
+    made = jobs.add(data_folder, JobRequest(kind=kind, request=words, owner="anna"))
+    is_paced = jobs.get(data_folder, made.id).is_paced
+    if pace and kind not in PACES:
+        # No request of these has a pace.
+        return
+    assert jobs.claim(data_folder, is_paced=not is_paced) is None
+    claimed = jobs.claim(data_folder, is_paced=is_paced)
+    assert claimed is not None
+    jobs.recover(data_folder, [claimed])
+    # People were in a live run; others begin again.
+    live = {JobKind.CONTROL, JobKind.TRIAL} | ({JobKind.FACTORY} if pace else set())
+    wanted = JobState.FAILED if kind in live else JobState.QUEUED
+    assert jobs.get(data_folder, made.id).state is wanted
+
+
+PACES = {JobKind.CONTROL, JobKind.TRIAL, JobKind.SIMULATION, JobKind.FACTORY}
+
+
+def test_a_migration_that_breaks_off_leaves_nothing_and_a_whole_one_keeps_all(
+    new_database: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    data_folder = open_data_folder(tmp_path, database=new_database)
+    kept = jobs.add(data_folder, ORDER)
+    more = ("ALTER TABLE jobs ADD COLUMN note TEXT NOT NULL DEFAULT ''",)
+    for script, is_good in (((*more, "CREATE nonsense"), False), (more, True)):
+        monkeypatch.setattr(server_database, "SCHEMA", (*SCHEMA, script))
+        if is_good:
+            ServerDatabase(new_database).close()
+        else:
+            with pytest.raises(Unavailable):
+                ServerDatabase(new_database)
+        with psycopg.connect(new_database) as connection:
+            row = connection.execute(
+                "SELECT max(number), (SELECT count(*) FROM information_schema.columns "
+                "WHERE table_schema = 'stepnc_service' AND column_name = 'note') "
+                "FROM stepnc_service.version"
+            ).fetchone()
+        assert row == (len(SCHEMA) + is_good, int(is_good))
+    # A host that still runs the former program goes on.
+    assert jobs.get(data_folder, kept.id) == kept
 
 
 def test_a_claim_reads_only_the_index_of_what_waits(new_database: str) -> None:
@@ -193,7 +243,7 @@ def test_a_connection_that_broke_while_idle_is_replaced_unseen(
     kept = jobs.add(data_folder, ORDER)
     with psycopg.connect(new_database, autocommit=True) as other:
         other.execute(
-            "SELECT pg_terminate_backend(pid) FROM pg_stat_activity "
+            "SELECT pg_terminate_backend(pid, 5000) FROM pg_stat_activity "
             "WHERE application_name = 'stepnc' AND datname = current_database()"
         )
     assert jobs.get(data_folder, kept.id) == kept
@@ -291,16 +341,59 @@ def test_a_host_that_was_taken_for_dead_changes_nothing_that_is_read(
     (second.attempt_folder(id, 2) / "result.json").write_text("new", "utf-8")
     # Now the first host goes on.
     assert not jobs.begin(first, old)
-    jobs.finish(first, old, jobs.JobState.FAILED, problem={"detail": "old"})
-    assert jobs.get(first, id).state is jobs.JobState.RUNNING
-    jobs.finish(second, new, jobs.JobState.SUCCEEDED)
-    jobs.finish(first, old, jobs.JobState.FAILED, problem={"detail": "old"})
+    jobs.finish(first, old, JobState.FAILED, problem={"detail": "old"})
+    assert jobs.get(first, id).state is JobState.RUNNING
+    jobs.finish(second, new, JobState.SUCCEEDED)
+    jobs.finish(first, old, JobState.FAILED, problem={"detail": "old"})
     found = jobs.get(first, id)
-    assert (found.state, found.attempt, found.problem) == (jobs.JobState.SUCCEEDED, 2, None)
+    assert (found.state, found.attempt, found.problem) == (JobState.SUCCEEDED, 2, None)
     assert (first.job_folder(id) / "result.json").read_text("utf-8") == "new"
     assert not first.attempt_folder(id, 1).exists()
     jobs.remove(first, id)
     assert list((tmp_path / "shared" / "jobs").iterdir()) == []
+
+
+def test_the_results_that_count_are_shown_whoever_was_stopped_in_the_middle(
+    new_database: str, tmp_path: Path
+) -> None:
+    first, second = hosts(new_database, tmp_path)
+    id = jobs.add(first, ORDER).id
+    old = jobs.claim(first, runner="a")
+    assert old is not None
+    jobs.recover(second, [old])
+    new = jobs.claim(second, runner="b")
+    assert new is not None
+    assert jobs.begin(second, new)
+    (second.attempt_folder(id, 2) / "result.json").write_text("new", "utf-8")
+    # As when it was stopped for longer than its transaction may wait, and goes on now.
+    show_attempt(first, id, 1)
+    jobs.finish(second, new, JobState.SUCCEEDED)
+    assert (first.job_folder(id) / "result.json").read_text("utf-8") == "new"
+
+
+def test_no_job_is_queued_for_a_file_that_is_being_deleted(
+    new_database: str, tmp_path: Path
+) -> None:
+    data_folder = open_data_folder(tmp_path, database=new_database)
+    with FileUpload(data_folder, FileKind.LOG, "run.csv") as upload:
+        upload.close()
+        id = upload.keep(owner="anna").id
+    order = JobRequest(kind=JobKind.VERIFICATION, request={"log_id": id}, owner="anna")
+    said: list[str] = []
+
+    def add() -> None:
+        with pytest.raises(NotFound) as refused:
+            jobs.add(data_folder, order)
+        said.append(str(refused.value))
+
+    thread = Thread(target=add)
+    with data_folder.database.writing() as connection:
+        connection.lock(f"file {id}")
+        thread.start()
+        until(lambda: waits(new_database))
+        connection.execute("DELETE FROM files WHERE id = ?", (id,))
+    thread.join(10.0)
+    assert said == [f"there is no log '{id}'"]
 
 
 def test_orders_that_came_before_the_run_are_found_by_it(
