@@ -3,7 +3,9 @@
 Each host is ``stepnc serve`` in a process group and data folder of its own; the folder of
 files is shared. A client sends small jobs to either host and repeats what was not answered. A
 trigger of the database counts how often each job has ended. The database's own cost of a claim,
-and of a rate limit that all processes would share, is measured beside it.
+and of a rate limit that all processes share, is measured beside it. With ``--queue``, the
+runners of two hosts empty a queue of jobs that take no time instead: what is measured and
+killed then is only the claiming and ending.
 """
 
 import argparse
@@ -21,6 +23,7 @@ import urllib.error
 import urllib.request
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from random import Random
 from statistics import quantiles
@@ -29,7 +32,7 @@ from uuid import UUID
 import psycopg
 
 from kbe.store import open_store
-from service.storage import jobs
+from service.storage import jobs, rates
 from service.storage.folder import DataFolder, open_data_folder
 from service.storage.jobs import JobKind, JobRequest
 from tests.postgres import started_server
@@ -51,6 +54,23 @@ EXECUTE FUNCTION stepnc_service.record_end()
 
 OUTCOMES, BATCH = 20_000, 1000
 
+QUICK = """
+import os, sys, time
+from service.jobs import runner
+from service.storage import jobs, rates
+from service.storage.folder import FolderAddress
+
+class Quick(runner.Runner):
+    def _start(self, context, job):
+        jobs.finish(self.data_folder, job, jobs.JobState.SUCCEEDED)
+        return time.monotonic() - self._beaten_at < runner.BEAT
+
+runner.Runner = Quick
+folder = FolderAddress(root=sys.argv[1], files=sys.argv[2], database=sys.argv[3])
+runner.main(folder, 2, os.getppid())
+"""
+"""a runner whose jobs have ended when they begin"""
+
 ANSWER = 5.0
 """s that the client waits for an answer before it asks the other host"""
 
@@ -61,22 +81,26 @@ class Host:
 
     data: Path
     words: list[str]
-    port: int
+    port: int = 0
     process: subprocess.Popen[bytes] | None = None
 
     def start(self) -> None:
         """Start it, without waiting."""
         self.data.mkdir(exist_ok=True)
-        command = [
-            sys.executable, "-c", "from service.cli.main import main; main()", "serve",
-            "--data", str(self.data), "--port", str(self.port), "--log-level", "warning",
-            *self.words,
-        ]  # fmt: skip
+        command = [sys.executable, "-c", *self._words()]
         with (self.data / "log").open("ab") as log:
             self.process = subprocess.Popen(
                 command, cwd=ROOT, stdout=log, stderr=log, start_new_session=True,
                 env={**os.environ, "PYTHONPATH": str(ROOT)},
             )  # fmt: skip
+
+    def _words(self) -> list[str]:
+        if not self.port:
+            return [QUICK, str(self.data), *self.words]
+        return [
+            "from service.cli.main import main; main()", "serve", "--data", str(self.data),
+            "--port", str(self.port), "--log-level", "warning", *self.words,
+        ]  # fmt: skip
 
     def kill(self) -> None:
         """Kill all of its processes at once."""
@@ -128,6 +152,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--jobs", type=int, default=1000)
     parser.add_argument("--kills", type=int, default=30)
     parser.add_argument("--seed", type=int, default=18)
+    parser.add_argument("--queue", type=int, default=0, help="jobs that take no time")
     options = parser.parse_args(arguments)
     if not list(Path("/usr/lib/postgresql").glob("*/bin/initdb")):
         print("left out: PostgreSQL is not installed (apt-get install postgresql)")
@@ -138,10 +163,13 @@ def main(arguments: list[str] | None = None) -> None:
             place = Path(folder)
             files = str(place / "files")
             data_folder = open_data_folder(place / "c", database=server.url, files=files)
-            _claims(data_folder)
-            _limit(server.url)
-            _outcomes(server.url)
-            _hosts(place, server.url, options)
+            if options.queue:
+                _queue(place, data_folder, options)
+            else:
+                _claims(data_folder)
+                _limit(data_folder)
+                _outcomes(server.url)
+                _hosts(place, server.url, options)
             data_folder.database.close()
     finally:
         server.stop("fast")
@@ -177,6 +205,58 @@ def _hosts(folder: Path, url: str, options: argparse.Namespace) -> None:
         for host in hosts:
             host.kill()
     _print(url, client, elapsed=elapsed, kills=kills)
+
+
+def _queue(folder: Path, data_folder: DataFolder, options: argparse.Namespace) -> None:
+    """Let two runners empty a long queue while either is killed now and then."""
+    url, files = data_folder.address.database, data_folder.address.files
+    with psycopg.connect(url, autocommit=True) as connection:
+        connection.execute(AUDIT)
+        connection.execute(
+            "INSERT INTO stepnc_service.jobs "
+            "(id, kind, state, request, program, source, owner, created) "
+            "SELECT lpad(i::TEXT, 26, '0'), 'review', 'queued', '{}', '', '', 'local', 0 "
+            "FROM generate_series(1, %s) AS i",
+            (options.queue,),
+        )
+    hosts = [Host(data=folder / name, words=[files, url]) for name in ("a", "b")]
+    for host in hosts:
+        host.start()
+    random, kills = Random(options.seed), 0
+    while _ended(url) < 1:
+        time.sleep(0.1)
+    begin = time.monotonic()
+    try:
+        while _waiting(url):
+            time.sleep(random.uniform(0.5, 10.0))
+            if kills < options.kills:
+                host = random.choice(hosts)
+                host.kill()
+                time.sleep(12.0 if kills % 10 == 9 else 0.0)
+                host.start()
+                kills += 1
+    finally:
+        for host in hosts:
+            host.kill()
+    elapsed = time.monotonic() - begin
+    with psycopg.connect(url) as connection:
+        row = connection.execute(
+            "SELECT count(*), count(DISTINCT id), count(*) FILTER (WHERE state = 'succeeded'), "
+            "count(*) FILTER (WHERE attempt > 1) FROM stepnc_service.ends"
+        ).fetchone()
+    assert row is not None
+    print(f"jobs queued: {options.queue}; runners killed: {kills} times in {elapsed:.0f} s; "
+          f"{options.queue / elapsed:.0f} jobs/s")  # fmt: skip
+    print(f"never ended: {options.queue - row[1]}; ended more than once: {row[0] - row[1]}; "
+          f"succeeded: {row[2]}; claimed again after a kill: {row[3]}")  # fmt: skip
+    print(f"{_size(url, 'stepnc_service.jobs') / options.queue:.0f} bytes of the database for "
+          "each job, with indexes")  # fmt: skip
+
+
+def _ended(url: str) -> int:
+    with psycopg.connect(url) as connection:
+        row = connection.execute("SELECT count(*) FROM stepnc_service.ends").fetchone()
+    return 0 if row is None else int(row[0])
 
 
 def _print(url: str, client: Client, *, elapsed: float, kills: int) -> None:
@@ -220,20 +300,13 @@ def _claims(data_folder: DataFolder) -> None:
         print(f"{name:28}{_quantile(times, 50):10.2f}{_quantile(times, 99):10.2f}")
 
 
-def _limit(url: str) -> None:
-    """Cost of a request's token in a bucket that all web processes would share."""
-    with psycopg.connect(url, autocommit=True) as connection:
-        connection.execute(
-            "CREATE TABLE stepnc_service.bucket (key TEXT PRIMARY KEY, tokens REAL, at REAL)"
-        )
-        connection.execute("INSERT INTO stepnc_service.bucket VALUES ('k', 100, 0)")
-        connection.execute("SET synchronous_commit = off")
-        text = (
-            "UPDATE stepnc_service.bucket SET tokens = least(100, tokens + 1) - 1 "
-            "WHERE key = 'k'"
-        )
-        times = _timed(lambda: connection.execute(text), 2000)
-    print(f"{'a token of a shared bucket':28}{_quantile(times, 50):10.2f}"
+def _limit(data_folder: DataFolder) -> None:
+    """Cost of fetching a tenth of a burst out of the bucket that all hosts share."""
+    fetch = partial(
+        rates.take, data_folder.database, "bench", most=10, rate=1e6, burst=100
+    )  # fmt: skip
+    times = _timed(fetch, 1000)
+    print(f"{'ten requests of the rate':28}{_quantile(times, 50):10.2f}"
           f"{_quantile(times, 99):10.2f}")  # fmt: skip
 
 

@@ -10,7 +10,6 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -103,7 +102,7 @@ class RunReader:
         self.clients: set[StreamClient] = set()
         self.is_finished = False
         self._data_folder, self._id = data_folder, id
-        self._folder = LiveFolder(path=Path())
+        self._folder = LiveFolder(path=data_folder.job_folder(id))
         self._row = 0
         self._offset = 0
         self._job: bytes = b""

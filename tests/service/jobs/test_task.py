@@ -70,7 +70,7 @@ def test_a_program_is_an_upload_or_what_an_advice_made_of_it(data_folder: DataFo
         program_file(data_folder, **words)
     (task.folder / OPTIMISED).write_bytes(b"y")
     assert program_file(data_folder, **words) == (
-        task.folder / OPTIMISED,
+        data_folder.job_folder(task.job.id) / OPTIMISED,
         "part.one.optimised.stpnc",
     )
     with pytest.raises(NotFound, match="there is no advice"):

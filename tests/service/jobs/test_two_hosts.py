@@ -34,7 +34,7 @@ runner.main(folder, 2, os.getppid())
 """
 
 JOBS = 100
-KILLS = 6
+KILLS = 5
 
 AUDIT = """
 CREATE TABLE stepnc_service.ends (id TEXT, state TEXT, attempt BIGINT);
@@ -79,6 +79,12 @@ class Host:
         self.process.wait(20.0)
         self.process = None
 
+    @property
+    def name(self) -> str:
+        """Last part of the name of its runner; empty before it has begun."""
+        file = self.root / "runner.name"
+        return file.read_text("ascii").strip() if file.is_file() else ""
+
     def said(self) -> str:
         return (self.root / "log").read_text("utf-8", "replace")
 
@@ -107,7 +113,7 @@ class Shop:
         name = until(lambda: self.runner_of(id), within=60.0)
         return next(
             host for host in self.hosts
-            if (host.root / "runner.name").read_text("ascii").strip() in name
+            if host.name and host.name in name
         )  # fmt: skip
 
 
