@@ -26,16 +26,22 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from random import Random
-from statistics import quantiles
+from statistics import median, quantiles
 from uuid import UUID
 
 import psycopg
 
 from kbe.store import open_store
-from service.storage import jobs, rates
+from service.jobs import advise
+from service.jobs.task import RunningJob
+from service.requests.advice import AdviceRequest
+from service.requests.fields import dumped
+from service.storage import jobs, programs, rates
 from service.storage.folder import DataFolder, open_data_folder
 from service.storage.jobs import JobKind, JobRequest
+from stepnc_model.post.dialect import Dialect
 from tests.postgres import started_server
+from tests.service.rest.samples import SAMPLE
 from tests.service.shop import outcomes
 
 ROOT = Path(__file__).parents[1]
@@ -52,7 +58,7 @@ WHEN (OLD.state <> NEW.state AND NEW.state NOT IN ('queued', 'running'))
 EXECUTE FUNCTION stepnc_service.record_end()
 """
 
-OUTCOMES, BATCH = 20_000, 1000
+OUTCOMES, BATCH, ADVICES = 20_000, 1000, 9
 
 QUICK = """
 import os, sys, time
@@ -169,6 +175,7 @@ def main(arguments: list[str] | None = None) -> None:
                 _claims(data_folder)
                 _limit(data_folder)
                 _outcomes(server.url)
+                _advices(data_folder)
                 _hosts(place, server.url, options)
             data_folder.database.close()
     finally:
@@ -321,6 +328,29 @@ def _outcomes(url: str) -> None:
     size = _size(url, "outcome")
     print(f"outcomes: {OUTCOMES / elapsed:.0f} per s in batches of {BATCH}; "
           f"{size / OUTCOMES:.0f} bytes each with indexes")  # fmt: skip
+
+
+def _advices(data_folder: DataFolder) -> None:
+    """Processor time and bytes of an advice for the sample program, without its process."""
+    program = programs.add(data_folder, SAMPLE.read_bytes(), name=SAMPLE.name, owner="bench")
+    request = dumped(AdviceRequest(machine="vmc15", nc_control=Dialect.LINUXCNC))
+    asked = JobRequest(
+        kind=JobKind.ADVICE, request=request, program=program.id, owner=jobs.LOCAL
+    )
+    seconds: list[float] = []
+    for _ in range(ADVICES):
+        jobs.add(data_folder, asked)
+        job = jobs.claim(data_folder, kinds=[JobKind.ADVICE], runner="bench")
+        assert job is not None
+        task = RunningJob(data_folder=data_folder, job=job)
+        begin = time.process_time()
+        task.make_folder()
+        advise.run(task)
+        jobs.finish(data_folder, job, jobs.JobState.SUCCEEDED)
+        seconds.append(time.process_time() - begin)
+    size = program.size + sum(file.stat().st_size for file in task.folder.iterdir())
+    print(f"an advice for {SAMPLE.stem}: {median(seconds):.2f} s of a core; "
+          f"{size / 1e6:.3f} MB of files with the program")  # fmt: skip
 
 
 def _size(url: str, table: str) -> int:

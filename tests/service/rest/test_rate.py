@@ -7,7 +7,6 @@ import pytest
 from service.errors import TooMany
 from service.rest import rate
 from service.rest.rate import RateLimit, SharedRateLimit
-from service.storage import rates
 from service.storage.server_database import ServerDatabase
 from tests.postgres import Server, ServerMaker, new_database, new_server, postgres_url
 
@@ -99,19 +98,6 @@ def test_processes_of_one_database_admit_a_burst_together(
     limits = [SharedRateLimit(ServerDatabase(new_database), 1e-6, burst=40) for _ in range(2)]
     assert asyncio.run(taken_by(limits, "a", at_once=at_once)) == 40
     assert asyncio.run(taken_by(limits, "b", at_once=at_once)) == 40
-
-
-def test_a_shared_bucket_fills_by_the_clock_of_the_server(new_database: str) -> None:
-    database = ServerDatabase(new_database)
-    assert rates.take(database, "a", most=8, rate=1e-6, burst=8) == 8
-    with pytest.raises(TooMany) as refused:
-        rates.take(database, "a", most=8, rate=0.5, burst=8)
-    assert refused.value.wait == pytest.approx(2.0, abs=0.5)
-    with database.writing() as connection:
-        connection.execute("UPDATE rates SET seen = seen - 6")
-    assert rates.take(database, "a", most=8, rate=0.5, burst=8) == 3
-    rates.sweep(database, unused=-1.0)
-    assert rates.take(database, "a", most=8, rate=1e-6, burst=8) == 8
 
 
 def test_a_client_that_was_refused_asks_the_database_no_more(
