@@ -174,9 +174,10 @@ def main(arguments: list[str] | None = None) -> None:
             else:
                 _claims(data_folder)
                 _limit(data_folder)
-                _outcomes(server.url)
                 _advices(data_folder)
                 _hosts(place, server.url, options)
+                # At the end: reviews of so many are no small jobs.
+                _outcomes(server.url)
             data_folder.database.close()
     finally:
         server.stop("fast")
