@@ -338,6 +338,8 @@ def _advices(data_folder: DataFolder) -> None:
     asked = JobRequest(
         kind=JobKind.ADVICE, request=request, program=program.id, owner=jobs.LOCAL
     )
+    with open_store(data_folder.knowledge):
+        """made when it is new"""
     seconds: list[float] = []
     for _ in range(ADVICES):
         jobs.add(data_folder, asked)
