@@ -41,7 +41,7 @@ from service.storage.folder import DataFolder, open_data_folder
 from service.storage.jobs import JobKind, JobRequest
 from stepnc_model.post.dialect import Dialect
 from tests.postgres import started_server
-from tests.service.rest.samples import SAMPLE
+from tests.service.rest.samples import PARTS, SAMPLE
 from tests.service.shop import outcomes
 
 ROOT = Path(__file__).parents[1]
@@ -332,14 +332,22 @@ def _outcomes(url: str) -> None:
 
 
 def _advices(data_folder: DataFolder) -> None:
-    """Processor time and bytes of an advice for the sample program, without its process."""
-    program = programs.add(data_folder, SAMPLE.read_bytes(), name=SAMPLE.name, owner="bench")
+    """Processor time and bytes of an advice for two programs, without its process."""
+    with open_store(data_folder.knowledge):
+        """made when it is new"""
+    for file in (SAMPLE, PARTS / "bracket.stpnc"):
+        seconds, size = _advised(data_folder, file)
+        print(f"an advice for {file.stem}: {median(seconds):.2f} s of a core; "
+              f"{size / 1e6:.2f} MB of files with the program")  # fmt: skip
+
+
+def _advised(data_folder: DataFolder, file: Path) -> tuple[list[float], int]:
+    """Times of some advices, in s of a core, and bytes of one with its program."""
+    program = programs.add(data_folder, file.read_bytes(), name=file.name, owner="bench")
     request = dumped(AdviceRequest(machine="vmc15", nc_control=Dialect.LINUXCNC))
     asked = JobRequest(
         kind=JobKind.ADVICE, request=request, program=program.id, owner=jobs.LOCAL
     )
-    with open_store(data_folder.knowledge):
-        """made when it is new"""
     seconds: list[float] = []
     for _ in range(ADVICES):
         jobs.add(data_folder, asked)
@@ -351,9 +359,7 @@ def _advices(data_folder: DataFolder) -> None:
         advise.run(task)
         jobs.finish(data_folder, job, jobs.JobState.SUCCEEDED)
         seconds.append(time.process_time() - begin)
-    size = program.size + sum(file.stat().st_size for file in task.folder.iterdir())
-    print(f"an advice for {SAMPLE.stem}: {median(seconds):.2f} s of a core; "
-          f"{size / 1e6:.3f} MB of files with the program")  # fmt: skip
+    return seconds, program.size + sum(each.stat().st_size for each in task.folder.iterdir())
 
 
 def _size(url: str, table: str) -> int:
