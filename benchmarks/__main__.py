@@ -8,6 +8,7 @@ from benchmarks import (
     cluster,
     control_step,
     factory,
+    jobs_on_postgres,
     knowledge,
     learning,
     monitored,
@@ -50,6 +51,7 @@ for title, bench in (
     ("The knowledge base", knowledge),
     ("Verification of positions", verification),
     ("REST", rest),
+    ("Two hosts on one database", jobs_on_postgres),
     ("MTConnect", agent),
     ("A client's energy and time", monitored),
 ):

@@ -19,7 +19,7 @@ from kbe.selection import EVERYTHING
 from kbe.store import Store, open_store
 from service.knowledge.evaluated import summary
 from stepnc_model.outcome import ProcessOutcome
-from tests.kbe.conftest import started_server
+from tests.postgres import started_server
 from tests.service.shop import outcomes
 
 BATCH = 1000

@@ -44,12 +44,16 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--pairs", type=int, default=5)
     parser.add_argument("--seconds", type=int, default=4)
+    parser.add_argument("--database", default="", help="postgresql://…, else a file")
     parser.add_argument("--quiet", action="store_true", help="without a job and a stream")
     options = parser.parse_args(arguments)
     if shutil.which("wrk") is None:
         print("left out: wrk is not installed (apt-get install wrk)")
         return
-    with tempfile.TemporaryDirectory() as folder, _service(Path(folder)) as service:
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        _service(Path(folder), options.database) as service,
+    ):
         path = _advised(service)
         body = Path(folder) / "body.json"
         body.write_bytes(_get(service + path))
@@ -76,11 +80,11 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 @contextmanager
-def _service(folder: Path) -> Iterator[str]:
+def _service(folder: Path, database: str) -> Iterator[str]:
     port = _free_port()
     command = [
         str(Path(sys.executable).with_name("stepnc")), "serve", "--data", str(folder / "data"),
-        "--port", str(port),
+        "--port", str(port), *(("--database", database) if database else ()),
     ]  # fmt: skip
     with _running(
         command, folder / "service.log", f"http://127.0.0.1:{port}", "/readyz"

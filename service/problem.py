@@ -47,6 +47,9 @@ STATUS: tuple[tuple[type[StepNcError], int], ...] = (
 )
 """HTTP status by error class; the first match counts, and 422 (client error) is the default."""
 
+UNAVAILABLE_WAIT = 2
+"""Time after which a client may ask again for what did not answer, in s."""
+
 TITLES = {
     "StepNcError": "Request refused",
     "Part21Error": "Not an ISO 10303-21 file",
@@ -84,6 +87,13 @@ def problem_of(error: StepNcError, *, hidden: str = "") -> dict[str, Any]:
 def status_of(error: StepNcError) -> int:
     """Return the HTTP status of an error."""
     return next(status for kind, status in STATUS if isinstance(error, kind))
+
+
+def retry_after(error: StepNcError) -> int | None:
+    """Return the seconds after which the same request may succeed; None: it will not."""
+    if isinstance(error, TooMany):
+        return int(error.wait) + 1
+    return UNAVAILABLE_WAIT if status_of(error) == 503 else None
 
 
 def type_of(name: str) -> str:

@@ -20,6 +20,7 @@ EXIT_CODES = {
 VARIABLES = {
     "STEPNC_KB": "knowledge base where no `--kb` is given: a file or `postgresql://…`",
     "STEPNC_DATA": "folder of the service's data where no `--data` is given",
+    "STEPNC_DATABASE": "database of the service where no `--database` is given: `postgresql://…`",
     "XDG_DATA_HOME": "where the usual knowledge base lies, `stepnc/knowledge.db` below it; "
     "without it `~/.local/share`",
     "XDG_CACHE_HOME": "where compiled kernels lie that have no place beside their modules, "

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 VARIABLE = "STEPNC_DATA"
 """Environment variable that names the data folder."""
 
+DATABASE_VARIABLE = "STEPNC_DATABASE"
+"""Environment variable that names the database; not shown to other users, unlike arguments."""
+
 USUAL_RATE = 50.0
 """Default rate limit for clients on other computers, in requests per second."""
 
@@ -24,6 +27,7 @@ SERVE = """examples:
   stepnc serve
   stepnc serve --data /srv/stepnc --workers 2
   stepnc serve --agent vmc15=http://192.168.0.7:5000/vmc15
+  stepnc serve --database postgresql://stepnc@db.shop/stepnc --files /mnt/stepnc
   stepnc serve --host 0.0.0.0 --name planner.shop --tls-cert shop.crt --tls-key shop.key
 
 Serve the REST API and the dashboard. API keys are required unless the service listens on this
@@ -47,7 +51,8 @@ def add_service_commands(commands: Commands) -> None:
         type=text,
         default="",
         metavar="PLACE",
-        help="knowledge base, a file or postgresql://… (default: $STEPNC_KB, else in --data)",
+        help="knowledge base, a file or postgresql://… (default: $STEPNC_KB, else --database, "
+        "else in --data)",
     )
     add("--workers", type=int, default=1, metavar="N", help="web processes (default: 1)")
     add("--jobs", type=int, default=1, metavar="N", help="jobs that run at once (default: 1)")
@@ -114,6 +119,22 @@ def _add_data(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         help="data folder (default: $STEPNC_DATA, else ~/.local/share/stepnc/service)",
     )
+    parser.add_argument(
+        "--database",
+        type=text,
+        default="",
+        metavar="URL",
+        help="postgresql://USER@HOST/DATABASE that several hosts share "
+        "(default: $STEPNC_DATABASE, else a file in --data)",
+    )
+    parser.add_argument(
+        "--files",
+        type=text,
+        default="",
+        metavar="PLACE",
+        help="folder of programs and results, or s3://… or another URL of fsspec, shared by "
+        "the hosts of one --database (default: --data)",
+    )
 
 
 def _serve(options: argparse.Namespace) -> int:
@@ -127,6 +148,8 @@ def _serve(options: argparse.Namespace) -> int:
     settings = Settings(
         data=str(_data(options)),
         knowledge=options.kb,
+        database=_database(options),
+        files=options.files,
         host=options.host,
         port=options.port,
         names=tuple(options.name),
@@ -173,15 +196,20 @@ def _data(options: argparse.Namespace) -> Path:
     return Path(named) if named else usual_file().with_name("service")
 
 
+def _database(options: argparse.Namespace) -> str:
+    """Return the address of the database; empty: a file in the data folder."""
+    return str(options.database or os.environ.get(DATABASE_VARIABLE, ""))
+
+
 def _data_folder(options: argparse.Namespace, *, is_made: bool = False) -> "DataFolder":
     """Open the data folder, which must exist unless the first key is created."""
     from service.storage.folder import DATABASE, open_data_folder
     from stepnc_model.errors import StepNcError
 
-    folder = _data(options)
-    if not is_made and not (folder / DATABASE).is_file():
+    folder, database = _data(options), _database(options)
+    if not (is_made or database or (folder / DATABASE).is_file()):
         raise StepNcError(f"{folder}: not a data folder of the service; name it with --data")
-    return open_data_folder(folder)
+    return open_data_folder(folder, files=options.files, database=database)
 
 
 def _create(options: argparse.Namespace) -> int:

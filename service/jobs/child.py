@@ -3,7 +3,7 @@
 import logging
 import signal
 from collections.abc import Callable, Mapping
-from pathlib import Path
+from contextlib import suppress
 from time import monotonic, sleep
 from types import FrameType
 from typing import Any, TypeVar
@@ -14,7 +14,7 @@ from service.jobs.task import LARGE, UNFINISHED, RunningJob, clear
 from service.lifeline import end_with_parent
 from service.problem import plain_problem, problem_of
 from service.storage import jobs
-from service.storage.folder import known_data_folder
+from service.storage.folder import FolderAddress, known_data_folder
 from service.storage.jobs import Job, JobKind, JobState
 from stepnc_model.errors import StepNcError, WriteError
 
@@ -50,23 +50,26 @@ class Cancelled(BaseException):
     """The runner has asked the job to end; unfinished files are removed on the way out."""
 
 
-def main(root: str, knowledge: str, id: str) -> None:
-    """Run a claimed job and record how it ended."""
+def main(folder: FolderAddress, id: str, attempt: int) -> None:
+    """Run a claimed job and record how it ended; nothing if a later attempt has taken over."""
     end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    data_folder = _insisting(lambda: known_data_folder(Path(root), knowledge=knowledge))
+    data_folder = _insisting(lambda: known_data_folder(folder))
     job = _insisting(lambda: jobs.get(data_folder, id))
+    if job.attempt != attempt:
+        return
     task = RunningJob(data_folder=data_folder, job=job)
     _say_as_progress(task)
     state, problem = JobState.SUCCEEDED, None
     try:
         signal.signal(signal.SIGTERM, _cancel)
-        task.make_folder()
-        _work(job)(task)
+        if task.make_folder():
+            _work(job)(task)
+            _insisting(task.publish)
     except Cancelled:
         state = JobState.CANCELLED
     except StepNcError as error:
-        state, problem = JobState.FAILED, problem_of(error, hidden=str(data_folder.root))
+        state, problem = JobState.FAILED, problem_of(error, hidden=str(data_folder.files))
         if isinstance(error, WITHOUT_ROOM):
             clear(task.folder, LARGE)
     except MemoryError:
@@ -92,6 +95,9 @@ def _finish(task: RunningJob, state: JobState, problem: Mapping[str, Any] | None
     """Record the final state of a job."""
     if state is not JobState.SUCCEEDED:
         clear(task.folder, UNFINISHED)
+        # Rows of a run that was ended are kept, where there is room for them.
+        with suppress(Unavailable):
+            task.publish()
     _insisting(lambda: jobs.finish(task.data_folder, task.job, state, problem=problem))
 
 

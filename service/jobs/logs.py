@@ -37,7 +37,8 @@ def log_of(task: RunningJob, request: QueuedVerification | QueuedCycleTime) -> J
         return JobLog(path=path, name=stored.name)
     if request.run_id is not None:
         kind = jobs.get(task.data_folder, request.run_id).kind.value
-        path = task.data_folder.job_folder(request.run_id) / SAMPLES
+        folder = task.data_folder.job_folder(request.run_id)
+        path = task.data_folder.fetched(folder / SAMPLES)
         if not path.is_file():
             raise NotFound(f"samples of {kind}", request.run_id)
         return JobLog(path=path, name=f"samples of {kind} {request.run_id}")

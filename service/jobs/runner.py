@@ -1,6 +1,9 @@
 """Runner that takes jobs from the queue and runs each in its own process.
 
-Only one runner works on a data folder, which a lock file ensures. Job processes are forked from
+Only one runner works on a data folder, which a lock file ensures; runners of several hosts may
+share a database. One that gives no sign of life for the time of its lease loses its jobs to
+another, but only to one that has heard the database for as long: after the database itself was
+away, nobody is taken for dead. Job processes are forked from
 a process that has loaded everything, so that a job starts within some hundredths of a second; a
 job that crashes or takes all memory affects nothing else. When the database does not answer for
 a while (it is locked, the disk is full, the folder was moved away), no job is ended: results
@@ -11,11 +14,13 @@ import fcntl
 import multiprocessing
 import os
 import signal
+import socket
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from multiprocessing import forkserver
+from multiprocessing.connection import wait
 from multiprocessing.context import ForkServerProcess
 from pathlib import Path
 from types import FrameType
@@ -25,11 +30,14 @@ import structlog
 
 from kbe.store import open_store
 from service.errors import Conflict, Unavailable
+from service.files import write_atomically
+from service.ids import new_id
 from service.jobs import child
 from service.jobs.task import UNFINISHED, clear
+from service.live.storage import storing
 from service.problem import plain_problem
 from service.storage import jobs
-from service.storage.folder import DataFolder, known_data_folder
+from service.storage.folder import DataFolder, FolderAddress, known_data_folder
 from service.storage.jobs import Job, JobState
 
 LOOK = 0.05
@@ -37,6 +45,9 @@ LOOK = 0.05
 
 BEAT = 2.0
 """Interval between two heartbeats, in s."""
+
+LEASE = 5.0
+"""Number of missed heartbeats after which a runner is taken for dead."""
 
 GRACE = 5.0
 """Time that a cancelled job has to end by itself, in s."""
@@ -63,6 +74,8 @@ class Running:
     asked_at: float | None = None
     """Time when the job was asked to end, in s; None if it was not."""
     is_overdue: bool = False
+    over_since: float | None = None
+    """Time since when the job is not running any more, or not this attempt of it, in s."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,13 +94,16 @@ class Runner:
     data_folder: DataFolder
     workers: int
     """Largest number of jobs that run at once, without paced ones."""
+    name: str = ""
+    """Name of the runner in the database."""
     is_stopping: bool = False
     running: dict[str, Running] = field(default_factory=dict)
     _ends: list[SilentEnd] = field(default_factory=list)
     """Ends of jobs that are not recorded in the database yet."""
-    _has_recovered: bool = False
     _is_answered: bool = True
-    _beaten_at: float = -BEAT
+    _beaten_at: float | None = None
+    _heard_since: float = 0.0
+    """Time since when each heartbeat was recorded before the next was due."""
 
     def run(self, *, is_wanted: Callable[[], bool] = lambda: True) -> None:
         """Run jobs until told to stop; the next runner queues unfinished jobs again."""
@@ -102,7 +118,8 @@ class Runner:
                     self._is_answered = True
                 except Unavailable as error:
                     self._tell(error)
-                time.sleep(LOOK)
+                # The end of a process makes room for the next job at once.
+                wait([each.process.sentinel for each in self.running.values()], timeout=LOOK)
         finally:
             self._end_all()
 
@@ -114,42 +131,83 @@ class Runner:
 
     def _turn(self, context: multiprocessing.context.ForkServerContext) -> None:
         """Do all work that needs the database; what fails is repeated in the next turn."""
-        if not self._has_recovered:
-            jobs.recover(self.data_folder)
-            self._has_recovered = True
-        if time.monotonic() - self._beaten_at > BEAT:
-            beat(self.data_folder)
-            self._beaten_at = time.monotonic()
+        self._beat()
         while self._ends:
             end = self._ends[0]
             jobs.finish(self.data_folder, end.job, end.state, problem=end.problem)
             del self._ends[0]
         if self.running:
-            for job in jobs.running(self.data_folder):
-                if job.is_cancelling and job.id in self.running:
-                    _ask_to_end(self.running[job.id])
+            claimed = {job.id: job for job in self._claimed()}
+            for id, each in self.running.items():
+                self._follow(each, claimed.get(id))
         for is_paced in (False, True):
-            if self._has_room(is_paced=is_paced):
-                claimed = jobs.claim(self.data_folder, is_paced=is_paced)
-                if claimed is not None:
-                    self._start(context, claimed)
+            while self._has_room(is_paced=is_paced) and self._claim(context, is_paced):
+                """One more."""
+
+    def _beat(self) -> None:
+        """Record a heartbeat when it is due, and take over jobs of runners that are gone."""
+        now = time.monotonic()
+        if self._beaten_at is not None and now - self._beaten_at <= BEAT:
+            return
+        beat(self.data_folder, self.name)
+        if self._beaten_at is None or now - self._beaten_at > LEASE * BEAT:
+            self._heard_since = now
+        self._beaten_at = now
+        # Jobs of an earlier process of this runner, and claims whose answer was lost.
+        mine = {end.job.id for end in self._ends} | set(self.running)
+        lost = [job for job in self._claimed() if job.id not in mine]
+        if now - self._heard_since > LEASE * BEAT:
+            lost += jobs.abandoned(self.data_folder, lease=LEASE * BEAT)
+        if lost:
+            LOG.info("jobs recovered", jobs=[job.id for job in lost])
+            jobs.recover(self.data_folder, lost)
+
+    def _claimed(self) -> tuple[Job, ...]:
+        return jobs.running(self.data_folder, runner=self.name)
+
+    @staticmethod
+    def _follow(each: Running, now: Job | None) -> None:
+        """End the process of a job that was cancelled, or taken over by another runner."""
+        if now is not None and now.attempt == each.job.attempt:
+            if now.is_cancelling:
+                _ask_to_end(each)
+        elif each.over_since is None:
+            # Most often it has just ended by itself.
+            each.over_since = time.monotonic()
+        elif time.monotonic() - each.over_since > GRACE:
+            _ask_to_end(each)
 
     def _has_room(self, *, is_paced: bool) -> bool:
         """Whether one more paced, or one more other job may start."""
         count = sum(each.job.is_paced == is_paced for each in self.running.values())
         return count < (MOST_PACED if is_paced else self.workers)
 
-    def _start(self, context: multiprocessing.context.ForkServerContext, job: Job) -> None:
+    def _claim(
+        self, context: multiprocessing.context.ForkServerContext, is_paced: bool
+    ) -> bool:
+        """Start the next job; False if there is none, or none can be started."""
+        job = jobs.claim(self.data_folder, is_paced=is_paced, runner=self.name)
+        if job is None:
+            return False
+        before = self.running.pop(job.id, None)
+        if before is not None:
+            # Another runner has taken this one for dead, and queued its job again.
+            before.process.kill()
+            before.process.join()
+        return self._start(context, job)
+
+    def _start(self, context: multiprocessing.context.ForkServerContext, job: Job) -> bool:
         LOG.info("job started", job=job.id, kind=job.kind.value, attempt=job.attempt)
-        arguments = (str(self.data_folder.root), self.data_folder.knowledge, job.id)
+        arguments = (self.data_folder.address, job.id, job.attempt)
         process = context.Process(target=child.main, args=arguments, daemon=False)
         try:
             process.start()
         except (OSError, EOFError) as error:
             problem = jobs.lost(f"it could not be started: {error}")
             self._ends.append(SilentEnd(job=job, state=JobState.FAILED, problem=problem))
-            return
+            return False
         self.running[job.id] = Running(job=job, process=process)
+        return True
 
     def _look(self) -> None:
         """Detect ended processes, and kill jobs that exceed their time limit."""
@@ -165,7 +223,7 @@ class Runner:
         """Record the end of a process; a job whose process reported no end counts as lost."""
         job, code = each.job, each.process.exitcode
         each.process.close()
-        clear(self.data_folder.job_folder(job.id), UNFINISHED)
+        clear(self.data_folder.attempt_folder(job.id, job.attempt), UNFINISHED)
         if each.asked_at is not None:
             end = SilentEnd(job=job, state=JobState.CANCELLED, problem=None)
         elif each.is_overdue:
@@ -212,21 +270,21 @@ def _why(code: int | None) -> str:
     return f"exit code {code}"
 
 
-def beat(data_folder: DataFolder) -> None:
-    """Record a heartbeat of the runner."""
+def beat(data_folder: DataFolder, name: str = "") -> None:
+    """Record a heartbeat of a runner."""
     with data_folder.database.writing() as connection:
         connection.execute(
-            "INSERT INTO runner VALUES (1, ?, ?) "
+            "INSERT INTO runner VALUES (?, ?, wall_clock()) "
             "ON CONFLICT (id) DO UPDATE SET pid = excluded.pid, seen = excluded.seen",
-            (os.getpid(), time.time()),
+            (name, os.getpid()),
         )
 
 
 def is_alive(data_folder: DataFolder) -> bool:
-    """Whether a runner has recorded a heartbeat recently."""
+    """Whether a runner, of this host or another one, has recorded a heartbeat recently."""
+    query = "SELECT 1 FROM runner WHERE seen > wall_clock() - ? LIMIT 1"
     with data_folder.database.reading() as connection:
-        row = connection.execute("SELECT seen FROM runner").fetchone()
-    return row is not None and time.time() - float(row["seen"]) < 5.0 * BEAT
+        return connection.execute(query, (LEASE * BEAT,)).fetchone() is not None
 
 
 def locked(root: Path, name: str = "runner") -> IO[bytes]:
@@ -246,7 +304,28 @@ def locked(root: Path, name: str = "runner") -> IO[bytes]:
     return file
 
 
-def main(root: str, knowledge: str, workers: int, parent: int) -> None:
+def own_name(data_folder: DataFolder) -> str:
+    """Return the name of the runner of a data folder; the lock must be held.
+
+    It stays the same from start to start, so that a new process takes up at once what its
+    predecessor has left. An embedded database has one runner, without a name.
+
+    Raises
+    ------
+    Unavailable
+        When the name cannot be kept in the folder.
+    """
+    if not data_folder.database.is_shared:
+        return ""
+    file = data_folder.root / "runner.name"
+    with storing(file.name):
+        if not file.is_file():
+            write_atomically(file, f"{new_id()}\n".encode())
+        # A folder that was copied to another host must not have the same name there.
+        return f"{socket.gethostname()} {file.read_text('ascii').strip()}"
+
+
+def main(folder: FolderAddress, workers: int, parent: int) -> None:
     """Run jobs as long as the server lives that started this process.
 
     Raises
@@ -254,11 +333,11 @@ def main(root: str, knowledge: str, workers: int, parent: int) -> None:
     ServiceError
         When the data folder cannot be used.
     """
-    data_folder = known_data_folder(Path(root), knowledge=knowledge)
+    data_folder = known_data_folder(folder)
     with locked(data_folder.root):
         with open_store(data_folder.knowledge):
             """The store is created if it is new."""
-        runner = Runner(data_folder=data_folder, workers=workers)
+        runner = Runner(data_folder=data_folder, workers=workers, name=own_name(data_folder))
 
         def stop(_signal: int, _frame: FrameType | None) -> None:
             runner.is_stopping = True

@@ -12,7 +12,6 @@ import orjson
 from service.errors import NotFound, Unavailable
 from service.files import write_atomically
 from service.live.folder import LiveFolder
-from service.live.storage import storing
 from service.progress import share_in
 from service.requests.advice import AdviceRequest
 from service.requests.fields import R, loaded
@@ -68,8 +67,8 @@ class RunningJob:
 
     @property
     def folder(self) -> Path:
-        """Folder of the results."""
-        return self.data_folder.job_folder(self.job.id)
+        """Folder of the results of this attempt."""
+        return self.data_folder.attempt_folder(self.job.id, self.job.attempt)
 
     @property
     def live(self) -> LiveFolder:
@@ -95,11 +94,29 @@ class RunningJob:
         option = orjson.OPT_SERIALIZE_NUMPY | orjson.OPT_NON_STR_KEYS
         write_atomically(self.folder / RESULT, orjson.dumps(result, option=option))
 
-    def make_folder(self) -> None:
-        """Create the result folder and remove unfinished files of an earlier attempt."""
-        with storing("folder of the job"):
-            self.folder.mkdir(mode=0o700, exist_ok=True)
+    def make_folder(self) -> bool:
+        """Create the result folder and remove unfinished files of an earlier attempt.
+
+        Returns
+        -------
+        bool
+            False if a later attempt has taken over, and nothing was created.
+        """
+        is_current = jobs.begin(self.data_folder, self.job)
+        if is_current:
             clear(self.folder, UNFINISHED)
+        return is_current
+
+    def publish(self) -> None:
+        """Show the results of this attempt to other hosts.
+
+        Raises
+        ------
+        Unavailable
+            When the store of files does not answer.
+        """
+        if self.data_folder.store is not None and self.folder.is_dir():
+            self.data_folder.store.publish_folder(self.folder)
 
     def program_file(self) -> tuple[Path, str]:
         """Return file and name of the program to run: an upload or an optimised program.
@@ -132,9 +149,9 @@ def program_file(data_folder: DataFolder, *, program: str, source: str) -> tuple
 
     name = programs.get(data_folder, program).name
     if not source:
-        return data_folder.program_file(program), name
+        return data_folder.fetched(data_folder.program_file(program)), name
     jobs.get(data_folder, source, JobKind.ADVICE)
-    file = data_folder.job_folder(source) / OPTIMISED
+    file = data_folder.fetched(data_folder.job_folder(source) / OPTIMISED)
     if not file.is_file():
         raise NotFound("optimised program of advice", source)
     return file, optimised_name(name)

@@ -12,14 +12,15 @@ from typing import Any
 
 import orjson
 import structlog
+from starlette.concurrency import run_in_threadpool
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from service.errors import Forbidden, TooLarge, TooMany, Unauthorised, Unreadable
-from service.problem import plain_problem, problem_of
+from service.errors import Forbidden, TooLarge, Unauthorised, Unreadable
+from service.problem import plain_problem, problem_of, retry_after
 from service.rest.logs import RequestLog
 from service.rest.metrics import count
-from service.rest.rate import RateLimit
+from service.rest.rate import RateLimit, SharedRateLimit
 from service.rest.rights import LOOKING, is_protected, require, role_for
 from service.rest.settings import LOOPBACK, Settings
 from service.storage import keys
@@ -113,6 +114,11 @@ class AccessMiddleware:
     def __init__(self, app: ASGIApp, *, settings: Settings, data_folder: DataFolder) -> None:
         self._app, self._settings, self._data_folder = app, settings, data_folder
         self._rate = RateLimit(settings.rate, burst=settings.burst)
+        self._shared_rate: SharedRateLimit | None = None
+        if settings.rate and data_folder.database.is_shared:
+            self._shared_rate = SharedRateLimit(
+                data_folder.database, settings.rate, burst=settings.burst
+            )
         self._names = frozenset(
             name.lower() for name in ({settings.host, *settings.names} | LOOPBACK)
         )
@@ -143,7 +149,7 @@ class AccessMiddleware:
                 own = _with_common(status, message["headers"])
                 message["headers"] = [*own, (b"x-request-id", id)]
             elif message.get("more_body"):
-                self._require_still_known(key, headers)
+                await self._require_still_known(key, headers)
             await send(message)
 
         key = NOBODY
@@ -151,7 +157,7 @@ class AccessMiddleware:
         asked_as = {**scope, "method": "GET"} if scope["method"] == "HEAD" else scope
         try:
             self._require_known_host(scope, headers)
-            key = self._key(scope, headers)
+            key = await self._key(scope, headers)
             asked_as["state"] = {**scope.get("state", {}), "key": key, "id": id.decode()}
             await self._app(asked_as, self._bounded(scope, receive, headers), answer)
         except ClientDisconnect:
@@ -184,33 +190,40 @@ class AccessMiddleware:
         if site not in {b"same-origin", b"none"} or not is_own:
             raise Forbidden(f"a page of '{origin or 'another site'}' may not change anything")
 
-    def _key(self, scope: Scope, headers: dict[bytes, bytes]) -> Key:
+    async def _key(self, scope: Scope, headers: dict[bytes, bytes]) -> Key:
         client = (scope.get("client") or ("?",))[0]
         if not self._settings.needs_keys:
-            self._rate.take(client)
+            await self._take(client)
             return ANYBODY
         path = scope["path"]
         if not is_protected(path):
-            self._rate.take(client)
+            await self._take(client)
             return NOBODY
         try:
-            key = self._known(headers)
+            key = await self._known(headers)
         except StepNcError:
-            self._rate.take(client)
+            await self._take(client)
             raise
         # Clients without a key share a bucket by address, so that guessing keys is slow.
-        self._rate.take(client if key is None else key.id)
+        await self._take(client if key is None else key.id)
         if key is None:
             raise Unauthorised("API key needed: Authorization: Bearer stepnc_…; `stepnc keys`")
         require(key, role_for(scope["method"], path))
         return key
 
-    def _require_still_known(self, key: Key, headers: dict[bytes, bytes]) -> None:
+    async def _take(self, client: str) -> None:
+        """Take a token for a request of a client; with a server, out of all hosts' bucket."""
+        if self._shared_rate is None:
+            self._rate.take(client)
+        else:
+            await self._shared_rate.take(client)
+
+    async def _require_still_known(self, key: Key, headers: dict[bytes, bytes]) -> None:
         """End a long answer if its key has been revoked meanwhile."""
-        if key.id and self._known(headers) is None:
+        if key.id and await self._known(headers) is None:
             raise _Revoked
 
-    def _known(self, headers: dict[bytes, bytes]) -> Key | None:
+    async def _known(self, headers: dict[bytes, bytes]) -> Key | None:
         scheme, _, word = headers.get(b"authorization", b"").decode("latin-1").partition(" ")
         if scheme.lower() != "bearer":
             return None
@@ -219,7 +232,11 @@ class AccessMiddleware:
         at, key = self._good.get(word, (0.0, None))
         if key is not None and now - at < PATIENT:
             return key
-        found = keys.known(self._data_folder, word)
+        if self._data_folder.database.is_shared:
+            # A server may be slow to answer, or not answer at all.
+            found = await run_in_threadpool(keys.known, self._data_folder, word)
+        else:
+            found = keys.known(self._data_folder, word)
         if found is None:
             self._good.pop(word, None)
             return None
@@ -283,7 +300,8 @@ async def _refuse(send: Send, problem: dict[str, Any], error: StepNcError | None
     headers = [(b"content-type", b"application/problem+json")]
     if isinstance(error, Unauthorised):
         headers.append((b"www-authenticate", b"Bearer"))
-    if isinstance(error, TooMany):
-        headers.append((b"retry-after", str(int(error.wait) + 1).encode()))
+    wait = None if error is None else retry_after(error)
+    if wait is not None:
+        headers.append((b"retry-after", str(wait).encode()))
     await send({"type": "http.response.start", "status": problem["status"], "headers": headers})
     await send({"type": "http.response.body", "body": orjson.dumps(problem)})

@@ -5,6 +5,7 @@ are written, so their parts are cached as bytes.
 """
 
 import os
+import time
 from collections import OrderedDict
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +20,7 @@ from starlette.types import Scope
 from service.errors import Conflict, NotFound
 from service.jobs.task import NC_CODE, OPTIMISED, REPORT, RESULT, optimised_name
 from service.rest.bodies import Id
-from service.rest.context import InDataFolder, OnPage, data_folder_of, page_reply
+from service.rest.context import InDataFolder, OnPage, data_folder_of, fetched, page_reply
 from service.rest.replies import (
     JSON,
     PreparedResponse,
@@ -35,6 +36,9 @@ from service.storage.jobs import JobKind, JobState
 from stepnc_model.post.dialect import SUFFIXES, Dialect
 
 ROUTES = APIRouter(prefix="/v1/advice", tags=["advice"])
+
+KEPT = 5.0
+"""Time for which a result of a store of files is answered from the cache, in s."""
 
 MOST_READY = 64
 """Largest number of results whose parts are cached."""
@@ -67,6 +71,8 @@ class CachedAdvice:
     workingsteps: dict[str, CachedAnswer]
     """Answers by workingstep id and by instance."""
     result: dict[str, Any]
+    since: float
+    """Time when it was read, in s."""
 
 
 class AdviceCache:
@@ -84,7 +90,10 @@ class AdviceCache:
             When the advice does not exist, or has no result yet.
         """
         known = self._ready.get(id)
-        file = str(data_folder.job_folder(id) / RESULT) if known is None else known.file
+        if known is not None and data_folder.store is not None and _is_old(known):
+            # Its file stays here when another host has deleted the advice.
+            known = None
+        file = _file(data_folder, id) if known is None else known.file
         try:
             stamp = os.stat(file).st_mtime_ns
         except OSError:
@@ -103,6 +112,14 @@ class AdviceCache:
         return known
 
 
+def _is_old(known: CachedAdvice) -> bool:
+    return time.monotonic() - known.since > KEPT
+
+
+def _file(data_folder: DataFolder, id: str) -> str:
+    return str(data_folder.fetched(data_folder.job_folder(id) / RESULT))
+
+
 def _ready(file: str, stamp: int) -> CachedAdvice:
     whole = Path(file).read_bytes()
     result = orjson.loads(whole)
@@ -112,8 +129,9 @@ def _ready(file: str, stamp: int) -> CachedAdvice:
         for name in (step["instance"], step["id"]):
             parts.setdefault(name, part)
     return CachedAdvice(
-        file=file, stamp=stamp, whole=_part(whole), workingsteps=parts, result=result
-    )
+        file=file, stamp=stamp, whole=_part(whole), workingsteps=parts, result=result,
+        since=time.monotonic(),
+    )  # fmt: skip
 
 
 def _part(body: bytes) -> CachedAnswer:
@@ -197,7 +215,7 @@ async def advice(request: Request, id: Id) -> Response:
 async def optimised(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download the uploaded program with the advised feeds; nothing else is changed."""
     name = await run_in_threadpool(_name, request, data_folder, id)
-    file = data_folder.job_folder(id) / OPTIMISED
+    file = await fetched(data_folder, data_folder.job_folder(id) / OPTIMISED)
     return file_reply(
         request, file, name=name, kind="application/step", thing="optimised program"
     )
@@ -216,7 +234,7 @@ async def nc_code(request: Request, data_folder: InDataFolder, id: Id) -> Respon
     if control is None:
         raise NotFound("NC code (ask for advice with nc_control)", id)
     name = f"{Path(name).stem}{SUFFIXES[Dialect(control)]}"
-    file = data_folder.job_folder(id) / NC_CODE
+    file = await fetched(data_folder, data_folder.job_folder(id) / NC_CODE)
     return file_reply(
         request, file, name=name, kind="text/plain; charset=utf-8", thing="NC code"
     )
@@ -227,7 +245,8 @@ async def nc_code(request: Request, data_folder: InDataFolder, id: Id) -> Respon
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show the self-contained HTML report, which can be saved, printed and sent."""
     jobs.get(data_folder, id, JobKind.ADVICE)
-    return report_reply(request, data_folder.job_folder(id) / REPORT, id=id)
+    file = await fetched(data_folder, data_folder.job_folder(id) / REPORT)
+    return report_reply(request, file, id=id)
 
 
 def _name(request: Request, data_folder: DataFolder, id: str) -> str:

@@ -13,10 +13,9 @@ from starlette.exceptions import HTTPException
 
 from kbe.store import open_store
 from service.agent.shop import ShopAgent
-from service.errors import TooMany
 from service.lifeline import end_with_parent
 from service.monitor.monitor import MonitorSet
-from service.problem import plain_problem, problem_of
+from service.problem import plain_problem, problem_of, retry_after
 from service.rest import (
     advice,
     agent,
@@ -64,7 +63,13 @@ def application(settings: Settings) -> FastAPI:
     ServiceError, KnowledgeError
         When the data folder or the knowledge base cannot be used.
     """
-    return _on(open_data_folder(settings.root, knowledge=settings.knowledge), settings)
+    data_folder = open_data_folder(
+        settings.root,
+        knowledge=settings.knowledge,
+        database=settings.database,
+        files=settings.files,
+    )
+    return _on(data_folder, settings)
 
 
 def _on(data_folder: DataFolder, settings: Settings) -> FastAPI:
@@ -141,7 +146,7 @@ def from_environment() -> FastAPI:
     settings = handed_on()
     logs.configure(settings.level)
     end_with_parent()
-    return _on(known_data_folder(settings.root, knowledge=settings.knowledge), settings)
+    return _on(known_data_folder(settings.address), settings)
 
 
 def described(app: FastAPI) -> dict[str, Any]:
@@ -166,10 +171,11 @@ async def _project(request: Request, error: Exception) -> Response:
     """Reply with the problem for an error of the project."""
     if not isinstance(error, StepNcError):
         raise error
-    root = str(request.app.state.data_folder.root)
-    reply = problem_reply({**problem_of(error, hidden=root), "instance": request.state.id})
-    if isinstance(error, TooMany):
-        reply.headers["retry-after"] = str(int(error.wait) + 1)
+    hidden = str(request.app.state.data_folder.files)
+    reply = problem_reply({**problem_of(error, hidden=hidden), "instance": request.state.id})
+    wait = retry_after(error)
+    if wait is not None:
+        reply.headers["retry-after"] = str(wait)
     return reply
 
 

@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Callable
+from pathlib import Path
 from threading import BoundedSemaphore
 from typing import Annotated, Any
 
@@ -44,7 +45,7 @@ PROBLEMS: dict[int | str, dict[str, Any]] = {
         (415, "The route does not accept the media type of the body"),
         (422, "The request cannot be carried out; the detail states value, bound and unit"),
         (429, "Too many requests; Retry-After says when to try again"),
-        (503, "Something that the service depends on does not answer"),
+        (503, "Something that the service depends on does not answer; Retry-After as for 429"),
         (507, "The disk is full"),
     )
 }
@@ -124,6 +125,13 @@ def idempotency_of(request: Request, key: str | None, body: bytes) -> Idempotenc
     return IdempotencyKey(owner=owner_of(request), key=key, fingerprint=digest)
 
 
+async def fetched(data_folder: DataFolder, path: Path) -> Path:
+    """Return a path below the folder of files; a file in a store is copied there first."""
+    if data_folder.store is None:
+        return path
+    return await run_in_threadpool(data_folder.fetched, path)
+
+
 READING = BoundedSemaphore(2)
 """Limits how many programs are read at once to check requests; each is held in memory."""
 
@@ -157,7 +165,7 @@ def _require_possible(data_folder: DataFolder, asked: JobRequest) -> None:
     """Refuse an unknown workingstep, and a machine that can run none of the workingsteps."""
     words = asked.request
     with READING:
-        file = data_folder.program_file(asked.program)
+        file = data_folder.fetched(data_folder.program_file(asked.program))
         program = read_program(file, units=words["units"])
         steps = selected(program, tuple(words.get("workingsteps", ())))
         if not words["machine"]:

@@ -18,6 +18,7 @@ from service.rest.context import (
     IdempotencyHeader,
     InDataFolder,
     OnPage,
+    fetched,
     monitors_of,
     page_reply,
     queued,
@@ -93,4 +94,5 @@ async def cycle_time(request: Request, id: Id) -> Response:
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show the self-contained HTML report with the feed of each block."""
     jobs.get(data_folder, id, JobKind.CYCLE_TIME)
-    return report_reply(request, data_folder.job_folder(id) / REPORT, id=id)
+    file = await fetched(data_folder, data_folder.job_folder(id) / REPORT)
+    return report_reply(request, file, id=id)

@@ -14,7 +14,6 @@ from service.factory.run import STATES
 from service.factory.state_log import state_bars
 from service.jobs.produce import FIGURES, STATE_LOG, TABLES, table_of
 from service.jobs.task import REPORT
-from service.live.folder import LiveFolder
 from service.live.series import open_series
 from service.requests.factory import FactoryChanges, FactoryOrder
 from service.requests.fields import dumped, loaded
@@ -24,6 +23,7 @@ from service.rest.context import (
     IdempotencyHeader,
     InDataFolder,
     OnPage,
+    fetched,
     page_reply,
     queued,
 )
@@ -38,6 +38,7 @@ from service.rest.results import (
     Points,
     Signals,
     file_of,
+    live_folder,
     read_in_turn,
     result_reply,
     series_reply,
@@ -112,15 +113,15 @@ async def factory(request: Request, id: Id) -> Response:
 @ROUTES.get("/{id}/status", summary="Show the current status of a live shop")
 async def status(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show states of machines, buffers, products and processes; null before it begins."""
-    return status_reply(request, jobs.get(data_folder, id, JobKind.FACTORY))
+    return await status_reply(request, jobs.get(data_folder, id, JobKind.FACTORY))
 
 
 @ROUTES.get("/{id}/log", summary="List past events of a live shop")
 async def log(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """List failures, repairs, maintenance, shifts and orders, oldest first."""
-    jobs.get(data_folder, id, JobKind.FACTORY)
-    folder = LiveFolder(path=data_folder.job_folder(id))
-    return json_reply(request, {"events": await run_in_threadpool(past_events, folder)})
+    job = jobs.get(data_folder, id, JobKind.FACTORY)
+    events = await run_in_threadpool(past_events, data_folder, job)
+    return json_reply(request, {"events": events})
 
 
 @ROUTES.get("/{id}/events", summary="Stream events of a shop", response_class=Response,
@@ -165,7 +166,7 @@ async def states(
 def _states(
     data_folder: DataFolder, job: Job, begin: float | None, end: float | None, bars: int
 ) -> dict[str, Any]:
-    folder = LiveFolder(path=data_folder.job_folder(job.id))
+    folder = live_folder(data_folder, job, STATE_LOG)
     status, log = folder.read_status(), open_series(folder.path / STATE_LOG)
     if status is None or log is None:
         raise Conflict(
@@ -210,7 +211,7 @@ async def change_factory(
 
 def _machines(data_folder: DataFolder, job: Job) -> list[str]:
     """Names of the machines of a shop that runs."""
-    status = LiveFolder(path=data_folder.job_folder(job.id)).read_status()
+    status = live_folder(data_folder, job).read_status()
     if status is None:
         raise Conflict(f"factory '{job.id}' is {job.state.value}: it has not begun")
     return [machine["name"] for machine in status["machines"]]
@@ -228,7 +229,8 @@ async def cancel_factory(request: Request, data_folder: InDataFolder, id: Id) ->
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show the self-contained HTML report of a run."""
     jobs.get(data_folder, id, JobKind.FACTORY)
-    return report_reply(request, data_folder.job_folder(id) / REPORT, id=id)
+    file = await fetched(data_folder, data_folder.job_folder(id) / REPORT)
+    return report_reply(request, file, id=id)
 
 
 @ROUTES.get("/{id}/figures", summary="Download the figures as CSV", response_class=Response,
@@ -236,7 +238,7 @@ async def report(request: Request, data_folder: InDataFolder, id: Id) -> Respons
 async def figures(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download the figures of all levels, one row each."""
     job = jobs.get(data_folder, id, JobKind.FACTORY)
-    file = file_of(data_folder, job, FIGURES, thing="figures")
+    file = await run_in_threadpool(file_of, data_folder, job, FIGURES, thing="figures")
     return file_reply(request, file, name=f"factory-{id}.csv", kind=CSV, thing="figures")
 
 
@@ -247,7 +249,9 @@ async def parts(
 ) -> Response:
     """Download the table of parts of a machine, first replication."""
     job = jobs.get(data_folder, id, JobKind.FACTORY)
-    file = table_of(data_folder.job_folder(job.id), machine)
+    folder = data_folder.run_folder(job.id, job.attempt)
+    await fetched(data_folder, folder / TABLES / f"{FilePath(machine).name}.csv")
+    file = table_of(folder, machine)
     if file is None:
         raise NotFound("table of parts", machine)
     return file_reply(request, file, name=file.name, kind=CSV, thing="table of parts")
@@ -258,5 +262,6 @@ async def parts(
 async def samples(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download the states of all machines, one row each, first replication."""
     job = jobs.get(data_folder, id, JobKind.FACTORY)
-    file = file_of(data_folder, job, f"{TABLES}/{STATES}", thing="states")
+    name = f"{TABLES}/{STATES}"
+    file = await run_in_threadpool(file_of, data_folder, job, name, thing="states")
     return file_reply(request, file, name=f"factory-{id}.parquet", kind=PARQUET, thing="states")

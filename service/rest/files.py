@@ -15,6 +15,7 @@ from service.rest.context import (
     IdempotencyHeader,
     InDataFolder,
     OnPage,
+    fetched,
     idempotency_of,
     page_reply,
     settings_of,
@@ -100,7 +101,7 @@ async def content(request: Request, data_folder: InDataFolder, id: Id) -> Respon
     stored = files.get(data_folder, id)
     return file_reply(
         request,
-        files.file_of(data_folder, stored),
+        await fetched(data_folder, files.file_of(data_folder, stored)),
         name=stored.name,
         kind=BYTES,
         thing=f"content of {stored.kind.words}",

@@ -34,8 +34,8 @@ async def readyz(request: Request) -> Response:
 async def metrics(request: Request) -> Response:
     """Return metrics: requests by route and status, durations, streams, jobs by state."""
     with data_folder_of(request).database.reading() as connection:
-        rows = connection.execute("SELECT state, count(*) FROM jobs GROUP BY state").fetchall()
-    counts = dict(map(tuple, rows))
+        rows = connection.execute("SELECT state, count(*) AS jobs FROM jobs GROUP BY state")
+        counts = {row["state"]: row["jobs"] for row in rows.fetchall()}
     for state in JobState:
         JOBS.labels(state.value).set(counts.get(state.value, 0))
     return Response(exposition(), media_type=TYPE)

@@ -26,6 +26,7 @@ from service.rest.context import (
     InDataFolder,
     OnPage,
     data_folder_of,
+    fetched,
     page_reply,
     queued,
 )
@@ -100,10 +101,8 @@ async def evaluation_file(
 ) -> Response:
     """Download a table with one line for each side (roughing, finishing) of a row."""
     jobs.get(data_folder, id, JobKind.EVALUATION)
-    file, name = (
-        data_folder.job_folder(id) / f"{TABLE}.{form.value}",
-        f"evaluation-{id}.{form.value}",
-    )
+    file = await fetched(data_folder, data_folder.job_folder(id) / f"{TABLE}.{form.value}")
+    name = f"evaluation-{id}.{form.value}"
     return file_reply(request, file, name=name, kind=KINDS[form], thing="table")
 
 
@@ -112,7 +111,8 @@ async def evaluation_file(
 async def evaluation_report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show the self-contained HTML page of an evaluation table."""
     jobs.get(data_folder, id, JobKind.EVALUATION)
-    return report_reply(request, data_folder.job_folder(id) / REPORT, id=id)
+    file = await fetched(data_folder, data_folder.job_folder(id) / REPORT)
+    return report_reply(request, file, id=id)
 
 
 @REVIEWS.post("", status_code=202, response_model=JobView, summary="Learn from outcomes")

@@ -10,7 +10,6 @@ from starlette.concurrency import run_in_threadpool
 from service.control.live import require_changes
 from service.errors import Conflict
 from service.jobs.task import REPORT, SAMPLES
-from service.live.folder import LiveFolder
 from service.live.journal import append, read_on
 from service.requests.fields import dumped
 from service.requests.runs import ControlChanges, ControlRequest
@@ -20,6 +19,7 @@ from service.rest.context import (
     IdempotencyHeader,
     InDataFolder,
     OnPage,
+    fetched,
     page_reply,
     queued,
     runnable,
@@ -33,6 +33,7 @@ from service.rest.results import (
     Points,
     Signals,
     file_of,
+    live_folder,
     result_reply,
     series_reply,
     status_reply,
@@ -42,7 +43,7 @@ from service.rest.simulations import PARQUET, run_order
 from service.rest.views import JobView, PageView, SeriesView, job_view
 from service.storage import jobs
 from service.storage.folder import DataFolder
-from service.storage.jobs import Job, JobKind, JobRequest
+from service.storage.jobs import Job, JobKind, JobRequest, JobState
 from service.trial.inputs import Inputs, changed
 
 CONTROL = APIRouter(prefix="/v1/control-runs", tags=["control"])
@@ -117,7 +118,7 @@ async def change_trial(
 def _inputs(data_folder: DataFolder, job: Job) -> Inputs:
     """Return the current inputs of a trial, with all requested changes."""
     inputs = changed(Inputs(), **job.request["inputs"])
-    status = LiveFolder(path=data_folder.job_folder(job.id)).read_status()
+    status = live_folder(data_folder, job).read_status()
     return inputs if status is None else changed(inputs, **status["inputs"])
 
 
@@ -127,9 +128,12 @@ async def ordered(
     """Pass change requests on to the process that runs the job."""
     if job.state.is_finished:
         raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: no changes possible")
-    folder = LiveFolder(path=data_folder.job_folder(job.id))
+    if data_folder.store is not None and job.state is JobState.QUEUED:
+        # Which host will run it is not known yet.
+        raise Conflict(f"{job.kind.value} '{job.id}' has not begun: order again when it runs")
 
     def hand_on() -> None:
+        folder = live_folder(data_folder, job)
         folder.path.mkdir(mode=0o700, exist_ok=True)
         for order in orders:
             append(folder.orders, order)
@@ -157,16 +161,14 @@ def _add_common(routes: APIRouter, kind: JobKind) -> None:
                 operation_id=f"status_{kind.name.lower()}")  # fmt: skip
     async def status(request: Request, data_folder: InDataFolder, id: Id) -> Response:
         """Show inputs, feeds, force, power and the active limit; null before the run begins."""
-        return status_reply(request, jobs.get(data_folder, id, kind))
+        return await status_reply(request, jobs.get(data_folder, id, kind))
 
     @routes.get("/{id}/log", summary="List past events",
                 operation_id=f"log_{kind.name.lower()}")  # fmt: skip
     async def log(request: Request, data_folder: InDataFolder, id: Id) -> Response:
         """List the last events, oldest first."""
-        jobs.get(data_folder, id, kind)
-        events = await run_in_threadpool(
-            past_events, LiveFolder(path=data_folder.job_folder(id))
-        )
+        job = jobs.get(data_folder, id, kind)
+        events = await run_in_threadpool(past_events, data_folder, job)
         return json_reply(request, {"events": events})
 
     @routes.get("/{id}/events", summary="Stream events", response_class=Response,
@@ -210,8 +212,12 @@ _add_common(TRIALS, JobKind.TRIAL)
              responses={200: {"content": {PARQUET: {}}}})  # fmt: skip
 async def samples(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download the samples of a run, one row per revolution."""
-    file = file_of(
-        data_folder, jobs.get(data_folder, id, JobKind.CONTROL), SAMPLES, thing="samples"
+    file = await run_in_threadpool(
+        file_of,
+        data_folder,
+        jobs.get(data_folder, id, JobKind.CONTROL),
+        SAMPLES,
+        thing="samples",
     )
     return file_reply(
         request, file, name=f"control-run-{id}.parquet", kind=PARQUET, thing="samples"
@@ -223,11 +229,13 @@ async def samples(request: Request, data_folder: InDataFolder, id: Id) -> Respon
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show the self-contained HTML report of a run."""
     jobs.get(data_folder, id, JobKind.CONTROL)
-    return report_reply(request, data_folder.job_folder(id) / REPORT, id=id)
+    file = await fetched(data_folder, data_folder.job_folder(id) / REPORT)
+    return report_reply(request, file, id=id)
 
 
-def past_events(folder: LiveFolder) -> list[dict[str, Any]]:
+def past_events(data_folder: DataFolder, job: Job) -> list[dict[str, Any]]:
     """Return the last events of a run, oldest first."""
+    folder = live_folder(data_folder, job)
     found: list[dict[str, Any]] = []
     offset = 0
     while (read := read_on(folder.events, offset)).lines:

@@ -115,7 +115,7 @@ def _result(data_folder: DataFolder, id: str) -> dict[str, Any]:
     """
     require_done(jobs.get(data_folder, id, JobKind.SIMULATION))
     try:
-        text = (data_folder.job_folder(id) / RESULT).read_bytes()
+        text = data_folder.fetched(data_folder.job_folder(id) / RESULT).read_bytes()
     except FileNotFoundError:
         raise NotFound("result of job", id) from None
     found: dict[str, Any] = orjson.loads(text)

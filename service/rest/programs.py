@@ -122,7 +122,7 @@ async def program(request: Request, data_folder: InDataFolder, id: Id) -> Respon
 async def program_bytes(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download a program, byte for byte as it was uploaded."""
     stored = programs.get(data_folder, id)
-    programs.require_file(data_folder, id)
+    await run_in_threadpool(programs.require_file, data_folder, id)
     return file_reply(
         request,
         data_folder.program_file(id),
@@ -139,7 +139,7 @@ async def findings(
 ) -> Response:
     """List workingsteps and findings, as ``stepnc check`` reports them."""
     stored = programs.get(data_folder, id)
-    programs.require_file(data_folder, id)
+    await run_in_threadpool(programs.require_file, data_folder, id)
     tag = f'"{stored.sha256[:24]}-{units.value}"'
     if matches(request.headers.get("if-none-match"), tag):
         return tagged(request, b"", tag)

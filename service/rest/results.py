@@ -16,7 +16,7 @@ from service.errors import Conflict, NotFound, Unreadable
 from service.jobs.task import RESULT
 from service.live.folder import LiveFolder
 from service.live.series import TIME, Series, Window, open_series, window
-from service.rest.context import data_folder_of, hub_of
+from service.rest.context import data_folder_of, fetched, hub_of
 from service.rest.replies import json_reply, tag_of, tagged
 from service.storage import jobs
 from service.storage.folder import DataFolder
@@ -56,7 +56,8 @@ async def result_reply(request: Request, id: str, kind: JobKind) -> Response:
     job = jobs.get(data_folder, id, kind)
     require_done(job)
     try:
-        body = await run_in_threadpool((data_folder.job_folder(id) / RESULT).read_bytes)
+        file = await fetched(data_folder, data_folder.run_folder(id, job.attempt) / RESULT)
+        body = await run_in_threadpool(file.read_bytes)
     except FileNotFoundError:
         raise NotFound("result of job", id) from None
     return tagged(request, body, tag_of(body))
@@ -85,7 +86,7 @@ async def series_reply(
     points: int,
 ) -> Response:
     """Reply with signals over a time range, thinned to as many points as a screen shows."""
-    series = await run_in_threadpool(open_series, _live(request, job).series)
+    series = await run_in_threadpool(_series, data_folder_of(request), job)
     if series is None:
         raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: it has no rows yet")
     is_growing = not job.state.is_finished
@@ -140,13 +141,40 @@ def _window(found: Window, series: Series, *, is_growing: bool) -> dict[str, Any
     }
 
 
-def _live(request: Request, job: Job) -> LiveFolder:
-    return LiveFolder(path=data_folder_of(request).job_folder(job.id))
+def _series(data_folder: DataFolder, job: Job) -> Series | None:
+    return open_series(live_folder(data_folder, job).series)
 
 
-def status_reply(request: Request, job: Job) -> Response:
+def live_folder(data_folder: DataFolder, job: Job, *more: str) -> LiveFolder:
+    """Return the folder of a run, with its rows, events and status, and files named besides.
+
+    Raises
+    ------
+    Conflict
+        When the run goes on on another host, and the hosts share no folder but a store.
+    """
+    folder = LiveFolder(path=data_folder.run_folder(job.id, job.attempt))
+    if data_folder.store is None:
+        return folder
+    if job.state.is_finished:
+        names = (folder.series.name, folder.events.name, folder.status.name, *more)
+        for name in names:
+            data_folder.fetched(folder.path / name)
+    elif job.state is JobState.RUNNING and not folder.path.is_dir():
+        raise Conflict(
+            f"{job.kind.value} '{job.id}' runs on another host: follow and change it there, "
+            "or let the hosts share a folder with --files"
+        )
+    return folder
+
+
+async def status_reply(request: Request, job: Job) -> Response:
     """Reply with the latest status snapshot of a run; null before the first one."""
-    return json_reply(request, _live(request, job).read_status())
+    data_folder = data_folder_of(request)
+    if data_folder.store is None:
+        return json_reply(request, live_folder(data_folder, job).read_status())
+    folder = await run_in_threadpool(live_folder, data_folder, job)
+    return json_reply(request, folder.read_status())
 
 
 async def stream_reply(request: Request, job: Job) -> Response:
@@ -171,7 +199,7 @@ def file_of(data_folder: DataFolder, job: Job, name: str, *, thing: str) -> Path
     NotFound
         When the job has written no such file.
     """
-    file = data_folder.job_folder(job.id) / name
+    file = data_folder.fetched(data_folder.run_folder(job.id, job.attempt) / name)
     if not file.is_file():
         raise NotFound(thing, job.id)
     return file

@@ -22,7 +22,12 @@ from service.rest import logs
 from service.rest.metrics import SHARED
 from service.rest.settings import Settings
 from service.storage import keys, library
-from service.storage.folder import DataFolder, open_data_folder
+from service.storage.folder import (
+    DataFolder,
+    FolderAddress,
+    open_data_folder,
+    require_shared_files,
+)
 from stepnc_model.errors import StepNcError
 
 LOG = structlog.get_logger("serve")
@@ -61,7 +66,13 @@ def serve(start: ServerOptions) -> None:
         When the service cannot be started.
     """
     settings = start.settings
-    data_folder = open_data_folder(settings.root, knowledge=settings.knowledge)
+    data_folder = open_data_folder(
+        settings.root,
+        knowledge=settings.knowledge,
+        database=settings.database,
+        files=settings.files,
+    )
+    require_shared_files(data_folder)
     if settings.needs_keys and not any(
         each.revoked is None for each in keys.listed(data_folder)
     ):
@@ -85,7 +96,7 @@ def _serve(start: ServerOptions, data_folder: DataFolder) -> None:
     logs.configure(settings.level)
     if start.workers > 1:
         _share_metrics(data_folder.root)
-    keeper = RunnerKeeper(start, knowledge=data_folder.knowledge)
+    keeper = RunnerKeeper(start, data_folder.address)
     keeper.start()
     # uvicorn raises the signal again when all requests are answered; without this handler the
     # process would end there, before the runner of jobs has released the folder.
@@ -139,9 +150,8 @@ def _end(_signal: int, _frame: FrameType | None) -> None:
 class RunnerKeeper:
     """Keeps the runner process alive. Running state."""
 
-    def __init__(self, start: ServerOptions, *, knowledge: str) -> None:
-        settings = start.settings
-        self._arguments = (settings.data, knowledge, start.jobs, os.getpid(), settings.level)
+    def __init__(self, start: ServerOptions, folder: FolderAddress) -> None:
+        self._arguments = (folder, start.jobs, os.getpid(), start.settings.level)
         self._is_stopping = threading.Event()
         self._process: SpawnProcess | None = None
         self._thread = threading.Thread(target=self._keep, daemon=True)
@@ -174,11 +184,11 @@ class RunnerKeeper:
                 self._process = self._started()
 
 
-def run_jobs(data: str, knowledge: str, workers: int, parent: int, level: str) -> None:
+def run_jobs(folder: FolderAddress, workers: int, parent: int, level: str) -> None:
     """Run jobs; main function of the runner process."""
     logs.configure(level)
     try:
-        runner.main(data, knowledge, workers, parent)
+        runner.main(folder, workers, parent)
     except StepNcError as error:
         # The message says what is wrong; no traceback is needed.
         LOG.error("jobs cannot be run", reason=str(error))  # noqa: TRY400

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from service.errors import Unavailable
 from service.monitor.source import MonitorSource
+from service.storage.folder import FolderAddress
 
 VARIABLE = "STEPNC_SERVE"
 """Environment variable that passes the settings from process to process."""
@@ -24,6 +25,10 @@ class Settings:
     """Path of the data folder."""
     knowledge: str = ""
     """Knowledge base; empty: from the environment, or else inside the data folder."""
+    database: str = ""
+    """Address of a PostgreSQL server that several hosts share; empty: a file."""
+    files: str = ""
+    """Folder, or URL of a store, of the files that these hosts share; empty: in ``data``."""
     host: str = "127.0.0.1"
     port: int = 8000
     names: tuple[str, ...] = ()
@@ -58,6 +63,13 @@ class Settings:
     def root(self) -> Path:
         """The data folder."""
         return Path(self.data)
+
+    @property
+    def address(self) -> FolderAddress:
+        """Names by which a process opens the data folder."""
+        return FolderAddress(
+            root=self.data, files=self.files, database=self.database, knowledge=self.knowledge
+        )
 
     def hand_on(self) -> None:
         """Store the settings in the environment for processes started from this one."""

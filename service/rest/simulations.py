@@ -4,10 +4,10 @@ from typing import Annotated, Any
 
 import numpy as np
 from fastapi import APIRouter, Query, Request, Response
+from starlette.concurrency import run_in_threadpool
 
 from service.errors import Conflict, Unreadable
 from service.jobs.task import REPORT, SAMPLES
-from service.live.folder import LiveFolder
 from service.live.path import shown_path
 from service.live.series import open_series
 from service.requests.fields import dumped
@@ -18,6 +18,7 @@ from service.rest.context import (
     IdempotencyHeader,
     InDataFolder,
     OnPage,
+    fetched,
     page_reply,
     queued,
     runnable,
@@ -30,6 +31,7 @@ from service.rest.results import (
     Points,
     Signals,
     file_of,
+    live_folder,
     read_in_turn,
     result_reply,
     series_reply,
@@ -132,7 +134,7 @@ async def path(
 
 
 def _path(data_folder: DataFolder, job: Job, points: int) -> dict[str, Any]:
-    folder = LiveFolder(path=data_folder.job_folder(job.id))
+    folder = live_folder(data_folder, job)
     series, status = open_series(folder.series), folder.read_status()
     if series is None or not len(series) or status is None:
         raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: it has no rows yet")
@@ -161,8 +163,12 @@ def _path(data_folder: DataFolder, job: Job, points: int) -> dict[str, Any]:
             responses={200: {"content": {PARQUET: {}}}})  # fmt: skip
 async def samples(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download the samples as ``stepnc simulate -o run.parquet`` writes them."""
-    file = file_of(
-        data_folder, jobs.get(data_folder, id, JobKind.SIMULATION), SAMPLES, thing="samples"
+    file = await run_in_threadpool(
+        file_of,
+        data_folder,
+        jobs.get(data_folder, id, JobKind.SIMULATION),
+        SAMPLES,
+        thing="samples",
     )
     name = f"simulation-{id}.parquet"
     return file_reply(request, file, name=name, kind=PARQUET, thing="samples")
@@ -173,4 +179,5 @@ async def samples(request: Request, data_folder: InDataFolder, id: Id) -> Respon
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show the self-contained HTML report of a simulation."""
     jobs.get(data_folder, id, JobKind.SIMULATION)
-    return report_reply(request, data_folder.job_folder(id) / REPORT, id=id)
+    file = await fetched(data_folder, data_folder.job_folder(id) / REPORT)
+    return report_reply(request, file, id=id)

@@ -112,9 +112,10 @@ class RunReader:
         """Poll and send until the job has ended or no subscriber is left."""
         try:
             with suppress(NotFound):
+                await self._current()
                 self._skip()
                 while self.clients:
-                    job = jobs.get(self._data_folder, self._id)
+                    job = await self._current()
                     # The job is read first, so that what it wrote before its end is not missed.
                     for message in self._news(job):
                         for client in self.clients:
@@ -127,6 +128,17 @@ class RunReader:
             self.is_finished = True
             for client in self.clients:
                 client.end()
+
+    async def _current(self) -> Job:
+        """Return the job as it is, and find its folder."""
+        if self._data_folder.database.is_shared:
+            # Nobody else waits while a server is slow to answer.
+            job = await asyncio.to_thread(jobs.get, self._data_folder, self._id)
+        else:
+            job = jobs.get(self._data_folder, self._id)
+        path = self._data_folder.run_folder(job.id, job.attempt)
+        self._folder = LiveFolder(path=path)
+        return job
 
     def _skip(self) -> None:
         """Skip rows and events written so far; subscribers read those from the files."""

@@ -18,6 +18,7 @@ from service.rest.context import (
     IdempotencyHeader,
     InDataFolder,
     OnPage,
+    fetched,
     monitors_of,
     page_reply,
     queued,
@@ -111,7 +112,7 @@ async def deviation_map(
     request: Request, data_folder: InDataFolder, id: Id, places: Places = PLACES_SHOWN
 ) -> Response:
     """Show places on the surface: the worst, and others evenly spread; the rest is counted."""
-    file = _file(data_folder, id, SURFACE, thing="map")
+    file = await run_in_threadpool(_file, data_folder, id, SURFACE, thing="map")
     return json_reply(request, await read_in_turn(_map, file, places))
 
 
@@ -132,7 +133,8 @@ async def places_file(
     form: Annotated[TableFormat, Query(description="format of the file")] = TableFormat.CSV,
 ) -> Response:
     """Download all places on walls, and others beyond their uncertainty."""
-    file = _file(data_folder, id, f"{PLACES}.{form.value}", thing="places")
+    table = f"{PLACES}.{form.value}"
+    file = await run_in_threadpool(_file, data_folder, id, table, thing="places")
     name = f"verification-{id}.{form.value}"
     return file_reply(request, file, name=name, kind=KINDS[form], thing="places")
 
@@ -142,7 +144,8 @@ async def places_file(
             responses={200: {"content": {KINDS[TableFormat.PARQUET]: {}}}})  # fmt: skip
 async def log(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download the positions that were read from the agent of a monitored machine."""
-    file = _file(data_folder, id, LOG, thing="log of a monitored machine in verification")
+    thing = "log of a monitored machine in verification"
+    file = await run_in_threadpool(_file, data_folder, id, LOG, thing=thing)
     kind = KINDS[TableFormat.PARQUET]
     return file_reply(request, file, name=f"log-{id}.parquet", kind=kind, thing="log")
 
@@ -152,7 +155,8 @@ async def log(request: Request, data_folder: InDataFolder, id: Id) -> Response:
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show the self-contained HTML report of a verification."""
     jobs.get(data_folder, id, JobKind.VERIFICATION)
-    return report_reply(request, data_folder.job_folder(id) / REPORT, id=id)
+    file = await fetched(data_folder, data_folder.job_folder(id) / REPORT)
+    return report_reply(request, file, id=id)
 
 
 def _file(data_folder: DataFolder, id: str, name: str, *, thing: str) -> Path:

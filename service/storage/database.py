@@ -1,4 +1,4 @@
-"""Database of the service: one SQLite file that several processes share.
+"""Embedded database of the service: one SQLite file that several processes share.
 
 Readers never wait for a writer (write-ahead log); once a call returns, its changes are on disk
 (``synchronous=FULL``). Each thread has its own connection. A file that was moved away or
@@ -8,6 +8,7 @@ replaced is no longer written, since those changes would be lost. Running state.
 import os
 import sqlite3
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -57,11 +58,31 @@ SCHEMA = (
     ) STRICT;
     CREATE INDEX files_by_kind ON files (kind, id);
     """,
+    # Jobs name the runner that has claimed them; here there is only one, whose name is empty.
+    """
+    ALTER TABLE jobs ADD COLUMN runner TEXT NOT NULL DEFAULT '';
+    DROP TABLE runner;
+    CREATE TABLE runner (
+        id TEXT PRIMARY KEY, pid INTEGER NOT NULL, seen REAL NOT NULL
+    ) STRICT
+    """,
 )
 """Migration script of each version; the file's version is the number of scripts applied."""
 
 
-class Database:
+class FileConnection(sqlite3.Connection):
+    """Connection to the file; whoever writes has locked all of it."""
+
+    skip_locked = ""
+
+    def lock(self, name: str) -> None:
+        """Lock a name: nothing is left to do in a transaction that writes."""
+
+    def share(self, name: str) -> None:
+        """Share a name: nothing is left to do in a transaction that writes."""
+
+
+class FileDatabase:
     """Connections to the database file. Running state.
 
     Parameters
@@ -75,6 +96,8 @@ class Database:
         When the file cannot be opened, or was written by a newer version.
     """
 
+    is_shared = False
+
     def __init__(self, file: Path) -> None:
         self.file = file
         self._local = threading.local()
@@ -84,13 +107,13 @@ class Database:
         self._inode = self._found()
 
     @contextmanager
-    def reading(self) -> Iterator[sqlite3.Connection]:
+    def reading(self) -> Iterator[FileConnection]:
         """Provide a connection for queries."""
         with self._answering():
             yield self._connection()
 
     @contextmanager
-    def writing(self) -> Iterator[sqlite3.Connection]:
+    def writing(self) -> Iterator[FileConnection]:
         """Provide a connection within a transaction, which is rolled back on error."""
         with self._answering():
             connection = self._connection()
@@ -102,12 +125,15 @@ class Database:
                 connection.rollback()
                 raise
 
-    def _connection(self) -> sqlite3.Connection:
-        known: sqlite3.Connection | None = getattr(self._local, "connection", None)
+    def _connection(self) -> FileConnection:
+        known: FileConnection | None = getattr(self._local, "connection", None)
         if known is None:
             # Transactions are begun explicitly.
-            known = sqlite3.connect(self.file, timeout=WAIT, isolation_level=None)
+            known = sqlite3.connect(
+                self.file, timeout=WAIT, isolation_level=None, factory=FileConnection
+            )
             try:
+                known.create_function("wall_clock", 0, time.time)
                 known.row_factory = sqlite3.Row
                 known.execute("PRAGMA journal_mode=WAL")
                 known.execute("PRAGMA synchronous=FULL")
@@ -119,7 +145,7 @@ class Database:
 
     def close(self) -> None:
         """Close this thread's connection."""
-        known: sqlite3.Connection | None = getattr(self._local, "connection", None)
+        known: FileConnection | None = getattr(self._local, "connection", None)
         if known is not None:
             known.close()
             self._local.connection = None

@@ -6,7 +6,6 @@ memory; a file gets its place, and an entry in lists, once its content was check
 
 import hashlib
 import os
-import sqlite3
 import tempfile
 import time
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ from typing import BinaryIO
 from service.errors import Conflict, NotFound, Unreadable
 from service.ids import new_id
 from service.live.storage import storing
+from service.storage.connection import Row
 from service.storage.folder import DataFolder
 from service.storage.idempotency import IdempotencyKey, made_before, remember
 from service.storage.pages import Page, PageCursor, page_of
@@ -107,7 +107,7 @@ class FileUpload:
 
     def __enter__(self) -> "FileUpload":
         with storing(self.name):
-            folder = self._data_folder.root / "files"
+            folder = self._data_folder.files / "files"
             descriptor, name = tempfile.mkstemp(prefix=".", suffix=self._suffix, dir=folder)
         self._file, self.path = os.fdopen(descriptor, "wb"), Path(name)
         return self
@@ -166,6 +166,7 @@ class FileUpload:
             self.path.replace(place)
         kept = ""
         try:
+            self._data_folder.publish(place)
             with self._data_folder.database.writing() as connection:
                 known = made_before(connection, idempotency)
                 if known is None:
@@ -180,13 +181,13 @@ class FileUpload:
             kept = known or stored.id
         finally:
             if kept != stored.id:
-                place.unlink(missing_ok=True)
+                self._data_folder.discard(place)
         return stored if kept == stored.id else get(self._data_folder, kept)
 
 
 def file_of(data_folder: DataFolder, stored: StoredFile) -> Path:
     """Path of a stored file."""
-    return data_folder.root / "files" / f"{stored.id}{stored.suffix}"
+    return data_folder.files / "files" / f"{stored.id}{stored.suffix}"
 
 
 def get(data_folder: DataFolder, id: str, kind: FileKind | None = None) -> StoredFile:
@@ -212,7 +213,7 @@ def require_file(data_folder: DataFolder, id: str, kind: FileKind) -> Path:
     NotFound
         When the file or its content does not exist.
     """
-    path = file_of(data_folder, get(data_folder, id, kind))
+    path = data_folder.fetched(file_of(data_folder, get(data_folder, id, kind)))
     if not path.is_file():
         raise NotFound(f"content of {kind.words}", id)
     return path
@@ -245,6 +246,8 @@ def remove(data_folder: DataFolder, id: str) -> None:
     """
     stored = get(data_folder, id)
     with data_folder.database.writing() as connection:
+        # No job may be queued meanwhile.
+        connection.lock(f"file {id}")
         busy = connection.execute(
             "SELECT id FROM jobs WHERE state IN ('queued', 'running') "
             f"AND json_extract(request, '$.{FIELDS[stored.kind]}') = ?",
@@ -255,9 +258,9 @@ def remove(data_folder: DataFolder, id: str) -> None:
             raise Conflict(f"job '{busy['id']}' uses {words} '{id}': cancel it first")
         if not connection.execute("DELETE FROM files WHERE id = ?", (id,)).rowcount:
             raise NotFound("file", id)
-    file_of(data_folder, stored).unlink(missing_ok=True)
+    data_folder.discard(file_of(data_folder, stored))
 
 
-def _stored(row: sqlite3.Row) -> StoredFile:
-    columns = {name: row[name] for name in row.keys()}  # noqa: SIM118 (a Row)
+def _stored(row: Row) -> StoredFile:
+    columns = dict(row)
     return StoredFile(**{**columns, "kind": FileKind(columns["kind"])})

@@ -4,11 +4,11 @@ The id of what a request created is stored with its key in the same transaction,
 client may repeat a request after a broken connection and get the same answer.
 """
 
-import sqlite3
 import time
 from dataclasses import dataclass
 
 from service.errors import Conflict
+from service.storage.connection import Connection
 
 KEPT = 24 * 3600.0
 """Time after which a key may be used again, in s."""
@@ -24,9 +24,7 @@ class IdempotencyKey:
     """Hash of method, path and body."""
 
 
-def made_before(
-    connection: sqlite3.Connection, idempotency: IdempotencyKey | None
-) -> str | None:
+def made_before(connection: Connection, idempotency: IdempotencyKey | None) -> str | None:
     """Return the id of what the same request created before; None if it is new.
 
     Raises
@@ -36,6 +34,8 @@ def made_before(
     """
     if idempotency is None:
         return None
+    # The same request may arrive at two hosts at once.
+    connection.lock(f"request {idempotency.owner} {idempotency.key}")
     row = connection.execute(
         "SELECT fingerprint, made FROM requests WHERE owner = ? AND key = ? AND created >= ?",
         (idempotency.owner, idempotency.key, time.time() - KEPT),
@@ -52,21 +52,23 @@ def made_before(
     return made
 
 
-def _is_there(connection: sqlite3.Connection, made: str) -> bool:
+def _is_there(connection: Connection, made: str) -> bool:
     query = (
-        "SELECT EXISTS (SELECT 1 FROM programs WHERE id = ?1) "
-        "OR EXISTS (SELECT 1 FROM jobs WHERE id = ?1) "
-        "OR EXISTS (SELECT 1 FROM files WHERE id = ?1)"
+        "SELECT 1 FROM programs WHERE id = ? UNION ALL SELECT 1 FROM jobs WHERE id = ? "
+        "UNION ALL SELECT 1 FROM files WHERE id = ?"
     )
-    return bool(connection.execute(query, (made,)).fetchone()[0])
+    return connection.execute(query, (made, made, made)).fetchone() is not None
 
 
-def remember(
-    connection: sqlite3.Connection, idempotency: IdempotencyKey | None, made: str
-) -> None:
+def remember(connection: Connection, idempotency: IdempotencyKey | None, made: str) -> None:
     """Store what a request created, within the transaction that created it."""
     if idempotency is not None:
-        connection.execute("DELETE FROM requests WHERE created < ?", (time.time() - KEPT,))
+        # Two transactions that delete the same rows in another order would block each other.
+        connection.execute(
+            "DELETE FROM requests WHERE (owner, key) IN (SELECT owner, key FROM requests "
+            f"WHERE created < ?{connection.skip_locked})",
+            (time.time() - KEPT,),
+        )
         connection.execute(
             "INSERT INTO requests VALUES (?, ?, ?, ?, ?)",
             (idempotency.owner, idempotency.key, idempotency.fingerprint, made, time.time()),

@@ -1,22 +1,24 @@
 """Storage of jobs: request, progress and outcome. Results are in a folder of each job.
 
 A job is claimed by one runner at a time; each claim is a new attempt, and updates from an older
-attempt are ignored. Running jobs whose runner is gone are queued again if their kind may be run
-twice; otherwise they are marked as failed.
+attempt are ignored: the number of the attempt is the token without which no end is recorded.
+Running jobs whose runner is gone are queued again if their kind may be run twice; otherwise
+they are marked as failed.
 """
 
 import json
-import shutil
-import sqlite3
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import StrEnum
 from typing import Any
 
 from service.errors import Conflict, NotFound, TooMany
 from service.ids import new_id
-from service.storage.folder import DataFolder
+from service.live.storage import storing
+from service.storage.connection import Connection, Row
+from service.storage.files import FIELDS
+from service.storage.folder import DataFolder, remove_results, show_again, show_attempt
 from service.storage.idempotency import IdempotencyKey, made_before, remember
 from service.storage.pages import Page, PageCursor, page_of
 
@@ -31,6 +33,9 @@ OWNERS = 4
 
 MOST_ATTEMPTS = 3
 """Largest number of attempts of a job whose runner was lost each time."""
+
+MOST_ATTEMPTS_SHARED = 10
+"""The same where several hosts take over from each other, as when all are restarted in turn."""
 
 
 class JobState(StrEnum):
@@ -68,9 +73,9 @@ class JobKind(StrEnum):
 
 
 PACED = (
-    f"(kind IN ('{JobKind.CONTROL.value}', '{JobKind.TRIAL.value}') OR (kind IN "
-    f"('{JobKind.SIMULATION.value}', '{JobKind.FACTORY.value}') AND "
-    "coalesce(json_extract(request, '$.pace'), 0) > 0))"
+    f"(kind IN ('{JobKind.CONTROL.value}', '{JobKind.TRIAL.value}') "
+    f"OR (kind IN ('{JobKind.SIMULATION.value}', '{JobKind.FACTORY.value}') "
+    "AND CAST(coalesce(json_extract(request, '$.pace'), '0') AS REAL) > 0))"
 )
 """SQL condition for :attr:`Job.is_paced`."""
 
@@ -111,6 +116,9 @@ class Job:
         return self.kind.is_live or bool(self.request.get("pace"))
 
 
+COLUMNS = ", ".join(field.name for field in fields(Job))
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JobRequest:
     """Request to queue a job."""
@@ -132,7 +140,7 @@ def add(
     TooMany
         When too many jobs are queued.
     NotFound
-        When the program was deleted meanwhile.
+        When the program, or a file that the request names, was deleted meanwhile.
     """
     id = new_id()
     with data_folder.database.writing() as connection:
@@ -140,6 +148,7 @@ def add(
         if kept is None:
             _require_room(connection, asked.owner)
             _require_program(connection, asked.program)
+            _require_files(connection, asked.request)
             connection.execute(
                 "INSERT INTO jobs (id, kind, state, request, program, source, owner, created) "
                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
@@ -161,7 +170,7 @@ def get(data_folder: DataFolder, id: str, kind: JobKind | None = None) -> Job:
         When the job does not exist.
     """
     with data_folder.database.reading() as connection:
-        row = connection.execute("SELECT * FROM jobs WHERE id = ?", (id,)).fetchone()
+        row = connection.execute(f"SELECT {COLUMNS} FROM jobs WHERE id = ?", (id,)).fetchone()
     if row is None or (kind is not None and row["kind"] != kind.value):
         raise NotFound("job" if kind is None else kind.value, id)
     return _job(row)
@@ -181,7 +190,7 @@ def listed(
         if wanted:
             where.append(f"{column} = ?")
             values.append(str(wanted))
-    query = f"SELECT * FROM jobs WHERE {' AND '.join(where)} ORDER BY id DESC LIMIT ?"
+    query = f"SELECT {COLUMNS} FROM jobs WHERE {' AND '.join(where)} ORDER BY id DESC LIMIT ?"
     with data_folder.database.reading() as connection:
         rows = connection.execute(query, (*values, place.limit + 1)).fetchall()
     return page_of([_job(row) for row in rows], [row["id"] for row in rows], limit=place.limit)
@@ -196,19 +205,17 @@ def cancel(data_folder: DataFolder, id: str) -> Job:
         When the job does not exist, or has ended.
     """
     with data_folder.database.writing() as connection:
-        row = connection.execute("SELECT state FROM jobs WHERE id = ?", (id,)).fetchone()
-        if row is None:
-            raise NotFound("job", id)
-        state = JobState(row["state"])
-        if state.is_finished and state is not JobState.CANCELLED:
-            raise Conflict(f"job '{id}' has {state.value}: there is nothing to cancel")
-        if state is JobState.QUEUED:
-            connection.execute(
-                "UPDATE jobs SET state = ?, ended = ? WHERE id = ?",
-                (JobState.CANCELLED.value, time.time(), id),
-            )
-        connection.execute("UPDATE jobs SET is_cancelling = 1 WHERE id = ?", (id,))
-    return get(data_folder, id)
+        row = connection.execute(
+            "UPDATE jobs SET is_cancelling = 1, "
+            "ended = CASE WHEN state = 'queued' THEN ? ELSE ended END, "
+            "state = CASE WHEN state = 'queued' THEN 'cancelled' ELSE state END "
+            f"WHERE id = ? AND state IN ('queued', 'running', 'cancelled') RETURNING {COLUMNS}",
+            (time.time(), id),
+        ).fetchone()
+    if row is not None:
+        return _job(row)
+    state = get(data_folder, id).state
+    raise Conflict(f"job '{id}' has {state.value}: there is nothing to cancel")
 
 
 def remove(data_folder: DataFolder, id: str) -> None:
@@ -220,13 +227,14 @@ def remove(data_folder: DataFolder, id: str) -> None:
         When the job does not exist, or has not ended.
     """
     with data_folder.database.writing() as connection:
-        row = connection.execute("SELECT state FROM jobs WHERE id = ?", (id,)).fetchone()
-        if row is None:
-            raise NotFound("job", id)
-        if not JobState(row["state"]).is_finished:
-            raise Conflict(f"job '{id}' is {row['state']}: cancel it first")
-        connection.execute("DELETE FROM jobs WHERE id = ?", (id,))
-    shutil.rmtree(data_folder.job_folder(id), ignore_errors=True)
+        gone = connection.execute(
+            "DELETE FROM jobs WHERE id = ? AND state NOT IN ('queued', 'running') "
+            "RETURNING attempt",
+            (id,),
+        ).fetchone()
+    if gone is None:
+        raise Conflict(f"job '{id}' is {get(data_folder, id).state.value}: cancel it first")
+    remove_results(data_folder, id, attempts=gone["attempt"])
 
 
 def claim(
@@ -234,6 +242,7 @@ def claim(
     *,
     kinds: Sequence[JobKind] = tuple(JobKind),
     is_paced: bool | None = None,
+    runner: str = "",
 ) -> Job | None:
     """Claim the oldest queued job of some kinds; None if there is none.
 
@@ -243,6 +252,8 @@ def claim(
     kinds : sequence of JobKind
     is_paced : bool, optional
         True: only paced jobs; False: only other jobs; None: either.
+    runner : str
+        Name of the runner.
     """
     if not kinds:
         return None
@@ -260,11 +271,23 @@ def claim(
     with data_folder.database.writing() as connection:
         row = connection.execute(
             "UPDATE jobs SET state = 'running', attempt = attempt + 1, started = ?, "
-            f"share = 0, message = '' WHERE id = (SELECT id FROM jobs WHERE {where} "
-            "ORDER BY rowid LIMIT 1) RETURNING *",
-            (time.time(), *names),
+            "runner = ?, share = 0, message = '' "
+            f"WHERE id = (SELECT id FROM jobs WHERE {where} "
+            f"ORDER BY rowid LIMIT 1{connection.skip_locked}) RETURNING {COLUMNS}",
+            (time.time(), runner, *names),
         ).fetchone()
     return None if row is None else _job(row)
+
+
+def begin(data_folder: DataFolder, job: Job) -> bool:
+    """Make the folder of a claimed job; False if a later attempt has taken over."""
+    with data_folder.database.writing() as connection:
+        # The row is locked then: no other attempt begins before this one is shown.
+        is_current = _changed(connection, job, "message = ''", ())
+        if is_current:
+            with storing("folder of the job"):
+                show_attempt(data_folder, job.id, job.attempt)
+    return is_current
 
 
 def tell(data_folder: DataFolder, job: Job, *, share: float, message: str) -> None:
@@ -283,29 +306,44 @@ def finish(
     said = None if problem is None else json.dumps(problem)
     share = ", share = 1" if state is JobState.SUCCEEDED else ""
     values = (state.value, time.time(), said)
-    _update(data_folder, job, f"state = ?, ended = ?, problem = ?{share}", values)
+    with data_folder.database.writing() as connection:
+        columns = f"state = ?, ended = ?, problem = ?{share}"
+        # Results of an earlier attempt are shown if its process was stopped while it began.
+        if _changed(connection, job, columns, values):
+            with storing("folder of the job"):
+                show_again(data_folder, job.id, job.attempt)
 
 
-def running(data_folder: DataFolder) -> tuple[Job, ...]:
-    """Return all running jobs."""
+def running(data_folder: DataFolder, *, runner: str = "") -> tuple[Job, ...]:
+    """Return all jobs that a runner has claimed and that have not ended."""
     with data_folder.database.reading() as connection:
-        rows = connection.execute("SELECT * FROM jobs WHERE state = 'running'").fetchall()
+        rows = connection.execute(
+            f"SELECT {COLUMNS} FROM jobs WHERE state = 'running' AND runner = ?", (runner,)
+        ).fetchall()
     return tuple(_job(row) for row in rows)
 
 
-def recover(data_folder: DataFolder) -> None:
-    """Queue or fail the jobs of a runner that is gone."""
-    for job in running(data_folder):
+def abandoned(data_folder: DataFolder, *, lease: float) -> tuple[Job, ...]:
+    """Return the running jobs of runners without a heartbeat for longer than a lease, in s."""
+    with data_folder.database.reading() as connection:
+        rows = connection.execute(
+            f"SELECT {COLUMNS} FROM jobs WHERE state = 'running' AND runner NOT IN "
+            "(SELECT id FROM runner WHERE seen > wall_clock() - ?)",
+            (lease,),
+        ).fetchall()
+    return tuple(_job(row) for row in rows)
+
+
+def recover(data_folder: DataFolder, found: Sequence[Job]) -> None:
+    """Queue or fail jobs of a runner that is gone; each by the first who comes."""
+    most = MOST_ATTEMPTS_SHARED if data_folder.database.is_shared else MOST_ATTEMPTS
+    for job in found:
         if job.is_cancelling:
             finish(data_folder, job, JobState.CANCELLED)
         elif job.is_live:
-            finish(
-                data_folder,
-                job,
-                JobState.FAILED,
-                problem=lost("a live run cannot be resumed"),
-            )
-        elif job.attempt >= MOST_ATTEMPTS:
+            problem = lost("a live run cannot be resumed")
+            finish(data_folder, job, JobState.FAILED, problem=problem)
+        elif job.attempt >= most:
             finish(data_folder, job, JobState.FAILED, problem=lost(f"{job.attempt} attempts"))
         else:
             _update(
@@ -326,32 +364,54 @@ def lost(why: str) -> dict[str, Any]:
 def _update(data_folder: DataFolder, job: Job, columns: str, values: Sequence[object]) -> None:
     """Change a running job, unless a later attempt has taken over."""
     with data_folder.database.writing() as connection:
+        _changed(connection, job, columns, values)
+
+
+def _changed(connection: Connection, job: Job, columns: str, values: Sequence[object]) -> bool:
+    """Change a running job; False if a later attempt has taken over."""
+    return bool(
         connection.execute(
             f"UPDATE jobs SET {columns} WHERE id = ? AND attempt = ? AND state = 'running'",
             (*values, job.id, job.attempt),
-        )
+        ).rowcount
+    )
 
 
-def _require_room(connection: sqlite3.Connection, owner: str) -> None:
+def _require_room(connection: Connection, owner: str) -> None:
     """Require room in the queue, and in the part of it that one owner may fill."""
-    waiting, own = connection.execute(
-        "SELECT count(*), total(owner = ?) FROM jobs WHERE state = 'queued'", (owner,)
+    row = connection.execute(
+        "SELECT count(*) AS waiting, count(*) FILTER (WHERE owner = ?) AS own "
+        "FROM jobs WHERE state = 'queued'",
+        (owner,),
     ).fetchone()
     share = MOST_WAITING if owner == LOCAL else max(MOST_WAITING // OWNERS, 1)
-    if waiting >= MOST_WAITING or own >= share:
+    if row["waiting"] >= MOST_WAITING or row["own"] >= share:
         raise TooMany(60.0)
 
 
-def _require_program(connection: sqlite3.Connection, id: str) -> None:
+def _require_program(connection: Connection, id: str) -> None:
     if not id:
         return
+    # It may not be deleted before this job is queued.
+    connection.share(f"program {id}")
     row = connection.execute("SELECT 1 FROM programs WHERE id = ?", (id,)).fetchone()
     if row is None:
         raise NotFound("program", id)
 
 
-def _job(row: sqlite3.Row) -> Job:
-    columns = {name: row[name] for name in row.keys()}  # noqa: SIM118 (a Row)
+def _require_files(connection: Connection, request: Mapping[str, Any]) -> None:
+    for kind, field in FIELDS.items():
+        id = request.get(field)
+        if not id:
+            continue
+        connection.share(f"file {id}")
+        row = connection.execute("SELECT 1 FROM files WHERE id = ?", (id,)).fetchone()
+        if row is None:
+            raise NotFound(kind.words, id)
+
+
+def _job(row: Row) -> Job:
+    columns = dict(row)
     problem = columns.pop("problem")
     return Job(**{
         **columns,

@@ -6,13 +6,13 @@ A key has 256 random bits and cannot be guessed, so a plain fast hash is enough.
 import hashlib
 import hmac
 import secrets
-import sqlite3
 import time
 from dataclasses import dataclass
 from enum import StrEnum
 
 from service.errors import NotFound
 from service.ids import is_id, new_id
+from service.storage.connection import Row
 from service.storage.folder import DataFolder
 
 PREFIX = "stepnc"
@@ -98,7 +98,7 @@ def _hash(secret: str) -> str:
     return hashlib.sha256(secret.encode(errors="replace")).hexdigest()
 
 
-def _key(row: sqlite3.Row) -> Key:
+def _key(row: Row) -> Key:
     return Key(
         id=row["id"],
         name=row["name"],

@@ -4,7 +4,8 @@ Names from clients are only looked up; they are never used as paths.
 """
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
@@ -206,24 +207,40 @@ def put(
         raise Conflict(f"{section.one} '{name}' is built in: choose another name")
     if len(data) > LARGEST:
         raise TooLarge(f"the file of a {section.one}", bound=LARGEST)
-    folder = data_folder.root / section.value
+    folder = data_folder.files / section.value
     file = folder / f"{name}{_suffix(section, data)}"
     with storing(section.value):
         entry = _try_out(section, file.name, data)
-        with locked(folder):
+        with _in_turn(data_folder, section):
             before = _changeable(data_folder, section, name, condition)
             write_atomically(file, data)
+            data_folder.publish(file)
             for other in before:
                 if other != file:
-                    other.unlink(missing_ok=True)
+                    data_folder.discard(other)
     return LibraryEntry(name=name, is_own=True, entry=entry, text=data)
+
+
+@contextmanager
+def _in_turn(data_folder: DataFolder, section: LibrarySection) -> Iterator[None]:
+    """Let nobody else change a section meanwhile: on this host, or of all that share it."""
+    with locked(data_folder.files / section.value):
+        if not data_folder.database.is_shared:
+            yield
+            return
+        # Not every file system locks files for all hosts.
+        with data_folder.database.writing() as connection:
+            connection.lock(f"library {section.value}")
+            yield
 
 
 def _changeable(
     data_folder: DataFolder, section: LibrarySection, name: str, condition: Condition
 ) -> list[Path]:
     """Return the files of a name that may be changed; the lock must be held."""
-    files = _own_files(data_folder, section, name)
+    if data_folder.store is not None:
+        data_folder.store.mirror(data_folder.files / section.value, at_once=True)
+    files = _files_of(data_folder, section, name)
     if not condition(_text(files[0]) if files else None):
         what = "has changed since it was read" if files else "does not exist"
         raise PreconditionFailed(f"{section.one} '{name}' {what}")
@@ -268,13 +285,13 @@ def remove(
         raise Conflict(f"{section.one} '{name}' is built in and cannot be deleted")
     if not _NAME.fullmatch(name):
         raise NotFound(section.one, name)
-    with storing(section.value), locked(data_folder.root / section.value):
+    with storing(section.value), _in_turn(data_folder, section):
         files = _changeable(data_folder, section, name, condition)
         if not files:
             raise NotFound(section.one, name)
         # The preferred file is deleted last, so that no other becomes visible meanwhile.
         for file in reversed(files):
-            file.unlink(missing_ok=True)
+            data_folder.discard(file)
 
 
 def _suffix(section: LibrarySection, data: bytes) -> str:
@@ -287,11 +304,25 @@ def _own_file(data_folder: DataFolder, section: LibrarySection, name: str) -> Pa
 
 
 def _own_files(data_folder: DataFolder, section: LibrarySection, name: str) -> list[Path]:
+    """Files of a name as of now, preferred one first."""
+    _mirror(data_folder, section)
+    return _files_of(data_folder, section, name)
+
+
+def _mirror(data_folder: DataFolder, section: LibrarySection) -> None:
+    """Compare the files of a section with those in the store, if there is one."""
+    if data_folder.store is not None:
+        folder = data_folder.files / section.value
+        with locked(folder):
+            data_folder.store.mirror(folder)
+
+
+def _files_of(data_folder: DataFolder, section: LibrarySection, name: str) -> list[Path]:
     """Files of a name, preferred one first; a second one may remain after a power failure."""
     if not _NAME.fullmatch(name):
         return []
     files = (
-        data_folder.root / section.value / f"{name}{suffix}" for suffix in section.suffixes
+        data_folder.files / section.value / f"{name}{suffix}" for suffix in section.suffixes
     )
     return [file for file in files if file.is_file()]
 
@@ -307,9 +338,10 @@ def _text(file: Path) -> bytes | None:
 
 def _names(data_folder: DataFolder, section: LibrarySection) -> list[str]:
     of_library = _library(section)
+    _mirror(data_folder, section)
     with storing(section.value):
         files = [
-            path for path in (data_folder.root / section.value).iterdir()
+            path for path in (data_folder.files / section.value).iterdir()
             if path.suffix in section.suffixes and path.is_file()
         ]  # fmt: skip
     own = {path.stem for path in files if _NAME.fullmatch(path.stem)}

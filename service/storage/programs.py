@@ -1,13 +1,13 @@
 """Storage of uploaded programs: their unchanged bytes, and their names."""
 
 import hashlib
-import sqlite3
 import time
 from dataclasses import dataclass
 
 from service.errors import Conflict, NotFound
 from service.files import write_atomically
 from service.ids import new_id
+from service.storage.connection import Row
 from service.storage.folder import DataFolder
 from service.storage.idempotency import IdempotencyKey, made_before, remember
 from service.storage.pages import Page, PageCursor, page_of
@@ -54,6 +54,7 @@ def add(
     write_atomically(place, data)
     kept = ""
     try:
+        data_folder.publish(place)
         with data_folder.database.writing() as connection:
             known = made_before(connection, idempotency)
             if known is None:
@@ -68,7 +69,7 @@ def add(
         kept = known or program.id
     finally:
         if kept != program.id:
-            place.unlink(missing_ok=True)
+            data_folder.discard(place)
     return program if kept == program.id else get(data_folder, kept)
 
 
@@ -96,7 +97,7 @@ def require_file(data_folder: DataFolder, id: str) -> None:
         When the bytes or the program do not exist.
     """
     get(data_folder, id)
-    if not data_folder.program_file(id).is_file():
+    if not data_folder.fetched(data_folder.program_file(id)).is_file():
         raise NotFound(FILE, id)
 
 
@@ -121,6 +122,8 @@ def remove(data_folder: DataFolder, id: str) -> None:
         When the program does not exist, or a job still uses it.
     """
     with data_folder.database.writing() as connection:
+        # No job may be queued meanwhile.
+        connection.lock(f"program {id}")
         busy = connection.execute(
             "SELECT id FROM jobs WHERE program = ? AND state IN ('queued', 'running')", (id,)
         ).fetchone()
@@ -129,7 +132,7 @@ def remove(data_folder: DataFolder, id: str) -> None:
         gone = connection.execute("DELETE FROM programs WHERE id = ?", (id,)).rowcount
         if not gone:
             raise NotFound("program", id)
-    data_folder.program_file(id).unlink(missing_ok=True)
+    data_folder.discard(data_folder.program_file(id))
 
 
 def shown_name(name: str) -> str:
@@ -139,5 +142,5 @@ def shown_name(name: str) -> str:
     return clean.strip(". ") or "program.stpnc"
 
 
-def _program(row: sqlite3.Row) -> StoredProgram:
-    return StoredProgram(**{name: row[name] for name in row.keys()})  # noqa: SIM118 (a Row)
+def _program(row: Row) -> StoredProgram:
+    return StoredProgram(**dict(row))

@@ -32,6 +32,8 @@ TOGETHER = {
     "controller/errors.py": "raised and read in tests/controller",
     "controller/law.py": "the interface of tests/controller/laws",
     "controller/ports.py": "Protocols; plugged in tests/controller/test_loop.py",
+    "service/storage/connection.py": "Protocols; kept by both databases in storage",
+    "service/storage/server_schema.py": "statements; run in storage/test_server_database.py",
     "service/jobs/preloaded.py": "loads what it names; tests/service/jobs/test_runner.py",
     "service/rest/views.py": "shapes; answers are held against them in rest/test_openapi.py",
     "service/rest/monitor_views.py": "held against the document in rest/test_monitors.py",

@@ -1,16 +1,12 @@
 """Outcomes made by hand, and stores in SQLite and in a private PostgreSQL server."""
 
 import os
-import shutil
-import subprocess
-import tempfile
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from itertools import count
 from pathlib import Path
 from typing import Protocol
-from urllib.parse import quote
 
 import psycopg
 import pytest
@@ -25,6 +21,9 @@ from stepnc_model.outcome import (
     LearnedCorrection,
     ProcessOutcome,
 )
+from tests.postgres import new_server, postgres_url
+
+__all__ = ["new_server", "postgres_url"]
 
 NOON = datetime(2026, 3, 5, 12, 0, tzinfo=UTC)
 
@@ -95,95 +94,6 @@ def proposal() -> LearnedCorrection:
 @pytest.fixture(scope="session")
 def outcomes() -> OutcomeMaker:
     return made
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Server:
-    """A PostgreSQL server of our own: no network, only a socket in its own folder."""
-
-    programs: Path
-    folder: Path
-    user: str
-    """that it runs as; empty: as who we are"""
-
-    @property
-    def url(self) -> str:
-        return f"postgresql://postgres@/postgres?host={quote(str(self.folder), safe='')}"
-
-    def run(self, program: str, *arguments: str) -> None:
-        subprocess.run(
-            [self.programs / program, "-D", self.folder / "data", *arguments],
-            check=True,
-            cwd=self.folder,
-            user=self.user or None,
-            group=self.user or None,
-            extra_groups=[] if self.user else None,
-            stdout=subprocess.DEVNULL,
-            timeout=60.0,
-        )
-
-    def start(self) -> None:
-        # Truncated to the socket; what is committed is on the disk.
-        options = f"-c listen_addresses='' -k {self.folder} -c fsync=on"
-        self.run("pg_ctl", "start", "-w", "-l", str(self.folder / "log"), "-o", options)
-
-    def stop(self, mode: str) -> None:
-        """``fast``, or ``immediate`` as when it crashes."""
-        self.run("pg_ctl", "stop", "-w", "-m", mode)
-
-
-@pytest.fixture(scope="session")
-def new_server() -> Iterator["ServerMaker"]:
-    """Makes servers, which run until the tests end."""
-    servers: list[Server] = []
-
-    def make() -> Server:
-        server = started_server()
-        servers.append(server)
-        return server
-
-    yield make
-    for server in servers:
-        server.stop("fast")
-        shutil.rmtree(server.folder)
-
-
-class ServerMaker(Protocol):
-    """Makes a server, or skips the test."""
-
-    def __call__(self) -> Server: ...
-
-
-def started_server() -> Server:
-    found = sorted(Path("/usr/lib/postgresql").glob("*/bin/initdb"))
-    if not found:
-        pytest.skip("no PostgreSQL: set STEPNC_TEST_POSTGRES or apt-get install postgresql")
-    # A server refuses to run as root; the name of a socket may have 107 letters at most.
-    folder = Path(tempfile.mkdtemp(prefix="stepnc-pg-", dir="/tmp"))
-    user = "postgres" if os.geteuid() == 0 else ""
-    if user:
-        shutil.chown(folder, user, user)
-    server = Server(programs=found[-1].parent, folder=folder, user=user)
-    try:
-        server.run(
-            "initdb", "--no-sync", "--auth=trust", "--username=postgres", "--encoding=UTF8",
-            "--locale=C",
-        )  # fmt: skip
-        server.start()
-    except BaseException:
-        shutil.rmtree(folder)
-        raise
-    return server
-
-
-@pytest.fixture(scope="session")
-def postgres_url(request: pytest.FixtureRequest) -> str:
-    """A database that tests may make schemas in."""
-    given = os.environ.get("STEPNC_TEST_POSTGRES", "")
-    if given:
-        return given
-    new_server: ServerMaker = request.getfixturevalue("new_server")
-    return new_server().url
 
 
 SCHEMAS = count()

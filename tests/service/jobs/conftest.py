@@ -17,14 +17,18 @@ from service.requests.runs import ControlRequest, SimulationRequest
 from service.storage import jobs, programs
 from service.storage.folder import DataFolder, open_data_folder
 from service.storage.jobs import Job, JobKind, JobRequest, JobState
+from tests.postgres import new_database, new_server, postgres_url
 from tests.service.rest.samples import SAMPLE
 from tests.service.shop import outcomes
 from tests.service.waiting import environment, until
 
+__all__ = ["new_database", "new_server", "postgres_url"]
+
 MAIN = """
 import sys
 from service.jobs.runner import main
-main(sys.argv[1], sys.argv[2], 1, int(sys.argv[3]))
+from service.storage.folder import FolderAddress
+main(FolderAddress(root=sys.argv[1], knowledge=sys.argv[2]), 1, int(sys.argv[3]))
 """
 
 IMPATIENT = f"""

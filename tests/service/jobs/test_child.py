@@ -10,7 +10,7 @@ import pytest
 from service.jobs import advise, child
 from service.jobs.task import RunningJob
 from service.storage import database, jobs, programs
-from service.storage.folder import open_data_folder
+from service.storage.folder import DATABASE, open_data_folder
 from service.storage.jobs import Job, JobKind, JobState
 from tests.service.jobs.conftest import Shop, made_shop
 from tests.service.live.room import within_room
@@ -37,8 +37,9 @@ def idle(tmp_path_factory: pytest.TempPathFactory) -> Shop:
 
 
 def ran(shop: Shop, job: Job) -> Job:
-    assert jobs.claim(shop.data_folder, kinds=[job.kind]) is not None
-    child.main(str(shop.data_folder.root), shop.data_folder.knowledge, job.id)
+    claimed = jobs.claim(shop.data_folder, kinds=[job.kind])
+    assert claimed is not None
+    child.main(shop.data_folder.address, job.id, claimed.attempt)
     return shop.job(job.id)
 
 
@@ -115,7 +116,7 @@ def test_an_end_is_said_once_the_database_answers_again(
     assert claimed is not None
     monkeypatch.setattr(database, "WAIT", 0.01)
     data_folder = open_data_folder(idle.data_folder.root, knowledge=idle.data_folder.knowledge)
-    other = sqlite3.connect(idle.data_folder.database.file, isolation_level=None)
+    other = sqlite3.connect(idle.data_folder.root / DATABASE, isolation_level=None)
     other.execute("BEGIN IMMEDIATE")
     waits: list[float] = []
 
@@ -136,7 +137,8 @@ def test_an_end_is_said_once_the_database_answers_again(
 
 ON_FULL_DISK = """
 from service.jobs import advise, child
-child.main(sys.argv[1], "none.db", sys.argv[2])
+from service.storage.folder import FolderAddress
+child.main(FolderAddress(root=sys.argv[1], knowledge="none.db"), sys.argv[2], 1)
 """
 
 

@@ -13,7 +13,7 @@ import pytest
 from service.errors import Conflict
 from service.jobs import preloaded, runner
 from service.storage import jobs
-from service.storage.folder import open_data_folder
+from service.storage.folder import DATABASE, open_data_folder
 from service.storage.jobs import JobKind, JobState
 from tests.service.jobs.conftest import IMPATIENT, MAIN, Shop
 from tests.service.waiting import children, is_alive, until
@@ -97,7 +97,7 @@ def test_a_locked_database_ends_nobody_and_what_happened_is_told_later(
     trial, killed = own_shop.order(JobKind.TRIAL).id, own_shop.order(JobKind.TRIAL).id
     own_shop.runs(trial)
     own_shop.runs(killed)
-    with closing(sqlite3.connect(own_shop.data_folder.database.file)) as other:
+    with closing(sqlite3.connect(own_shop.data_folder.root / DATABASE)) as other:
         other.isolation_level = None
         other.execute("BEGIN IMMEDIATE")
         pid = process_of(own_shop, killed)

@@ -23,7 +23,7 @@ def running(data_folder: DataFolder, **words: str) -> RunningJob:  # noqa: F811
     job = jobs.claim(data_folder, kinds=[JobKind.ADVICE])
     assert job is not None
     task = RunningJob(data_folder=data_folder, job=job)
-    task.folder.mkdir()
+    assert task.make_folder()
     return task
 
 
@@ -70,7 +70,7 @@ def test_a_program_is_an_upload_or_what_an_advice_made_of_it(data_folder: DataFo
         program_file(data_folder, **words)
     (task.folder / OPTIMISED).write_bytes(b"y")
     assert program_file(data_folder, **words) == (
-        task.folder / OPTIMISED,
+        data_folder.job_folder(task.job.id) / OPTIMISED,
         "part.one.optimised.stpnc",
     )
     with pytest.raises(NotFound, match="there is no advice"):

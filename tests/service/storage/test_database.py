@@ -10,12 +10,12 @@ from subprocess import PIPE, Popen
 import pytest
 
 from service.errors import Unavailable
-from service.storage.database import SCHEMA, Database
+from service.storage.database import SCHEMA, FileDatabase
 
 INSERT = "INSERT INTO requests VALUES (?, ?, 'print', 'made', 0.0)"
 
 
-def count(database: Database) -> int:
+def count(database: FileDatabase) -> int:
     with database.reading() as connection:
         return int(connection.execute("SELECT count(*) FROM requests").fetchone()[0])
 
@@ -26,7 +26,7 @@ def version(file: Path) -> int:
 
 
 def test_a_new_file_gets_every_version_and_says_so(tmp_path: Path) -> None:
-    database = Database(tmp_path / "service.db")
+    database = FileDatabase(tmp_path / "service.db")
     assert version(database.file) == len(SCHEMA)
     with database.reading() as connection:
         found = connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")
@@ -38,10 +38,10 @@ def test_a_new_file_gets_every_version_and_says_so(tmp_path: Path) -> None:
 
 
 def test_a_file_that_is_up_to_date_is_opened_as_it_is(tmp_path: Path) -> None:
-    first = Database(tmp_path / "service.db")
+    first = FileDatabase(tmp_path / "service.db")
     with first.writing() as connection:
         connection.execute(INSERT, ("anna", "1"))
-    assert count(Database(tmp_path / "service.db")) == 1
+    assert count(FileDatabase(tmp_path / "service.db")) == 1
 
 
 def test_a_newer_file_is_refused_and_stays_as_it_is(tmp_path: Path) -> None:
@@ -51,7 +51,7 @@ def test_a_newer_file_is_refused_and_stays_as_it_is(tmp_path: Path) -> None:
         connection.execute(f"PRAGMA user_version = {len(SCHEMA) + 1}")
     before = file.read_bytes()
     with pytest.raises(Unavailable, match="install a newer program") as refused:
-        Database(file)
+        FileDatabase(file)
     assert str(tmp_path) not in str(refused.value)
     with closing(sqlite3.connect(file)) as connection:
         names = connection.execute("SELECT name FROM sqlite_master").fetchall()
@@ -66,21 +66,21 @@ def test_a_migration_that_breaks_off_leaves_nothing(
         "service.storage.database.SCHEMA", (*SCHEMA, "CREATE TABLE half (a); CREATE nonsense")
     )
     with pytest.raises(Unavailable):
-        Database(tmp_path / "service.db")
+        FileDatabase(tmp_path / "service.db")
     assert version(tmp_path / "service.db") == 0
     monkeypatch.undo()
-    assert count(Database(tmp_path / "service.db")) == 0
+    assert count(FileDatabase(tmp_path / "service.db")) == 0
 
 
 def test_a_file_that_is_no_database_is_refused_without_its_folder(tmp_path: Path) -> None:
     (tmp_path / "service.db").write_bytes(b"no database at all, but long enough" * 100)
     with pytest.raises(Unavailable, match=r"^service\.db: ") as refused:
-        Database(tmp_path / "service.db")
+        FileDatabase(tmp_path / "service.db")
     assert str(tmp_path) not in str(refused.value)
 
 
 def test_a_transaction_is_kept_whole_or_not_at_all(tmp_path: Path) -> None:
-    database = Database(tmp_path / "service.db")
+    database = FileDatabase(tmp_path / "service.db")
 
     def half() -> None:
         with database.writing() as connection:
@@ -106,7 +106,10 @@ def test_a_transaction_is_kept_whole_or_not_at_all(tmp_path: Path) -> None:
 
 
 def test_a_reader_does_not_wait_for_a_writer(tmp_path: Path) -> None:
-    database, other = Database(tmp_path / "service.db"), Database(tmp_path / "service.db")
+    database, other = (
+        FileDatabase(tmp_path / "service.db"),
+        FileDatabase(tmp_path / "service.db"),
+    )
     with database.writing() as connection:
         connection.execute(INSERT, ("anna", "1"))
         assert count(other) == 0
@@ -114,7 +117,7 @@ def test_a_reader_does_not_wait_for_a_writer(tmp_path: Path) -> None:
 
 
 def test_a_connection_is_made_anew_after_it_was_closed(tmp_path: Path) -> None:
-    database = Database(tmp_path / "service.db")
+    database = FileDatabase(tmp_path / "service.db")
     database.close()
     database.close()
     assert count(database) == 0
@@ -123,13 +126,13 @@ def test_a_connection_is_made_anew_after_it_was_closed(tmp_path: Path) -> None:
 def test_a_file_that_was_moved_away_is_not_written_and_not_made_anew(tmp_path: Path) -> None:
     folder = tmp_path / "data"
     folder.mkdir()
-    database = Database(folder / "service.db")
+    database = FileDatabase(folder / "service.db")
     folder.rename(tmp_path / "moved")
     for ask in (database.reading, database.writing):
         with pytest.raises(Unavailable, match=r"^service\.db: No such file"), ask():
             """not met"""
     folder.mkdir()
-    Database(folder / "service.db")
+    FileDatabase(folder / "service.db")
     with pytest.raises(Unavailable, match="replaced by another one"):
         count(database)
     shutil.rmtree(folder)
@@ -140,7 +143,7 @@ def test_a_file_that_was_moved_away_is_not_written_and_not_made_anew(tmp_path: P
 def test_a_transaction_that_cannot_be_closed_leaves_the_connection_usable(
     tmp_path: Path,
 ) -> None:
-    database = Database(tmp_path / "service.db")
+    database = FileDatabase(tmp_path / "service.db")
     with database.writing() as connection:
         connection.execute("PRAGMA foreign_keys = ON")
         connection.execute("CREATE TABLE a (id PRIMARY KEY)")
@@ -163,9 +166,9 @@ def test_a_transaction_that_cannot_be_closed_leaves_the_connection_usable(
 WRITER = """
 import sys
 from pathlib import Path
-from service.storage.database import Database
+from service.storage.database import FileDatabase
 sys.stdin.read(1)
-database = Database(Path(sys.argv[1]))
+database = FileDatabase(Path(sys.argv[1]))
 for number in range(25):
     with database.writing() as connection:
         connection.execute("INSERT INTO requests VALUES (?, ?, '', '', 0)",
@@ -186,4 +189,4 @@ def test_processes_that_open_a_new_file_at_once_lose_nothing(tmp_path: Path) -> 
     for writer in writers:
         _, told = writer.communicate(timeout=60.0)
         assert (writer.returncode, told) == (0, b"")
-    assert count(Database(file)) == 4 * 25
+    assert count(FileDatabase(file)) == 4 * 25

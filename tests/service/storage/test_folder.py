@@ -9,7 +9,12 @@ from hypothesis import strategies as st
 
 from service.errors import NotFound, Unavailable
 from service.ids import is_id, new_id
-from service.storage.folder import DataFolder, known_data_folder, open_data_folder
+from service.storage.folder import (
+    DataFolder,
+    FolderAddress,
+    known_data_folder,
+    open_data_folder,
+)
 
 
 def test_a_new_folder_is_its_owners_alone(data_folder: DataFolder) -> None:
@@ -53,14 +58,17 @@ def test_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
 def test_a_folder_that_is_gone_is_not_made_anew(tmp_path: Path) -> None:
     root = tmp_path / "data"
     made = open_data_folder(root)
-    assert known_data_folder(root, knowledge=made.knowledge).root == made.root
+    assert (
+        known_data_folder(FolderAddress(root=str(root), knowledge=made.knowledge)).root
+        == made.root
+    )
     root.rename(tmp_path / "moved")
     with pytest.raises(Unavailable, match=r"service\.db"):
-        known_data_folder(root, knowledge="")
+        known_data_folder(FolderAddress(root=str(root)))
     assert not root.exists()
     root.mkdir()
     with pytest.raises(Unavailable, match=r"service\.db"):
-        known_data_folder(root, knowledge="")
+        known_data_folder(FolderAddress(root=str(root)))
     assert not list(root.iterdir())
 
 

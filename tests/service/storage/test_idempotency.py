@@ -108,7 +108,7 @@ from service.storage import jobs, programs
 from service.storage.folder import open_data_folder
 from service.storage.jobs import JobKind, JobRequest
 from service.storage.idempotency import IdempotencyKey
-data_folder = open_data_folder(Path(sys.argv[1]))
+data_folder = open_data_folder(Path(sys.argv[1]), database=sys.argv[2])
 print("ready", flush=True)
 sys.stdin.read(1)
 for number in range(20):
@@ -124,7 +124,8 @@ for number in range(20):
 def test_the_same_keys_from_two_processes_at_once_make_one_program_and_one_job_each(
     data_folder: DataFolder,
 ) -> None:
-    command = [sys.executable, "-c", ASKED_AT_ONCE, str(data_folder.root)]
+    address = data_folder.address
+    command = [sys.executable, "-c", ASKED_AT_ONCE, address.root, address.database]
     askers = [Popen(command, stdin=PIPE, stdout=PIPE, text=True) for _ in range(2)]
     for asker in askers:
         assert asker.stdout is not None

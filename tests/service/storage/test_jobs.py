@@ -11,7 +11,15 @@ from hypothesis import strategies as st
 from service.errors import Conflict, NotFound, TooMany
 from service.storage import jobs
 from service.storage.folder import DataFolder
-from service.storage.jobs import LOCAL, MOST_ATTEMPTS, Job, JobKind, JobRequest, JobState
+from service.storage.jobs import (
+    LOCAL,
+    MOST_ATTEMPTS,
+    MOST_ATTEMPTS_SHARED,
+    Job,
+    JobKind,
+    JobRequest,
+    JobState,
+)
 from service.storage.pages import PageCursor
 
 ALL = tuple(JobKind)
@@ -95,7 +103,7 @@ import sys
 from pathlib import Path
 from service.storage import jobs
 from service.storage.folder import open_data_folder
-data_folder = open_data_folder(Path(sys.argv[1]))
+data_folder = open_data_folder(Path(sys.argv[1]), database=sys.argv[2])
 print("ready", flush=True)
 sys.stdin.read(1)
 while (job := jobs.claim(data_folder, kinds=list(jobs.JobKind))) is not None:
@@ -105,7 +113,8 @@ while (job := jobs.claim(data_folder, kinds=list(jobs.JobKind))) is not None:
 
 def test_processes_that_claim_at_once_get_each_job_once(data_folder: DataFolder) -> None:
     made = {queued(data_folder).id for _ in range(60)}
-    command = [sys.executable, "-c", CLAIMER, str(data_folder.root)]
+    address = data_folder.address
+    command = [sys.executable, "-c", CLAIMER, address.root, address.database]
     claimers = [Popen(command, stdin=PIPE, stdout=PIPE, text=True) for _ in range(3)]
     for claimer in claimers:
         assert claimer.stdout is not None
@@ -126,7 +135,7 @@ def test_processes_that_claim_at_once_get_each_job_once(data_folder: DataFolder)
 
 def test_a_stale_attempt_writes_nothing(data_folder: DataFolder) -> None:
     stale = claimed(data_folder)
-    jobs.recover(data_folder)
+    jobs.recover(data_folder, jobs.running(data_folder))
     fresh = jobs.claim(data_folder, kinds=ALL)
     assert fresh is not None
     assert (fresh.id, fresh.attempt) == (stale.id, 2)
@@ -188,18 +197,19 @@ def test_a_job_is_deleted_with_its_results_once_it_is_over(data_folder: DataFold
 
 def test_a_lost_job_is_queued_again_but_not_for_ever(data_folder: DataFolder) -> None:
     id = claimed(data_folder).id
-    for attempt in range(1, MOST_ATTEMPTS):
-        jobs.recover(data_folder)
+    most = MOST_ATTEMPTS_SHARED if data_folder.database.is_shared else MOST_ATTEMPTS
+    for attempt in range(1, most):
+        jobs.recover(data_folder, jobs.running(data_folder))
         assert jobs.get(data_folder, id).state is JobState.QUEUED
         again = jobs.claim(data_folder, kinds=ALL)
         assert again is not None
         assert again.attempt == attempt + 1
-    jobs.recover(data_folder)
+    jobs.recover(data_folder, jobs.running(data_folder))
     lost = jobs.get(data_folder, id)
     assert lost.state is JobState.FAILED
     assert lost.problem is not None
     assert lost.problem["type"] == "urn:stepnc:problem:job-lost"
-    assert "3 attempts" in lost.problem["detail"]
+    assert f"{most} attempts" in lost.problem["detail"]
 
 
 @pytest.mark.parametrize("kind", [JobKind.TRIAL, JobKind.CONTROL])
@@ -207,7 +217,7 @@ def test_a_lost_run_with_people_has_failed_and_says_so(
     data_folder: DataFolder, kind: JobKind
 ) -> None:
     job = claimed(data_folder, kind)
-    jobs.recover(data_folder)
+    jobs.recover(data_folder, jobs.running(data_folder))
     found = jobs.get(data_folder, job.id)
     assert found.state is JobState.FAILED
     assert found.problem is not None
@@ -217,14 +227,14 @@ def test_a_lost_run_with_people_has_failed_and_says_so(
 def test_a_lost_job_that_was_to_end_is_cancelled(data_folder: DataFolder) -> None:
     job = claimed(data_folder)
     jobs.cancel(data_folder, job.id)
-    jobs.recover(data_folder)
+    jobs.recover(data_folder, jobs.running(data_folder))
     assert jobs.get(data_folder, job.id).state is JobState.CANCELLED
 
 
 def test_recovery_leaves_what_waits_and_what_is_over(data_folder: DataFolder) -> None:
     done, waits = claimed(data_folder), queued(data_folder)
     jobs.finish(data_folder, done, JobState.FAILED, problem=jobs.lost("why"))
-    jobs.recover(data_folder)
+    jobs.recover(data_folder, jobs.running(data_folder))
     assert jobs.get(data_folder, done.id).state is JobState.FAILED
     assert jobs.get(data_folder, waits.id) == waits
 
@@ -284,7 +294,7 @@ def test_whatever_happens_what_is_over_stays_over(
         elif step == "finish" and held is not None:
             jobs.finish(data_folder, held, JobState.SUCCEEDED)
         elif step == "recover":
-            jobs.recover(data_folder)
+            jobs.recover(data_folder, jobs.running(data_folder))
         now = {id: jobs.get(data_folder, id).state for id in ids}
         assert {id: now[id] for id in over} == over
         over |= {id: state for id, state in now.items() if state.is_finished}

@@ -280,7 +280,7 @@ from service.storage import library
 from service.storage.folder import open_data_folder
 from service.storage.library import LibrarySection
 from service.errors import PreconditionFailed
-data_folder = open_data_folder(Path(sys.argv[1]))
+data_folder = open_data_folder(Path(sys.argv[1]), database=sys.argv[2])
 print("ready", flush=True)
 sys.stdin.read(1)
 for number in range(10):
@@ -301,7 +301,8 @@ for number in range(10):
 
 def test_no_change_of_another_process_is_lost(data_folder: DataFolder) -> None:
     library.put(data_folder, LibrarySection.MATERIALS, "ours", MATERIAL + b"#")
-    command = [sys.executable, "-c", CHANGER, str(data_folder.root)]
+    address = data_folder.address
+    command = [sys.executable, "-c", CHANGER, address.root, address.database]
     changers = [Popen(command, stdin=PIPE, stdout=PIPE, text=True) for _ in range(2)]
     for changer in changers:
         assert changer.stdout is not None
