@@ -27,7 +27,7 @@ from service.reading import silent
 
 ROWS, KILLS, WORKERS = 2000, 8, 3
 
-PART = Path(__file__).parents[1] / "examples" / "parts" / "paper003_case1.stpnc"
+PART = Path(__file__).parents[1] / "examples" / "parts" / "paper003_pocket.stpnc"
 
 DESIGN = f"""program = "{PART}"
 machine = "paper003"
