@@ -382,7 +382,7 @@ def test_a_machine_file_with_a_fault_is_refused_with_key_value_bound_and_unit(
 
 
 def test_an_input_that_is_a_folder_or_missing_is_refused(part: Path, refused: Optimise) -> None:
-    assert "Is a directory" in refused(file=part.parent).error
+    assert "is a folder: name another folder with -o" in refused(file=part.parent).error
     missing = part.with_name("missing.stpnc")
     assert f"{missing}: No such file or directory" in refused(file=missing).error
 
