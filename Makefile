@@ -21,7 +21,7 @@ help:
 	@echo "make demo   optimise a sample part, simulate it, run it under control, and learn from it"
 	@echo "make serve  the dashboard and REST at http://127.0.0.1:8000 (PORT=8000)"
 	@echo "make test   run the tests"
-	@echo "make shuffled  run the quick tests in another order, in a clone (SEED=1 repeats one)"
+	@echo "make shuffled  run a share of the quick tests in another order, in a clone (SEED=1 repeats one)"
 	@echo "make check  formatting, lint, types, layers"
 	@echo "make bench  speed, side by side with peers"
 	@echo "make docs   the documentation as a site, in build/site"
@@ -74,18 +74,20 @@ test: $(READY)
 	$(BIN)/python -m pytest -n auto --durations=20 --durations-min=1
 
 SEED := $(or $(SEED),$(shell date +%s))
+SHARE ?= 0.3
 
-# No test may depend on its order, its worker or its folder: all quick tests in one of all
-# orders, and a clone of what is committed that nobody else may enter (mktemp: mode 0700).
+# No test may depend on its order, its worker or its folder: a share of the quick tests, others
+# each time, in one of all orders, and a clone of what is committed that nobody else may enter
+# (mktemp: mode 0700).
 # It borrows the environment; modules that are installed there come after those of the clone.
 shuffled: $(READY)
-	@echo "make shuffled SEED=$(SEED)"
+	@echo "make shuffled SEED=$(SEED) SHARE=$(SHARE)"
 	@folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && trap 'exit 130' INT TERM && \
 	git clone --quiet . "$$folder/clone" && \
 	ln -s "$(abspath $(VENV))" "$$folder/clone/.venv" && \
 	if [ -d ../shared ]; then ln -s "$$(cd ../shared && pwd)" "$$folder/shared"; fi && \
 	cd "$$folder/clone" && export PYTHONPATH="$$PWD" && $(COMPILE) && \
-	.venv/bin/python -m pytest -n auto -m "not slow" --shuffle $(SEED)
+	.venv/bin/python -m pytest -n auto -m "not slow" --shuffle $(SEED) --share $(SHARE)
 
 check: $(READY)
 	$(BIN)/ruff format --check .

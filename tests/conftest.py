@@ -1,6 +1,7 @@
 """What all tests share: CI draws the same examples each time, a run ends with its skips.
 
-``-m "not slow"`` runs the quick tests, ``--shuffle SEED`` whatever is run in one of all orders.
+``-m "not slow"`` runs the quick tests, ``--shuffle SEED`` whatever is run in one of all orders,
+``--share 0.3`` three in ten of them.
 """
 
 import os
@@ -51,6 +52,13 @@ SLOW_PLACES = {Path(__file__).parent / place for place in SLOW}
 def pytest_addoption(parser: pytest.Parser) -> None:
     """How to shuffle."""
     parser.addoption("--shuffle", type=int, metavar="SEED", help="shuffle the tests")
+    parser.addoption(
+        "--share",
+        type=float,
+        default=1.0,
+        metavar="SHARE",
+        help="run the first of the shuffled",
+    )
 
 
 def pytest_report_header(config: pytest.Config) -> list[str]:
@@ -72,6 +80,9 @@ def pytest_collection_modifyitems(
     yield
     if (seed := config.getoption("shuffle")) is not None:
         Random(seed).shuffle(items)
+        kept = round(config.getoption("share") * len(items))
+        config.hook.pytest_deselected(items=items[kept:])
+        del items[kept:]
 
 
 @pytest.hookimpl(optionalhook=True)
