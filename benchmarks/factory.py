@@ -2,9 +2,9 @@
 
 A shop of 50 machines runs for 4000 h at ten minutes a part. Each part has three states, each
 batch two more; but a part passes in one SimPy event here, as nobody listens. Its peers are the
-same line as a plain SimPy script, which takes an event a state, draws the same times and records
-nothing, and processes that only wait, one for each machine: for as many events as there are
-states, and for as many as SimPy has.
+same line as a plain SimPy script, which takes an event a state, draws the same times and
+records nothing, and processes that only wait, one for each machine: for as many events as there
+are states, and for as many as SimPy has.
 ``python -m benchmarks.factory --hours 400``
 """
 
