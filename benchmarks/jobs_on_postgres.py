@@ -40,23 +40,11 @@ from service.storage import jobs, programs, rates
 from service.storage.folder import DataFolder, open_data_folder
 from service.storage.jobs import JobKind, JobRequest
 from stepnc_model.post.dialect import Dialect
-from tests.postgres import started_server
+from tests.postgres import AUDIT, started_server
 from tests.service.rest.samples import PARTS, SAMPLE
 from tests.service.shop import outcomes
 
 ROOT = Path(__file__).parents[1]
-
-AUDIT = """
-CREATE TABLE stepnc_service.ends (id TEXT, state TEXT, attempt BIGINT);
-CREATE FUNCTION stepnc_service.record_end() RETURNS trigger LANGUAGE plpgsql AS $$
-BEGIN
-  INSERT INTO stepnc_service.ends VALUES (NEW.id, NEW.state, NEW.attempt);
-  RETURN NULL;
-END $$;
-CREATE TRIGGER ends AFTER UPDATE ON stepnc_service.jobs FOR EACH ROW
-WHEN (OLD.state <> NEW.state AND NEW.state NOT IN ('queued', 'running'))
-EXECUTE FUNCTION stepnc_service.record_end()
-"""
 
 OUTCOMES, BATCH, ADVICES = 20_000, 1000, 9
 

@@ -15,6 +15,19 @@ import psycopg
 import pytest
 from sqlalchemy.engine import make_url
 
+AUDIT = """
+CREATE TABLE stepnc_service.ends (id TEXT, state TEXT, attempt BIGINT);
+CREATE FUNCTION stepnc_service.record_end() RETURNS trigger LANGUAGE plpgsql AS $$
+BEGIN
+  INSERT INTO stepnc_service.ends VALUES (NEW.id, NEW.state, NEW.attempt);
+  RETURN NULL;
+END $$;
+CREATE TRIGGER ends AFTER UPDATE ON stepnc_service.jobs FOR EACH ROW
+WHEN (OLD.state <> NEW.state AND NEW.state NOT IN ('queued', 'running'))
+EXECUTE FUNCTION stepnc_service.record_end()
+"""
+"""The database itself counts how often each job has ended."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Server:

@@ -106,6 +106,9 @@ def _require_versions(address: str, found: dict[str, object]) -> None:
     """
     own = versions()
     for worker, theirs in found.items():
+        if isinstance(theirs, OSError):
+            # It has just ended; others do its work.
+            continue
         if not isinstance(theirs, dict):
             raise StepNcError(
                 f"--cluster {address}: worker {worker} cannot run it ({_first_line(theirs)}): "

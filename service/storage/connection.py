@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager
 from typing import Any, Protocol
 
 
-class Row(Protocol):
+class StoredRow(Protocol):
     """Row of an answer; values by column name."""
 
     def __getitem__(self, name: str, /) -> Any:
@@ -22,7 +22,7 @@ class Row(Protocol):
         ...
 
 
-class Cursor(Protocol):
+class StatementAnswer(Protocol):
     """Answer to a statement."""
 
     @property
@@ -47,7 +47,7 @@ class Connection(Protocol):
         """End of a query for a row to change that no other transaction is changing."""
         ...
 
-    def execute(self, statement: str, values: Sequence[Any] = (), /) -> Cursor:
+    def execute(self, statement: str, values: Sequence[Any] = (), /) -> StatementAnswer:
         """Execute a statement."""
         ...
 

@@ -16,7 +16,7 @@ from typing import BinaryIO
 from service.errors import Conflict, NotFound, Unreadable
 from service.ids import new_id
 from service.live.storage import storing
-from service.storage.connection import Row
+from service.storage.connection import StoredRow
 from service.storage.folder import DataFolder
 from service.storage.idempotency import IdempotencyKey, made_before, remember
 from service.storage.pages import Page, PageCursor, page_of
@@ -261,6 +261,6 @@ def remove(data_folder: DataFolder, id: str) -> None:
     data_folder.discard(file_of(data_folder, stored))
 
 
-def _stored(row: Row) -> StoredFile:
+def _stored(row: StoredRow) -> StoredFile:
     columns = dict(row)
     return StoredFile(**{**columns, "kind": FileKind(columns["kind"])})

@@ -16,7 +16,7 @@ from typing import Any
 from service.errors import Conflict, NotFound, TooMany
 from service.ids import new_id
 from service.live.storage import storing
-from service.storage.connection import Connection, Row
+from service.storage.connection import Connection, StoredRow
 from service.storage.files import FIELDS
 from service.storage.folder import DataFolder, remove_results, show_again, show_attempt
 from service.storage.idempotency import IdempotencyKey, made_before, remember
@@ -410,7 +410,7 @@ def _require_files(connection: Connection, request: Mapping[str, Any]) -> None:
             raise NotFound(kind.words, id)
 
 
-def _job(row: Row) -> Job:
+def _job(row: StoredRow) -> Job:
     columns = dict(row)
     problem = columns.pop("problem")
     return Job(**{

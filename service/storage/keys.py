@@ -12,7 +12,7 @@ from enum import StrEnum
 
 from service.errors import NotFound
 from service.ids import is_id, new_id
-from service.storage.connection import Row
+from service.storage.connection import StoredRow
 from service.storage.folder import DataFolder
 
 PREFIX = "stepnc"
@@ -98,7 +98,7 @@ def _hash(secret: str) -> str:
     return hashlib.sha256(secret.encode(errors="replace")).hexdigest()
 
 
-def _key(row: Row) -> Key:
+def _key(row: StoredRow) -> Key:
     return Key(
         id=row["id"],
         name=row["name"],

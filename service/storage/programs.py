@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from service.errors import Conflict, NotFound
 from service.files import write_atomically
 from service.ids import new_id
-from service.storage.connection import Row
+from service.storage.connection import StoredRow
 from service.storage.folder import DataFolder
 from service.storage.idempotency import IdempotencyKey, made_before, remember
 from service.storage.pages import Page, PageCursor, page_of
@@ -142,5 +142,5 @@ def shown_name(name: str) -> str:
     return clean.strip(". ") or "program.stpnc"
 
 
-def _program(row: Row) -> StoredProgram:
+def _program(row: StoredRow) -> StoredProgram:
     return StoredProgram(**dict(row))

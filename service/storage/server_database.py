@@ -21,7 +21,7 @@ from psycopg.rows import DictRow, dict_row
 from kbe.faults import fault
 from kbe.store_location import StoreLocation, parsed_place
 from service.errors import StorageFull, Unavailable
-from service.storage.connection import Cursor
+from service.storage.connection import StatementAnswer
 from service.storage.server_schema import SCHEMA, SPACE
 
 MOST_CONNECTIONS = 8
@@ -64,7 +64,7 @@ class ServerConnection:
     def __init__(self, raw: Raw) -> None:
         self._raw = raw
 
-    def execute(self, statement: str, values: Sequence[Any] = (), /) -> Cursor:
+    def execute(self, statement: str, values: Sequence[Any] = (), /) -> StatementAnswer:
         """Execute a statement."""
         return self._raw.execute(_marked(statement), values)
 

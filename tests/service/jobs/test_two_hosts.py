@@ -21,7 +21,7 @@ from service.requests.knowledge import ReviewRequest
 from service.storage import jobs
 from service.storage.folder import DataFolder, open_data_folder
 from service.storage.jobs import JobKind, JobRequest, JobState
-from tests.postgres import Server, ServerMaker
+from tests.postgres import AUDIT, Server, ServerMaker
 from tests.service.waiting import environment, until
 
 MAIN = """
@@ -35,19 +35,6 @@ runner.main(folder, 2, os.getppid())
 
 JOBS = 80
 KILLS = 4
-
-AUDIT = """
-CREATE TABLE stepnc_service.ends (id TEXT, state TEXT, attempt BIGINT);
-CREATE FUNCTION stepnc_service.record_end() RETURNS trigger LANGUAGE plpgsql AS $$
-BEGIN
-  INSERT INTO stepnc_service.ends VALUES (NEW.id, NEW.state, NEW.attempt);
-  RETURN NULL;
-END $$;
-CREATE TRIGGER ends AFTER UPDATE ON stepnc_service.jobs FOR EACH ROW
-WHEN (OLD.state <> NEW.state AND NEW.state NOT IN ('queued', 'running'))
-EXECUTE FUNCTION stepnc_service.record_end()
-"""
-"""the database itself counts how often each job has ended"""
 
 
 @dataclass(kw_only=True)
