@@ -3,7 +3,8 @@
 import asyncio
 import re
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
+from typing import Any, TypeVar
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from simulator.agent import http
 from tests.simulator.agent.conftest import ServedAgent
 
 Serve = Callable[..., ServedAgent]
+Found = TypeVar("Found")
 CLIENTS = 200
 ROUNDS = 20
 SEQUENCE = re.compile(rb'sequence="(\d+)"')
@@ -36,12 +38,30 @@ async def listen(port: int, start: int, last: int) -> list[int]:
     return seen
 
 
+async def tasks() -> int:
+    """Number of tasks of a server, one for each connection, and of this one."""
+    return len(asyncio.all_tasks())
+
+
+async def dropped(alone: int) -> None:
+    """Wait until a server serves nobody."""
+    async with asyncio.timeout(60):
+        while await tasks() > alone:
+            await asyncio.sleep(0.05)
+
+
+def on(loop: asyncio.AbstractEventLoop, work: Coroutine[Any, Any, Found]) -> Found:
+    """Result of work on the loop of a server."""
+    return asyncio.run_coroutine_threadsafe(work, loop).result(90.0)
+
+
 def test_two_hundred_streams_get_everything_once_and_in_order(
     serve: Serve, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(http, "PATIENCE", 1.0)
     served = serve(size=20_000)
     port = int(served.url.rpartition(":")[2])
+    alone = on(served.loop, tasks())
     start = served.agent.buffer.next
     numbers = np.flatnonzero([item.category == "SAMPLE" for item in served.agent.model.items])
     # What is sent to a client that reads nothing soon fills its buffers.
@@ -66,6 +86,8 @@ def test_two_hundred_streams_get_everything_once_and_in_order(
 
     for seen in asyncio.run(run()):
         assert seen == list(range(start, start + ROUNDS * len(numbers)))
+    # Not before: who reads again is served on, without end.
+    on(served.loop, dropped(alone))
     lazy.settimeout(30.0)
     with lazy:
         received = 0
