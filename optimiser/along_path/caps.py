@@ -85,6 +85,10 @@ class Caps:
             name=np.where(is_less, other.name, self.name),
         )
 
+    def at(self, rows: Ints | Bools | slice) -> "Caps":
+        """Caps of the selected rows."""
+        return Caps(feed=self.feed[rows], name=self.name[rows])
+
 
 def unbounded(count: int, name: CapName = CapName.AIR) -> Caps:
     """Caps that limit nothing."""

@@ -55,6 +55,8 @@ class FeedPieces:
     """Programmed feed in the unit of the block, (P,)."""
     is_per_revolution: Bools
     """Whether the feed is per revolution, (P,)."""
+    run: Ints
+    """Number of the run of feed moves between two rapids, (P,)."""
 
     def __len__(self) -> int:
         return len(self.block)
@@ -67,29 +69,30 @@ def pieces_of(stretch: PathStretch, commands: Commands, rules: PieceRules) -> Fe
     optimised program changes nothing.
     """
     segments = stretch.segments
-    lengths = np.diff(commands.ends, prepend=0.0)
-    is_fed = (stretch.is_free & ~segments.is_rapid)[commands.segment] & (lengths > 0.0)
-    rows = np.flatnonzero(is_fed)
-    segment, length = commands.segment[rows], lengths[rows]
+    ends, at = _cut_at_ends(commands.ends, rules.least_length)
+    lengths = np.diff(ends, prepend=0.0)
+    is_fed = (stretch.is_free & ~segments.is_rapid)[commands.segment[at]] & (lengths > 0.0)
+    at, length = at[is_fed], lengths[is_fed]
+    segment = commands.segment[at]
     per_revolution = stretch.per_revolution[segment]
     is_per_revolution = ~np.isnan(per_revolution)
     unit = np.where(is_per_revolution, stretch.spindle[segment], 1.0)
-    weight, rate = length / unit, commands.caps.feed[rows] / unit
+    weight, rate = length / unit, commands.caps.feed[at] / unit
     programmed = np.where(is_per_revolution, per_revolution, segments.speed[segment])
     block = segments.block[segment]
     first = _changes(block)
-    group, chosen = np.zeros(len(rows), dtype=np.int64), np.zeros(len(rows))
+    group, chosen = np.zeros(len(at), dtype=np.int64), np.zeros(len(at))
     _choose(
-        np.append(first, len(rows)),
+        np.append(first, len(at)),
         np.stack((length, weight, rate, programmed), axis=1),
         stretch.can_split[segment].astype(np.int64),
         np.array([rules.least_length, rules.least_gain, rules.kept_loss, rules.block_time]),
-        (np.zeros(len(rows) + 1), np.zeros(len(rows) + 1, dtype=np.int64)),
+        (np.zeros(len(at) + 1), np.zeros(len(at) + 1, dtype=np.int64)),
         group,
         chosen,
     )
     starts = _changes(group)
-    group = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(rows))))
+    group = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(at))))
     before = np.concatenate(([0.0], np.cumsum(length)))
     of_block = np.searchsorted(first, starts, side="right") - 1
     return FeedPieces(
@@ -98,10 +101,24 @@ def pieces_of(stretch: PathStretch, commands: Commands, rules: PieceRules) -> Fe
         length=_sums(length, starts),
         weight=_sums(weight, starts),
         rate=chosen[starts],
-        name=commands.caps.name[rows][_least_rows(rate, starts, group)],
+        name=commands.caps.name[at][_least_rows(rate, starts, group)],
         programmed=programmed[starts],
         is_per_revolution=is_per_revolution[starts],
+        run=commands.run[at][starts],
     )
+
+
+def _cut_at_ends(ends: Floats, least: float) -> tuple[Floats, Ints]:
+    """Places with parts of the least length cut off at both ends, and the place of each.
+
+    A part that must be longer than its place can then take from the neighbours no more than it
+    needs.
+    """
+    begins = np.concatenate(([0.0], ends[:-1]))
+    is_long = ends - begins > 2.0 * least
+    inner = np.concatenate((begins[is_long] + least, ends[is_long] - least))
+    cut = np.sort(np.concatenate((ends, inner)))
+    return cut, np.searchsorted(ends, cut)
 
 
 def _changes(values: Ints) -> Ints:

@@ -17,10 +17,12 @@ import numpy as np
 
 from optimiser.along_path.caps import NAMES, CapName
 from optimiser.along_path.pieces import FeedPieces, PieceRules, pieces_of
-from optimiser.along_path.runs import Commands, MachineFeeds, commands_of, own_caps
+from optimiser.along_path.runs import MachineFeeds, commands_of, own_caps
 from optimiser.along_path.stretch import PathStretch, PlaceCaps, place_caps
 from optimiser.levels import best_levels
-from simulator.motion.segments import Floats, Ints
+from simulator.motion.segments import Bools, Floats, Ints
+from simulator.motion.smoothing import smoothing_of
+from stepnc_model.post.block_feeds import BlockPart
 
 PER_MINUTE_STEP = 1.0 / 60.0
 """Step of a written feed per time, mm/s: 1 mm/min."""
@@ -92,10 +94,12 @@ class FeedPlanner:
         self.task = task
         self._pieces: dict[str, list[FeedPieces]] = {}
         self._bounds: dict[str, float] = {}
-        self._windows: dict[str, float] = {}
+        self._given_windows: dict[str, float] = {}
+        self._locked: list[float] = []
+        """Greatest feed of each run that may not be chosen, mm/s."""
 
-    def add(self, stretch: PathStretch) -> Commands:
-        """Plan the feeds of a stretch; return what may be commanded along it.
+    def add(self, stretch: PathStretch) -> None:
+        """Plan the feeds of a stretch.
 
         Raises
         ------
@@ -106,11 +110,12 @@ class FeedPlanner:
         commands = commands_of(stretch, places, self.task.machine)
         name = stretch.workingstep
         pieces = pieces_of(stretch, commands, self.task.rules)
+        pieces = replace(pieces, run=pieces.run + len(self._locked))
         self._pieces.setdefault(name, []).append(pieces)
+        self._locked += commands.greatest_locked.tolist()
         self._bounds[name] = self._bounds.get(name, 0.0) + self._least_time(stretch, places)
-        change = commands.window - commands.given_window
-        self._windows[name] = self._windows.get(name, 0.0) + change
-        return commands
+        given = self._given_windows.get(name, 0.0)
+        self._given_windows[name] = given + commands.given_window
 
     def _least_time(self, stretch: PathStretch, places: PlaceCaps) -> float:
         """Lower bound of the time of the moves whose feed may be chosen, s."""
@@ -123,17 +128,29 @@ class FeedPlanner:
         """Plan of all stretches that were added."""
         pieces, parts, numbers = [], [], []
         for name, found in self._pieces.items():
-            joined = _joined(found)
-            if not len(joined):
+            free = joined(found)
+            if not len(free):
                 continue
-            chosen = replace(joined, rate=_levelled(joined, self.task.levels))
+            free = replace(free, rate=_in_every_run(free))
+            chosen = replace(free, rate=_levelled(free, self.task.levels))
             pieces.append(chosen)
             numbers.append(np.full(len(chosen), len(parts)))
-            parts.append(self._part(name, joined, chosen))
+            parts.append(self._part(name, free, chosen))
         if not pieces:
-            return FeedPlan(pieces=_joined([]), part=np.zeros(0, dtype=np.int64), parts=())
+            return FeedPlan(pieces=joined([]), part=np.zeros(0, dtype=np.int64), parts=())
         return FeedPlan(
-            pieces=_joined(pieces), part=np.concatenate(numbers), parts=tuple(parts)
+            pieces=joined(pieces), part=np.concatenate(numbers), parts=tuple(parts)
+        )
+
+    def _window(self, pieces: FeedPieces) -> float:
+        """Time in which the control's filter settles after the runs of some pieces, s."""
+        runs, row = np.unique(pieces.run, return_inverse=True)
+        greatest = np.array(self._locked)[runs]
+        np.maximum.at(greatest, row, pieces.rate * pieces.length / pieces.weight)
+        machine = self.task.machine
+        return sum(
+            smoothing_of(machine.control, machine.limits, feed).window
+            for feed in greatest.tolist()
         )
 
     def _part(self, name: str, free: FeedPieces, chosen: FeedPieces) -> PartPlan:
@@ -152,25 +169,34 @@ class FeedPlanner:
             time=float(seconds.sum()),
             unlimited_time=float((free.weight / free.rate).sum()),
             bound=self._bounds[name],
-            window_change=self._windows[name],
+            window_change=self._window(chosen) - self._given_windows[name],
             feeds=len(np.unique(chosen.rate)),
             shares=shares,
         )
 
 
-def _joined(parts: Iterable[FeedPieces]) -> FeedPieces:
+def joined(parts: Iterable[FeedPieces]) -> FeedPieces:
     """Pieces of several stretches, one after another."""
     found = [part for part in parts if len(part)]
     if not found:
         nothing, none = np.zeros(0), np.zeros(0, dtype=np.int64)
         return FeedPieces(
             block=none, begin=nothing, length=nothing, weight=nothing, rate=nothing,
-            name=none, programmed=nothing, is_per_revolution=np.zeros(0, dtype=np.bool_),
+            name=none, programmed=nothing, is_per_revolution=np.zeros(0, dtype=np.bool_), run=none,
         )  # fmt: skip
     return FeedPieces(**{
         field: np.concatenate([getattr(part, field) for part in found])
         for field in FeedPieces.__slots__
     })
+
+
+def _in_every_run(pieces: FeedPieces) -> Floats:
+    """Feeds of blocks that run more than once: the least that any run needs."""
+    block, row = np.unique(pieces.block, return_inverse=True)
+    runs = np.bincount(row, weights=pieces.begin == 0.0)
+    least = np.full(len(block), np.inf)
+    np.minimum.at(least, row, pieces.rate)
+    return np.where(runs[row] > 1, least[row], pieces.rate)
 
 
 def _levelled(pieces: FeedPieces, levels: int | None) -> Floats:
@@ -186,7 +212,7 @@ def _levelled(pieces: FeedPieces, levels: int | None) -> Floats:
 
 
 def rounded_down(
-    rate: Floats, programmed: Floats, is_per_revolution: "np.ndarray[tuple[int], np.dtype[np.bool_]]"
+    rate: Floats, programmed: Floats, is_per_revolution: Bools
 ) -> Floats:
     """Feeds rounded down to numbers that a program can say; programmed feeds stay."""
     step = np.where(is_per_revolution, PER_REVOLUTION_STEP, PER_MINUTE_STEP)
@@ -196,21 +222,14 @@ def rounded_down(
     return np.where(rate == programmed, rate, np.maximum(rounded, 0.1 * step))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BlockFeed:
-    """Feed of a part of a block."""
-
-    end: float
-    """End of the part over the length of the block; 1 for the last part."""
-    rate: float
-    name: CapName
-
-
-def block_feeds(plan: FeedPlan) -> Iterator[tuple[int, tuple[BlockFeed, ...]]]:
+def block_feeds(plan: FeedPlan) -> Iterator[tuple[int, tuple[BlockPart, ...]]]:
     """Yield the feeds of each block that changes; parts of equal feed are one."""
     pieces = plan.pieces
     starts = np.flatnonzero(np.diff(pieces.block, prepend=-1))
-    for first, last in zip(starts, np.append(starts[1:], len(pieces)), strict=True):
+    starts = starts[np.unique(pieces.block[starts], return_index=True)[1]]
+    is_new = np.append(np.diff(pieces.block) != 0, True)
+    for first in starts:
+        last = first + int(is_new[first:].argmax()) + 1
         rates = pieces.rate[first:last]
         if (rates == pieces.programmed[first:last]).all():
             continue
@@ -219,10 +238,10 @@ def block_feeds(plan: FeedPlan) -> Iterator[tuple[int, tuple[BlockFeed, ...]]]:
         yield (
             int(pieces.block[first]),
             tuple(
-                BlockFeed(
+                BlockPart(
                     end=1.0 if row == last - first - 1 else float(ends[row] / ends[-1]),
                     rate=float(rates[row]),
-                    name=NAMES[pieces.name[first + row]],
+                    reason=NAMES[pieces.name[first + row]].words,
                 )
                 for row in kept
             ),

@@ -19,7 +19,6 @@ from optimiser.along_path.stretch import (
     PathStretch,
     PlaceCaps,
     curvatures,
-    locked,
     segment_caps,
 )
 from simulator.motion.path_limits import corners
@@ -61,8 +60,25 @@ class Commands:
     """Segment of each place, (K,)."""
     caps: Caps
     """Greatest feed that may be commanded, (K,); infinite on rapids."""
-    windows: Floats
-    """Filter window of the run of each place, (K,), s; 0 on rapids."""
+    run: Ints
+    """Number of the run of each place, (K,); -1 on rapids."""
+    greatest_locked: Floats
+    """Greatest feed of each run that may not be chosen, (R,), mm/s; 0: none."""
+    given_window: float
+    """Time in which the control's filter settles after all runs as programmed, s."""
+
+
+def own_caps(stretch: PathStretch, machine: MachineFeeds) -> Caps:
+    """Greatest feeds that axes and control allow on each segment, (N,).
+
+    A segment whose feed may not be chosen has the programmed feed; a rapid has none.
+    """
+    segments = stretch.segments
+    own = segment_caps(segments, machine.limits, greatest=machine.greatest)
+    is_fed = ~segments.is_rapid
+    feed = np.where(stretch.is_free, own.feed, np.where(is_fed, segments.speed, np.inf))
+    is_locked = is_fed & ~stretch.is_free
+    return Caps(feed=feed, name=np.where(is_locked, NUMBER[CapName.LOCKED], own.name))
 
 
 def commands_of(stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds) -> Commands:
@@ -77,33 +93,81 @@ def commands_of(stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds) 
     """
     segments = stretch.segments
     offsets = np.concatenate(([0.0], np.cumsum(segments.length)))
-    own = segment_caps(segments, machine.limits, greatest=machine.greatest)
-    own = Caps(
-        feed=np.where(stretch.is_free, own.feed, np.inf), name=own.name
-    ).least(locked(stretch))
-    caps = places.caps.least(Caps(feed=own.feed[places.segment], name=own.name[places.segment]))
-    parts: list[tuple[Floats, Ints, Caps, Floats]] = []
+    caps = places.caps.least(own_caps(stretch, machine).at(places.segment))
+    found: list[_Smoothed] = []
+    runs: list[Ints] = []
+    locked: list[float] = []
+    given = 0.0
     changes = np.flatnonzero(np.diff(segments.is_rapid.astype(np.int8))) + 1
     for first, last in pairwise([0, *changes.tolist(), len(segments)]):
         rows = slice(*np.searchsorted(places.segment, [first, last]).tolist())
         if rows.start == rows.stop:
             continue
-        ends, found, window = places.ends[rows], Caps(feed=caps.feed[rows], name=caps.name[rows]), 0.0
-        if not segments.is_rapid[first]:
-            run = _Run(segments[first:last], offsets[first:last + 1], ends, found, machine)
-            ends, found, window = run.fastest()
-        middle = ends - 0.5 * np.diff(ends, prepend=offsets[first])
-        segment = np.searchsorted(offsets[1:], middle)
-        parts.append((ends, segment, found, np.full(len(ends), window)))
+        if segments.is_rapid[first]:
+            found.append(_Smoothed(ends=places.ends[rows], caps=caps.at(rows), time=0.0))
+            runs.append(np.full(len(found[-1].ends), -1))
+            continue
+        within = caps.at(rows)
+        run = _Run(
+            segments[first:last], offsets[first : last + 1], places.ends[rows], within, machine,
+            clearance_of(stretch),
+        )
+        found.append(run.fastest())
+        runs.append(np.full(len(found[-1].ends), len(locked)))
+        locked.append(run.greatest_locked)
+        given += run.given.window
+    ends = np.concatenate([part.ends for part in found])
+    middle = ends - 0.5 * np.diff(ends, prepend=0.0)
     return Commands(
-        ends=np.concatenate([part[0] for part in parts]),
-        segment=np.concatenate([part[1] for part in parts]),
+        ends=ends,
+        segment=np.searchsorted(offsets[1:], middle),
         caps=Caps(
-            feed=np.concatenate([part[2].feed for part in parts]),
-            name=np.concatenate([part[2].name for part in parts]),
+            feed=np.concatenate([part.caps.feed for part in found]),
+            name=np.concatenate([part.caps.name for part in found]),
         ),
-        windows=np.concatenate([part[3] for part in parts]),
+        run=np.concatenate(runs),
+        greatest_locked=np.array(locked),
+        given_window=given,
     )
+
+
+OWN = [
+    NUMBER[name]
+    for name in (
+        CapName.AIR, CapName.AXIS_SPEED, CapName.FEED_MECHANISM, CapName.BLOCK_TIME,
+        CapName.CORNER, CapName.CURVATURE, CapName.LOCKED,
+    )
+]  # fmt: skip
+"""Numbers of the limits of machine and control, whose places are exact."""
+
+
+CLEARANCE = 0.05
+"""Distance by which a process limit may be displaced, over the tool diameter.
+
+Engagement is known for stretches of at least this length, and a path that is split has other
+stretches (:data:`simulator.removal.engage.LEAST_SHARE`).
+"""
+
+TURNING_CLEARANCE = 0.5
+"""The same in turning, where cells and pieces at constant surface speed decide, mm."""
+
+
+def clearance_of(stretch: PathStretch) -> float:
+    """Distance by which the places of process limits may be displaced, mm."""
+    if stretch.bounds is None:
+        return 0.0
+    cut = stretch.bounds.cut
+    return TURNING_CLEARANCE if cut.kind.is_turned else CLEARANCE * cut.diameter
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Smoothed:
+    """Commands along a run with one filter."""
+
+    ends: Floats
+    caps: Caps
+    time: float
+    """Time of the run with the settling of the filter, s."""
 
 
 class _Run:
@@ -116,7 +180,9 @@ class _Run:
         ends: Floats,
         caps: Caps,
         machine: MachineFeeds,
+        clearance: float,
     ) -> None:
+        self.clearance = clearance
         self.segments, self.offsets, self.machine = segments, offsets, machine
         self.ends, self.caps = ends, caps
         self.begins = np.concatenate((offsets[:1], ends[:-1]))
@@ -128,40 +194,39 @@ class _Run:
         self.corner_sines = sine[bent]
         self.bends = curvatures(segments)
         # A plan rounds no corner more than the program does, or than the tolerance.
-        given = smoothing_of(machine.control, machine.limits, float(segments.speed.max()))
+        self.given = smoothing_of(
+            machine.control, machine.limits, float(segments.speed.max())
+        )
         slower = np.minimum(moving.speed[1:], moving.speed[:-1])[bent]
-        rounding = given.corner_gain * slower * self.corner_sines
+        rounding = self.given.corner_gain * slower * self.corner_sines
         self.corner_tolerance = np.maximum(rounding, machine.tolerance)
-        shrinking = given.arc_gain * segments.speed**2 * self.bends
+        shrinking = self.given.arc_gain * segments.speed**2 * self.bends
         self.arc_tolerance = np.maximum(shrinking, machine.tolerance)
 
-    def fastest(self) -> tuple[Floats, Caps, float]:
-        """Commands of the greatest feed that gives the least time, with the filter window."""
+    def fastest(self) -> _Smoothed:
+        """Commands of the greatest feed that gives the least time."""
         known = self.caps.feed[np.isfinite(self.caps.feed)]
         top = float(known.max(initial=float(self.segments.speed.max())))
-        is_locked = self.caps.name == NUMBER[CapName.LOCKED]
-        low = max(float(known.min(initial=top)), SLOWEST * top)
-        low = max(low, float(self.caps.feed[is_locked].max(initial=0.0)))
-        best: tuple[Floats, Caps, float] | None = None
-        least = np.inf
-        for greatest in dict.fromkeys(np.geomspace(top, low, TRIALS).tolist()):
-            smoothing = smoothing_of(self.machine.control, self.machine.limits, greatest)
-            ends, caps = self._smoothed(greatest, smoothing)
-            lengths = np.diff(ends, prepend=self.offsets[0])
-            time = float((lengths / caps.feed).sum()) + smoothing.window
-            if time < least:
-                least, best = time, (ends, caps, smoothing.window)
-            if smoothing.window == 0.0:
-                break
-        if best is None:
-            raise ValueError("a run needs a feed above 0")
+        low = max(float(known.min(initial=top)), SLOWEST * top, self.greatest_locked)
+        best = self._smoothed(top)
+        if self.given.window > 0.0:
+            for greatest in np.geomspace(top, low, TRIALS)[1:].tolist():
+                tried = self._smoothed(greatest)
+                best = tried if tried.time < best.time else best
         return best
 
-    def _smoothed(self, greatest: float, smoothing: Smoothing) -> tuple[Floats, Caps]:
+    @property
+    def greatest_locked(self) -> float:
+        """Greatest feed that may not be chosen, mm/s; 0: none."""
+        is_locked = self.caps.name == NUMBER[CapName.LOCKED]
+        return float(self.caps.feed[is_locked].max(initial=0.0))
+
+    def _smoothed(self, greatest: float) -> _Smoothed:
         """Commands up to a greatest feed that keep all caps behind the control's filter."""
+        smoothing = smoothing_of(self.machine.control, self.machine.limits, greatest)
         caps = self.caps.least(capped(np.full(len(self.ends), greatest), CapName.AIR))
         if smoothing.window == 0.0:
-            return self.ends, caps
+            return self._timed(self.ends, caps, smoothing)
         corner = _over(self.corner_tolerance, smoothing.corner_gain * self.corner_sines)
         arcs = np.sqrt(_over(self.arc_tolerance, smoothing.arc_gain * self.bends))
         first, last = float(self.offsets[0]), float(self.offsets[-1])
@@ -175,13 +240,22 @@ class _Run:
         ))
         bound = np.flatnonzero(np.isfinite(feed))
         feed, name = feed[bound], name[bound]
-        reach = smoothing.reach * np.minimum(feed, greatest)
+        clear = np.where(np.isin(name, OWN), 0.0, self.clearance)
+        reach = smoothing.reach * np.minimum(feed, greatest) + clear
         found = lower_envelope(
             np.clip(begin[bound] - reach, first, last),
             np.clip(end[bound] + reach, first, last),
             feed,
         )
-        return found.ends, Caps(feed=feed[found.which], name=name[found.which])
+        # A cap may reach over several segments; each place lies on one of them.
+        ends = np.union1d(found.ends, self.offsets[1:][self.segments.length > 0.0])
+        which = found.which[np.searchsorted(found.ends, ends)]
+        return self._timed(ends, Caps(feed=feed[which], name=name[which]), smoothing)
+
+    def _timed(self, ends: Floats, caps: Caps, smoothing: Smoothing) -> _Smoothed:
+        lengths = np.diff(ends, prepend=self.offsets[0])
+        time = float((lengths / caps.feed).sum()) + smoothing.window
+        return _Smoothed(ends=ends, caps=caps, time=time)
 
 
 def _over(value: Floats, divisor: Floats) -> Floats:

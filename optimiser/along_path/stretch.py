@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from optimiser.along_path.caps import (
-    NUMBER,
     CapName,
     Caps,
     CutBounds,
@@ -141,10 +140,10 @@ def place_caps(stretch: PathStretch) -> PlaceCaps:
     row = np.minimum(np.searchsorted(met_ends, middle), len(stretch.met) - 1)
     found = _caps_of(stretch, stretch.met, stretch.bounds)
     is_cut = (stretch.met.peak_section > 0.0)[row]
-    caps, chip = _at(found.caps, row), found.chip[row]
+    caps, chip = found.caps.at(row), found.chip[row]
     if stretch.near is not None:
         near_row = np.minimum(np.searchsorted(near_ends, middle), len(stretch.near) - 1)
-        near = _at(_caps_of(stretch, stretch.near, stretch.bounds).caps, near_row)
+        near = _caps_of(stretch, stretch.near, stretch.bounds).caps.at(near_row)
         caps = Caps(
             feed=np.where(is_cut, caps.feed, near.feed),
             name=np.where(is_cut, caps.name, near.name),
@@ -157,6 +156,21 @@ def place_caps(stretch: PathStretch) -> PlaceCaps:
             capped(np.where(is_entry, ENTRY_SHARE * chip, np.inf), CapName.ENTRY)
         )
     return PlaceCaps(ends=ends, segment=segment, caps=caps, is_cut=is_cut)
+
+
+def excess(stretch: PathStretch) -> Floats:
+    """Programmed feed over the greatest that the process permits, by segment, (N,).
+
+    0 in air, on rapids and where the feed may not be chosen.
+    """
+    found = np.zeros(len(stretch.segments))
+    if stretch.bounds is None:
+        return found
+    segment = stretch.met.segment
+    caps = _caps_of(stretch, stretch.met, stretch.bounds).caps
+    speed = np.where(stretch.is_free, stretch.segments.speed, 0.0)[segment]
+    np.maximum.at(found, segment, speed / caps.feed)
+    return found
 
 
 def _caps_of(stretch: PathStretch, stations: Stations, bounds: CutBounds) -> StationCaps:
@@ -179,10 +193,6 @@ def _ends(stations: Stations, offsets: Floats) -> Floats:
     return ends
 
 
-def _at(caps: Caps, rows: Ints) -> Caps:
-    return Caps(feed=caps.feed[rows], name=caps.name[rows])
-
-
 def _entries(ends: Floats, is_cut: Bools, length: float) -> Bools:
     """Places within a distance after the beginning of a cut, (K,)."""
     begins = is_cut & ~np.concatenate(([False], is_cut[:-1]))
@@ -190,9 +200,3 @@ def _entries(ends: Floats, is_cut: Bools, length: float) -> Bools:
     last = np.maximum.accumulate(np.where(begins, starts, -np.inf))
     entries: Bools = is_cut & (starts < last + length)
     return entries
-
-
-def locked(stretch: PathStretch) -> Caps:
-    """Programmed feeds of the segments whose feed may not be chosen, (N,)."""
-    feed = np.where(stretch.is_free | stretch.segments.is_rapid, np.inf, stretch.segments.speed)
-    return Caps(feed=feed, name=np.full(len(feed), NUMBER[CapName.LOCKED]))

@@ -58,6 +58,7 @@ def stretches_of(
     control: ControlModel,
     bounds: Choose,
     log: BlockLog,
+    watch: Callable[[Episode, VirtualMachine], None],
 ) -> Iterator[PathStretch]:
     """Run a program on the virtual machine, and yield what its tools meet.
 
@@ -71,16 +72,20 @@ def stretches_of(
         Bounds of a part of the program; None if its feed may not be chosen.
     log : BlockLog
         Blocks of ``prepared``.
+    watch : callable
+        Receives all episodes of ``prepared``.
 
     Raises
     ------
     SimulationError
         When the machine cannot run the program.
     """
-    run = _Run(prepared, control, log)
-    other = None if larger is None else _Run(larger, control, BlockLog(larger.blocks))
+    run = _Run(prepared, control, log, watch)
+    others = None
+    if larger is not None:
+        others = _Run(larger, control, BlockLog(larger.blocks), _ignore).stretches()
     for episode, stretch in run.stretches():
-        near = None if other is None else next(other.stretches())[0]
+        near = None if others is None else next(others)[0]
         course = episode.course
         if course is None:
             continue
@@ -102,10 +107,20 @@ def stretches_of(
         )
 
 
+def _ignore(_episode: Episode, _machine: VirtualMachine) -> None:
+    """Ignore an episode."""
+
+
 class _Run:
     """Run of a program whose stretches are paired with the acts that request them."""
 
-    def __init__(self, prepared: PreparedRun, control: ControlModel, log: BlockLog) -> None:
+    def __init__(
+        self,
+        prepared: PreparedRun,
+        control: ControlModel,
+        log: BlockLog,
+        watch: Callable[[Episode, VirtualMachine], None],
+    ) -> None:
         self.machine = VirtualMachine(
             MachineSetup(
                 machine=prepared.machine,
@@ -114,6 +129,7 @@ class _Run:
                 stock=prepared.stock,
             )
         )
+        self._watch = watch
         self._asked: deque[MoveStretch] = deque()
         self._episodes = self.machine.run(self._noted(interpret(log, prepared.machine)))
 
@@ -126,6 +142,7 @@ class _Run:
     def stretches(self) -> Iterator[tuple[Episode, MoveStretch]]:
         """Yield the episodes that move, each with its request."""
         for episode in self._episodes:
+            self._watch(episode, self.machine)
             if episode.course is not None:
                 yield episode, self._asked.popleft()
 
