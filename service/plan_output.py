@@ -23,6 +23,7 @@ from stepnc_model.units import (
 )
 
 if TYPE_CHECKING:
+    from service.along_path.run import AlongPath
     from optimiser.advice import ParetoPoint
     from service.confirmation import Confirmation, ConfirmedStep
 
@@ -148,7 +149,11 @@ LOAD: tuple[Column[LimitLoad], ...] = (
 """Columns of a limit; its margin is a share of the bound, after the safety factor."""
 
 
-def print_plan(plan: Plan, confirmation: "Confirmation | None" = None) -> None:
+def print_plan(
+    plan: Plan,
+    confirmation: "Confirmation | None" = None,
+    along: "AlongPath | None" = None,
+) -> None:
     """Print the advice for a program: a row per workingstep, then totals and findings."""
     material = plan.material.material
     print_line(
@@ -173,6 +178,10 @@ def print_plan(plan: Plan, confirmation: "Confirmation | None" = None) -> None:
             print_table(FRONT, advice.front)
     if confirmation is not None:
         _print_confirmation(confirmation)
+    if along is not None:
+        from service.along_path.output import print_along_path  # noqa: PLC0415 (numpy)
+
+        print_along_path(along)
     print_findings(plan.findings)
 
 
@@ -247,9 +256,17 @@ def _stability_words(advice: Advice, state: EvaluatedSetting) -> str:
     return text + f" ({found.reason})"
 
 
-def plan_json(plan: Plan, confirmation: "Confirmation | None" = None) -> str:
-    """Return a plan as JSON, with the comparison to its simulated run if one was made."""
+def plan_json(
+    plan: Plan,
+    confirmation: "Confirmation | None" = None,
+    along: "AlongPath | None" = None,
+) -> str:
+    """Return a plan as JSON, with its simulated run and feeds along paths if requested."""
     found = {} if confirmation is None else {"confirmation": _confirmation(confirmation)}
+    if along is not None:
+        from service.along_path.output import along_path_record  # noqa: PLC0415 (numpy)
+
+        found["along_path"] = along_path_record(along)
     return dump({
         "program": plan.program,
         "mode": plan.mode.value,

@@ -241,6 +241,7 @@ def block_feeds(plan: FeedPlan) -> Iterator[tuple[int, tuple[BlockPart, ...]]]:
                 BlockPart(
                     end=1.0 if row == last - first - 1 else float(ends[row] / ends[-1]),
                     rate=float(rates[row]),
+                    is_per_revolution=bool(pieces.is_per_revolution[first]),
                     reason=NAMES[pieces.name[first + row]].words,
                 )
                 for row in kept

@@ -160,6 +160,12 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         help="tool table that says which of the program's tools cut over centre or have wipers",
     )
     add_knowledge(parser, "supplies accepted corrections of k_c")
+    add(
+        "--feeds-csv",
+        type=Path,
+        metavar="CSV",
+        help="write the feeds along the paths as a table",
+    )
     add("--dry-run", action="store_true", help="write no STEP-NC file")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
     add_cluster(parser)
@@ -240,6 +246,7 @@ def _optimise(options: argparse.Namespace) -> int:
             in_place=options.in_place,
             dry_run=options.dry_run,
             report=options.report,
+            feeds=options.feeds_csv,
             holding=options.holding,
             tools=options.tools,
             knowledge=options.kb,
@@ -250,11 +257,11 @@ def _optimise(options: argparse.Namespace) -> int:
     if options.json:
         from service.plan_output import plan_json
 
-        write_out(plan_json(outcome.plan, confirmation))
+        write_out(plan_json(outcome.plan, confirmation, outcome.along))
     else:
         from service.plan_output import print_plan
 
-        print_plan(outcome.plan, confirmation)
+        print_plan(outcome.plan, confirmation, outcome.along)
     if outcome.plan.is_infeasible:
         return INFEASIBLE
     is_passed = confirmation is not None and bool(confirmation.passed)

@@ -31,6 +31,8 @@ class BlockPart:
     """End of the part over the length of the block, 0 to 1; 1 for the last part."""
     rate: float
     """Feed in the unit of the block: mm/s or mm per revolution."""
+    is_per_revolution: bool = False
+    """Whether the feed is per revolution."""
     reason: str = ""
     """Name of the limit that gives the feed; empty if unknown."""
 
