@@ -23,8 +23,8 @@ from stepnc_model.units import (
 )
 
 if TYPE_CHECKING:
-    from service.along_path.run import AlongPath
     from optimiser.advice import ParetoPoint
+    from service.along_path.run import AlongPath
     from service.confirmation import Confirmation, ConfirmedStep
 
 
@@ -391,7 +391,7 @@ def _sensitivity(advice: Advice) -> dict[str, Any] | None:
     }
 
 
-def report_page(plan: Plan) -> str:
+def report_page(plan: Plan, along: "AlongPath | None" = None) -> str:
     """Return the HTML report of a plan."""
     from service.figures import plan_figures  # noqa: PLC0415 (plotly)
     from service.rendering.pages import plot, rendered  # noqa: PLC0415 (Jinja)

@@ -1,7 +1,7 @@
 """Course of a program: the stretches of its paths with what the tools meet along them."""
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,8 +14,7 @@ from simulator.machine.interpreter import Numbered, interpret
 from simulator.machine.samples import Episode
 from simulator.machine.virtual import MachineSetup, VirtualMachine
 from simulator.motion.segments import ControlModel, Floats
-from simulator.spec import Machine
-from stepnc_model.post.blocks import Block, Circular, Comment, DrillingCycle, Linear
+from stepnc_model.post.blocks import Circular, DrillingCycle, Linear
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

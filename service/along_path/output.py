@@ -69,7 +69,7 @@ def print_along_path(along: AlongPath) -> None:
     print_table(STEP, rows, foot={"part of the program": "total", "time s": total})
     ratio = along.time_after / along.time_before if along.time_before else 1.0
     print_line(
-        f"time × {ratio:.3f}; {len(along.feeds)} blocks have another feed, {along.parts} splits; "
+        f"time × {ratio:.3f}; {len(along.feeds)} blocks changed, {along.parts} splits; "
         f"run/plan {along.time_after / along.planned_time:.4f}"
     )
     shares = ", ".join(f"{words} {share:.0%}" for words, share in active_shares(along))
@@ -114,8 +114,18 @@ def _step(step: AlongPathStep) -> dict[str, Any]:
             for key, scale, before, after in (
                 ("force_n", 1.0, step.before.force.value, step.after.force.value),
                 ("thrust_n", 1.0, step.before.thrust.value, step.after.thrust.value),
-                ("deflection_um", 1e3, step.before.deflection.value, step.after.deflection.value),
-                ("drive_power_w", 1.0, step.before.drive_power.value, step.after.drive_power.value),
+                (
+                    "deflection_um",
+                    1e3,
+                    step.before.deflection.value,
+                    step.after.deflection.value,
+                ),
+                (
+                    "drive_power_w",
+                    1.0,
+                    step.before.drive_power.value,
+                    step.after.drive_power.value,
+                ),
                 ("energy_j", 1.0, step.before.energy.total, step.after.energy.total),
                 ("volume_mm3", 1.0, step.before.volume, step.after.volume),
             )

@@ -11,7 +11,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from optimiser.along_path.pieces import PieceRules
-from optimiser.along_path.plan import FeedPlanner, FeedTask, PartPlan, block_feeds
+from optimiser.along_path.plan import (
+    BlockFeeds,
+    FeedPlanner,
+    FeedTask,
+    PartPlan,
+    block_feeds,
+    lowered,
+)
 from optimiser.along_path.runs import MachineFeeds
 from optimiser.along_path.stretch import excess
 from service.along_path.course import BlockLog, Choose, stretches_of
@@ -23,11 +30,8 @@ from simulator.machine.totals import Total, added
 from simulator.machine.virtual import VirtualMachine
 from simulator.motion.segments import ControlModel, axis_limits
 from stepnc_model.errors import Finding
-from stepnc_model.post.block_feeds import BlockPart, with_feeds
+from stepnc_model.post.block_feeds import with_feeds
 from stepnc_model.post.blocks import Block
-
-Feeds = dict[int, tuple[BlockPart, ...]]
-"""Parts of the blocks that change, by the number of the block."""
 
 EXCESS = 1.002
 """Feed over the permitted feed above which a part is lowered."""
@@ -74,7 +78,7 @@ class AlongPathStep:
 class AlongPath:
     """Feeds along the paths of a program."""
 
-    feeds: Feeds
+    feeds: BlockFeeds
     steps: tuple[AlongPathStep, ...]
     findings: tuple[Finding, ...] = ()
     """Findings of the run at the planned feeds."""
@@ -127,7 +131,7 @@ def along_path(
         When the machine cannot run the program.
     """
     ticker = Ticker(tell)
-    given, log = prepare(0.0), None
+    given = prepare(0.0)
     log = BlockLog(given.blocks)
     larger = prepare(task.margin) if task.margin > 0.0 else None
     machine = given.machine
@@ -146,14 +150,14 @@ def along_path(
     ):
         planner.add(stretch)
     plan = planner.plan()
-    feeds = dict(block_feeds(plan))
+    feeds: BlockFeeds = dict(block_feeds(plan))
     rounds = 0
     while True:
         rounds += 1
         after, ratios, findings = _run(prepare(0.0), feeds, bounds, task, ticker)
         if not ratios or rounds == MOST_ROUNDS:
             break
-        feeds = _lowered(feeds, ratios)
+        feeds = lowered(feeds, ratios, keeps_levels=task.levels is not None)
     parts = {part.name: part for part in plan.parts}
     steps = tuple(
         AlongPathStep(name=name, before=one, after=other, plan=parts.get(name))
@@ -186,7 +190,7 @@ class _Totals:
 class _Emitted:
     """Blocks at their new feeds, with the block and part that each comes from."""
 
-    def __init__(self, prepared: PreparedRun, feeds: Feeds) -> None:
+    def __init__(self, prepared: PreparedRun, feeds: BlockFeeds) -> None:
         self._log = BlockLog(prepared.blocks)
         self._feeds = feeds
         self.origin: list[tuple[int, int]] = [(0, 0)]
@@ -199,7 +203,11 @@ class _Emitted:
 
 
 def _run(
-    prepared: PreparedRun, feeds: Feeds, bounds: Choose, task: AlongPathTask, ticker: Ticker
+    prepared: PreparedRun,
+    feeds: BlockFeeds,
+    bounds: Choose,
+    task: AlongPathTask,
+    ticker: Ticker,
 ) -> tuple[_Totals, dict[tuple[int, int], float], tuple[Finding, ...]]:
     """Run a plan; return totals, and the excess of parts over their permitted feeds."""
     emitted = _Emitted(prepared, feeds)
@@ -222,13 +230,3 @@ def _run(
             if origin[0] in feeds:
                 ratios[origin] = max(float(found[row]), ratios.get(origin, 1.0))
     return totals, ratios, tuple(machines[0].findings) if machines else ()
-
-
-def _lowered(feeds: Feeds, ratios: dict[tuple[int, int], float]) -> Feeds:
-    """Feeds in which each part that is too fast is lowered."""
-    lowered = dict(feeds)
-    for (block, row), ratio in ratios.items():
-        parts = list(lowered[block])
-        parts[row] = replace(parts[row], rate=parts[row].rate / ratio)
-        lowered[block] = tuple(parts)
-    return lowered
