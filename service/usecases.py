@@ -144,7 +144,13 @@ def optimise(
     if request.is_along_path:
         from service.along_path.of_program import along_program  # noqa: PLC0415 (numba)
 
-        along = along_program(_read_again(program, data), plan, request, tell=tell)
+        along = along_program(
+            _read_again(program, data),
+            plan,
+            request,
+            keeps_traces=files.report is not None,
+            tell=tell,
+        )
     if request.nc_control is not None and nc_place is not None:
         # NC code first: where it cannot be made, nothing is written.
         code = _nc_code(_read_again(program, data), request.nc_control, along, tell)

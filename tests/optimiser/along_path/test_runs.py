@@ -58,13 +58,14 @@ def speeds_of(path: Segments) -> tuple[np.ndarray, np.ndarray]:
 @settings(max_examples=60)
 @given(PLACES)
 def test_axes_never_exceed_a_cap(places: list[tuple[float, float]]) -> None:
-    ends, caps = np.cumsum([length for length, _ in places]), [cap for _, cap in places]
-    segments = straight([float(ends[-1])])
+    ends = np.cumsum([length for length, _ in places]).tolist()
+    caps = [cap for _, cap in places]
+    segments = straight([ends[-1]])
     commands = commands_of(stretch_of(segments), places_of(segments, ends, caps), FIR)
     where, speed = speeds_of(commanded(segments, commands))
     # Speeds are compared just inside the places, whose ends belong to two of them.
     row = np.searchsorted(ends, where)
-    inside = np.abs(where[:, None] - np.concatenate(([0.0], ends))).min(axis=1) > 1e-6
+    inside = np.abs(where[:, None] - np.array([0.0, *ends])).min(axis=1) > 1e-6
     row = np.minimum(row, len(caps) - 1)
     assert (speed[inside] <= np.array(caps)[row][inside] * (1.0 + 1e-9)).all()
 
@@ -72,8 +73,9 @@ def test_axes_never_exceed_a_cap(places: list[tuple[float, float]]) -> None:
 @settings(max_examples=40)
 @given(PLACES, st.floats(1.0, 3.0))
 def test_wider_caps_take_no_more_time(places: list[tuple[float, float]], factor: float) -> None:
-    ends, caps = np.cumsum([length for length, _ in places]), [cap for _, cap in places]
-    segments = straight([float(ends[-1])])
+    ends = np.cumsum([length for length, _ in places]).tolist()
+    caps = [cap for _, cap in places]
+    segments = straight([ends[-1]])
 
     def time(by: float) -> float:
         wider = [by * cap for cap in caps]
