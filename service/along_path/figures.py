@@ -12,7 +12,10 @@ from service.buckets import BucketedRun
 from service.panels import BLUE, CLEAR, FAINT, GREEN, GREY, ORANGE, PINK, RED, SKY, key
 from simulator.motion.segments import Floats
 
-COLOURS = (SKY, ORANGE, GREEN, PINK, BLUE, RED, "#F0E442", "#999999", "#44AA99", "#882255")
+COLOURS = (
+    SKY, ORANGE, GREEN, PINK, BLUE, RED, "#F0E442", "#999999", "#44AA99", "#882255", "#332288",
+    "#DDCC77", "#117733", "#CC6677", "#88CCEE", "#661100",
+)  # fmt: skip
 """Colours of limits, in the order of the length that they hold."""
 
 PANELS = (
@@ -57,6 +60,7 @@ def _compared(before: BucketedRun, after: BucketedRun, title: str, axis: str) ->
         figure.layout[f"yaxis{number}" if number > 1 else "yaxis"] = {
             "domain": [max(low, 0.0), high],
             "title": name,
+            "type": "log" if signal is PathSignal.FEED else "linear",
             "gridcolor": FAINT,
             "zerolinecolor": GREY,
         }
@@ -123,6 +127,8 @@ def _add_strip(figure: go.Figure, limits: Sequence[LimitStretch]) -> None:
 def _path(trace: PathTrace) -> go.Figure:
     """Path of the tool in space, coloured by its feed."""
     x, y, z, feed = trace.points.T
+    shade = np.log10(np.maximum(feed, 1.0))
+    ticks = list(range(int(shade.max(initial=0.0)) + 1))
     figure = go.Figure(
         go.Scatter3d(
             x=x,
@@ -130,10 +136,14 @@ def _path(trace: PathTrace) -> go.Figure:
             z=z,
             mode="lines",
             line={
-                "color": feed,
+                "color": shade,
                 "colorscale": SPEED_SCALE,
                 "width": 3,
-                "colorbar": {"title": "mm/min"},
+                "colorbar": {
+                    "title": "mm/min",
+                    "tickvals": ticks,
+                    "ticktext": [f"{10**tick:g}" for tick in ticks],
+                },
             },
             customdata=feed,
             hovertemplate="%{x:.2f}, %{y:.2f}, %{z:.2f} mm<br>%{customdata:.0f} mm/min"

@@ -85,6 +85,11 @@ class AlongPath:
     """Active limits along the path."""
 
     @property
+    def shown(self) -> tuple[AlongPathStep, ...]:
+        """Parts of the program that take time."""
+        return tuple(step for step in self.steps if step.before.duration > 0.0)
+
+    @property
     def time_before(self) -> float:
         """Time of the run at the given feeds, s."""
         return sum(step.before.duration for step in self.steps)
