@@ -12,6 +12,7 @@ from service.cli.options import CONTROLS, LIMIT_EXCEEDED, OK, Commands, add_json
 
 if TYPE_CHECKING:
     from service.simulation.run import RunFiles
+    from simulator.tool_files.file_unit import FileUnit
 
 
 USUAL_RATE = 10.0
@@ -30,7 +31,14 @@ def add_code(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("--nc", type=Path, metavar="CODE", help="run this NC code instead of the program's own")
     add("--dialect", default="", metavar="NAME", help=f"dialect of the NC code: {CONTROLS}")
-    add("--tools", type=Path, metavar="TOML", help="tool table, for NC code without a program")
+    add(
+        "--tools",
+        type=Path,
+        metavar="TABLE",
+        help="tool table, for NC code without a program: TOML or CSV, LinuxCNC's tool.tbl, a "
+        "library of Fusion (.json, .tools), HSMWorks (.hsmlib) or FreeCAD (.fctl)",
+    )
+    add("--tools-unit", default="", metavar="UNIT", help="unit of a tool.tbl: mm or inch")
     add(
         "--stock",
         default="",
@@ -163,11 +171,14 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
     code = None
     if options.nc is None and (options.dialect or options.tools or options.stock):
         raise StepNcError("--dialect, --tools and --stock need NC code: name it with --nc")
+    if options.tools_unit and options.tools is None:
+        raise StepNcError("--tools-unit needs a tool table: name it with --tools")
     if options.nc is not None:
         code = CodeRequest(
             code=options.nc,
             dialect=options.dialect,
             tools=options.tools,
+            tools_unit=_length_unit(options.tools_unit),
             stock=options.stock,
         )
     return RunFiles(
@@ -176,6 +187,14 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
         output=options.output,
         report=getattr(options, "report", None),
     )
+
+
+def _length_unit(name: str) -> "FileUnit | None":
+    """Return the unit of a tool table that names none; None if none is given."""
+    from service.reading import one_of
+    from simulator.tool_files.file_unit import FileUnit
+
+    return one_of(FileUnit, name, "unit") if name else None
 
 
 def _simulate(options: argparse.Namespace) -> int:

@@ -17,7 +17,8 @@ from simulator.machine.virtual import LoadedTool, StockMap
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from simulator.spec import Machine, MachineKind, MaterialMatch
-from simulator.tool_table import read_tool_table
+from simulator.tool_files.file_unit import FileUnit
+from simulator.tool_files.read import read_tools
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Finding, PostError, Severity, StepNcError
 from stepnc_model.part21.values import Ref
@@ -63,6 +64,9 @@ class CodeRequest:
     dialect: str = ""
     """Dialect of the code; empty: by the file extension."""
     tools: Path | None = None
+    """Tool table, in any format that is read."""
+    tools_unit: FileUnit | None = None
+    """Unit of a tool table that names none; None: mm."""
     stock: str = ""
 
 
@@ -149,19 +153,20 @@ def from_code(
     chosen = load_machine(machine)
     match = load_material_named(material) if material else None
     tools = None
+    findings: tuple[Finding, ...] = ()
     if request.tools is not None:
         if match is None:
             raise StepNcError("a tool table without a material: name one with --material")
-        read = read_tool_table(request.tools)
-        tools = {tool.number: table_tool(tool, match.material) for tool in read}
+        library = read_tools(request.tools, unit=request.tools_unit)
+        findings += library.findings
+        tools = {tool.number: table_tool(tool, match.material) for tool in library.tools}
     raw = stock_in(request.stock) if request.stock else None
     size = _size(request.code)
     lines = CountedIterator(_lines(request.code), len)
     clamped = None if raw is None else stock_map(chosen, raw)
-    findings: tuple[Finding, ...] = ()
     if clamped is None or tools is None:
         text = "no material is removed without stock, tool table and material: idle power only"
-        findings = (Finding(severity=Severity.WARNING, message=text),)
+        findings += (Finding(severity=Severity.WARNING, message=text),)
     return PreparedRun(
         name=request.code.name,
         machine=chosen,
