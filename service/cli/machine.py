@@ -42,8 +42,10 @@ def add_code(parser: argparse.ArgumentParser) -> None:
     add(
         "--stock",
         default="",
-        metavar="NUMBERS",
-        help="stock for NC code without a program: x0,y0,z0,x1,y1,z1 or diameter,z0,z1 in mm",
+        metavar="STOCK",
+        help="stock for NC code without a program, in mm: x0,y0,z0,x1,y1,z1 of a box, "
+        "diameter,z0,z1 or diameter,length of a bar, x,y,diameter,z0,z1 of an upright bar, an "
+        "STL file, or an .npz file of --keep-stock",
     )
 
 
@@ -145,6 +147,9 @@ def _simulate_options(parser: argparse.ArgumentParser) -> None:
     add("--carbon-g-kwh", type=float, metavar="G", help="grams of CO2 per kWh (default 480)")
     add("-o", "--output", type=Path, metavar="FILE", help="write the run, .parquet or .csv")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
+    add("--keep-stock", type=Path, metavar="NPZ",
+        help="write the remaining stock, which --stock of a later run can take",
+    )  # fmt: skip
     add("--mtconnect", type=Path, metavar="XML",
         help="write the run as an MTConnect document; in a folder its name is MACHINE_PART.xml",
     )  # fmt: skip
@@ -186,6 +191,7 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
         code=code,
         output=options.output,
         report=getattr(options, "report", None),
+        kept=getattr(options, "keep_stock", None),
     )
 
 

@@ -10,8 +10,8 @@ from service.numbers import stock_in
 from service.reading import Tell, read_program, silent
 from service.requests.verification import VerificationRequest
 from service.simulation.setup import PreparedRun, prepared_program
+from service.stl import read_stl
 from service.verification.log import ProgramNames
-from service.verification.stl import read_stl
 from simulator.library import load_machine
 from simulator.machine.acts import MoveStretch, ToolTo, WorkingstepTo
 from simulator.machine.interpreter import interpret
