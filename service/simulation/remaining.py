@@ -11,6 +11,9 @@ from simulator.removal.lathe import TurningStock
 from simulator.removal.stock_file import stock_bytes
 from stepnc_model.errors import Finding, Severity, StepNcError
 
+TRACE = 0.1
+"""Volume that counts as none, mm³: of a stock that was cut before, edges are known to a cell."""
+
 
 def keep_stock(virtual: VirtualMachine, path: Path) -> None:
     """Write the stock that was clamped last, as it is now.
@@ -33,12 +36,17 @@ def untouched(
     raw, reach = prepared.raw, virtual.reach
     if raw is None or prepared.tools is None or reach is None:
         return ()
-    if any(total.volume > 0.0 for total in run.totals):
+    if sum(total.volume for total in run.totals) > TRACE:
         return ()
+    low, high = reach[0].tolist(), reach[1].tolist()
+    is_apart = any(
+        one > end or begin > other
+        for begin, end, one, other in zip(raw.low, raw.high, low, high, strict=True)
+    )
     text = (
         f"no tool touched the stock, which spans {_box(raw.low, raw.high)}; the feed moves "
-        f"span {_box(reach[0].tolist(), reach[1].tolist())}: is it in coordinates of the "
-        "program?"
+        f"span {_box(low, high)}: "
+        f"{'is it in coordinates of the program?' if is_apart else 'is it cut already?'}"
     )
     return (Finding(severity=Severity.WARNING, message=text),)
 

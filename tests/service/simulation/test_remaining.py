@@ -68,6 +68,13 @@ def test_a_stock_that_no_tool_touches_is_told_with_both_spans(tmp_path: Path) ->
     )
 
 
+def test_a_stock_that_is_cut_already_is_told(tmp_path: Path) -> None:
+    run(tmp_path, BEGIN + ALONG + END, RAW, "a.npz")
+    simulation = run(tmp_path, BEGIN + ALONG + END, str(tmp_path / "a.npz"))
+    (finding,) = [each for each in simulation.findings if "touched" in each.message]
+    assert finding.message.endswith("y 10 to 10, z -2 to 5 mm: is it cut already?")
+
+
 def test_a_stock_that_is_cut_is_not_told(tmp_path: Path) -> None:
     simulation = run(tmp_path, BEGIN + ALONG + END, RAW)
     assert not [each for each in simulation.findings if "touched" in each.message]
