@@ -267,9 +267,9 @@ def _table(tools: Path | None) -> tuple["TableTool", ...]:
     """Read a tool table; empty without a file."""
     if tools is None:
         return ()
-    from simulator.tool_table import read_tool_table  # noqa: PLC0415 (numpy)
+    from simulator.tool_files.read import read_tools  # noqa: PLC0415 (numpy)
 
-    return read_tool_table(tools)
+    return read_tools(tools).tools
 
 
 def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path | None:

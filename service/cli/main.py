@@ -156,7 +156,7 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
     add(
         "--tools",
         type=Path,
-        metavar="TOML",
+        metavar="TABLE",
         help="tool table that says which of the program's tools cut over centre or have wipers",
     )
     add_knowledge(parser, "supplies accepted corrections of k_c")
