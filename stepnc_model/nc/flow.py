@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stepnc_model.errors import PostError
-from stepnc_model.nc.moves import MoveRecorder
+from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.nc.text import NcText
 
 DEEPEST = 50
@@ -48,6 +48,10 @@ class ProgramFlow:
     def is_called(self) -> bool:
         """Whether a subprogram is being executed."""
         return any(not level.is_repeat for level in self._levels)
+
+    def is_inside(self, target: int) -> bool:
+        """Whether the subprogram at a block is being executed."""
+        return any(level.target == target for level in self._levels if not level.is_repeat)
 
     def step(self, block: int) -> None:
         """Count an executed block.

@@ -13,7 +13,8 @@ from stepnc_model.nc.arcs import centre_of_radius, turn_of
 from stepnc_model.nc.drilling import cycle_moves, drilling
 from stepnc_model.nc.flow import ProgramFlow, places
 from stepnc_model.nc.klartext_words import KlartextWords, klartext_words
-from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind, MoveRecorder
+from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind
+from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.nc.remarks import Remarks
 from stepnc_model.nc.text import NcText
 from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
@@ -262,6 +263,8 @@ class HeidenhainControl:
             self._coordinates(words, number)
         elif number in CYCLES:
             self.cycle = number, dict(words.assigned), self.recorder.block
+        elif words.cycle == "9.1":
+            self.recorder.dwell(max(0.0, words.numbers[-1] if words.numbers else 0.0))
         elif number not in QUIET_CYCLES:
             self.cycle = None
             if number not in {"21", "22", "23", "24", "25", "27", "28", "29"}:

@@ -23,27 +23,15 @@ FRAMES_BY_CONTROL: dict[Dialect, frozenset[int]] = {
 NUMBERED_FRAMES = {541, 1540}
 """G54.1 and G154, whose P word counts the frame."""
 
-HARMLESS = {50, 51, 80, 90, 150, 400, 410, 420, 490, 500, 501, 610, 611, 640, 690, 940, 950,
-            970, 980, 990, 800, 900, 901, 910, 911, 960}  # fmt: skip
+HARMLESS = {90, 400, 410, 420, 490, 610, 611, 640, 800, 900, 910, 940, 950, 960, 970, 980, 990}
+"""Codes that all controls know and that move nothing; some have actions of their own."""
+
 HARMLESS_BY_CONTROL: dict[Dialect, frozenset[int]] = {
-    Dialect.LINUXCNC: frozenset({70, 80, 641, 431, 432, 100, 970}),
+    Dialect.LINUXCNC: frozenset({431, 432, 901, 911}),
     Dialect.FANUC: frozenset({
-        51,
-        80,
-        81,
-        100,
-        110,
-        220,
-        230,
-        250,
-        260,
-        620,
-        630,
-        640,
-        131,
-        151,
+        *{50, 51, 80, 81, 110, 131, 150, 151, 220, 230, 250, 260, 500, 501, 620, 630, 690},
     }),
-    Dialect.HAAS: frozenset({100, 1030, 1870, 1170, 640, 1130}),
+    Dialect.HAAS: frozenset({150, 500, 501, 690, 1030, 1170, 1130, 1870}),
     Dialect.SINUMERIK: frozenset({
         *{600, 6010, 6020, 6030, 6410, 6420, 6430, 6440, 6450, 640},
         *{4500, 4510, 4600, 4610, 4620, 3400, 3410, 1400, 1410, 1420, 1430, 2470},
@@ -73,8 +61,8 @@ TRANSFORMS_ON = {
 }
 TRANSFORMS_OFF = {
     Dialect.LINUXCNC: frozenset[int](),
-    Dialect.FANUC: frozenset({150, 500, 501, 690, 131, 1130, 490}),
-    Dialect.HAAS: frozenset({500, 501, 1000, 690, 1130, 2350, 2550, 490}),
+    Dialect.FANUC: frozenset({150, 500, 501, 690, 131, 1130}),
+    Dialect.HAAS: frozenset({500, 501, 1000, 690, 1130, 2350, 2550}),
     Dialect.SINUMERIK: frozenset[int](),
 }
 

@@ -14,13 +14,15 @@ from stepnc_model.nc.drilling import cycle_moves, drilling
 from stepnc_model.nc.flow import ProgramFlow
 from stepnc_model.nc.iso_flow import IsoFlow
 from stepnc_model.nc.iso_modes import IsoModes, Motion, Shot
-from stepnc_model.nc.moves import MoveFlag, MoveKind, MoveRecorder
+from stepnc_model.nc.moves import MoveFlag, MoveKind
+from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.nc.remarks import Remarks
 from stepnc_model.nc.text import NcText
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.grid import FULL
 from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
+from stepnc_model.units import seconds_from_ms
 
 MOST_HOLES = 10_000
 """Greatest number of repeats of a drilling cycle by its word L."""
@@ -138,7 +140,11 @@ class IsoControl:
         elif self.modes.shot is Shot.OFFSETS:
             self.recorder.at = [nan, nan, nan]
             self.recorder.flags |= MoveFlag.OFFSET.value
-        elif self.modes.shot is Shot.DWELL or self.modes.lost:
+        elif self.modes.shot is Shot.DWELL:
+            self.recorder.dwell(self.seconds(words))
+            if self.dialect is Dialect.LINUXCNC and has_axes and not self.modes.lost:
+                self._interpolate(words)
+        elif self.modes.lost:
             return
         elif isinstance(self.modes.motion, CycleKind):
             if has_axes:
@@ -146,6 +152,17 @@ class IsoControl:
         elif has_axes or self._is_circle(words):
             self._rotary(words)
             self._interpolate(words)
+
+    def seconds(self, words: BlockWords) -> float:
+        """Time of a dwell, s; 0 where it is not known."""
+        values = words.values
+        if self.dialect is Dialect.LINUXCNC:
+            return values.get("P", 0.0)
+        if "P" in values:
+            is_whole = "P" in words.pointless
+            is_ms = self.dialect is Dialect.FANUC or is_whole
+            return seconds_from_ms(values["P"]) if is_ms else values["P"]
+        return values.get("X", values.get("U", 0.0))
 
     def has_axes(self, words: BlockWords) -> bool:
         """Whether the block commands an axis."""

@@ -9,7 +9,8 @@ from typing import Protocol
 
 from stepnc_model.nc.block_words import BlockWords
 from stepnc_model.nc.flow import ProgramFlow, places
-from stepnc_model.nc.moves import MoveFlag, MoveRecorder
+from stepnc_model.nc.moves import MoveFlag
+from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.nc.remarks import Remarks
 from stepnc_model.nc.text import NcText
 from stepnc_model.post.dialect import Dialect
@@ -93,7 +94,7 @@ class IsoFlow:
 
     def ended(self, words: BlockWords, block: int) -> int:
         """Block after this one, which may end the program."""
-        if END_OF_PROGRAM & set(words.functions):
+        if END_OF_PROGRAM & set(words.functions) and not self._open:
             return len(self._text)
         return block + 1
 
@@ -101,6 +102,10 @@ class IsoFlow:
         """Remember what a condition changes."""
         if self._before is not None:
             self._note_changes()
+
+    @property
+    def _is_conditional(self) -> bool:
+        return bool(self._control.recorder.standing & MoveFlag.CONDITIONAL)
 
     def _named(self, is_begun: bool, block: int) -> int:
         """Pass the head of a program; the next program ends the one before it."""
@@ -122,6 +127,8 @@ class IsoFlow:
             target = self._target(number, is_local=False)
         if target is None:
             return self._outside(block, f"the subprogram {number:g} is not in this file")
+        if self._is_conditional and self._flow.is_inside(target):
+            return self._outside(block, "a call of itself")
         return self._flow.call(block, target, times=times)
 
     def _target(self, number: float, *, is_local: bool) -> int | None:
@@ -163,7 +170,11 @@ class IsoFlow:
                 return self._outside(
                     block, f"the subprogram {name.lower()} is not in this file"
                 )
+            if self._is_conditional and self._flow.is_inside(target + 1):
+                return self._outside(block, "a call of itself")
             return self._flow.call(block, target + 1)
+        if keyword == "return" and self._open:
+            return block + 1
         if keyword in {"endsub", "return"}:
             following = self._flow.leave()
             return block + 1 if following is None else following

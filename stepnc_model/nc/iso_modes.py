@@ -8,7 +8,8 @@ from math import isnan, nan
 
 from stepnc_model.nc import iso_codes
 from stepnc_model.nc.block_words import BlockWords
-from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveRecorder
+from stepnc_model.nc.moves import FeedMode, MoveFlag
+from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.toolpath.path import ArcPlane, CycleKind
@@ -91,6 +92,8 @@ class IsoModes:
         self.tool: int | None = None
         self.cycle: dict[str, float] = {}
         self.shot: Shot | None = None
+        self.pause = 0.0
+        """Time of a dwell that stands in its F word, s."""
         self.lost = ""
         """Reason why the block is not understood, if any."""
         if self.is_lathe and dialect in {Dialect.FANUC, Dialect.HAAS}:
@@ -136,6 +139,7 @@ class IsoModes:
 
     def settle(self, words: BlockWords) -> None:
         """Update the modal state from the G codes and the F word."""
+        unit = self.scale
         for code in words.codes:
             act = self.codes.get(code)
             if act is None:
@@ -145,12 +149,17 @@ class IsoModes:
                 act(words)
         if self.recorder.setting.mode is FeedMode.INVERSE_TIME and "F" not in words.values:
             self.recorder.word = nan
-        self.feed(words)
+        if self.dialect is not Dialect.LINUXCNC:
+            unit = self.scale
+        elif unit != self.scale and "F" in words.values:
+            # LinuxCNC takes F before the units of its block.
+            self.recorder.flags |= MoveFlag.MACRO_FEED.value
+        self.feed(words, unit)
 
-    def feed(self, words: BlockWords) -> None:
-        """Take the F word."""
+    def feed(self, words: BlockWords, unit: float) -> None:
+        """Take the F word in units of a length in mm."""
         if self.shot is Shot.DWELL and self.dialect is Dialect.SINUMERIK:
-            words.values.pop("F", None)
+            self.pause = words.values.pop("F", 0.0)
             return
         value = words.values.pop("F", None)
         if "F" in words.macros:
@@ -159,7 +168,7 @@ class IsoModes:
         elif value is not None:
             per_minute = self.recorder.setting.mode is FeedMode.PER_MINUTE
             is_inverse = self.recorder.setting.mode is FeedMode.INVERSE_TIME
-            scale = 1.0 if is_inverse else self.scale
+            scale = 1.0 if is_inverse else unit
             self.recorder.word = value * scale / (MINUTE if per_minute or is_inverse else 1.0)
             self.recorder.fed_by = self.recorder.block
             self.recorder.is_fresh = True
@@ -279,10 +288,11 @@ class IsoModes:
         self.recorder.word, self.recorder.fed_by = nan, -1
 
     def _compensate(self, is_on: bool, _: BlockWords) -> None:
+        was_on = bool(self.recorder.standing & MoveFlag.COMPENSATED)
         self.stand(MoveFlag.COMPENSATED, is_on)
-        # The move that ends compensation is compensated at its start.
-        if not is_on:
-            self.recorder.flags |= MoveFlag.COMPENSATED.value
+        # The move after G40 begins beside its commanded start.
+        if was_on and not is_on:
+            self.recorder.carry(MoveFlag.COMPENSATED)
 
     def transform(self, is_on: bool) -> None:
         """Begin or end rotated, scaled, mirrored or polar coordinates."""

@@ -6,9 +6,6 @@ the program in mm, in the frame of the row; on a lathe x is a radius. Unknown co
 NaN. Rows name their block, so that advice finds its way back into the file.
 """
 
-import struct
-from array import array
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum, IntFlag, StrEnum
 from functools import cached_property
@@ -33,6 +30,8 @@ class MoveKind(IntEnum):
     """Move synchronised with the spindle: its feed is a lead, not to be changed."""
     UNKNOWN = 4
     """Block that may move the machine in a way that is not understood."""
+    DWELL = 5
+    """Pause; its word is the time, s."""
 
 
 class FeedMode(StrEnum):
@@ -174,6 +173,10 @@ class NcMove:
     plane: ArcPlane
     feed: float
     """Feed, mm/s; NaN for rapids and where it is not known."""
+    word: float
+    """Feed in force, mm/s, mm per revolution or 1/s by mode."""
+    seconds: float
+    """Time of a dwell, s; 0 for moves."""
     block: int
     call: int
     flags: MoveFlag
@@ -192,12 +195,10 @@ ROW = np.dtype([
     ("flags", np.int32),
     ("kind", np.int8),
 ])
-_PACKED = struct.Struct("<7d6ib")
-_FLAGS_AT = 7 * 8 + 5 * 4
-"""Offset of the flags in a row."""
-_ROUNDED = MoveFlag.ROUNDED.value
-_ARC_NUMBERS = 5
-_PLANES = tuple(ArcPlane)
+ARC_NUMBERS = 5
+"""Columns of :attr:`NcMoves.arcs`."""
+PLANES = tuple(ArcPlane)
+"""Planes by the index in :attr:`NcMoves.arcs`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -290,7 +291,7 @@ class NcMoves:
     def normal(self) -> NDArray[np.int64]:
         """(N,) array: axis along the normal of an arc's plane; 2 for lines."""
         index = self._of_arcs(4, 0.0).astype(np.int64)
-        return np.array([plane.axes[2] for plane in _PLANES], np.int64)[index]
+        return np.array([plane.axes[2] for plane in PLANES], np.int64)[index]
 
     @cached_property
     def length(self) -> Floats:
@@ -344,8 +345,7 @@ class NcMoves:
     def is_known(self) -> NDArray[np.bool_]:
         """(N,) array: whether start, end and, of arcs, the centre are known."""
         known = ~(np.isnan(self.start).any(axis=1) | np.isnan(self.end).any(axis=1))
-        is_arc = self.kind == MoveKind.ARC
-        return known & ~(is_arc & np.isnan(self.turn)) & (self.kind != MoveKind.UNKNOWN)
+        return known & ~np.isnan(self.turn) & (self.kind != MoveKind.UNKNOWN)
 
     @cached_property
     def is_advisable(self) -> NDArray[np.bool_]:
@@ -369,8 +369,10 @@ class NcMoves:
             end=_point(row["end"]),
             centre=None if numbers is None else _point(numbers),
             turn=0.0 if numbers is None else float(numbers[3]),
-            plane=ArcPlane.XY if numbers is None else _PLANES[int(numbers[4])],
+            plane=ArcPlane.XY if numbers is None else PLANES[int(numbers[4])],
             feed=float(self.feed[index]),
+            word=float(row["word"]),
+            seconds=float(row["word"]) if row["kind"] == MoveKind.DWELL else 0.0,
             block=int(row["block"]),
             call=int(row["call"]),
             flags=MoveFlag(int(row["flags"])),
@@ -389,108 +391,3 @@ class NcMoves:
 
 def _point(numbers: Floats) -> Point:
     return float(numbers[0]), float(numbers[1]), float(numbers[2])
-
-
-class MoveRecorder:
-    """Collector of executed moves; it keeps the position and the modal setting.
-
-    Running state: a control moves it from block to block.
-    """
-
-    def __init__(self) -> None:
-        self.at: list[float] = [nan, nan, nan]
-        """Position of the tool, mm; NaN where unknown."""
-        self.word = nan
-        """Feed in force, mm/s, mm per revolution or 1/s."""
-        self.fed_by = -1
-        self.block = 0
-        self.call = 0
-        self.flags = 0
-        """Flags of all moves of the block."""
-        self.standing = 0
-        """Flags of all moves until they are taken away, such as compensation."""
-        self.is_fresh = False
-        """Whether an F word was executed since the last row."""
-        self._carried = 0
-        """Flags that a corner rounded by the last block gives to the next row."""
-        self.frames: dict[str, int] = {"G54": 0}
-        self.calls: list[tuple[int, int]] = [(0, -1)]
-        self._setting = ModalSetting()
-        self._settings: dict[ModalSetting, int] = {self._setting: 0}
-        self._index = 0
-        self._rows = bytearray()
-        self._arcs = array("d")
-
-    @property
-    def setting(self) -> ModalSetting:
-        """Modal setting in force."""
-        return self._setting
-
-    @setting.setter
-    def setting(self, setting: ModalSetting) -> None:
-        self._setting = setting
-        self._index = self._settings.setdefault(setting, len(self._settings))
-
-    @property
-    def count(self) -> int:
-        """Number of rows recorded so far."""
-        return len(self._rows) // _PACKED.size
-
-    def frame(self, name: str) -> int:
-        """Index of a frame by its name."""
-        return self.frames.setdefault(name, len(self.frames))
-
-    def move(self, kind: MoveKind, end: Sequence[float], *, flags: int = 0) -> None:
-        """Record a straight move and go to its end."""
-        self._add(kind, end, -1, flags)
-
-    def arc(self, end: Sequence[float], centre: Point, *, turn: float, plane: ArcPlane) -> None:
-        """Record an arc or helix and go to its end."""
-        index = len(self._arcs) // _ARC_NUMBERS
-        self._arcs.extend((*centre, turn, float(_PLANES.index(plane))))
-        self._add(MoveKind.ARC, end, index, 0)
-
-    def unknown(self) -> None:
-        """Record that a block may move all axes in a way that is not understood."""
-        self._add(MoveKind.UNKNOWN, (nan, nan, nan), -1, 0)
-
-    def round_corner(self) -> None:
-        """Record that the corner between the last row and the next one is rounded."""
-        if self._rows:
-            at = len(self._rows) - _PACKED.size + _FLAGS_AT
-            old = int.from_bytes(self._rows[at : at + 4], "little")
-            self._rows[at : at + 4] = (old | _ROUNDED).to_bytes(4, "little")
-        self._carried = _ROUNDED
-
-    def _add(self, kind: MoveKind, end: Sequence[float], arc: int, flags: int) -> None:
-        flags |= self.flags | self.standing
-        carried, self._carried = self._carried, flags & _ROUNDED
-        flags |= carried
-        if self.is_fresh:
-            flags |= MoveFlag.FRESH_FEED.value
-            self.is_fresh = False
-        if not self.word > 0.0 and kind in {MoveKind.LINE, MoveKind.ARC}:
-            flags |= MoveFlag.NO_FEED.value
-        self._rows += _PACKED.pack(
-            *self.at,
-            *end,
-            self.word,
-            self.block,
-            self.fed_by,
-            self.call,
-            arc,
-            self._index,
-            flags,
-            kind,
-        )
-        self.at = list(end)
-
-    def moves(self) -> NcMoves:
-        """All moves recorded so far."""
-        return NcMoves(
-            rows=np.frombuffer(self._rows, ROW),
-            arcs=np.frombuffer(self._arcs, np.float64).reshape(-1, _ARC_NUMBERS),
-            settings=tuple(self._settings),
-            frames=tuple(self.frames),
-            calls=tuple(self.calls),
-        )

@@ -158,7 +158,7 @@ class _Rewriting:
         low, high = np.searchsorted(self._sorted, (block, block + 1))
         rows = self._order[low:high]
         kinds = self.moves.kind[rows]
-        return rows[(kinds != MoveKind.RAPID) & (kinds != MoveKind.THREAD)]
+        return rows[np.isin(kinds, (MoveKind.LINE, MoveKind.ARC, MoveKind.UNKNOWN))]
 
     def _hindrance(self, rows: NDArray[np.int64]) -> str:
         """Reason why the feed of a block is left alone, or an empty string."""
@@ -230,7 +230,7 @@ class _Rewriting:
         for row in _rows(self.moves):
             if row.flags & MoveFlag.FRESH_FEED:
                 changed = None
-            if row.kind == MoveKind.RAPID:
+            if row.kind in {MoveKind.RAPID, MoveKind.DWELL}:
                 continue
             plan = self.plans.get(row.block)
             if plan is not None:

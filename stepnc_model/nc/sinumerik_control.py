@@ -276,6 +276,10 @@ class SinumerikControl(IsoControl):
             return (nan, nan, nan)
         return middle[0], middle[1], middle[2]
 
+    def seconds(self, words: BlockWords) -> float:
+        """Time of a dwell, s: its F word."""
+        return self.modes.pause
+
     def turns(self, words: BlockWords) -> int:
         """Full turns of an arc by TURN=."""
         return max(0, min(int(words.values.get("TURN", 0.0)), 1000))

@@ -75,7 +75,7 @@ _COMMON = (rf"(?P<SPACE>{_BLANK}++)", r"(?P<LINE_END>\r\n|\n|\r)")
 _LAST = (r"(?P<SKIP>/[0-9]?)", r"(?P<PERCENT>%)", r"(?P<OTHER>.)")
 _ISO = (
     rf"(?P<ASSIGNMENT>{_VARIABLE}{_BLANK}*+={_BLANK}*+(?:{_BRACKET}|[^\s;(\[\]])*+)",
-    rf"(?P<of_WORD>(?:,{_BLANK}*+)?[A-Za-z:]){_BLANK}*+(?P<WORD>{NUMBER})",
+    rf"(?P<of_WORD>(?:,{_BLANK}*+)?[A-Za-z:$]){_BLANK}*+(?P<WORD>{NUMBER})",
     rf"(?P<of_MACRO>(?:,{_BLANK}*+)?[A-Za-z]){_BLANK}*+(?P<MACRO>{_TERM})",
 )
 _ROUND_COMMENT = r"(?P<COMMENT>\([^)\r\n]*+\)?+|;[^\r\n]*+)"
