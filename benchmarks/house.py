@@ -35,6 +35,13 @@ ALLOWED = {
 }
 """public names that nothing reaches, with the reason why they stay; 20 at most"""
 
+AHEAD = {
+    "optimiser.levels": "feeds along the path",
+    "optimiser.profile": "feeds along the path",
+    "optimiser.sweep": "feeds along the path",
+}
+"""modules that no command asks for yet, with what will; their public names may be unreached"""
+
 ENTER = """
 import sys
 part, *product = sys.argv[1:]
@@ -249,6 +256,7 @@ def main(arguments: list[str] | None = None) -> int:
     found = house.reached(entries(ROOT))
     idle = unreached(house, found)
     if options.check:
+        idle = [name for name in idle if name[0] not in AHEAD]
         wrong = [name for name in map(".".join, idle) if name not in ALLOWED]
         for each in wrong:
             print(f"{each}: no command, route or job reaches it")

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut
 from optimiser.holding import HoldingLoad
 from optimiser.modes import Mode
@@ -100,6 +101,8 @@ class Advice:
     cut: Cut | None
     before: EvaluatedSetting | None
     after: EvaluatedSetting | None
+    conditions: CuttingConditions | None = None
+    """Conditions of the cut; None where no cut is known."""
     force_factor: float = 1.0
     """Accepted correction factor of k_c used for the loads."""
     active: LimitName | None = None

@@ -16,11 +16,16 @@ class Infeasible(OptimisationError):
         The limits that conflict, with their numbers and units.
     limits : tuple of str
         Names of the limits that conflict.
+    station : int, optional
+        Index of the station of a path where they do.
     """
 
-    def __init__(self, message: str, *, limits: tuple[str, ...]) -> None:
+    def __init__(
+        self, message: str, *, limits: tuple[str, ...], station: int | None = None
+    ) -> None:
         super().__init__(message)
         self.limits = limits
+        self.station = station
 
 
 class SolverFailed(OptimisationError):

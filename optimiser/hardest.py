@@ -88,8 +88,13 @@ class Bending:
     """Greatest force normal to the wall, (K,), mm."""
 
 
-def bending(cut: Cut, stations: Stations, kienzle: Kienzle) -> Bending:
-    """Bending forces of an end mill along a path; empty for other tools."""
+def bending(
+    cut: Cut, stations: Stations, kienzle: Kienzle, *, is_exact: bool = False
+) -> Bending:
+    """Bending forces of an end mill along a path; empty for other tools.
+
+    They are exact where they may be among the greatest, and elsewhere only if asked for.
+    """
     at = _milled_rows(stations)
     if cut.tool_kind is not ToolKind.ENDMILL or not len(at):
         return Bending(at=at[:0], shank=np.empty(0), wall=np.empty(0))
@@ -101,7 +106,11 @@ def bending(cut: Cut, stations: Stations, kienzle: Kienzle) -> Bending:
     law, fill = ForceLaw(exponent=1.0 - kienzle.m_c), np.zeros(told.shape[1])
     np.maximum.at(fill, row.ravel(), arcs.fill[at])
     forces = (
-        _where_hard(each, cut.edges, places, law, fill)[row.ravel()]
+        (
+            each(cut.edges, places, law)
+            if is_exact
+            else _where_hard(each, cut.edges, places, law, fill)
+        )[row.ravel()]
         for each in (peak_resultant, wall_force)
     )
     shank, wall = (arcs.fill[at] * force for force in forces)
@@ -223,8 +232,8 @@ def _milled(
         depth_share=greatest.depth_share,
         fill=greatest.fill,
         chip_ratio=max(float(stations.chip_ratio[hardest]), LEAST_RATIO),
-        width_ratio=float(_width_ratio(arcs, at).max()),
-        chip_sine=float(_chip_sine(arcs, at).max()),
+        width_ratio=float(width_ratios(arcs, at).max()),
+        chip_sine=float(chip_sines(arcs, at).max()),
         shank=shank,
         wall=wall,
         radial_width=0.5 * cut.diameter * greatest.engagement.cosine_difference * greatest.fill,
@@ -237,14 +246,14 @@ def _milled_rows(stations: Stations) -> Ints:
     return np.flatnonzero((stations.kind == StationKind.MILLING) & has_arc)
 
 
-def _width_ratio(arcs: SingleArcs, at: Ints) -> Floats:
+def width_ratios(arcs: SingleArcs, at: Ints) -> Floats:
     """Radial width over diameter, a_e/D, at the stations."""
     entry, exit_ = _within(arcs, at)
     ratio: Floats = 0.5 * (np.cos(entry) - np.cos(exit_))
     return ratio
 
 
-def _chip_sine(arcs: SingleArcs, at: Ints) -> Floats:
+def chip_sines(arcs: SingleArcs, at: Ints) -> Floats:
     """Greatest sin φ on the contact arcs of the stations."""
     entry, exit_ = _within(arcs, at)
     holds_top = (entry <= 0.5 * pi) & (exit_ >= 0.5 * pi)

@@ -159,6 +159,7 @@ def advise(
         raise ValueError(f"machining time {before.time:g} s: time and energy must be finite")
     untouched = replace(
         untouched,
+        conditions=at,
         force_factor=at.force_factor,
         safety_factor=at.safety_factor,
         cut=cut,

@@ -25,7 +25,7 @@ from dataclasses import replace
 from optimiser import loads
 from optimiser.chip_load import catalogue_feed
 from optimiser.conditions import CuttingConditions
-from optimiser.cut import Cut
+from optimiser.cut import Cut, CutKind
 from optimiser.limits import (
     PLUNGE_FEED_RATIO,
     drill_point,
@@ -106,6 +106,22 @@ def _feed_ratio(at: CuttingConditions) -> float:
     return PLUNGE_FEED_RATIO if at.centre_cutting else CAUTIOUS_FEED_RATIO
 
 
+def permitted_plunge(cut: Cut, at: CuttingConditions) -> float | None:
+    """Greatest feed per tooth of a mill along its axis, mm; None if no catalogue states one."""
+    if cut.kind is not CutKind.MILLING:
+        return None
+    return _permitted(cut, at, ratio=_feed_ratio(at))
+
+
+def _permitted(cut: Cut, at: CuttingConditions, *, ratio: float) -> float | None:
+    """Share of the catalogue feed, but at least the feed against rubbing; None without one."""
+    highest = catalogue_feed(cut, at)
+    if highest is None:
+        return None
+    rubbing = at.grade.min_chip_thickness if at.grade else 0.0
+    return min(highest, max(ratio * highest, rubbing))
+
+
 def _feed_limit(cut: Cut, at: CuttingConditions, *, ratio: float, share: float) -> Limit:
     """Limit on the feed per tooth along the axis, a share of the feed along the path.
 
@@ -113,13 +129,12 @@ def _feed_limit(cut: Cut, at: CuttingConditions, *, ratio: float, share: float) 
     reduction of the catalogue feed is a custom, not physics, so it must not fall below the
     rubbing limit.
     """
-    highest = catalogue_feed(cut, at)
-    borne = share * (cut.programmed.plunge_feed or cut.programmed.feed)
-    if highest is not None:
-        rubbing = at.grade.min_chip_thickness if at.grade else 0.0
-        borne = min(highest, max(ratio * highest, rubbing))
+    borne = _permitted(cut, at, ratio=ratio)
+    name = LimitName.PROGRAMMED_FEED if borne is None else LimitName.FEED_PER_TOOTH
+    if borne is None:
+        borne = share * (cut.programmed.plunge_feed or cut.programmed.feed)
     return Limit(
-        name=LimitName.PROGRAMMED_FEED if highest is None else LimitName.FEED_PER_TOOTH,
+        name=name,
         load=Monomial(coefficient=share, feed_exponent=1.0),
         bound=borne,
         unit="mm",

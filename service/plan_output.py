@@ -24,6 +24,7 @@ from stepnc_model.units import (
 
 if TYPE_CHECKING:
     from optimiser.advice import ParetoPoint
+    from service.along_path.run import AlongPath
     from service.confirmation import Confirmation, ConfirmedStep
 
 
@@ -148,7 +149,11 @@ LOAD: tuple[Column[LimitLoad], ...] = (
 """Columns of a limit; its margin is a share of the bound, after the safety factor."""
 
 
-def print_plan(plan: Plan, confirmation: "Confirmation | None" = None) -> None:
+def print_plan(
+    plan: Plan,
+    confirmation: "Confirmation | None" = None,
+    along: "AlongPath | None" = None,
+) -> None:
     """Print the advice for a program: a row per workingstep, then totals and findings."""
     material = plan.material.material
     print_line(
@@ -173,6 +178,10 @@ def print_plan(plan: Plan, confirmation: "Confirmation | None" = None) -> None:
             print_table(FRONT, advice.front)
     if confirmation is not None:
         _print_confirmation(confirmation)
+    if along is not None:
+        from service.along_path.output import print_along_path  # noqa: PLC0415 (numpy)
+
+        print_along_path(along)
     print_findings(plan.findings)
 
 
@@ -247,9 +256,17 @@ def _stability_words(advice: Advice, state: EvaluatedSetting) -> str:
     return text + f" ({found.reason})"
 
 
-def plan_json(plan: Plan, confirmation: "Confirmation | None" = None) -> str:
-    """Return a plan as JSON, with the comparison to its simulated run if one was made."""
+def plan_json(
+    plan: Plan,
+    confirmation: "Confirmation | None" = None,
+    along: "AlongPath | None" = None,
+) -> str:
+    """Return a plan as JSON, with its simulated run and feeds along paths if requested."""
     found = {} if confirmation is None else {"confirmation": _confirmation(confirmation)}
+    if along is not None:
+        from service.along_path.output import along_path_record  # noqa: PLC0415 (numpy)
+
+        found["along_path"] = along_path_record(along)
     return dump({
         "program": plan.program,
         "mode": plan.mode.value,
@@ -374,11 +391,18 @@ def _sensitivity(advice: Advice) -> dict[str, Any] | None:
     }
 
 
-def report_page(plan: Plan) -> str:
+def report_page(plan: Plan, along: "AlongPath | None" = None) -> str:
     """Return the HTML report of a plan."""
     from service.figures import plan_figures  # noqa: PLC0415 (plotly)
     from service.rendering.pages import plot, rendered  # noqa: PLC0415 (Jinja)
 
+    along_figures: list[Any] = []
+    along_columns: tuple[Any, ...] = ()
+    if along is not None:
+        from service.along_path.figures import along_path_figures  # noqa: PLC0415 (plotly)
+        from service.along_path.output import STEP  # noqa: PLC0415 (numpy)
+
+        along_figures, along_columns = along_path_figures(along), STEP
     before, after = plan.time_before, plan.time_after
     return rendered(
         "plan.html.jinja",
@@ -390,4 +414,7 @@ def report_page(plan: Plan) -> str:
             for advice in plan.advices
         ],
         plots=[plot(each, f"plot{row}") for row, each in enumerate(plan_figures(plan))],
+        along=along,
+        along_columns=along_columns,
+        along_plots=[plot(each, f"along{row}") for row, each in enumerate(along_figures)],
     )

@@ -37,6 +37,7 @@ from stepnc_model.toolpath.task import stock_of
 from stepnc_model.units import mm_from_um
 
 if TYPE_CHECKING:
+    from service.along_path.run import AlongPath
     from service.confirmation import Confirmation
     from service.knowledge.verbs import AcceptedFactor
     from simulator.tool_table import TableTool
@@ -52,6 +53,8 @@ class AdviceFiles:
     name: str = ""
     """Name of the program; empty: the name of its file."""
     output: Path | None = None
+    feeds: Path | None = None
+    """CSV table of the feeds along the paths, to be written."""
     in_place: bool = False
     """Whether the input file is overwritten."""
     dry_run: bool = False
@@ -74,6 +77,8 @@ class OptimiseResult:
     """The STEP-NC file, or None when nothing was written."""
     confirmation: "Confirmation | None" = None
     """Comparison with the simulated run; None if it was not requested."""
+    along: "AlongPath | None" = None
+    """Feeds along the paths; None if they were not requested."""
 
 
 def optimise(
@@ -86,12 +91,12 @@ def optimise(
     StepNcError
         When the file, a name, a limit or an output is invalid; nothing is written.
     """
-    require_bounds(request)
+    _require_sense(request, files)
     task = _task(request, _table(files.tools))
     profile = request.profile
     output = _output(files)
     nc_place = _nc_place(request, files, output)
-    require_apart(named_place(files.knowledge), output, files.report, nc_place)
+    require_apart(named_place(files.knowledge), output, files.report, files.feeds, nc_place)
     program = read_program(
         files.file, units=request.units, name=files.name, stock=request.stock
     )
@@ -135,24 +140,57 @@ def optimise(
         from service.confirm import confirm  # noqa: PLC0415 (numba takes a second)
 
         confirmation = confirm(plan, _read_again(program, data), tell=tell)
+    along = None
+    if request.is_along_path:
+        from service.along_path.of_program import along_program  # noqa: PLC0415 (numba)
+
+        along = along_program(
+            _read_again(program, data),
+            plan,
+            request,
+            keeps_traces=files.report is not None,
+            tell=tell,
+        )
     if request.nc_control is not None and nc_place is not None:
         # NC code first: where it cannot be made, nothing is written.
-        code = _nc_code(program, data, request.nc_control, tell)
+        code = _nc_code(_read_again(program, data), request.nc_control, along, tell)
         if not files.dry_run:
             tell(f"NC code: {nc_place} ({write_lines(nc_place, code)} lines)")
     written = None
-    if changes and not files.dry_run:
-        write_atomically(output, data)
-        written = output
     if not files.dry_run:
-        tell(f"written: {output}" if changes else NOTHING_WRITTEN)
+        written = _write(output, data, tell) if changes else None
+        if written is None:
+            tell(NOTHING_WRITTEN)
+    _write_views(files, plan, along, tell)
+    _tell_conflicts(plan, tell)
+    return OptimiseResult(plan=plan, written=written, confirmation=confirmation, along=along)
+
+
+def _write(output: Path, data: bytes, tell: Tell) -> Path:
+    """Write the optimised program."""
+    write_atomically(output, data)
+    tell(f"written: {output}")
+    return output
+
+
+def _write_views(files: AdviceFiles, plan: Plan, along: "AlongPath | None", tell: Tell) -> None:
+    """Write the report and the table of feeds, where they were asked for."""
     if files.report is not None:
         from service.plan_output import report_page  # noqa: PLC0415 (plotly takes a second)
 
-        write_atomically(files.report, report_page(plan).encode())
+        write_atomically(files.report, report_page(plan, along).encode())
         tell(f"report: {files.report}")
-    _tell_conflicts(plan, tell)
-    return OptimiseResult(plan=plan, written=written, confirmation=confirmation)
+    if files.feeds is not None and along is not None:
+        from service.along_path.output import profile_lines  # noqa: PLC0415 (numpy)
+
+        tell(f"feeds: {files.feeds} ({write_lines(files.feeds, profile_lines(along))} lines)")
+
+
+def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
+    """Refuse numbers out of bounds, and options that have no effect."""
+    require_bounds(request)
+    if not request.is_along_path and (request.levels is not None or files.feeds is not None):
+        raise StepNcError("--levels and --feeds-csv need --along-path")
 
 
 def _require_run(
@@ -193,9 +231,12 @@ def _output(files: AdviceFiles) -> Path:
             raise WriteError(message, path=str(output))
         if not files.dry_run:
             require_place(output, apart_from=files.file)
-    if files.report is not None:
-        require_place(files.report, apart_from=files.file)
-        require_place(files.report, apart_from=output)
+    for place in (files.report, files.feeds):
+        if place is not None:
+            require_place(place, apart_from=files.file)
+            require_place(place, apart_from=output)
+    if files.report is not None and files.feeds is not None:
+        require_place(files.feeds, apart_from=files.report)
     return output
 
 
@@ -236,18 +277,23 @@ def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path 
     if request.nc_control is None:
         return None
     place = beside(output, request.nc_control.suffix)
-    for other in (files.file, output, files.report):
+    for other in (files.file, output, files.report, files.feeds):
         if other is not None:
             require_place(place, apart_from=other)
     return place
 
 
-def _nc_code(program: Program, data: bytes, control: Dialect, tell: Tell) -> Iterator[str]:
+def _nc_code(
+    program: Program, control: Dialect, along: "AlongPath | None", tell: Tell
+) -> Iterator[str]:
     """Generate NC code of the optimised program."""
     from service.paths.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (numpy, shapely)
 
-    paths = with_feeds(paths_of(_read_again(program, data), tell=tell), keep_going=False)
-    return nc_lines(paths, control)
+    if along is not None:
+        from service.along_path.of_program import nc_lines_along  # noqa: PLC0415 (numpy, shapely)
+
+        return nc_lines_along(program, along, control)
+    return nc_lines(with_feeds(paths_of(program, tell=tell), keep_going=False), control)
 
 
 def _read_again(program: Program, data: bytes) -> Program:

@@ -14,7 +14,7 @@
     │   ├── Deadlock(waits, time)          machines of a shop wait for each other
     │   └── CalibrationError(path, line, column)
     ├── OptimisationError                  optimiser.errors
-    │   ├── Infeasible(workingstep, limits)
+    │   ├── Infeasible(limits, station)
     │   └── SolverFailed(status)
     ├── ControlError                       controller.errors
     │   └── MachineLost

@@ -43,6 +43,16 @@ class Stock:
     radius: float | None = None
     """Radius of a bar, mm; its axis is in the middle of the box."""
 
+    def grown(self, margin: float) -> "Stock":
+        """Stock that is larger by a margin on all sides, mm."""
+        x, y, z = self.low
+        right, back, top = self.high
+        return Stock(
+            low=(x - margin, y - margin, z - margin),
+            high=(right + margin, back + margin, top + margin),
+            radius=None if self.radius is None else self.radius + margin,
+        )
+
 
 T = TypeVar("T")
 

@@ -160,6 +160,12 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         help="tool table that says which of the program's tools cut over centre or have wipers",
     )
     add_knowledge(parser, "supplies accepted corrections of k_c")
+    add(
+        "--feeds-csv",
+        type=Path,
+        metavar="CSV",
+        help="write the feeds along the paths as a table",
+    )
     add("--dry-run", action="store_true", help="write no STEP-NC file")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
     add_cluster(parser)
@@ -170,9 +176,18 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
 def _add_check(commands: Commands) -> None:
     """Add the command ``stepnc check``."""
     parser = commands.add_parser(
-        "check", help="show the contents of a program and its errors; exit 3 if it is unusable"
+        "check",
+        help="show the contents of a program or of NC code and its errors; exit 3 if it is "
+        "unusable",
     )
     add_file(parser)
+    parser.add_argument(
+        "--control",
+        default="",
+        metavar="NAME",
+        help="control of NC code: linuxcnc, fanuc, haas, sinumerik or heidenhain; default: "
+        "guessed from the code",
+    )
     add_json(parser)
     parser.set_defaults(run=_check)
 
@@ -240,6 +255,7 @@ def _optimise(options: argparse.Namespace) -> int:
             in_place=options.in_place,
             dry_run=options.dry_run,
             report=options.report,
+            feeds=options.feeds_csv,
             holding=options.holding,
             tools=options.tools,
             knowledge=options.kb,
@@ -250,11 +266,11 @@ def _optimise(options: argparse.Namespace) -> int:
     if options.json:
         from service.plan_output import plan_json
 
-        write_out(plan_json(outcome.plan, confirmation))
+        write_out(plan_json(outcome.plan, confirmation, outcome.along))
     else:
         from service.plan_output import print_plan
 
-        print_plan(outcome.plan, confirmation)
+        print_plan(outcome.plan, confirmation, outcome.along)
     if outcome.plan.is_infeasible:
         return INFEASIBLE
     is_passed = confirmation is not None and bool(confirmation.passed)
@@ -305,6 +321,34 @@ def _optimise_folder(options: argparse.Namespace) -> int:
 
 def _check(options: argparse.Namespace) -> int:
     """Run the command ``stepnc check``."""
+    from service.code_contents import is_code
+
+    return (
+        _check_code(options)
+        if options.control or is_code(options.file)
+        else _check_program(options)
+    )
+
+
+def _check_code(options: argparse.Namespace) -> int:
+    """Check NC code."""
+    from service.code_contents import check_code
+    from service.terminal import write_out
+
+    contents = check_code(options.file, control=options.control)
+    if options.json:
+        from service.code_contents_output import code_json
+
+        write_out(code_json(contents))
+    else:
+        from service.code_contents_output import print_code
+
+        print_code(contents)
+    return OK
+
+
+def _check_program(options: argparse.Namespace) -> int:
+    """Check a STEP-NC program."""
     from service.contents import check
     from service.terminal import write_out
 

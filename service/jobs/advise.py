@@ -32,7 +32,7 @@ def run(task: RunningJob) -> None:
     if request.nc_control is not None:
         _name_code(task)
     task.keep({
-        **json.loads(plan_json(outcome.plan, outcome.confirmation)),
+        **json.loads(plan_json(outcome.plan, outcome.confirmation, outcome.along)),
         "program": name,
         "is_written": outcome.written is not None,
         "nc_control": request.nc_control,

@@ -137,3 +137,35 @@ class AdviceRequest(Request):
             flag="--allow-plunge",
         ),
     ] = False
+    is_along_path: Annotated[
+        bool,
+        About(
+            "also choose the feed along each path, within its limits at every place; the NC "
+            "code of --nc gets these feeds",
+            flag="--along-path",
+        ),
+    ] = False
+    levels: Annotated[
+        int | None,
+        Interval(ge=1, le=10_000),
+        About(
+            "largest number of different feeds in a workingstep along its path (default: any)",
+            flag="--levels", metavar="K",
+        ),
+    ] = None  # fmt: skip
+    stock_margin_mm: Annotated[
+        float,
+        Interval(ge=0.0, le=100.0),
+        About(
+            "distance from the stock within which nothing counts as air, in mm; 3 for castings",
+            unit="mm", name="stock margin", flag="--stock-margin", metavar="MM",
+        ),
+    ] = 1.0  # fmt: skip
+    corner_tolerance_mm: Annotated[
+        float,
+        Interval(gt=0.0, le=10.0),
+        About(
+            "rounding of corners by the control that is always permitted along the path, in mm",
+            unit="mm", name="corner tolerance", flag="--corner-tolerance", metavar="MM",
+        ),
+    ] = 0.05  # fmt: skip

@@ -106,9 +106,24 @@ def from_program(
 
 
 def prepared_program(
-    program: Program, chosen: Machine, match: MaterialMatch, *, tell: Tell
+    program: Program,
+    chosen: Machine,
+    match: MaterialMatch,
+    *,
+    tell: Tell,
+    margin: float = 0.0,
 ) -> PreparedRun:
     """Prepare a program that is already read, on a suitable machine.
+
+    Parameters
+    ----------
+    program : Program
+    chosen : Machine
+    match : MaterialMatch
+    tell : callable
+        Receives messages.
+    margin : float, mm
+        Distance by which the stock is larger than the file says.
 
     Raises
     ------
@@ -125,7 +140,7 @@ def prepared_program(
         material=match,
         blocks=((blocks.count, block) for block in blocks),
         tools=_tools(program, numbers, match),
-        stock=_Clamped(program, chosen).stock,
+        stock=_Clamped(program, chosen, margin).stock,
         raw=paths.stock,
         # Most steps become one block; the number of other blocks is taken from the examples.
         done=lambda: blocks.share(steps + AROUND_PATH * len(paths.paths) + AROUND_PROGRAM),
@@ -210,9 +225,10 @@ def _code_of_program(
 class _Clamped:
     """Stock of each setup, updated as it is machined. Running state."""
 
-    def __init__(self, program: Program, machine: Machine) -> None:
+    def __init__(self, program: Program, machine: Machine, margin: float = 0.0) -> None:
         self._program = program
         self._machine = machine
+        self._margin = margin
         self._setups = {step.id: step.setup for step in program.workingsteps}
         self._maps: dict[object, StockMap | None] = {}
 
@@ -223,7 +239,7 @@ class _Clamped:
         setup = self._setups[workingstep]
         if setup not in self._maps:
             raw = stock_of(self._program, setup)
-            drawn = None if raw is None else GivenStock(bounds=raw)
+            drawn = None if raw is None else GivenStock(bounds=raw.grown(self._margin))
             self._maps[setup] = None if drawn is None else stock_map(self._machine, drawn)
         return self._maps[setup]
 

@@ -120,7 +120,7 @@ def test_every_error_says_what_it_is() -> None:
 def test_the_tree_shows_branches_and_attributes() -> None:
     assert "├── Part21Error(line, column)" in ERRORS
     assert "│   └── PathError" in ERRORS
-    assert "│   ├── Infeasible(limits)" in ERRORS
+    assert "│   ├── Infeasible(limits, station)" in ERRORS
 
 
 def test_every_severity_of_a_finding_is_documented() -> None:

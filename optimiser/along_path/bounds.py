@@ -1,0 +1,42 @@
+"""Bounds along the path that follow from the advice for a workingstep."""
+
+from optimiser.advice import Advice
+from optimiser.along_path.caps import CapName, CutBounds
+from optimiser.limits import STRAIGHT_DOWN
+from optimiser.plunge_feed import permitted_plunge
+from optimiser.problem import BoundSide, LimitName
+
+FIXED = {
+    LimitName.ROUGHNESS: CapName.ROUGHNESS,
+    LimitName.PROGRAMMED_FEED: CapName.LOCKED,
+    LimitName.CHUCK_TORQUE: CapName.HOLDING,
+    LimitName.TILTING_MOMENT: CapName.HOLDING,
+    LimitName.BAR_DEFLECTION: CapName.HOLDING,
+    LimitName.HOLDING_FORCE: CapName.HOLDING,
+}
+"""Limits that hold alike at every place of a workingstep with chips."""
+
+
+def bounds_of(advice: Advice) -> CutBounds | None:
+    """Bounds along the path of a workingstep; None if its feed may not be chosen.
+
+    Loads that depend on the engagement get a cap of their own at each place. Roughness and
+    work-holding keep the feed that the whole workingstep may have.
+    """
+    state = advice.after
+    if state is None or advice.cut is None or advice.conditions is None:
+        return None
+    fixed: dict[CapName, float] = {}
+    for load in state.loads:
+        name = FIXED.get(load.limit.name)
+        is_down = load.limit.words.endswith(STRAIGHT_DOWN)
+        if name is None or is_down or load.limit.sense is not BoundSide.AT_MOST:
+            continue
+        feed = load.limit.feed_at_bound(state.setting.depth, state.setting.speed)
+        fixed[name] = min(feed, fixed.get(name, feed))
+    return CutBounds(
+        cut=advice.cut,
+        at=advice.conditions,
+        fixed=tuple(fixed.items()),
+        plunge=permitted_plunge(advice.cut, advice.conditions),
+    )

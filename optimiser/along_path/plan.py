@@ -1,0 +1,290 @@
+"""Plan of the feeds along the paths of a program, with what proves it.
+
+The stretches of a program come one after another; each gives the pieces of its blocks. When all
+are known, the feeds of each part of the program (a workingstep, or a tool of an NC program) may
+be reduced to a few, and are rounded down to what a program can say.
+
+Every plan carries a lower bound of its time: no motion within the same caps takes less than
+``Σ L/cap`` over the places of the path, whatever the control.
+
+Units: mm, mm/s, s.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from optimiser.along_path.caps import NAMES, CapName
+from optimiser.along_path.pieces import FeedPieces, PieceRules, pieces_of
+from optimiser.along_path.runs import MachineFeeds, commands_of, own_caps
+from optimiser.along_path.stretch import PathStretch, PlaceCaps, place_caps
+from optimiser.levels import best_levels
+from simulator.motion.segments import Bools, Floats, Ints
+from simulator.motion.smoothing import smoothing_of
+from stepnc_model.post.block_feeds import BlockPart
+
+BlockFeeds = Mapping[int, tuple[BlockPart, ...]]
+"""Parts of the blocks that change, by the number of the block."""
+
+PER_MINUTE_STEP = 1.0 / 60.0
+"""Step of a written feed per time, mm/s: 1 mm/min."""
+
+PER_REVOLUTION_STEP = 0.001
+"""Step of a written feed per revolution, mm."""
+
+COARSEST = 0.01
+"""Greatest loss of feed by rounding; finer steps are written where it would be more."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FeedTask:
+    """How the feeds of a program are to be planned."""
+
+    machine: MachineFeeds
+    rules: PieceRules
+    levels: int | None = None
+    """Largest number of feeds in each part of the program; None: any."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PartPlan:
+    """Planned feeds of one part of a program."""
+
+    name: str
+    length: float
+    """Length of the moves whose feed was chosen, mm."""
+    programmed_time: float
+    """Their time at the programmed feeds, s."""
+    time: float
+    """Their time at the planned feeds, s."""
+    unlimited_time: float
+    """Their time at the planned feeds before they were reduced to a few, s."""
+    bound: float
+    """Lower bound of their time within the same caps, s."""
+    window_change: float
+    """Change of the time in which the control's filter settles, s."""
+    feeds: int
+    """Number of different feeds."""
+    shares: Mapping[CapName, tuple[float, float]]
+    """Length in mm and time in s at each active limit."""
+
+    @property
+    def levels_gap(self) -> float:
+        """Share of the time that the reduction to a few feeds adds."""
+        return self.time / self.unlimited_time - 1.0 if self.unlimited_time > 0.0 else 0.0
+
+    @property
+    def gap(self) -> float:
+        """Share of the time above its lower bound."""
+        return self.time / self.bound - 1.0 if self.bound > 0.0 else 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FeedPlan:
+    """Planned feeds of a program: parts of blocks, in the order of the path."""
+
+    pieces: FeedPieces
+    part: Ints
+    """Row in :attr:`parts` of each piece, (P,)."""
+    parts: tuple[PartPlan, ...]
+
+
+class FeedPlanner:
+    """Planner that takes the stretches of a program one after another. Running state."""
+
+    def __init__(self, task: FeedTask) -> None:
+        self.task = task
+        self._pieces: dict[str, list[FeedPieces]] = {}
+        self._bounds: dict[str, float] = {}
+        self._given_windows: dict[str, float] = {}
+        self._locked: list[float] = []
+        """Greatest feed of each run that may not be chosen, mm/s."""
+
+    def add(self, stretch: PathStretch) -> None:
+        """Plan the feeds of a stretch.
+
+        Raises
+        ------
+        ValueError
+            When an engagement is not a number.
+        """
+        places = place_caps(stretch)
+        commands = commands_of(stretch, places, self.task.machine)
+        name = stretch.workingstep
+        pieces = pieces_of(stretch, commands, self.task.rules)
+        pieces = replace(pieces, run=pieces.run + len(self._locked))
+        self._pieces.setdefault(name, []).append(pieces)
+        self._locked += commands.greatest_locked.tolist()
+        self._bounds[name] = self._bounds.get(name, 0.0) + self._least_time(stretch, places)
+        given = self._given_windows.get(name, 0.0)
+        self._given_windows[name] = given + commands.given_window
+
+    def _least_time(self, stretch: PathStretch, places: PlaceCaps) -> float:
+        """Lower bound of the time of the moves whose feed may be chosen, s."""
+        lengths = np.diff(places.ends, prepend=0.0)
+        caps = places.caps.least(own_caps(stretch, self.task.machine).at(places.segment))
+        rows = stretch.is_free[places.segment] & (lengths > 0.0)
+        return float((lengths[rows] / caps.feed[rows]).sum())
+
+    def plan(self) -> FeedPlan:
+        """Plan of all stretches that were added."""
+        pieces: list[FeedPieces] = []
+        parts: list[PartPlan] = []
+        numbers: list[Ints] = []
+        for name, found in self._pieces.items():
+            free = joined(found)
+            if not len(free):
+                continue
+            free = replace(free, rate=_in_every_run(free))
+            chosen = replace(free, rate=_levelled(free, self.task.levels))
+            pieces.append(chosen)
+            numbers.append(np.full(len(chosen), len(parts)))
+            parts.append(self._part(name, free, chosen))
+        if not pieces:
+            return FeedPlan(pieces=joined([]), part=np.zeros(0, dtype=np.int64), parts=())
+        return FeedPlan(pieces=joined(pieces), part=np.concatenate(numbers), parts=tuple(parts))
+
+    def _window(self, pieces: FeedPieces) -> float:
+        """Time in which the control's filter settles after the runs of some pieces, s."""
+        runs, row = np.unique(pieces.run, return_inverse=True)
+        greatest = np.array(self._locked)[runs]
+        np.maximum.at(greatest, row, pieces.rate * pieces.length / pieces.weight)
+        machine = self.task.machine
+        return sum(
+            smoothing_of(machine.control, machine.limits, feed).window
+            for feed in greatest.tolist()
+        )
+
+    def _part(self, name: str, free: FeedPieces, chosen: FeedPieces) -> PartPlan:
+        seconds = chosen.weight / chosen.rate
+        shares = {
+            NAMES[number]: (
+                float(chosen.length[chosen.name == number].sum()),
+                float(seconds[chosen.name == number].sum()),
+            )
+            for number in np.unique(chosen.name)
+        }
+        return PartPlan(
+            name=name,
+            length=float(chosen.length.sum()),
+            programmed_time=float((chosen.weight / chosen.programmed).sum()),
+            time=float(seconds.sum()),
+            unlimited_time=float((free.weight / free.rate).sum()),
+            bound=self._bounds[name],
+            window_change=self._window(chosen) - self._given_windows[name],
+            feeds=len(np.unique(chosen.rate)),
+            shares=shares,
+        )
+
+
+def joined(parts: Iterable[FeedPieces]) -> FeedPieces:
+    """Pieces of several stretches, one after another."""
+    found = [part for part in parts if len(part)]
+    if not found:
+        nothing, none = np.zeros(0), np.zeros(0, dtype=np.int64)
+        return FeedPieces(
+            block=none,
+            begin=nothing,
+            length=nothing,
+            weight=nothing,
+            rate=nothing,
+            name=none,
+            programmed=nothing,
+            is_per_revolution=np.zeros(0, dtype=np.bool_),
+            run=none,
+        )
+    return FeedPieces(**{
+        field: np.concatenate([getattr(part, field) for part in found])
+        for field in FeedPieces.__slots__
+    })
+
+
+def _in_every_run(pieces: FeedPieces) -> Floats:
+    """Feeds of blocks that run more than once: the least that any run needs."""
+    block, row = np.unique(pieces.block, return_inverse=True)
+    runs = np.bincount(row, weights=pieces.begin == 0.0)
+    least = np.full(len(block), np.inf)
+    np.minimum.at(least, row, pieces.rate)
+    return np.where(runs[row] > 1, least[row], pieces.rate)
+
+
+def _levelled(pieces: FeedPieces, levels: int | None) -> Floats:
+    """Feeds of the pieces, rounded down, and at most a number of them per unit."""
+    rate = rounded_down(pieces.rate, pieces.programmed, pieces.is_per_revolution)
+    if levels is None:
+        return rate
+    for unit in (False, True):
+        rows = np.flatnonzero(pieces.is_per_revolution == unit)
+        if len(rows):
+            rate[rows] = best_levels(pieces.weight[rows], rate[rows], count=levels).feeds
+    return rate
+
+
+def rounded_down(rate: Floats, programmed: Floats, is_per_revolution: Bools) -> Floats:
+    """Feeds rounded down to numbers that a program can say; programmed feeds stay."""
+    step = np.where(is_per_revolution, PER_REVOLUTION_STEP, PER_MINUTE_STEP)
+    for _ in range(4):
+        step = np.where(step > COARSEST * rate, 0.1 * step, step)
+    rounded: Floats = np.floor(rate / step * (1.0 + 1e-12)) * step
+    return np.where(rate == programmed, rate, np.maximum(rounded, 0.1 * step))
+
+
+def lowered(
+    feeds: BlockFeeds, excess: Mapping[tuple[int, int], float], *, keeps_levels: bool
+) -> BlockFeeds:
+    """Feeds in which each part that is too fast is slower.
+
+    Parameters
+    ----------
+    feeds : mapping
+        Parts of the changed blocks by block number.
+    excess : mapping
+        Feed over the permitted feed, by block and row of the part.
+    keeps_levels : bool
+        Whether parts of equal feed stay equal, so that their number does not grow.
+    """
+    factors: dict[float, float] = {}
+    for (block, row), ratio in excess.items():
+        rate = feeds[block][row].rate
+        factors[rate] = max(ratio, factors.get(rate, 1.0))
+
+    def slower(block: int, row: int, part: BlockPart) -> BlockPart:
+        ratio = factors.get(part.rate, 1.0) if keeps_levels else excess.get((block, row), 1.0)
+        if ratio == 1.0:
+            return part
+        rate = np.array([part.rate / ratio])
+        rounded = rounded_down(rate, np.zeros(1), np.array([part.is_per_revolution]))
+        return replace(part, rate=float(rounded[0]))
+
+    return {
+        block: tuple(slower(block, row, part) for row, part in enumerate(parts))
+        for block, parts in feeds.items()
+    }
+
+
+def block_feeds(plan: FeedPlan) -> Iterator[tuple[int, tuple[BlockPart, ...]]]:
+    """Yield the feeds of each block that changes; parts of equal feed are one."""
+    pieces = plan.pieces
+    starts = np.flatnonzero(np.diff(pieces.block, prepend=-1))
+    starts = starts[np.unique(pieces.block[starts], return_index=True)[1]]
+    is_new = np.append(np.diff(pieces.block) != 0, True)
+    for first in starts:
+        last = first + int(is_new[first:].argmax()) + 1
+        rates = pieces.rate[first:last]
+        if (rates == pieces.programmed[first:last]).all():
+            continue
+        ends = pieces.begin[first:last] + pieces.length[first:last]
+        kept = np.append(np.flatnonzero(np.diff(rates)), last - first - 1)
+        yield (
+            int(pieces.block[first]),
+            tuple(
+                BlockPart(
+                    end=1.0 if row == last - first - 1 else float(ends[row] / ends[-1]),
+                    rate=float(rates[row]),
+                    is_per_revolution=bool(pieces.is_per_revolution[first]),
+                    reason=NAMES[pieces.name[first + row]].words,
+                )
+                for row in kept
+            ),
+        )

@@ -1,0 +1,267 @@
+"""Fastest feed commands along a stretch that a control turns into permitted feeds.
+
+A run is the part of a stretch between two rapids. The control chooses its filter by the
+greatest feed of the run: a faster feed in air smooths more, so that slow feeds must reach
+farther and corners must be slower. The greatest feed of each run is therefore chosen by trial,
+by the time that results.
+
+Units: mm, mm/s, s.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from optimiser.along_path.caps import NUMBER, CapName, Caps, capped
+from optimiser.along_path.envelope import lower_envelope
+from optimiser.along_path.stretch import (
+    PathStretch,
+    PlaceCaps,
+    curvatures,
+    segment_caps,
+)
+from simulator.motion.path_limits import corners
+from simulator.motion.segments import AxisLimits, ControlModel, Floats, Ints, Segments
+from simulator.motion.smoothing import Smoothing, smoothing_of
+
+TRIALS = 16
+"""Number of greatest feeds that are tried for each run."""
+
+SLOWEST = 1e-3
+"""Least of the greatest feeds that are tried, over the greatest."""
+
+LEAST_TURN = 1e-3
+"""Sine of half the turn below which a junction is no corner: 0.1°."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MachineFeeds:
+    """What machine and control allow along a path."""
+
+    control: ControlModel
+    limits: AxisLimits
+    greatest: float | None = None
+    """Greatest feed of the machine, mm/s; None: that of the axes."""
+    tolerance: float = 0.05
+    """Rounding of corners and arcs by the control that is always permitted, mm.
+
+    More is permitted where the programmed feeds already round more.
+    """
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Commands:
+    """Greatest feeds that may be commanded along a stretch, place by place."""
+
+    ends: Floats
+    """End of each place from the start of the stretch, (K,), mm, ascending."""
+    segment: Ints
+    """Segment of each place, (K,)."""
+    caps: Caps
+    """Greatest feed that may be commanded, (K,); infinite on rapids."""
+    run: Ints
+    """Number of the run of each place, (K,); -1 on rapids."""
+    greatest_locked: Floats
+    """Greatest feed of each run that may not be chosen, (R,), mm/s; 0: none."""
+    given_window: float
+    """Time in which the control's filter settles after all runs as programmed, s."""
+
+
+def own_caps(stretch: PathStretch, machine: MachineFeeds) -> Caps:
+    """Greatest feeds that axes and control allow on each segment, (N,).
+
+    A segment whose feed may not be chosen has the programmed feed; a rapid has none.
+    """
+    segments = stretch.segments
+    own = segment_caps(segments, machine.limits, greatest=machine.greatest)
+    is_fed = ~segments.is_rapid
+    feed = np.where(stretch.is_free, own.feed, np.where(is_fed, segments.speed, np.inf))
+    is_locked = is_fed & ~stretch.is_free
+    return Caps(feed=feed, name=np.where(is_locked, NUMBER[CapName.LOCKED], own.name))
+
+
+def commands_of(stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds) -> Commands:
+    """Greatest feed commands along a stretch.
+
+    Parameters
+    ----------
+    stretch : PathStretch
+    places : PlaceCaps
+        Process limits along it.
+    machine : MachineFeeds
+    """
+    segments = stretch.segments
+    offsets = np.concatenate(([0.0], np.cumsum(segments.length)))
+    caps = places.caps.least(own_caps(stretch, machine).at(places.segment))
+    found: list[_Smoothed] = []
+    runs: list[Ints] = []
+    locked: list[float] = []
+    given = 0.0
+    changes = np.flatnonzero(np.diff(segments.is_rapid.astype(np.int8))) + 1
+    for first, last in pairwise([0, *changes.tolist(), len(segments)]):
+        rows = slice(*np.searchsorted(places.segment, [first, last]).tolist())
+        if rows.start == rows.stop:
+            continue
+        if segments.is_rapid[first]:
+            found.append(_Smoothed(ends=places.ends[rows], caps=caps.at(rows), time=0.0))
+            runs.append(np.full(len(found[-1].ends), -1))
+            continue
+        within = caps.at(rows)
+        run = _Run(
+            segments[first:last],
+            offsets[first : last + 1],
+            places.ends[rows],
+            within,
+            machine,
+            clearance_of(stretch),
+        )
+        found.append(run.fastest())
+        runs.append(np.full(len(found[-1].ends), len(locked)))
+        locked.append(run.greatest_locked)
+        given += run.given.window
+    ends = np.concatenate([part.ends for part in found])
+    middle = ends - 0.5 * np.diff(ends, prepend=0.0)
+    return Commands(
+        ends=ends,
+        segment=np.searchsorted(offsets[1:], middle),
+        caps=Caps(
+            feed=np.concatenate([part.caps.feed for part in found]),
+            name=np.concatenate([part.caps.name for part in found]),
+        ),
+        run=np.concatenate(runs),
+        greatest_locked=np.array(locked),
+        given_window=given,
+    )
+
+
+OWN = [
+    NUMBER[name]
+    for name in (
+        CapName.AIR, CapName.AXIS_SPEED, CapName.FEED_MECHANISM, CapName.BLOCK_TIME,
+        CapName.CORNER, CapName.CURVATURE, CapName.LOCKED,
+    )
+]  # fmt: skip
+"""Numbers of the limits of machine and control, whose places are exact."""
+
+
+CLEARANCE = 0.05
+"""Distance by which a process limit may be displaced, over the tool diameter.
+
+Engagement is known for stretches of at least this length, and a path that is split has other
+stretches (:data:`simulator.removal.engage.LEAST_SHARE`).
+"""
+
+TURNING_CLEARANCE = 0.5
+"""The same in turning, where cells and pieces at constant surface speed decide, mm."""
+
+
+def clearance_of(stretch: PathStretch) -> float:
+    """Distance by which the places of process limits may be displaced, mm."""
+    if stretch.bounds is None:
+        return 0.0
+    cut = stretch.bounds.cut
+    return TURNING_CLEARANCE if cut.kind.is_turned else CLEARANCE * cut.diameter
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Smoothed:
+    """Commands along a run with one filter."""
+
+    ends: Floats
+    caps: Caps
+    time: float
+    """Time of the run with the settling of the filter, s."""
+
+
+class _Run:
+    """Feed moves between two rapids, with what bounds their feeds."""
+
+    def __init__(
+        self,
+        segments: Segments,
+        offsets: Floats,
+        ends: Floats,
+        caps: Caps,
+        machine: MachineFeeds,
+        clearance: float,
+    ) -> None:
+        self.clearance = clearance
+        self.segments, self.offsets, self.machine = segments, offsets, machine
+        self.ends, self.caps = ends, caps
+        self.begins = np.concatenate((offsets[:1], ends[:-1]))
+        moving = segments[segments.length > 0.0]
+        before, after = corners(moving)
+        sine = 0.5 * np.linalg.norm(after - before, axis=1)
+        bent = np.flatnonzero(sine > LEAST_TURN)
+        self.corner_places = (offsets[1:][segments.length > 0.0])[:-1][bent]
+        self.corner_sines = sine[bent]
+        self.bends = curvatures(segments)
+        # A plan rounds no corner more than the program does, or than the tolerance.
+        self.given = smoothing_of(machine.control, machine.limits, float(segments.speed.max()))
+        slower = np.minimum(moving.speed[1:], moving.speed[:-1])[bent]
+        rounding = self.given.corner_gain * slower * self.corner_sines
+        self.corner_tolerance = np.maximum(rounding, machine.tolerance)
+        shrinking = self.given.arc_gain * segments.speed**2 * self.bends
+        self.arc_tolerance = np.maximum(shrinking, machine.tolerance)
+
+    def fastest(self) -> _Smoothed:
+        """Commands of the greatest feed that gives the least time."""
+        known = self.caps.feed[np.isfinite(self.caps.feed)]
+        top = float(known.max(initial=float(self.segments.speed.max())))
+        low = max(float(known.min(initial=top)), SLOWEST * top, self.greatest_locked)
+        best = self._smoothed(top)
+        if self.given.window > 0.0:
+            for greatest in np.geomspace(top, low, TRIALS)[1:].tolist():
+                tried = self._smoothed(greatest)
+                best = tried if tried.time < best.time else best
+        return best
+
+    @property
+    def greatest_locked(self) -> float:
+        """Greatest feed that may not be chosen, mm/s; 0: none."""
+        is_locked = self.caps.name == NUMBER[CapName.LOCKED]
+        return float(self.caps.feed[is_locked].max(initial=0.0))
+
+    def _smoothed(self, greatest: float) -> _Smoothed:
+        """Commands up to a greatest feed that keep all caps behind the control's filter."""
+        smoothing = smoothing_of(self.machine.control, self.machine.limits, greatest)
+        caps = self.caps.least(capped(np.full(len(self.ends), greatest), CapName.AIR))
+        if smoothing.window == 0.0:
+            return self._timed(self.ends, caps, smoothing)
+        corner = _over(self.corner_tolerance, smoothing.corner_gain * self.corner_sines)
+        arcs = np.sqrt(_over(self.arc_tolerance, smoothing.arc_gain * self.bends))
+        first, last = float(self.offsets[0]), float(self.offsets[-1])
+        begin = np.concatenate((self.begins, self.corner_places, self.offsets[:-1]))
+        end = np.concatenate((self.ends, self.corner_places, self.offsets[1:]))
+        feed = np.concatenate((caps.feed, corner, arcs))
+        name = np.concatenate((
+            caps.name,
+            np.full(len(corner), NUMBER[CapName.CORNER]),
+            np.full(len(arcs), NUMBER[CapName.CURVATURE]),
+        ))
+        bound = np.flatnonzero(np.isfinite(feed))
+        feed, name = feed[bound], name[bound]
+        clear = np.where(np.isin(name, OWN), 0.0, self.clearance)
+        reach = smoothing.reach * np.minimum(feed, greatest) + clear
+        found = lower_envelope(
+            np.clip(begin[bound] - reach, first, last),
+            np.clip(end[bound] + reach, first, last),
+            feed,
+        )
+        # A cap may reach over several segments; each place lies on one of them.
+        ends = np.union1d(found.ends, self.offsets[1:][self.segments.length > 0.0])
+        which = found.which[np.searchsorted(found.ends, ends)]
+        return self._timed(ends, Caps(feed=feed[which], name=name[which]), smoothing)
+
+    def _timed(self, ends: Floats, caps: Caps, smoothing: Smoothing) -> _Smoothed:
+        lengths = np.diff(ends, prepend=self.offsets[0])
+        time = float((lengths / caps.feed).sum()) + smoothing.window
+        return _Smoothed(ends=ends, caps=caps, time=time)
+
+
+def _over(value: Floats, divisor: Floats) -> Floats:
+    """Quotient of two arrays; infinite where the divisor is 0."""
+    quotient = np.full(len(divisor), np.inf)
+    np.divide(value, divisor, out=quotient, where=divisor > 0.0)
+    return quotient

@@ -1,0 +1,198 @@
+"""Stretch of a path with what its tool meets, and the greatest feed at each place of it.
+
+A place where the tool meets nothing is air only if it would meet nothing in a stock that is
+larger all around by a margin, because blanks vary; otherwise it has the limits of the chip that
+the larger stock would give. The first part of each way into the material has a reduced chip.
+
+Units: mm, mm/s, rev/s, rad.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from optimiser.along_path.caps import (
+    CapName,
+    Caps,
+    CutBounds,
+    StationCaps,
+    capped,
+    station_caps,
+    unbounded,
+)
+from optimiser.cut import CutKind
+from simulator.motion.path_limits import CENTRIPETAL_SHARE, block_lengths, least
+from simulator.motion.segments import AxisLimits, Bools, Floats, Ints, Segments
+from simulator.removal.stations import StationKind, Stations
+
+ENTRY_SHARE = 0.5
+"""Permitted chip on the way into the material over the permitted chip beyond (customary)."""
+
+ENTRY_LENGTH = 0.1
+"""Length of the way into the material over the tool diameter."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PathStretch:
+    """Consecutive moves of one tool, from rest to rest, with what the tool meets.
+
+    ``block`` of the segments numbers the blocks of the program, each of which has one feed.
+    """
+
+    segments: Segments
+    """N segments at the programmed feeds."""
+    spindle: Floats
+    """Magnitude of the spindle speed, (N,), rev/s."""
+    per_revolution: Floats
+    """Programmed feed per revolution, (N,), mm; NaN for a feed per time."""
+    is_free: Bools
+    """Whether the feed of a segment may be chosen, (N,)."""
+    can_split: Bools
+    """Whether the block of a segment may be split, (N,)."""
+    met: Stations
+    """What the tool meets in the stock."""
+    near: Stations | None = None
+    """What the tool would meet in a stock that is larger by the margin; None: not known."""
+    bounds: CutBounds | None = None
+    """Tool and permitted loads; None: nothing is known, and no feed may be chosen."""
+    workingstep: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PlaceCaps:
+    """Greatest feeds along a stretch, from limits that hold at each place for itself."""
+
+    ends: Floats
+    """End of each place from the start of the stretch, (K,), mm, ascending."""
+    segment: Ints
+    """Segment of each place, (K,)."""
+    caps: Caps
+    """Greatest feed, (K,); infinite in air."""
+    is_cut: Bools
+    """Whether the tool removes material, (K,)."""
+
+
+def segment_caps(segments: Segments, limits: AxisLimits, *, greatest: float | None) -> Caps:
+    """Greatest feed on each segment that axes and control allow, (N,).
+
+    Parameters
+    ----------
+    segments : Segments
+    limits : AxisLimits
+    greatest : float or None, mm/s
+        Greatest feed of the machine.
+    """
+    share = _greatest_shares(segments)
+    found = capped(least(limits.feed, share), CapName.AXIS_SPEED)
+    if greatest is not None:
+        found = found.least(capped(np.full(len(segments), greatest), CapName.FEED_MECHANISM))
+    if limits.block_time > 0.0:
+        longest = block_lengths(segments) / limits.block_time
+        found = found.least(capped(longest, CapName.BLOCK_TIME))
+    bend = curvatures(segments)
+    is_normal = np.arange(3) == segments.normal[:, None]
+    grip = np.where(is_normal, np.inf, limits.acceleration).min(axis=1)
+    is_bent = bend > 0.0
+    squares = np.full(len(segments), np.inf)
+    np.divide(CENTRIPETAL_SHARE * grip, bend, out=squares, where=is_bent)
+    return found.least(capped(np.sqrt(squares), CapName.CURVATURE))
+
+
+def curvatures(segments: Segments) -> Floats:
+    """Curvature of each segment, (N,), 1/mm; 0 for lines."""
+    length = np.where(segments.length > 0.0, segments.length, 1.0)
+    curvature: Floats = segments.radius * (segments.turn / length) ** 2
+    return curvature
+
+
+def _greatest_shares(segments: Segments) -> Floats:
+    """Greatest movement of each axis per length of path, (N, 3)."""
+    length = np.where(segments.length > 0.0, segments.length, 1.0)[:, None]
+    share = np.abs(segments.end - segments.start) / length
+    in_plane = segments.radius * np.abs(segments.turn) / length[:, 0]
+    is_in_plane = np.arange(3) != segments.normal[:, None]
+    is_arc = segments.turn[:, None] != 0.0
+    shares: Floats = np.where(is_arc & is_in_plane, in_plane[:, None], share)
+    return shares
+
+
+def place_caps(stretch: PathStretch) -> PlaceCaps:
+    """Process limits along a stretch.
+
+    Raises
+    ------
+    ValueError
+        When an engagement is not a number; with its place.
+    """
+    segments = stretch.segments
+    offsets = np.concatenate(([0.0], np.cumsum(segments.length)))
+    met_ends = _ends(stretch.met, offsets)
+    near_ends = met_ends if stretch.near is None else _ends(stretch.near, offsets)
+    ends = np.unique(np.concatenate((offsets[1:], met_ends, near_ends)))
+    ends = ends[ends > 0.0]
+    middle = ends - 0.5 * np.diff(ends, prepend=0.0)
+    segment = np.searchsorted(offsets[1:], middle)
+    if stretch.bounds is None:
+        nothing = np.zeros(len(ends), dtype=np.bool_)
+        return PlaceCaps(ends=ends, segment=segment, caps=unbounded(len(ends)), is_cut=nothing)
+    row = np.minimum(np.searchsorted(met_ends, middle), len(stretch.met) - 1)
+    found = _caps_of(stretch, stretch.met, stretch.bounds)
+    is_cut = (stretch.met.peak_section > 0.0)[row]
+    caps, chip = found.caps.at(row), found.chip[row]
+    if stretch.near is not None:
+        near_row = np.minimum(np.searchsorted(near_ends, middle), len(stretch.near) - 1)
+        near = _caps_of(stretch, stretch.near, stretch.bounds).caps.at(near_row)
+        caps = Caps(
+            feed=np.where(is_cut, caps.feed, near.feed),
+            name=np.where(is_cut, caps.name, near.name),
+        )
+    is_drilled = (stretch.met.kind == StationKind.DRILLING)[row]
+    if stretch.bounds.cut.kind is CutKind.MILLING:
+        length = ENTRY_LENGTH * stretch.bounds.cut.diameter
+        is_entry = _entries(ends, is_cut, length) & ~is_drilled
+        caps = caps.least(capped(np.where(is_entry, ENTRY_SHARE * chip, np.inf), CapName.ENTRY))
+    return PlaceCaps(ends=ends, segment=segment, caps=caps, is_cut=is_cut)
+
+
+def excess(stretch: PathStretch) -> Floats:
+    """Programmed feed over the greatest that the process permits, by segment, (N,).
+
+    0 in air, on rapids and where the feed may not be chosen.
+    """
+    found = np.zeros(len(stretch.segments))
+    if stretch.bounds is None:
+        return found
+    segment = stretch.met.segment
+    caps = _caps_of(stretch, stretch.met, stretch.bounds).caps
+    speed = np.where(stretch.is_free, stretch.segments.speed, 0.0)[segment]
+    np.maximum.at(found, segment, speed / caps.feed)
+    return found
+
+
+def _caps_of(stretch: PathStretch, stations: Stations, bounds: CutBounds) -> StationCaps:
+    """Process limits at the stations of a stretch."""
+    bad = np.flatnonzero(~np.isfinite(stations.peak_section * stations.chip_ratio))
+    if len(bad):
+        row = int(bad[0])
+        block = int(stretch.segments.block[stations.segment[row]])
+        raise ValueError(f"block {block}: the engagement at station {row} is not a number")
+    segment = stations.segment
+    direction = stretch.segments.direction(segment, stations.station)
+    return station_caps(
+        stations, bounds, spindle=stretch.spindle[segment], descent=-direction[:, 2]
+    )
+
+
+def _ends(stations: Stations, offsets: Floats) -> Floats:
+    """Ends of stations from the start of the stretch, (M,), mm; ascending."""
+    ends: Floats = np.maximum.accumulate(offsets[stations.segment] + stations.station)
+    return ends
+
+
+def _entries(ends: Floats, is_cut: Bools, length: float) -> Bools:
+    """Places within a distance after the beginning of a cut, (K,)."""
+    begins = is_cut & ~np.concatenate(([False], is_cut[:-1]))
+    starts = np.concatenate(([0.0], ends[:-1]))
+    last = np.maximum.accumulate(np.where(begins, starts, -np.inf))
+    entries: Bools = is_cut & (starts < last + length)
+    return entries

@@ -1,0 +1,157 @@
+"""Course of a program: the stretches of its paths with what the tools meet along them."""
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from optimiser.along_path.caps import CutBounds
+from optimiser.along_path.stretch import PathStretch
+from service.simulation.setup import PreparedRun
+from simulator.machine.acts import MoveStretch, ProgramAct
+from simulator.machine.interpreter import Numbered, interpret
+from simulator.machine.samples import Episode
+from simulator.machine.virtual import MachineSetup, VirtualMachine
+from simulator.motion.segments import ControlModel, Floats
+from stepnc_model.post.blocks import Circular, DrillingCycle, Linear
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Part:
+    """Part of a program with one tool: a workingstep, or what lies between two tool changes."""
+
+    name: str
+    tool: int
+    """Number of the tool."""
+
+
+class BlockLog:
+    """Numbers of the blocks of a program, and which of them may have another feed.
+
+    Running state: it grows as the program is read.
+    """
+
+    def __init__(self, blocks: Iterable[Numbered]) -> None:
+        self._blocks = blocks
+        self.can_change: list[bool] = [False]
+        self.can_split: list[bool] = [False]
+        self.lines: list[int] = [0]
+
+    def __iter__(self) -> Iterator[Numbered]:
+        for line, block in self._blocks:
+            is_move = isinstance(block, (Linear, Circular))
+            self.can_change.append(is_move or isinstance(block, DrillingCycle))
+            self.can_split.append(is_move)
+            self.lines.append(line)
+            yield len(self.lines) - 1, block
+
+
+Choose = Callable[[Part], CutBounds | None]
+
+
+def stretches_of(
+    prepared: PreparedRun,
+    larger: PreparedRun | None,
+    *,
+    control: ControlModel,
+    bounds: Choose,
+    log: BlockLog,
+    watch: Callable[[Episode, VirtualMachine], None],
+) -> Iterator[PathStretch]:
+    """Run a program on the virtual machine, and yield what its tools meet.
+
+    Parameters
+    ----------
+    prepared : PreparedRun
+    larger : PreparedRun or None
+        The same program in a larger stock; None: what is air is known exactly.
+    control : ControlModel
+    bounds : callable
+        Bounds of a part of the program; None if its feed may not be chosen.
+    log : BlockLog
+        Blocks of ``prepared``.
+    watch : callable
+        Receives all episodes of ``prepared``.
+
+    Raises
+    ------
+    SimulationError
+        When the machine cannot run the program.
+    """
+    run = _Run(prepared, control, log, watch)
+    others = None
+    if larger is not None:
+        others = _Run(larger, control, BlockLog(larger.blocks), _ignore).stretches()
+    for episode, stretch in run.stretches():
+        near = None if others is None else next(others)[0]
+        course = episode.course
+        if course is None:
+            continue
+        machine, state = run.machine, episode.state
+        name = machine.workingsteps[state.workingstep - 1] if state.workingstep else ""
+        chosen = bounds(Part(name=name, tool=state.tool)) if course.edge is not None else None
+        blocks = course.segments.block
+        can_change = np.array(log.can_change)[blocks] & (chosen is not None)
+        yield PathStretch(
+            segments=course.segments,
+            spindle=_spindle(episode),
+            per_revolution=stretch.per_revolution,
+            is_free=can_change & ~course.segments.is_rapid,
+            can_split=np.array(log.can_split)[blocks],
+            met=course.stations,
+            near=None if near is None or near.course is None else near.course.stations,
+            bounds=chosen,
+            workingstep=name,
+        )
+
+
+def _ignore(_episode: Episode, _machine: VirtualMachine) -> None:
+    """Ignore an episode."""
+
+
+class _Run:
+    """Run of a program whose stretches are paired with the acts that request them."""
+
+    def __init__(
+        self,
+        prepared: PreparedRun,
+        control: ControlModel,
+        log: BlockLog,
+        watch: Callable[[Episode, VirtualMachine], None],
+    ) -> None:
+        self.machine = VirtualMachine(
+            MachineSetup(
+                machine=prepared.machine,
+                control=control,
+                tools=prepared.tools,
+                stock=prepared.stock,
+            )
+        )
+        self._watch = watch
+        self._asked: deque[MoveStretch] = deque()
+        self._episodes = self.machine.run(self._noted(interpret(log, prepared.machine)))
+
+    def _noted(self, acts: Iterable[ProgramAct]) -> Iterator[ProgramAct]:
+        for act in acts:
+            if isinstance(act.act, MoveStretch):
+                self._asked.append(act.act)
+            yield act
+
+    def stretches(self) -> Iterator[tuple[Episode, MoveStretch]]:
+        """Yield the episodes that move, each with its request."""
+        for episode in self._episodes:
+            self._watch(episode, self.machine)
+            if episode.course is not None:
+                yield episode, self._asked.popleft()
+
+
+def _spindle(episode: Episode) -> Floats:
+    """Magnitude of the spindle speed in the middle of each segment, (N,), rev/s."""
+    course = episode.course
+    if course is None:
+        return np.zeros(0)
+    ends = course.motion.ends
+    middle = ends - 0.5 * np.diff(ends, prepend=0.0)
+    speed: Floats = np.abs(episode.spindle.speed(episode.begin + middle))
+    return speed

@@ -1,0 +1,184 @@
+"""Feeds along the paths of a program: the plan, and what the virtual machine makes of it.
+
+The program runs on the virtual machine twice to learn what its tools meet, in its stock and in
+one that is larger by a margin. Then the plan runs; where a block that was split meets a little
+more than the whole block did, its feed is lowered, and the plan runs once more.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from optimiser.along_path.pieces import PieceRules
+from optimiser.along_path.plan import (
+    BlockFeeds,
+    FeedPlanner,
+    FeedTask,
+    PartPlan,
+    block_feeds,
+    lowered,
+)
+from optimiser.along_path.runs import MachineFeeds
+from service.along_path.course import BlockLog, Choose, stretches_of
+from service.along_path.plan_run import LimitStretch, PartTotals, run_plan
+from service.along_path.trace import PathTrace
+from service.progress import Ticker
+from service.reading import Tell, silent
+from service.simulation.setup import PreparedRun
+from simulator.machine.totals import Total
+from simulator.motion.segments import ControlModel, axis_limits
+from simulator.spec import Machine
+from stepnc_model.errors import Finding
+
+MOST_ROUNDS = 4
+"""Greatest number of runs of a plan."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AlongPathTask:
+    """How the feeds along the paths are to be planned."""
+
+    control: ControlModel
+    levels: int | None = None
+    """Largest number of feeds in each part of the program; None: any."""
+    margin: float = 1.0
+    """Distance from the stock within which nothing counts as air, mm."""
+    tolerance: float = 0.05
+    """Rounding of corners by the control that is always permitted, mm."""
+    keeps_traces: bool = False
+    """Whether feed, force and power of both runs are kept for plots."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AlongPathStep:
+    """One part of a program before and after, as the virtual machine runs it."""
+
+    name: str
+    before: Total
+    """Run at the given feeds."""
+    after: Total
+    """Run at the planned feeds."""
+    plan: PartPlan | None
+    """Plan of its feeds; None if none was chosen."""
+
+    @property
+    def planned_time(self) -> float:
+        """Time that the plan predicts under the control model, s."""
+        if self.plan is None:
+            return self.before.duration
+        change = self.plan.time - self.plan.programmed_time + self.plan.window_change
+        return self.before.duration + change
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AlongPath:
+    """Feeds along the paths of a program."""
+
+    feeds: BlockFeeds
+    steps: tuple[AlongPathStep, ...]
+    findings: tuple[Finding, ...] = ()
+    """Findings of the run at the planned feeds."""
+    before_trace: PathTrace | None = None
+    """Signals of the run at the given feeds; None unless they were asked for."""
+    after_trace: PathTrace | None = None
+    """Signals of the run at the planned feeds."""
+    limits: tuple[LimitStretch, ...] = ()
+    """Active limits along the path."""
+
+    @property
+    def shown(self) -> tuple[AlongPathStep, ...]:
+        """Parts of the program that take time."""
+        return tuple(step for step in self.steps if step.before.duration > 0.0)
+
+    @property
+    def time_before(self) -> float:
+        """Time of the run at the given feeds, s."""
+        return sum(step.before.duration for step in self.steps)
+
+    @property
+    def time_after(self) -> float:
+        """Time of the run at the planned feeds, s."""
+        return sum(step.after.duration for step in self.steps)
+
+    @property
+    def planned_time(self) -> float:
+        """Time that the plan predicts, s."""
+        return sum(step.planned_time for step in self.steps)
+
+    @property
+    def parts(self) -> int:
+        """Number of parts into which blocks were split beyond their number."""
+        return sum(len(parts) - 1 for parts in self.feeds.values())
+
+
+def along_path(
+    prepare: Callable[[float], PreparedRun],
+    bounds: Choose,
+    task: AlongPathTask,
+    *,
+    tell: Tell = silent,
+) -> AlongPath:
+    """Plan the feeds along the paths of a program, and run the plan.
+
+    Parameters
+    ----------
+    prepare : callable
+        Prepares the program anew, in a stock that is larger by a distance in mm.
+    bounds : callable
+        Bounds of a part of the program; None if its feed may not be chosen.
+    task : AlongPathTask
+    tell : callable
+        Receives progress.
+
+    Raises
+    ------
+    StepNcError
+        When the machine cannot run the program.
+    """
+    ticker = Ticker(tell)
+    given = prepare(0.0)
+    planner = FeedPlanner(_feed_task(given.machine, task))
+    before = PartTotals(ticker, "planning", keeps_trace=task.keeps_traces)
+    for stretch in stretches_of(
+        given,
+        prepare(task.margin) if task.margin > 0.0 else None,
+        control=task.control,
+        bounds=bounds,
+        log=BlockLog(given.blocks),
+        watch=before.add,
+    ):
+        planner.add(stretch)
+    plan = planner.plan()
+    feeds: BlockFeeds = dict(block_feeds(plan))
+    for _ in range(MOST_ROUNDS):
+        after = PartTotals(ticker, "running the plan", keeps_trace=task.keeps_traces)
+        run = run_plan(prepare(0.0), feeds, bounds, control=task.control, totals=after)
+        if not run.excess:
+            break
+        feeds = lowered(feeds, run.excess, keeps_levels=task.levels is not None)
+    parts = {part.name: part for part in plan.parts}
+    return AlongPath(
+        feeds=feeds,
+        steps=tuple(
+            AlongPathStep(name=name, before=one, after=other, plan=parts.get(name))
+            for (name, one), (_, other) in zip(before.rows(), after.rows(), strict=True)
+        ),
+        findings=tuple(after.findings),
+        before_trace=before.trace(),
+        after_trace=after.trace(),
+        limits=run.limits,
+    )
+
+
+def _feed_task(machine: Machine, task: AlongPathTask) -> FeedTask:
+    """Task of the optimiser for a machine."""
+    limits = axis_limits(machine)
+    return FeedTask(
+        machine=MachineFeeds(
+            control=task.control,
+            limits=limits,
+            greatest=machine.max_feed,
+            tolerance=task.tolerance,
+        ),
+        rules=PieceRules(block_time=limits.block_time),
+        levels=task.levels,
+    )
