@@ -12,7 +12,7 @@ from simulator.removal.stock_file import stock_bytes
 from stepnc_model.errors import Finding, Severity, StepNcError
 
 TRACE = 0.1
-"""Volume that counts as none, mm³: of a stock that was cut before, edges are known to a cell."""
+"""Volume that counts as none, mm³: edges of a stock that was cut before are known to a cell."""
 
 
 def keep_stock(virtual: VirtualMachine, path: Path) -> None:
