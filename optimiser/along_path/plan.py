@@ -18,7 +18,7 @@ import numpy as np
 from optimiser.along_path.caps import NAMES, CapName
 from optimiser.along_path.pieces import FeedPieces, PieceRules, pieces_of
 from optimiser.along_path.runs import MachineFeeds, commands_of, own_caps
-from optimiser.along_path.stretch import PathStretch, PlaceCaps, place_caps
+from optimiser.along_path.stretch import PathStretch, PlaceCaps, excess, place_caps
 from optimiser.levels import best_levels
 from simulator.motion.segments import Bools, Floats, Ints
 from simulator.motion.smoothing import smoothing_of
@@ -26,6 +26,9 @@ from stepnc_model.post.block_feeds import BlockPart
 
 BlockFeeds = Mapping[int, tuple[BlockPart, ...]]
 """Parts of the blocks that change, by the number of the block."""
+
+PERMITTED = 1.01
+"""Programmed feed over the permitted one up to which a part may stay as it is."""
 
 PER_MINUTE_STEP = 1.0 / 60.0
 """Step of a written feed per time, mm/s: 1 mm/min."""
@@ -98,6 +101,8 @@ class FeedPlanner:
         self._pieces: dict[str, list[FeedPieces]] = {}
         self._bounds: dict[str, float] = {}
         self._given_windows: dict[str, float] = {}
+        self._excess: dict[str, float] = {}
+        """Greatest programmed feed over what the process permits, by part."""
         self._locked: list[float] = []
         """Greatest feed of each run that may not be chosen, mm/s."""
 
@@ -117,6 +122,8 @@ class FeedPlanner:
         self._pieces.setdefault(name, []).append(pieces)
         self._locked += commands.greatest_locked.tolist()
         self._bounds[name] = self._bounds.get(name, 0.0) + self._least_time(stretch, places)
+        most = float(excess(stretch).max(initial=0.0))
+        self._excess[name] = max(most, self._excess.get(name, 0.0))
         given = self._given_windows.get(name, 0.0)
         self._given_windows[name] = given + commands.given_window
 
@@ -138,12 +145,26 @@ class FeedPlanner:
                 continue
             free = replace(free, rate=_in_every_run(free))
             chosen = replace(free, rate=_levelled(free, self.task.levels))
+            if self._is_as_good(name, chosen):
+                chosen = replace(chosen, rate=chosen.programmed)
             pieces.append(chosen)
             numbers.append(np.full(len(chosen), len(parts)))
             parts.append(self._part(name, free, chosen))
         if not pieces:
             return FeedPlan(pieces=joined([]), part=np.zeros(0, dtype=np.int64), parts=())
         return FeedPlan(pieces=joined(pieces), part=np.concatenate(numbers), parts=tuple(parts))
+
+    def _is_as_good(self, name: str, pieces: FeedPieces) -> bool:
+        """Whether a part is permitted as programmed and takes hardly more time.
+
+        The engagement is known for stretches that depend on how the path is cut into blocks. A
+        plan that changes little would change it again when its result is planned.
+        """
+        if self._excess[name] > PERMITTED:
+            return False
+        given = float((pieces.weight / pieces.programmed).sum()) + self._given_windows[name]
+        planned = float((pieces.weight / pieces.rate).sum()) + self._window(pieces)
+        return given <= (1.0 + self.task.rules.kept_loss) * planned
 
     def _window(self, pieces: FeedPieces) -> float:
         """Time in which the control's filter settles after the runs of some pieces, s."""

@@ -7,10 +7,9 @@ import numpy as np
 
 from optimiser.along_path.plan import BlockFeeds
 from optimiser.along_path.stretch import PathStretch, excess
-from service.along_path.course import BlockLog, Choose, stretches_of
+from service.along_path.course import BlockLog, NumberedBlocks, PathSource, stretches_of
 from service.along_path.trace import PathTrace, PathTraceKeeper
 from service.progress import Ticker
-from service.simulation.setup import PreparedRun
 from simulator.machine.samples import Episode
 from simulator.machine.totals import Total, added
 from simulator.machine.virtual import VirtualMachine
@@ -81,9 +80,8 @@ class PlanRun:
 
 
 def run_plan(
-    prepared: PreparedRun,
+    source: PathSource,
     feeds: BlockFeeds,
-    bounds: Choose,
     *,
     control: ControlModel,
     totals: PartTotals,
@@ -92,11 +90,8 @@ def run_plan(
 
     Parameters
     ----------
-    prepared : PreparedRun
-        The program, prepared anew.
+    source : PathSource
     feeds : BlockFeeds
-    bounds : callable
-        Bounds of a part of the program.
     control : ControlModel
     totals : PartTotals
         Receives the run.
@@ -106,14 +101,15 @@ def run_plan(
     SimulationError
         When the machine cannot run the program.
     """
-    emitted = _EmittedBlocks(prepared, feeds)
+    prepared = source.prepare(0.0)
+    emitted = _EmittedBlocks(source.numbered(prepared), feeds)
     strip = _LimitStrip(emitted, feeds)
     ratios: dict[tuple[int, int], float] = {}
     for stretch in stretches_of(
         prepared,
         None,
         control=control,
-        bounds=bounds,
+        bounds=source.bounds,
         log=BlockLog(emitted),
         watch=totals.add,
     ):
@@ -129,16 +125,15 @@ def run_plan(
 class _EmittedBlocks:
     """Blocks at their new feeds, with the block and part that each comes from."""
 
-    def __init__(self, prepared: PreparedRun, feeds: BlockFeeds) -> None:
-        self._log = BlockLog(prepared.blocks)
+    def __init__(self, blocks: NumberedBlocks, feeds: BlockFeeds) -> None:
+        self._blocks = blocks
         self._feeds = feeds
         self.origin: list[tuple[int, int]] = [(0, 0)]
 
     def __iter__(self) -> Iterator[tuple[int, Block]]:
-        for number, block in with_feeds(self._log, self._feeds):
-            last, part = self.origin[-1]
-            self.origin.append((number, part + 1 if number == last else 0))
-            yield self._log.lines[number], block
+        for fed in with_feeds(self._blocks, self._feeds):
+            self.origin.append((fed.number, fed.part))
+            yield self._blocks.line(fed.number), fed.block
 
 
 class _LimitStrip:

@@ -5,7 +5,6 @@ one that is larger by a margin. Then the plan runs; where a block that was split
 more than the whole block did, its feed is lowered, and the plan runs once more.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from optimiser.along_path.pieces import PieceRules
@@ -18,12 +17,11 @@ from optimiser.along_path.plan import (
     lowered,
 )
 from optimiser.along_path.runs import MachineFeeds
-from service.along_path.course import BlockLog, Choose, stretches_of
+from service.along_path.course import PathSource, stretches_of
 from service.along_path.plan_run import LimitStretch, PartTotals, run_plan
 from service.along_path.trace import PathTrace
 from service.progress import Ticker
 from service.reading import Tell, silent
-from service.simulation.setup import PreparedRun
 from simulator.machine.totals import Total
 from simulator.motion.segments import ControlModel, axis_limits
 from simulator.spec import Machine
@@ -44,6 +42,8 @@ class AlongPathTask:
     """Distance from the stock within which nothing counts as air, mm."""
     tolerance: float = 0.05
     """Rounding of corners by the control that is always permitted, mm."""
+    greatest: float | None = None
+    """Greatest feed that the user permits, mm/s; None: that of the machine."""
     keeps_traces: bool = False
     """Whether feed, force and power of both runs are kept for plots."""
 
@@ -110,21 +110,12 @@ class AlongPath:
         return sum(len(parts) - 1 for parts in self.feeds.values())
 
 
-def along_path(
-    prepare: Callable[[float], PreparedRun],
-    bounds: Choose,
-    task: AlongPathTask,
-    *,
-    tell: Tell = silent,
-) -> AlongPath:
+def along_path(source: PathSource, task: AlongPathTask, *, tell: Tell = silent) -> AlongPath:
     """Plan the feeds along the paths of a program, and run the plan.
 
     Parameters
     ----------
-    prepare : callable
-        Prepares the program anew, in a stock that is larger by a distance in mm.
-    bounds : callable
-        Bounds of a part of the program; None if its feed may not be chosen.
+    source : PathSource
     task : AlongPathTask
     tell : callable
         Receives progress.
@@ -135,15 +126,15 @@ def along_path(
         When the machine cannot run the program.
     """
     ticker = Ticker(tell)
-    given = prepare(0.0)
+    given = source.prepare(0.0)
     planner = FeedPlanner(_feed_task(given.machine, task))
     before = PartTotals(ticker, "planning", keeps_trace=task.keeps_traces)
     for stretch in stretches_of(
         given,
-        prepare(task.margin) if task.margin > 0.0 else None,
+        source.prepare(task.margin) if task.margin > 0.0 else None,
         control=task.control,
-        bounds=bounds,
-        log=BlockLog(given.blocks),
+        bounds=source.bounds,
+        log=source.numbered(given),
         watch=before.add,
     ):
         planner.add(stretch)
@@ -151,7 +142,7 @@ def along_path(
     feeds: BlockFeeds = dict(block_feeds(plan))
     for _ in range(MOST_ROUNDS):
         after = PartTotals(ticker, "running the plan", keeps_trace=task.keeps_traces)
-        run = run_plan(prepare(0.0), feeds, bounds, control=task.control, totals=after)
+        run = run_plan(source, feeds, control=task.control, totals=after)
         if not run.excess:
             break
         feeds = lowered(feeds, run.excess, keeps_levels=task.levels is not None)
@@ -176,7 +167,10 @@ def _feed_task(machine: Machine, task: AlongPathTask) -> FeedTask:
         machine=MachineFeeds(
             control=task.control,
             limits=limits,
-            greatest=machine.max_feed,
+            greatest=min(
+                (each for each in (machine.max_feed, task.greatest) if each is not None),
+                default=None,
+            ),
             tolerance=task.tolerance,
         ),
         rules=PieceRules(block_time=limits.block_time),

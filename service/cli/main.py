@@ -136,7 +136,7 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         "file",
         type=Path,
         metavar="FILE",
-        help="a STEP-NC program (Part 21), or a folder of them",
+        help="a STEP-NC program (Part 21), a folder of them, or NC code",
     )
     add_options(parser, AdviceRequest)
     add(
@@ -157,8 +157,10 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         "--tools",
         type=Path,
         metavar="TABLE",
-        help="tool table that says which of the program's tools cut over centre or have wipers",
+        help="tool table: the tools of NC code; of a program, which cut over centre or have "
+        "wipers",
     )
+    add("--tools-unit", default="", metavar="UNIT", help="unit of a tool.tbl: mm or inch")
     add_knowledge(parser, "supplies accepted corrections of k_c")
     add(
         "--feeds-csv",
@@ -238,6 +240,8 @@ def _exit_code(error: Exception) -> int:
 def _optimise(options: argparse.Namespace) -> int:
     """Run the command ``optimise``."""
     from service import usecases
+    from service.cli.code import optimise_code
+    from service.code_contents import is_code
     from service.requests.advice import AdviceRequest
     from service.requests.fields import from_options
     from service.terminal import tell, write_out
@@ -247,6 +251,8 @@ def _optimise(options: argparse.Namespace) -> int:
         return _optimise_folder(options)
     if options.cluster:
         raise StepNcError("--cluster runs the programs of a folder: name a folder")
+    if is_code(options.file):
+        return optimise_code(options)
     outcome = usecases.optimise(
         from_options(AdviceRequest, options),
         usecases.AdviceFiles(

@@ -169,3 +169,39 @@ class AdviceRequest(Request):
             unit="mm", name="corner tolerance", flag="--corner-tolerance", metavar="MM",
         ),
     ] = 0.05  # fmt: skip
+    max_feed_mm_min: Annotated[
+        float | None,
+        Interval(gt=0.0, le=1e6),
+        About(
+            "greatest feed along the path, in mm/min (default: that of the machine)",
+            unit="mm/min", name="greatest feed", flag="--max-feed", metavar="MM_MIN",
+        ),
+    ] = None  # fmt: skip
+    finish: Annotated[
+        tuple[Name, ...],
+        MaxLen(1000),
+        About(
+            "of NC code: a tool that leaves final surfaces, such as T3; repeatable; what "
+            "follows a comment with the word FINISH does too",
+            flag="--finish", metavar="TOOL",
+        ),
+    ] = ()  # fmt: skip
+    keep: Annotated[
+        tuple[Name, ...],
+        MaxLen(1000),
+        About(
+            "of NC code: a tool whose feeds stay as programmed; repeatable",
+            flag="--keep", metavar="TOOL",
+        ),
+    ] = ()  # fmt: skip
+    dialect: Annotated[
+        Dialect | None,
+        About(
+            "of NC code: its control (default: recognised by what it says)",
+            flag="--dialect", metavar="CONTROL",
+        ),
+    ] = None  # fmt: skip
+    is_marked: Annotated[
+        bool,
+        About("of NC code: add the reason of each changed feed as a comment", flag="--mark"),
+    ] = False
