@@ -25,7 +25,7 @@ References
    doi:10.1109/TRO.2018.2819195.
 """
 
-from math import sqrt
+from math import inf, sqrt
 
 import numpy as np
 
@@ -65,12 +65,17 @@ def sweep(problem: ProfileProblem, limit: TangentialLimit) -> PathProfile:
         size = getattr(limit, name).shape
         if size not in {(1,), problem.lengths.shape}:
             raise ValueError(f"{name} must have shape (1,) or {problem.lengths.shape}: {size}")
-    squares = problem.bounds()
-    sweep_back(problem.lengths, np.ascontiguousarray(limit.braking), squares)
+    squares, total = problem.bounds(), np.zeros(1)
+    sweep_along(
+        problem.lengths,
+        np.ascontiguousarray(limit.accelerating),
+        np.ascontiguousarray(limit.braking),
+        squares,
+        total,
+    )
     if squares[0] < problem.start:
         raise too_fast_at_start(problem.start, float(squares[0]), limit="braking")
-    sweep_on(problem.lengths, np.ascontiguousarray(limit.accelerating), squares)
-    return profile_of(problem.lengths, squares)
+    return PathProfile(squares=squares, time=float(total[0]))
 
 
 def sweep_axes(problem: ProfileProblem, limit: AxisLimit) -> PathProfile:
@@ -97,58 +102,55 @@ def sweep_axes(problem: ProfileProblem, limit: AxisLimit) -> PathProfile:
     if len(limit.start_tangent) != len(problem.lengths):
         message = f"{len(limit.start_tangent)} intervals of the axes"
         raise ValueError(f"{message} do not fit {len(problem.lengths)} intervals of the path")
-    squares = problem.bounds()
+    squares, total = problem.bounds(), np.zeros(1)
     geometry = (
         np.ascontiguousarray(limit.start_tangent),
         np.ascontiguousarray(limit.start_curvature),
         np.ascontiguousarray(limit.end_tangent),
         np.ascontiguousarray(limit.end_curvature),
     )
-    reach_back(problem.lengths, limit.acceleration, geometry, squares)
+    reach_along(problem.lengths, limit.acceleration, geometry, squares, total)
     if squares[0] < problem.start:
         limits = "acceleration of the axes"
         raise too_fast_at_start(problem.start, float(squares[0]), limit=limits)
-    reach_on(problem.lengths, limit.acceleration, geometry, squares)
-    return profile_of(problem.lengths, squares)
-
-
-def profile_of(lengths: Floats, squares: Floats) -> PathProfile:
-    """PathProfile of squared feeds, with its time.
-
-    Parameters
-    ----------
-    lengths : (N−1,) array, mm
-    squares : (N,) array, mm²/s²
-    """
-    total = np.zeros(1)
-    add_times(np.ascontiguousarray(lengths), squares, total)
     return PathProfile(squares=squares, time=float(total[0]))
 
 
 @entry
-def sweep_back(lengths: Floats, braking: Floats, squares: Floats) -> None:
-    """Lower squared feeds, from the end, to those from which braking suffices."""
+def sweep_along(
+    lengths: Floats, accelerating: Floats, braking: Floats, squares: Floats, total: Floats
+) -> None:
+    """Lower squared feeds to what can be reached, and add up the time.
+
+    Parameters
+    ----------
+    lengths : (N−1,) array, mm
+    accelerating, braking : (1,) or (N−1,) array, mm/s²
+    squares : (N,) array, mm²/s²
+        Caps, lowered in place; from the end alone if the first of them falls.
+    total : (1,) array, s
+        Time.
+    """
     stride = 1 if len(braking) > 1 else 0
+    start = squares[0]
     after = squares[len(lengths)]
     for row in range(len(lengths) - 1, -1, -1):
         after = min(squares[row], after + 2.0 * braking[row * stride] * lengths[row])
         squares[row] = after
-
-
-@entry
-def sweep_on(lengths: Floats, accelerating: Floats, squares: Floats) -> None:
-    """Lower squared feeds, from the start, to those that can be reached."""
+    if squares[0] < start:
+        return
     stride = 1 if len(accelerating) > 1 else 0
-    before = squares[0]
+    before = start
     for row in range(len(lengths)):
         before = min(squares[row + 1], before + 2.0 * accelerating[row * stride] * lengths[row])
         squares[row + 1] = before
+    total[0] = _time(lengths, squares)
 
 
-@entry
-def add_times(lengths: Floats, squares: Floats, total: Floats) -> None:
-    """Add up the times of all intervals, in blocks to keep digits."""
-    row = 0
+@kernel
+def _time(lengths: Floats, squares: Floats) -> float:
+    """Time of all intervals, added up in blocks to keep digits."""
+    total, row = 0.0, 0
     while row < len(lengths):
         last = min(row + 1024, len(lengths))
         feed, block = sqrt(squares[row]), 0.0
@@ -156,8 +158,9 @@ def add_times(lengths: Floats, squares: Floats, total: Floats) -> None:
             after = sqrt(squares[each + 1])
             block += lengths[each] / (feed + after)
             feed = after
-        total[0] += 2.0 * block
+        total += 2.0 * block
         row = last
+    return total
 
 
 Geometry = tuple[Floats, Floats, Floats, Floats]
@@ -168,30 +171,96 @@ Room = tuple[float, float, float, float, float, float, float, float]
 
 
 @entry
-def reach_back(
+def reach_along(
+    lengths: Floats, acceleration: Floats, geometry: Geometry, squares: Floats, total: Floats
+) -> None:
+    """Lower squared feeds to what the axes can follow, and add up the time.
+
+    Parameters
+    ----------
+    lengths : (N−1,) array, mm
+    acceleration : (3,) array, mm/s²
+    geometry : tuple of (N−1, 3) arrays
+    squares : (N,) array, mm²/s²
+        Caps, lowered in place; from the end alone if the first of them falls.
+    total : (1,) array, s
+        Time.
+    """
+    start = squares[0]
+    _reach_back(lengths, acceleration, geometry, squares)
+    if squares[0] >= start:
+        _reach_on(lengths, acceleration, geometry, squares)
+        total[0] = _time(lengths, squares)
+
+
+@kernel
+def _reach_back(
     lengths: Floats, acceleration: Floats, geometry: Geometry, squares: Floats
 ) -> None:
     """Lower squared feeds, from the end, to those from which the rest can be travelled."""
+    along = 0.0
     for row in range(len(lengths) - 1, -1, -1):
-        squares[row] = _controllable(
-            acceleration, geometry, row, lengths[row], squares[row], squares[row + 1]
-        )
+        length, cap, after = lengths[row], squares[row], squares[row + 1]
+        if _is_straight(geometry, row):
+            if along == 0.0 or not _is_parallel(geometry[0], row, row + 1):
+                along = _along_line(acceleration, geometry[0], row)
+            squares[row] = min(cap, after + 2.0 * length * along)
+        else:
+            along = 0.0
+            squares[row] = _controllable(acceleration, geometry, row, length, cap, after)
 
 
-@entry
-def reach_on(
+@kernel
+def _reach_on(
     lengths: Floats, acceleration: Floats, geometry: Geometry, squares: Floats
 ) -> None:
     """Raise the feed as fast as the axes can, from the start, within what is controllable."""
+    along = 0.0
     for row in range(len(lengths)):
-        square, greatest = squares[row], squares[row + 1]
+        length, square, greatest = lengths[row], squares[row], squares[row + 1]
+        if _is_straight(geometry, row):
+            if along == 0.0 or not _is_parallel(geometry[0], row, row - 1):
+                along = _along_line(acceleration, geometry[0], row)
+            squares[row + 1] = min(square + 2.0 * length * along, greatest)
+            continue
+        along = 0.0
         high, high_a, _, _, low, low_a, _, _ = _room(
-            acceleration, geometry, row, lengths[row], square, greatest
+            acceleration, geometry, row, length, square, greatest
         )
-        # At a vertex rounding may leave no room; the steeper line decides, the other is then
-        # exceeded by rounding only.
-        along = low if high < low and low_a > high_a else high
-        squares[row + 1] = min(max(square + 2.0 * lengths[row] * along, 0.0), greatest)
+        # At a vertex rounding may leave no room. The line with the greater share in a decides:
+        # what this misses of the other one is rounding in units of its limit.
+        chosen = low if high < low and low_a > high_a else high
+        squares[row + 1] = min(max(square + 2.0 * length * chosen, 0.0), greatest)
+
+
+@kernel
+def _is_straight(geometry: Geometry, row: int) -> bool:
+    """Whether an interval lies on a line."""
+    start_tangent, start_curvature, end_tangent, end_curvature = geometry
+    bend = 0.0
+    for axis in range(3):
+        bend += abs(start_curvature[row, axis]) + abs(end_curvature[row, axis])
+        bend += abs(end_tangent[row, axis] - start_tangent[row, axis])
+    return bend == 0.0
+
+
+@kernel
+def _is_parallel(tangent: Floats, row: int, other: int) -> bool:
+    """Whether two intervals begin in the same direction."""
+    turn = 0.0
+    for axis in range(3):
+        turn += abs(tangent[row, axis] - tangent[other, axis])
+    return turn == 0.0
+
+
+@kernel
+def _along_line(acceleration: Floats, tangent: Floats, row: int) -> float:
+    """Acceleration along a line at which the first axis reaches its limit."""
+    along = inf
+    for axis in range(3):
+        if tangent[row, axis] != 0.0:
+            along = min(along, acceleration[axis] / abs(tangent[row, axis]))
+    return along
 
 
 @kernel
@@ -265,9 +334,9 @@ def _room(
         if share < 0.0:
             share, bend = -share, -bend
         if share > 0.0:
-            most = acceleration[axis]
-            upper = (most - bend * square) / share
-            lower = (-most - bend * square) / share
+            most, inverse, pull = acceleration[axis], 1.0 / share, bend * square
+            upper = (most - pull) * inverse
+            lower = (-most - pull) * inverse
             if upper < high:
                 high, high_a, high_b, high_s = upper, share, bend, most
             if lower > low:
