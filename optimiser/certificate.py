@@ -158,7 +158,7 @@ def _times(lengths: Floats, squares: Floats) -> Floats:
 
 def _ceiling(problem: ProfileProblem, caps: NamedCaps) -> Floats:
     """Greatest squared feed that any cap or end permits, (N,)."""
-    top = np.minimum(problem.caps, caps.squares.min(axis=0))
+    top: Floats = np.minimum(problem.caps, caps.squares.min(axis=0))
     top[0], top[-1] = min(top[0], problem.start), min(top[-1], problem.end)
     return top
 

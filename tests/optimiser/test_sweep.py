@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
+from benchmarks.toppra_peer import toppra_time
 from optimiser.errors import Infeasible
 from optimiser.profile import (
     AxisLimit,
@@ -18,7 +19,6 @@ from optimiser.profile import (
     tangential_limit,
 )
 from optimiser.sweep import sweep, sweep_axes
-from tests.optimiser.toppra_peer import toppra_time
 
 TOLERANCE = 1e-12
 
