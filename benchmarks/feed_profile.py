@@ -44,6 +44,9 @@ LARGEST = {
 }
 """largest number of stations that a peer is given"""
 
+MOST = 10_000_000
+"""stations of the largest sweep with tangential limits"""
+
 RUNS = 9
 
 
@@ -118,7 +121,7 @@ def main(arguments: list[str] | None = None) -> None:
     )
     for stations in options.stations:
         _peers(trial(stations))
-    for stations in options.stations:
+    for stations in (*options.stations, MOST):
         _streaming(stations)
 
 
