@@ -16,7 +16,8 @@ interpolation scheme of [1]_ does. On lines and where the curvature is smooth th
 optimum of the discrete problem; where the curvature jumps it may lie above it by about 1e-4
 at stations 0.1 mm apart, which :mod:`optimiser.profile_program` measures.
 
-Both need O(N) time and, besides the result, no memory.
+Both need O(N) time and, besides the result, no memory. Other limits than these, such as one of
+the jerk, are those of :mod:`optimiser.jerk_program`.
 
 References
 ----------
@@ -175,7 +176,8 @@ def _braked(
     lengths: Floats, braking: Floats, stride: int, squares: Floats, row: int, after: float
 ) -> float:
     """Greatest squared feed at the start of an interval from which braking suffices."""
-    return min(squares[row], after + 2.0 * braking[row * stride] * lengths[row])
+    square: float = min(squares[row], after + 2.0 * braking[row * stride] * lengths[row])
+    return square
 
 
 @kernel
@@ -210,7 +212,9 @@ def _reached(
     lengths: Floats, accelerating: Floats, stride: int, squares: Floats, row: int, before: float
 ) -> float:
     """Greatest squared feed at the end of an interval that accelerating reaches."""
-    return min(squares[row + 1], before + 2.0 * accelerating[row * stride] * lengths[row])
+    faster = before + 2.0 * accelerating[row * stride] * lengths[row]
+    square: float = min(squares[row + 1], faster)
+    return square
 
 
 @kernel
