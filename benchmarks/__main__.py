@@ -8,6 +8,7 @@ from benchmarks import (
     cluster,
     control_step,
     factory,
+    feed_profile,
     jobs_on_postgres,
     knowledge,
     learning,
@@ -31,6 +32,7 @@ from benchmarks import (
 for title, bench in (
     ("Part 21", part21),
     ("Workingsteps", workingsteps),
+    ("Feed along the path", feed_profile),
     ("Whole process", process),
     ("Plan beside run", promised),
     ("Pockets", pockets),
