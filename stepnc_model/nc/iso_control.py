@@ -34,7 +34,7 @@ class IsoControl:
     def __init__(self, text: NcText, dialect: Dialect, machine: MachineType) -> None:
         self.text, self.dialect = text, dialect
         self.is_lathe = machine is MachineType.LATHE
-        self.recorder = MoveRecorder()
+        self.recorder = MoveRecorder(has_y=not self.is_lathe)
         self.remarks = Remarks(text)
         self.flow = ProgramFlow(text, self.recorder)
         self.modes = self.start_modes(machine)
