@@ -20,6 +20,7 @@ from stepnc_model.nc.text import NcText
 from stepnc_model.nc.token import NUMBER
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.words import LARGEST
 from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 from stepnc_model.units import rev_s_from_rpm
 
@@ -290,7 +291,8 @@ def _number(text: str) -> float:
     text = text.strip()
     if not text:
         return inf
-    return float(text) if re.fullmatch(NUMBER, text) else nan
+    value = float(text) if re.fullmatch(NUMBER, text) else nan
+    return value if abs(value) <= LARGEST else nan
 
 
 def _given(value: float, default: float) -> float:
