@@ -13,7 +13,7 @@ from stepnc_model.nc.block_words import BlockWords, words_of
 from stepnc_model.nc.drilling import cycle_moves, drilling
 from stepnc_model.nc.flow import ProgramFlow
 from stepnc_model.nc.iso_flow import IsoFlow
-from stepnc_model.nc.iso_modes import IsoModes, Motion, Shot
+from stepnc_model.nc.iso_modes import IsoModes, ModalMotion, Shot
 from stepnc_model.nc.moves import MoveFlag, MoveKind
 from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.nc.remarks import Remarks
@@ -126,7 +126,7 @@ class IsoControl:
 
     def rounding(self, words: BlockWords) -> Sequence[str]:
         """Addresses of chamfers and roundings at the end of a line."""
-        is_line = self.modes.motion is Motion.LINE and not {20, 30} & set(words.codes)
+        is_line = self.modes.motion is ModalMotion.LINE and not {20, 30} & set(words.codes)
         return (",C", ",R", "C", "R") if self.is_lathe and is_line else (",C", ",R")
 
     def _move(self, words: BlockWords) -> None:
@@ -171,7 +171,7 @@ class IsoControl:
 
     def _is_circle(self, words: BlockWords) -> bool:
         """Whether the block is a full circle, which names its centre alone."""
-        is_arc = self.modes.motion in {Motion.CLOCKWISE, Motion.COUNTERCLOCKWISE}
+        is_arc = self.modes.motion in {ModalMotion.CLOCKWISE, ModalMotion.COUNTERCLOCKWISE}
         return is_arc and any(letter in words.values for letter in "IJK")
 
     def _rotary(self, words: BlockWords) -> None:
@@ -212,11 +212,11 @@ class IsoControl:
 
     def _interpolate(self, words: BlockWords) -> None:
         motion, end = self.modes.motion, self.end(words)
-        if motion is Motion.RAPID:
+        if motion is ModalMotion.RAPID:
             self.recorder.move(MoveKind.RAPID, end)
-        elif motion is Motion.LINE:
+        elif motion is ModalMotion.LINE:
             self.recorder.move(MoveKind.LINE, end)
-        elif motion is Motion.THREAD:
+        elif motion is ModalMotion.THREAD:
             self.recorder.move(MoveKind.THREAD, end)
         elif motion is None:
             self.remarks.lost(
@@ -225,7 +225,7 @@ class IsoControl:
             self.recorder.unknown()
             self.recorder.at = end
         else:
-            self._arc(words, end, 1.0 if motion is Motion.COUNTERCLOCKWISE else -1.0)
+            self._arc(words, end, 1.0 if motion is ModalMotion.COUNTERCLOCKWISE else -1.0)
 
     def _arc(self, words: BlockWords, end: list[float], sense: float) -> None:
         start, plane = self.recorder.at, self.modes.plane
@@ -308,7 +308,7 @@ class IsoControl:
         if is_home and not axes:
             axes = {0, 1, 2}
         end = [nan if axis in axes else value for axis, value in enumerate(self.recorder.at)]
-        is_rapid = is_home or self.modes.motion is not Motion.LINE
+        is_rapid = is_home or self.modes.motion is not ModalMotion.LINE
         self.recorder.move(MoveKind.RAPID if is_rapid else MoveKind.LINE, end)
 
     def _drill(self, words: BlockWords, kind: CycleKind) -> None:

@@ -14,7 +14,7 @@ from stepnc_model.nc.drilling import cycle_moves, drilling
 from stepnc_model.nc.flow import places
 from stepnc_model.nc.iso_control import IsoControl
 from stepnc_model.nc.iso_flow import IsoFlow, Steered
-from stepnc_model.nc.iso_modes import INCH, CodeTable, IsoModes, Motion, Shot
+from stepnc_model.nc.iso_modes import INCH, CodeTable, IsoModes, ModalMotion, Shot
 from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind
 from stepnc_model.nc.text import NcText
 from stepnc_model.nc.token import NUMBER
@@ -77,7 +77,7 @@ class SinumerikModes(IsoModes):
 
     def own_codes(self) -> CodeTable:
         """Actions of the G codes in which Sinumerik differs."""
-        thread = partial(self._take_motion, Motion.THREAD)
+        thread = partial(self._take_motion, ModalMotion.THREAD)
         table: CodeTable = {
             **dict.fromkeys(iso_codes.SINUMERIK_INCHES, partial(self._take, "scale", INCH)),
             **dict.fromkeys(iso_codes.SINUMERIK_METRIC, partial(self._take, "scale", 1.0)),
