@@ -166,13 +166,17 @@ class IsoModes:
             self.forget_feed()
             self.recorder.fed_by = self.recorder.block
         elif value is not None:
-            per_minute = self.recorder.setting.mode is FeedMode.PER_MINUTE
-            is_inverse = self.recorder.setting.mode is FeedMode.INVERSE_TIME
-            scale = 1.0 if is_inverse else unit
-            self.recorder.word = value * scale / (MINUTE if per_minute or is_inverse else 1.0)
-            self.recorder.fed_by = self.recorder.block
-            self.recorder.is_fresh = True
-            self.recorder.standing &= ~MoveFlag.MACRO_FEED.value
+            self.set_feed(value, unit)
+
+    def set_feed(self, value: float, unit: float) -> None:
+        """Put the number of an F word in force, in units of a length in mm."""
+        recorder = self.recorder
+        per_minute = recorder.setting.mode is FeedMode.PER_MINUTE
+        is_inverse = recorder.setting.mode is FeedMode.INVERSE_TIME
+        scale = 1.0 if is_inverse else unit
+        recorder.word = value * scale / (MINUTE if per_minute or is_inverse else 1.0)
+        recorder.fed_by, recorder.is_fresh = recorder.block, True
+        recorder.standing &= ~MoveFlag.MACRO_FEED.value
 
     def _code_table(self) -> CodeTable:
         """Actions of the G codes of this control."""

@@ -97,8 +97,11 @@ class _Rewriting:
         self.program, self.moves, self.mark = program, program.moves, mark
         self.style = style_of(program.text, program.dialect, unit=program.unit)
         self.unchanged: list[UnchangedBlock] = []
-        self._order = np.argsort(self.moves.block, kind="stable")
-        self._sorted = self.moves.block[self._order]
+        self._order = np.zeros(0, np.int64)
+        self._sorted = np.zeros(0, np.int32)
+        if advice:
+            self._order = np.argsort(self.moves.block, kind="stable")
+            self._sorted = self.moves.block[self._order]
         self._feed_words: dict[int, str | None] = {}
         self.plans: dict[int, _Plan] = {}
         for block in sorted(advice):

@@ -116,6 +116,10 @@ class SinumerikControl(IsoControl):
             self.modes.to_mode(FeedMode.PER_REVOLUTION)
         self._dwell_words(words)
 
+    def has_plain_moves(self) -> bool:
+        """Whether axis words alone say where a move ends; not while a cycle follows each."""
+        return self._modal_call is None and super().has_plain_moves()
+
     def rounding(self, words: BlockWords) -> Sequence[str]:
         """Addresses of chamfers and roundings at the end of a line."""
         modal = words.values.get("RNDM")

@@ -184,3 +184,54 @@ def test_rapids_lead_to_where_the_first_cut_begins() -> None:
     blocks = [block for _, block in neutral_blocks(program, name="x")]
     assert Rapid(end=(1.0, 2.0, 3.0)) in blocks
     assert isinstance(blocks[-2], Linear)
+
+
+@pytest.mark.parametrize(
+    "control", [each for each in CONTROLS if each is not Dialect.HEIDENHAIN]
+)
+def test_short_blocks_mean_the_same_as_with_a_comment(control: Dialect) -> None:
+    lines = [
+        *("G90", "T1 M6", "S900 M3", "G0 X1.0 Y2.5", "Z0.5 F120", "G01 Z-1.", "N7 X5.5 Y-3."),
+        *(
+            "X.5",
+            "G1X2.0Y1.0",
+            "G20",
+            "X1.0 F10.5",
+            "G91",
+            "X1.0",
+            "G90",
+            "G41 D1",
+            "X3.0 Y3.0",
+        ),
+        *(
+            "G40",
+            "X4.0",
+            "G95 F0.2",
+            "X5.0",
+            "G93",
+            "X6.0 F2.",
+            "G94",
+            "X7.0 F50",
+            "G0",
+            "Z5.0",
+        ),
+        *(
+            "G81 X1. Y1. Z-2. R1. F60",
+            "X2.0",
+            "G80",
+            "G0 Z9.0",
+            "G68 R5",
+            "G1 X8.0",
+            "A5.",
+            "X9.0",
+        ),
+    ]
+    mark = " ;a" if control is Dialect.SINUMERIK else " (a)"
+    short = read_program("\n".join(lines).encode(), dialect=control, machine=MachineType.MILL)
+    long = read_program(
+        "\n".join(line + mark for line in lines).encode(),
+        dialect=control,
+        machine=MachineType.MILL,
+    )
+    assert short.moves.rows.tobytes() == long.moves.rows.tobytes()
+    assert short.moves.settings == long.moves.settings
