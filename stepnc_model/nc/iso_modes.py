@@ -23,7 +23,7 @@ CodeTable = dict[int, Callable[[BlockWords], None]]
 """Action of each G code, in tenths."""
 
 
-class Motion(Enum):
+class ModalMotion(Enum):
     """Modal motion that axis words execute."""
 
     RAPID = auto()
@@ -45,11 +45,11 @@ class Shot(Enum):
 
 
 MOTIONS = {
-    0: Motion.RAPID,
-    10: Motion.LINE,
-    20: Motion.CLOCKWISE,
-    30: Motion.COUNTERCLOCKWISE,
-    330: Motion.THREAD,
+    0: ModalMotion.RAPID,
+    10: ModalMotion.LINE,
+    20: ModalMotion.CLOCKWISE,
+    30: ModalMotion.COUNTERCLOCKWISE,
+    330: ModalMotion.THREAD,
 }
 MODES = {
     930: FeedMode.INVERSE_TIME,
@@ -73,7 +73,7 @@ class IsoModes:
     def __init__(self, recorder: MoveRecorder, dialect: Dialect, machine: MachineType) -> None:
         self.recorder, self.dialect = recorder, dialect
         self.is_lathe = machine is MachineType.LATHE
-        self.motion: Motion | CycleKind | None = None
+        self.motion: ModalMotion | CycleKind | None = None
         self.plane: ArcPlane | None = ArcPlane.ZX if self.is_lathe else ArcPlane.XY
         self.is_absolute: bool | None = True
         self.is_centre_absolute: bool | None = False
@@ -166,13 +166,17 @@ class IsoModes:
             self.forget_feed()
             self.recorder.fed_by = self.recorder.block
         elif value is not None:
-            per_minute = self.recorder.setting.mode is FeedMode.PER_MINUTE
-            is_inverse = self.recorder.setting.mode is FeedMode.INVERSE_TIME
-            scale = 1.0 if is_inverse else unit
-            self.recorder.word = value * scale / (MINUTE if per_minute or is_inverse else 1.0)
-            self.recorder.fed_by = self.recorder.block
-            self.recorder.is_fresh = True
-            self.recorder.standing &= ~MoveFlag.MACRO_FEED.value
+            self.set_feed(value, unit)
+
+    def set_feed(self, value: float, unit: float) -> None:
+        """Put the number of an F word in force, in units of a length in mm."""
+        recorder = self.recorder
+        per_minute = recorder.setting.mode is FeedMode.PER_MINUTE
+        is_inverse = recorder.setting.mode is FeedMode.INVERSE_TIME
+        scale = 1.0 if is_inverse else unit
+        recorder.word = value * scale / (MINUTE if per_minute or is_inverse else 1.0)
+        recorder.fed_by, recorder.is_fresh = recorder.block, True
+        recorder.standing &= ~MoveFlag.MACRO_FEED.value
 
     def _code_table(self) -> CodeTable:
         """Actions of the G codes of this control."""
@@ -217,7 +221,7 @@ class IsoModes:
             table |= {
                 980: partial(self._take_mode, FeedMode.PER_MINUTE),
                 990: partial(self._take_mode, FeedMode.PER_REVOLUTION),
-                320: partial(self._take_motion, Motion.THREAD),
+                320: partial(self._take_motion, ModalMotion.THREAD),
                 500: self._lathe_shift,
             }
             for code in iso_codes.LATHE_CYCLES:
@@ -240,7 +244,7 @@ class IsoModes:
         return {
             70: partial(self._take, "is_diameter", True),
             80: partial(self._take, "is_diameter", False),
-            331: partial(self._take_motion, Motion.THREAD),
+            331: partial(self._take_motion, ModalMotion.THREAD),
             901: partial(self._take, "is_centre_absolute", True),
             911: partial(self._take, "is_centre_absolute", False),
             921: partial(self._take_shift, 0.0),
@@ -252,7 +256,7 @@ class IsoModes:
         """Set one part of the modal state."""
         setattr(self, name, value)
 
-    def _take_motion(self, motion: Motion | CycleKind, _: BlockWords) -> None:
+    def _take_motion(self, motion: ModalMotion | CycleKind, _: BlockWords) -> None:
         if motion is not self.motion:
             self.cycle = {}
         self.motion = motion

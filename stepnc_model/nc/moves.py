@@ -6,7 +6,7 @@ the program in mm, in the frame of the row; on a lathe x is a radius. Unknown co
 NaN. Rows name their block, so that advice finds its way back into the file.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum, IntFlag, StrEnum
 from functools import cached_property
 from math import nan, pi
@@ -332,10 +332,12 @@ class NcMoves:
         """(N,) array: feed, mm/s; NaN for rapids, threads and where it is not known."""
         per_minute, per_revolution, inverse = range(3)
         mode, word = self.mode, self.word
+        has_inverse = any(each.mode is FeedMode.INVERSE_TIME for each in self.settings)
+        length = self.length if has_inverse else word
         with np.errstate(invalid="ignore"):
             feed = np.select(
                 [mode == per_minute, mode == per_revolution, mode == inverse],
-                [word, word * np.abs(self.spindle), word * self.length],
+                [word, word * np.abs(self.spindle), word * length],
                 nan,
             )
         is_fed = np.isin(self.kind, (MoveKind.LINE, MoveKind.ARC))
@@ -357,6 +359,10 @@ class NcMoves:
     def is_splittable(self) -> NDArray[np.bool_]:
         """(N,) array: whether the block of the move may be split."""
         return self.is_advisable & ((self.flags & int(UNSPLIT)) == 0)
+
+    def part(self, begin: int, end: int) -> "NcMoves":
+        """Return some consecutive rows, whose derived columns need little memory."""
+        return replace(self, rows=self.rows[begin:end])
 
     def move(self, index: int) -> NcMove:
         """Return one row as a value."""

@@ -20,6 +20,9 @@ from stepnc_model.nc.text import NcText, text_of
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
 
+CHUNK = 1 << 16
+"""Rows that are looked at together."""
+
 Control = IsoControl | HeidenhainControl
 
 
@@ -74,7 +77,8 @@ def read_program(
     control = _control(text, chosen, kind)
     control.run()
     moves = control.recorder.moves()
-    _remark(control.remarks, moves)
+    for begin in range(0, len(moves), CHUNK):
+        _remark(control.remarks, moves.part(begin, begin + CHUNK))
     return NcProgram(
         text=text,
         dialect=chosen,

@@ -14,12 +14,13 @@ from stepnc_model.nc.drilling import cycle_moves, drilling
 from stepnc_model.nc.flow import places
 from stepnc_model.nc.iso_control import IsoControl
 from stepnc_model.nc.iso_flow import IsoFlow, Steered
-from stepnc_model.nc.iso_modes import INCH, CodeTable, IsoModes, Motion, Shot
+from stepnc_model.nc.iso_modes import INCH, CodeTable, IsoModes, ModalMotion, Shot
 from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind
 from stepnc_model.nc.text import NcText
 from stepnc_model.nc.token import NUMBER
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.words import LARGEST
 from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 from stepnc_model.units import rev_s_from_rpm
 
@@ -76,7 +77,7 @@ class SinumerikModes(IsoModes):
 
     def own_codes(self) -> CodeTable:
         """Actions of the G codes in which Sinumerik differs."""
-        thread = partial(self._take_motion, Motion.THREAD)
+        thread = partial(self._take_motion, ModalMotion.THREAD)
         table: CodeTable = {
             **dict.fromkeys(iso_codes.SINUMERIK_INCHES, partial(self._take, "scale", INCH)),
             **dict.fromkeys(iso_codes.SINUMERIK_METRIC, partial(self._take, "scale", 1.0)),
@@ -114,6 +115,10 @@ class SinumerikControl(IsoControl):
         if 960 in words.codes or 970 in words.codes:
             self.modes.to_mode(FeedMode.PER_REVOLUTION)
         self._dwell_words(words)
+
+    def has_plain_moves(self) -> bool:
+        """Whether axis words alone say where a move ends; not while a cycle follows each."""
+        return self._modal_call is None and super().has_plain_moves()
 
     def rounding(self, words: BlockWords) -> Sequence[str]:
         """Addresses of chamfers and roundings at the end of a line."""
@@ -290,7 +295,8 @@ def _number(text: str) -> float:
     text = text.strip()
     if not text:
         return inf
-    return float(text) if re.fullmatch(NUMBER, text) else nan
+    value = float(text) if re.fullmatch(NUMBER, text) else nan
+    return value if abs(value) <= LARGEST else nan
 
 
 def _given(value: float, default: float) -> float:
