@@ -37,13 +37,7 @@ ALLOWED = {
 """public names that nothing reaches, with the reason why they stay; 20 at most"""
 
 AHEAD = {
-    "optimiser.certificate": "feeds along the path",
-    "optimiser.jerk_program": "feeds along the path",
-    "optimiser.levels": "feeds along the path",
-    "optimiser.path_grid": "feeds along the path",
-    "optimiser.profile": "feeds along the path",
-    "optimiser.profile_program": "feeds along the path",
-    "optimiser.sweep": "feeds along the path",
+    "optimiser.profile_program": "the judge of feeds along the path, and the smoothest profile",
 }
 """modules that no command asks for yet, with what will; their public names may be unreached"""
 

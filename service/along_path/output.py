@@ -71,8 +71,24 @@ def print_along_path(along: AlongPath) -> None:
         f"time × {ratio:.3f}; {len(along.feeds)} blocks changed, {along.parts} splits; "
         f"run/plan {along.time_after / along.planned_time:.4f}"
     )
+    print_line(free_words(along))
     shares = ", ".join(f"{words} {share:.0%}" for words, share in active_shares(along))
     print_line(f"share of the path by active limit: {shares}")
+
+
+def free_words(along: AlongPath) -> str:
+    """State what the cut takes without a control, and how far limits are exceeded."""
+    free = along.free
+    chosen = sum(step.plan.time for step in along.steps if step.plan is not None)
+    text = (
+        f"moves with a chosen feed: {chosen:.1f} s in blocks, {free.time:.1f} s as a free "
+        f"profile within the accelerations of the axes (at least {free.bound:.1f} s"
+    )
+    if free.worst is not None:
+        text += f"; greatest excess {free.worst.excess:.1e}, {free.worst.limit}"
+    if free.jerk_time is not None:
+        text += f"; {free.jerk_time:.1f} s with limited jerk"
+    return text + ")"
 
 
 def active_shares(along: AlongPath) -> list[tuple[str, float]]:
@@ -93,8 +109,21 @@ def along_path_record(along: AlongPath) -> dict[str, Any]:
         "planned_time_s": along.planned_time,
         "blocks": len(along.feeds),
         "splits": along.parts,
+        "free_profile": _free(along),
         "active_limits": dict(active_shares(along)),
         "parts": [_step(step) for step in along.shown],
+    }
+
+
+def _free(along: AlongPath) -> dict[str, Any]:
+    free = along.free
+    worst = free.worst
+    return {
+        "time_s": free.time,
+        "bound_s": free.bound,
+        "jerk_limited_time_s": free.jerk_time,
+        "greatest_excess": None if worst is None else worst.excess,
+        "greatest_excess_limit": None if worst is None else worst.limit,
     }
 
 

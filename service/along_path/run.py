@@ -7,6 +7,7 @@ more than the whole block did, its feed is lowered, and the plan runs once more.
 
 from dataclasses import dataclass
 
+from optimiser.along_path.free import FreeProfile
 from optimiser.along_path.pieces import PieceRules
 from optimiser.along_path.plan import (
     BlockFeeds,
@@ -44,6 +45,8 @@ class AlongPathTask:
     """Rounding of corners by the control that is always permitted, mm."""
     greatest: float | None = None
     """Greatest feed that the user permits, mm/s; None: that of the machine."""
+    has_jerk: bool = False
+    """Whether the free profile with limited jerk is computed too."""
     keeps_traces: bool = False
     """Whether feed, force and power of both runs are kept for plots."""
 
@@ -103,6 +106,14 @@ class AlongPath:
     def planned_time(self) -> float:
         """Time that the plan predicts, s."""
         return sum(step.planned_time for step in self.steps)
+
+    @property
+    def free(self) -> FreeProfile:
+        """Free profile of all parts together."""
+        whole = FreeProfile()
+        for step in self.steps:
+            whole = whole if step.plan is None else whole.plus(step.plan.free)
+        return whole
 
     @property
     def parts(self) -> int:
@@ -175,4 +186,5 @@ def _feed_task(machine: Machine, task: AlongPathTask) -> FeedTask:
         ),
         rules=PieceRules(block_time=limits.block_time),
         levels=task.levels,
+        has_jerk=task.has_jerk,
     )

@@ -153,6 +153,13 @@ class AdviceRequest(Request):
             flag="--levels", metavar="K",
         ),
     ] = None  # fmt: skip
+    is_jerk_limited: Annotated[
+        bool,
+        About(
+            "also compute the profile along the path with the jerk of the axes limited",
+            flag="--jerk",
+        ),
+    ] = False
     stock_margin_mm: Annotated[
         float,
         Interval(ge=0.0, le=100.0),
