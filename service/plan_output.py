@@ -24,7 +24,7 @@ from stepnc_model.units import (
 
 if TYPE_CHECKING:
     from optimiser.advice import ParetoPoint
-    from service.along_path.run import AlongPath
+    from service.along_path.run import FeedsAlongPath
     from service.confirmation import Confirmation, ConfirmedStep
 
 
@@ -152,7 +152,7 @@ LOAD: tuple[Column[LimitLoad], ...] = (
 def print_plan(
     plan: Plan,
     confirmation: "Confirmation | None" = None,
-    along: "AlongPath | None" = None,
+    along: "FeedsAlongPath | None" = None,
 ) -> None:
     """Print the advice for a program: a row per workingstep, then totals and findings."""
     material = plan.material.material
@@ -259,7 +259,7 @@ def _stability_words(advice: Advice, state: EvaluatedSetting) -> str:
 def plan_json(
     plan: Plan,
     confirmation: "Confirmation | None" = None,
-    along: "AlongPath | None" = None,
+    along: "FeedsAlongPath | None" = None,
 ) -> str:
     """Return a plan as JSON, with its simulated run and feeds along paths if requested."""
     found = {} if confirmation is None else {"confirmation": _confirmation(confirmation)}
@@ -391,7 +391,7 @@ def _sensitivity(advice: Advice) -> dict[str, Any] | None:
     }
 
 
-def report_page(plan: Plan, along: "AlongPath | None" = None) -> str:
+def report_page(plan: Plan, along: "FeedsAlongPath | None" = None) -> str:
     """Return the HTML report of a plan."""
     from service.figures import plan_figures  # noqa: PLC0415 (plotly)
     from service.rendering.pages import plot, rendered  # noqa: PLC0415 (Jinja)

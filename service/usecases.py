@@ -37,7 +37,7 @@ from stepnc_model.toolpath.task import stock_of
 from stepnc_model.units import mm_from_um
 
 if TYPE_CHECKING:
-    from service.along_path.run import AlongPath
+    from service.along_path.run import FeedsAlongPath
     from service.confirmation import Confirmation
     from service.knowledge.verbs import AcceptedFactor
     from simulator.tool_table import TableTool
@@ -77,7 +77,7 @@ class OptimiseResult:
     """The STEP-NC file, or None when nothing was written."""
     confirmation: "Confirmation | None" = None
     """Comparison with the simulated run; None if it was not requested."""
-    along: "AlongPath | None" = None
+    along: "FeedsAlongPath | None" = None
     """Feeds along the paths; None if they were not requested."""
 
 
@@ -173,7 +173,9 @@ def _write(output: Path, data: bytes, tell: Tell) -> Path:
     return output
 
 
-def _write_views(files: AdviceFiles, plan: Plan, along: "AlongPath | None", tell: Tell) -> None:
+def _write_views(
+    files: AdviceFiles, plan: Plan, along: "FeedsAlongPath | None", tell: Tell
+) -> None:
     """Write the report and the table of feeds, where they were asked for."""
     if files.report is not None:
         from service.plan_output import report_page  # noqa: PLC0415 (plotly takes a second)
@@ -284,7 +286,7 @@ def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path 
 
 
 def _nc_code(
-    program: Program, control: Dialect, along: "AlongPath | None", tell: Tell
+    program: Program, control: Dialect, along: "FeedsAlongPath | None", tell: Tell
 ) -> Iterator[str]:
     """Generate NC code of the optimised program."""
     from service.paths.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (numpy, shapely)

@@ -73,7 +73,7 @@ class AlongPathStep:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AlongPath:
+class FeedsAlongPath:
     """Feeds along the paths of a program."""
 
     feeds: BlockFeeds
@@ -121,7 +121,9 @@ class AlongPath:
         return sum(len(parts) - 1 for parts in self.feeds.values())
 
 
-def along_path(source: PathSource, task: AlongPathTask, *, tell: Tell = silent) -> AlongPath:
+def along_path(
+    source: PathSource, task: AlongPathTask, *, tell: Tell = silent
+) -> FeedsAlongPath:
     """Plan the feeds along the paths of a program, and run the plan.
 
     Parameters
@@ -158,7 +160,7 @@ def along_path(source: PathSource, task: AlongPathTask, *, tell: Tell = silent) 
             break
         feeds = lowered(feeds, run.excess, keeps_levels=task.levels is not None)
     parts = {part.name: part for part in plan.parts}
-    return AlongPath(
+    return FeedsAlongPath(
         feeds=feeds,
         steps=tuple(
             AlongPathStep(name=name, before=one, after=other, plan=parts.get(name))

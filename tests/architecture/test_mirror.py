@@ -13,6 +13,16 @@ NOUNS = {
 """folders whose modules are tested together"""
 
 TOGETHER = {
+    "optimiser/along_path/pieces.py": "parts of blocks in tests/optimiser/along_path/test_runs.py",
+    "optimiser/along_path/tool_bounds.py": "kept by tests/service/along_path/test_of_code.py",
+    "service/along_path/course.py": "run in tests/service/along_path/test_run.py",
+    "service/along_path/plan_run.py": "run in tests/service/along_path/test_run.py",
+    "service/along_path/of_program.py": "run in tests/service/along_path/test_run.py",
+    "service/along_path/task.py": "run in tests/service/along_path/test_run.py",
+    "service/along_path/trace.py": "drawn in tests/service/along_path/test_output.py",
+    "service/along_path/figures.py": "drawn in tests/service/along_path/test_output.py",
+    "service/along_path/code_output.py": "printed in tests/service/along_path/test_of_code.py",
+    "service/cli/code.py": "run in tests/service/along_path/test_of_code.py",
     "simulator/spec.py": "dataclasses only; loaded and checked in tests/simulator",
     "simulator/work_holding.py": "dataclasses only; read in test_holding_file.py",
     "simulator/physics/holding.py": "held against print in tests/reference/test_vdi_3106.py",
