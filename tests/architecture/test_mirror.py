@@ -13,7 +13,7 @@ NOUNS = {
 """folders whose modules are tested together"""
 
 TOGETHER = {
-    "optimiser/along_path/pieces.py": "parts of blocks in tests/optimiser/along_path/test_runs.py",
+    "optimiser/along_path/pieces.py": "its parts are checked in along_path/test_runs.py",
     "optimiser/along_path/tool_bounds.py": "kept by tests/service/along_path/test_of_code.py",
     "service/along_path/course.py": "run in tests/service/along_path/test_run.py",
     "service/along_path/plan_run.py": "run in tests/service/along_path/test_run.py",
