@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from service.files import read_bytes
-from service.reading import unit_profile
+from service.reading import program_in
 from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.plausibility import implausible
+from stepnc_model.plausibility import implausible, unit_findings
 from stepnc_model.program import Program
 from stepnc_model.tolerance import tolerance_findings
 
@@ -32,10 +32,10 @@ class Contents:
 
 def check(path: Path, *, units: str = "iso", name: str = "") -> Contents:
     """Read a STEP-NC file and check it; return its contents and findings."""
-    profile, called = unit_profile(units), name or path.name
+    called = name or path.name
     file = Part21File.from_bytes(read_bytes(path), name=called)
     try:
-        program = Program(file, units=profile, name=called)
+        program = program_in(file, units=units, name=called)
     except SchemaError as error:
         fault = Finding(
             severity=Severity.ERROR,
@@ -62,4 +62,6 @@ def _all_findings(program: Program) -> tuple[Finding, ...]:
     findings = program.findings()
     if any(finding.severity is Severity.ERROR for finding in findings):
         return findings
-    return findings + implausible(program) + tolerance_findings(program)
+    return (
+        findings + implausible(program) + unit_findings(program) + tolerance_findings(program)
+    )

@@ -100,7 +100,7 @@ def optimise(
     nc_place = _nc_place(request, files, output)
     require_apart(named_place(files.knowledge), output, files.report, files.feeds, nc_place)
     program = read_program(
-        files.file, units=request.units, name=files.name, stock=request.stock
+        files.file, units=request.units, name=files.name, stock=request.stock, tell=tell
     )
     chosen = selected(program, request.workingsteps)
     findings = program.file.findings + program.model.findings()

@@ -176,9 +176,7 @@ def _plunge(stations: Stations, greatest: float, descent: Floats) -> Floats:
     return np.where(is_down, greatest / steep, inf)
 
 
-def _chip_bounds(
-    stations: Stations, bounds: CutBounds
-) -> Iterator[tuple[CapName, Floats]]:
+def _chip_bounds(stations: Stations, bounds: CutBounds) -> Iterator[tuple[CapName, Floats]]:
     """Catalogue feed per tooth at the engagement of each station."""
     cut, at = bounds.cut, bounds.at
     base = catalogue_feed(cut, at)
@@ -229,7 +227,9 @@ def _force_bounds(
     is_solid = is_drilled & _is_solid(stations, point)
     chisel = chisel_factors(point.chisel_ratio)
     factor = force_factor(at) * at.safety_factor
-    force = factor * kienzle.k_c11 * ratio**-kienzle.m_c * np.where(is_solid, chisel.torque, 1.0)
+    force = (
+        factor * kienzle.k_c11 * ratio**-kienzle.m_c * np.where(is_solid, chisel.torque, 1.0)
+    )
     force *= stations.peak_section * cut.tool.teeth / (pi * diameter)
 
     def feed_at(bound: Floats | float, load: Floats) -> Floats:
@@ -275,9 +275,7 @@ def _spindle_bounds(bounds: CutBounds, spindle: Floats) -> tuple[Floats, Floats]
     return power, torque
 
 
-def _bending_bounds(
-    stations: Stations, bounds: CutBounds
-) -> Iterator[tuple[CapName, Floats]]:
+def _bending_bounds(stations: Stations, bounds: CutBounds) -> Iterator[tuple[CapName, Floats]]:
     """Limits on deflection and bending stress of an end mill."""
     cut, at, grade = bounds.cut, bounds.at, bounds.at.grade
     if grade is None:

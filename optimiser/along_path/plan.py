@@ -138,9 +138,7 @@ class FeedPlanner:
             parts.append(self._part(name, free, chosen))
         if not pieces:
             return FeedPlan(pieces=joined([]), part=np.zeros(0, dtype=np.int64), parts=())
-        return FeedPlan(
-            pieces=joined(pieces), part=np.concatenate(numbers), parts=tuple(parts)
-        )
+        return FeedPlan(pieces=joined(pieces), part=np.concatenate(numbers), parts=tuple(parts))
 
     def _window(self, pieces: FeedPieces) -> float:
         """Time in which the control's filter settles after the runs of some pieces, s."""
@@ -211,9 +209,7 @@ def _levelled(pieces: FeedPieces, levels: int | None) -> Floats:
     return rate
 
 
-def rounded_down(
-    rate: Floats, programmed: Floats, is_per_revolution: Bools
-) -> Floats:
+def rounded_down(rate: Floats, programmed: Floats, is_per_revolution: Bools) -> Floats:
     """Feeds rounded down to numbers that a program can say; programmed feeds stay."""
     step = np.where(is_per_revolution, PER_REVOLUTION_STEP, PER_MINUTE_STEP)
     for _ in range(4):

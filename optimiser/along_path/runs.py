@@ -109,7 +109,11 @@ def commands_of(stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds) 
             continue
         within = caps.at(rows)
         run = _Run(
-            segments[first:last], offsets[first : last + 1], places.ends[rows], within, machine,
+            segments[first:last],
+            offsets[first : last + 1],
+            places.ends[rows],
+            within,
+            machine,
             clearance_of(stretch),
         )
         found.append(run.fastest())
@@ -194,9 +198,7 @@ class _Run:
         self.corner_sines = sine[bent]
         self.bends = curvatures(segments)
         # A plan rounds no corner more than the program does, or than the tolerance.
-        self.given = smoothing_of(
-            machine.control, machine.limits, float(segments.speed.max())
-        )
+        self.given = smoothing_of(machine.control, machine.limits, float(segments.speed.max()))
         slower = np.minimum(moving.speed[1:], moving.speed[:-1])[bent]
         rounding = self.given.corner_gain * slower * self.corner_sines
         self.corner_tolerance = np.maximum(rounding, machine.tolerance)

@@ -134,9 +134,7 @@ def place_caps(stretch: PathStretch) -> PlaceCaps:
     segment = np.searchsorted(offsets[1:], middle)
     if stretch.bounds is None:
         nothing = np.zeros(len(ends), dtype=np.bool_)
-        return PlaceCaps(
-            ends=ends, segment=segment, caps=unbounded(len(ends)), is_cut=nothing
-        )
+        return PlaceCaps(ends=ends, segment=segment, caps=unbounded(len(ends)), is_cut=nothing)
     row = np.minimum(np.searchsorted(met_ends, middle), len(stretch.met) - 1)
     found = _caps_of(stretch, stretch.met, stretch.bounds)
     is_cut = (stretch.met.peak_section > 0.0)[row]
@@ -152,9 +150,7 @@ def place_caps(stretch: PathStretch) -> PlaceCaps:
     if stretch.bounds.cut.kind is CutKind.MILLING:
         length = ENTRY_LENGTH * stretch.bounds.cut.diameter
         is_entry = _entries(ends, is_cut, length) & ~is_drilled
-        caps = caps.least(
-            capped(np.where(is_entry, ENTRY_SHARE * chip, np.inf), CapName.ENTRY)
-        )
+        caps = caps.least(capped(np.where(is_entry, ENTRY_SHARE * chip, np.inf), CapName.ENTRY))
     return PlaceCaps(ends=ends, segment=segment, caps=caps, is_cut=is_cut)
 
 

@@ -43,7 +43,9 @@ def along_program(
     }
 
     def prepare(margin: float) -> PreparedRun:
-        return prepared_program(program, plan.machine, plan.material, tell=silent, margin=margin)
+        return prepared_program(
+            program, plan.machine, plan.material, tell=silent, margin=margin
+        )
 
     def bounds_at(part: Part) -> CutBounds | None:
         return bounds.get(part.name)

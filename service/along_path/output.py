@@ -114,8 +114,18 @@ def _step(step: AlongPathStep) -> dict[str, Any]:
             for key, scale, before, after in (
                 ("force_n", 1.0, step.before.force.value, step.after.force.value),
                 ("thrust_n", 1.0, step.before.thrust.value, step.after.thrust.value),
-                ("deflection_um", 1e3, step.before.deflection.value, step.after.deflection.value),
-                ("drive_power_w", 1.0, step.before.drive_power.value, step.after.drive_power.value),
+                (
+                    "deflection_um",
+                    1e3,
+                    step.before.deflection.value,
+                    step.after.deflection.value,
+                ),
+                (
+                    "drive_power_w",
+                    1.0,
+                    step.before.drive_power.value,
+                    step.after.drive_power.value,
+                ),
                 ("energy_j", 1.0, step.before.energy.total, step.after.energy.total),
                 ("volume_mm3", 1.0, step.before.volume, step.after.volume),
             )

@@ -85,7 +85,9 @@ def tool_paths(
     StepNcError
         At the first executable for which no path can be generated, unless it keeps going.
     """
-    return paths_of(read_program(path, units=units), keep_going=keep_going, tell=tell)
+    return paths_of(
+        read_program(path, units=units, tell=tell), keep_going=keep_going, tell=tell
+    )
 
 
 def paths_of(program: Program, *, keep_going: bool = False, tell: Tell = silent) -> Paths:
@@ -129,7 +131,7 @@ def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
     control = one_of(Dialect, request.control.lower(), "control")
     output = request.output or beside(request.file, control.suffix)
     require_place(output, apart_from=request.file)
-    program = read_program(request.file, units=request.units)
+    program = read_program(request.file, units=request.units, tell=tell)
     error = refusal(program, program.workingsteps)
     if error is not None:
         raise error

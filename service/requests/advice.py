@@ -12,12 +12,12 @@ from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE
 from service.requests.fields import LONGEST_NAME, About, Request
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.units import PROFILES
+from stepnc_model.units import AUTO, PROFILES
 
 Name = Annotated[str, MaxLen(LONGEST_NAME)]
 
-Units = StrEnum("Units", {name.replace("-", "_"): name for name in PROFILES})  # type: ignore[misc]
-"""Unit profiles of files, by name."""
+Units = StrEnum("Units", {name.replace("-", "_"): name for name in (*PROFILES, AUTO)})  # type: ignore[misc]
+"""Unit profiles of files, by name, and ``auto``."""
 
 ISO = Units("iso")
 """Unit profile that follows the standard."""
@@ -36,7 +36,14 @@ MaterialName = Annotated[
         flag="--material", examples=("c45",),
     ),
 ]  # fmt: skip
-FileUnits = Annotated[Units, About("units of feeds and speeds in the file", flag="--units")]
+FileUnits = Annotated[
+    Units,
+    About(
+        "units of feeds and speeds in the file; auto: the only ones in which all numbers are "
+        "plausible",
+        flag="--units",
+    ),
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -21,6 +21,7 @@ from simulator.tool_table import read_tool_table
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Finding, PostError, Severity, StepNcError
 from stepnc_model.part21.values import Ref
+from stepnc_model.plausibility import refusal
 from stepnc_model.post import blocks as post
 from stepnc_model.post.dialect import SUFFIXES, Dialect
 from stepnc_model.post.dialects import read_blocks
@@ -96,7 +97,7 @@ def from_program(
     StepNcError
         When the file or a name is invalid.
     """
-    program = read_program(file, units=units, name=name)
+    program = read_program(file, units=units, name=name, tell=tell)
     match = material_for(material, program)
     tell(f"material: {match.reason}")
     return prepared_program(program, machine_for(machine, program), match, tell=tell)
@@ -125,8 +126,11 @@ def prepared_program(
     Raises
     ------
     StepNcError
-        When a tool path cannot be generated.
+        When a tool path cannot be generated, or the numbers cannot be in the program's units.
     """
+    error = refusal(program, program.workingsteps)
+    if error is not None:
+        raise error
     paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
     numbers = tool_numbers(paths.paths)
     steps = sum(len(path.steps) for path in paths.paths)
