@@ -23,8 +23,8 @@ from stepnc_model.units import (
 )
 
 if TYPE_CHECKING:
-    from service.along_path.run import AlongPath
     from optimiser.advice import ParetoPoint
+    from service.along_path.run import AlongPath
     from service.confirmation import Confirmation, ConfirmedStep
 
 
@@ -391,11 +391,18 @@ def _sensitivity(advice: Advice) -> dict[str, Any] | None:
     }
 
 
-def report_page(plan: Plan) -> str:
+def report_page(plan: Plan, along: "AlongPath | None" = None) -> str:
     """Return the HTML report of a plan."""
     from service.figures import plan_figures  # noqa: PLC0415 (plotly)
     from service.rendering.pages import plot, rendered  # noqa: PLC0415 (Jinja)
 
+    along_figures: list[Any] = []
+    along_columns: tuple[Any, ...] = ()
+    if along is not None:
+        from service.along_path.figures import along_path_figures  # noqa: PLC0415 (plotly)
+        from service.along_path.output import STEP  # noqa: PLC0415 (numpy)
+
+        along_figures, along_columns = along_path_figures(along), STEP
     before, after = plan.time_before, plan.time_after
     return rendered(
         "plan.html.jinja",
@@ -407,4 +414,7 @@ def report_page(plan: Plan) -> str:
             for advice in plan.advices
         ],
         plots=[plot(each, f"plot{row}") for row, each in enumerate(plan_figures(plan))],
+        along=along,
+        along_columns=along_columns,
+        along_plots=[plot(each, f"along{row}") for row, each in enumerate(along_figures)],
     )

@@ -91,9 +91,7 @@ def optimise(
     StepNcError
         When the file, a name, a limit or an output is invalid; nothing is written.
     """
-    require_bounds(request)
-    if not request.is_along_path and (request.levels is not None or files.feeds is not None):
-        raise StepNcError("--levels and --feeds-csv need --along-path")
+    _require_sense(request, files)
     task = _task(request, _table(files.tools))
     profile = request.profile
     output = _output(files)
@@ -146,29 +144,53 @@ def optimise(
     if request.is_along_path:
         from service.along_path.of_program import along_program  # noqa: PLC0415 (numba)
 
-        along = along_program(_read_again(program, data), plan, request, tell=tell)
+        along = along_program(
+            _read_again(program, data),
+            plan,
+            request,
+            keeps_traces=files.report is not None,
+            tell=tell,
+        )
     if request.nc_control is not None and nc_place is not None:
         # NC code first: where it cannot be made, nothing is written.
         code = _nc_code(_read_again(program, data), request.nc_control, along, tell)
         if not files.dry_run:
             tell(f"NC code: {nc_place} ({write_lines(nc_place, code)} lines)")
-    if along is not None and files.feeds is not None:
-        from service.along_path.output import profile_lines  # noqa: PLC0415 (numpy)
-
-        tell(f"feeds: {files.feeds} ({write_lines(files.feeds, profile_lines(along))} lines)")
     written = None
-    if changes and not files.dry_run:
-        write_atomically(output, data)
-        written = output
     if not files.dry_run:
-        tell(f"written: {output}" if changes else NOTHING_WRITTEN)
+        written = _write(output, data, tell) if changes else None
+        if written is None:
+            tell(NOTHING_WRITTEN)
+    _write_views(files, plan, along, tell)
+    _tell_conflicts(plan, tell)
+    return OptimiseResult(plan=plan, written=written, confirmation=confirmation, along=along)
+
+
+def _write(output: Path, data: bytes, tell: Tell) -> Path:
+    """Write the optimised program."""
+    write_atomically(output, data)
+    tell(f"written: {output}")
+    return output
+
+
+def _write_views(files: AdviceFiles, plan: Plan, along: "AlongPath | None", tell: Tell) -> None:
+    """Write the report and the table of feeds, where they were asked for."""
     if files.report is not None:
         from service.plan_output import report_page  # noqa: PLC0415 (plotly takes a second)
 
-        write_atomically(files.report, report_page(plan).encode())
+        write_atomically(files.report, report_page(plan, along).encode())
         tell(f"report: {files.report}")
-    _tell_conflicts(plan, tell)
-    return OptimiseResult(plan=plan, written=written, confirmation=confirmation, along=along)
+    if files.feeds is not None and along is not None:
+        from service.along_path.output import profile_lines  # noqa: PLC0415 (numpy)
+
+        tell(f"feeds: {files.feeds} ({write_lines(files.feeds, profile_lines(along))} lines)")
+
+
+def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
+    """Refuse numbers out of bounds, and options that have no effect."""
+    require_bounds(request)
+    if not request.is_along_path and (request.levels is not None or files.feeds is not None):
+        raise StepNcError("--levels and --feeds-csv need --along-path")
 
 
 def _require_run(
@@ -245,9 +267,9 @@ def _table(tools: Path | None) -> tuple["TableTool", ...]:
     """Read a tool table; empty without a file."""
     if tools is None:
         return ()
-    from simulator.tool_table import read_tool_table  # noqa: PLC0415 (numpy)
+    from simulator.tool_files.read import read_tools  # noqa: PLC0415 (numpy)
 
-    return read_tool_table(tools)
+    return read_tools(tools).tools
 
 
 def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path | None:

@@ -1,8 +1,8 @@
 """Greatest feed at each station of a path, with the name of the limit that gives it.
 
-Each limit is inverted into a feed per tooth: a Kienzle force grows with ``f^(1−m)``, so the feed
-at a bound is ``(bound/load)^(1/(1−m))``. The loads are those of the virtual machine at the
-station's own engagement: mean force and power from section and mean chip, forces along the
+Each limit is inverted into a feed per tooth: a Kienzle force grows with ``f^(1−m)``, so the
+feed at a bound is ``(bound/load)^(1/(1−m))``. The loads are those of the virtual machine at
+the station's own engagement: mean force and power from section and mean chip, forces along the
 helix from the contact arc. They are written apart from the virtual machine, which judges them.
 
 Units: mm, mm/s, rev/s, N, W, N·mm.

@@ -24,6 +24,9 @@ from simulator.motion.segments import Bools, Floats, Ints
 from simulator.motion.smoothing import smoothing_of
 from stepnc_model.post.block_feeds import BlockPart
 
+BlockFeeds = Mapping[int, tuple[BlockPart, ...]]
+"""Parts of the blocks that change, by the number of the block."""
+
 PER_MINUTE_STEP = 1.0 / 60.0
 """Step of a written feed per time, mm/s: 1 mm/min."""
 
@@ -39,7 +42,7 @@ class FeedTask:
     """How the feeds of a program are to be planned."""
 
     machine: MachineFeeds
-    rules: PieceRules = PieceRules()
+    rules: PieceRules
     levels: int | None = None
     """Largest number of feeds in each part of the program; None: any."""
 
@@ -126,7 +129,9 @@ class FeedPlanner:
 
     def plan(self) -> FeedPlan:
         """Plan of all stretches that were added."""
-        pieces, parts, numbers = [], [], []
+        pieces: list[FeedPieces] = []
+        parts: list[PartPlan] = []
+        numbers: list[Ints] = []
         for name, found in self._pieces.items():
             free = joined(found)
             if not len(free):
@@ -179,9 +184,16 @@ def joined(parts: Iterable[FeedPieces]) -> FeedPieces:
     if not found:
         nothing, none = np.zeros(0), np.zeros(0, dtype=np.int64)
         return FeedPieces(
-            block=none, begin=nothing, length=nothing, weight=nothing, rate=nothing,
-            name=none, programmed=nothing, is_per_revolution=np.zeros(0, dtype=np.bool_), run=none,
-        )  # fmt: skip
+            block=none,
+            begin=nothing,
+            length=nothing,
+            weight=nothing,
+            rate=nothing,
+            name=none,
+            programmed=nothing,
+            is_per_revolution=np.zeros(0, dtype=np.bool_),
+            run=none,
+        )
     return FeedPieces(**{
         field: np.concatenate([getattr(part, field) for part in found])
         for field in FeedPieces.__slots__
@@ -216,6 +228,39 @@ def rounded_down(rate: Floats, programmed: Floats, is_per_revolution: Bools) -> 
         step = np.where(step > COARSEST * rate, 0.1 * step, step)
     rounded: Floats = np.floor(rate / step * (1.0 + 1e-12)) * step
     return np.where(rate == programmed, rate, np.maximum(rounded, 0.1 * step))
+
+
+def lowered(
+    feeds: BlockFeeds, excess: Mapping[tuple[int, int], float], *, keeps_levels: bool
+) -> BlockFeeds:
+    """Feeds in which each part that is too fast is slower.
+
+    Parameters
+    ----------
+    feeds : mapping
+        Parts of the changed blocks by block number.
+    excess : mapping
+        Feed over the permitted feed, by block and row of the part.
+    keeps_levels : bool
+        Whether parts of equal feed stay equal, so that their number does not grow.
+    """
+    factors: dict[float, float] = {}
+    for (block, row), ratio in excess.items():
+        rate = feeds[block][row].rate
+        factors[rate] = max(ratio, factors.get(rate, 1.0))
+
+    def slower(block: int, row: int, part: BlockPart) -> BlockPart:
+        ratio = factors.get(part.rate, 1.0) if keeps_levels else excess.get((block, row), 1.0)
+        if ratio == 1.0:
+            return part
+        rate = np.array([part.rate / ratio])
+        rounded = rounded_down(rate, np.zeros(1), np.array([part.is_per_revolution]))
+        return replace(part, rate=float(rounded[0]))
+
+    return {
+        block: tuple(slower(block, row, part) for row, part in enumerate(parts))
+        for block, parts in feeds.items()
+    }
 
 
 def block_feeds(plan: FeedPlan) -> Iterator[tuple[int, tuple[BlockPart, ...]]]:

@@ -1,9 +1,9 @@
 """Fastest feed commands along a stretch that a control turns into permitted feeds.
 
-A run is the part of a stretch between two rapids. The control chooses its filter by the greatest
-feed of the run: a faster feed in air smooths more, so that slow feeds must reach farther and
-corners must be slower. The greatest feed of each run is therefore chosen by trial, by the time
-that results.
+A run is the part of a stretch between two rapids. The control chooses its filter by the
+greatest feed of the run: a faster feed in air smooths more, so that slow feeds must reach
+farther and corners must be slower. The greatest feed of each run is therefore chosen by trial,
+by the time that results.
 
 Units: mm, mm/s, s.
 """

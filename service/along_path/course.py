@@ -1,7 +1,7 @@
 """Course of a program: the stretches of its paths with what the tools meet along them."""
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,8 +14,7 @@ from simulator.machine.interpreter import Numbered, interpret
 from simulator.machine.samples import Episode
 from simulator.machine.virtual import MachineSetup, VirtualMachine
 from simulator.motion.segments import ControlModel, Floats
-from simulator.spec import Machine
-from stepnc_model.post.blocks import Block, Circular, Comment, DrillingCycle, Linear
+from stepnc_model.post.blocks import Circular, DrillingCycle, Linear
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,12 +90,13 @@ def stretches_of(
             continue
         machine, state = run.machine, episode.state
         name = machine.workingsteps[state.workingstep - 1] if state.workingstep else ""
-        chosen = bounds(Part(name=name, tool=state.tool)) if course.edge is not None else None
-        blocks = course.segments.block
-        can_change = np.array(log.can_change)[blocks] & (chosen is not None)
+        part = Part(name=name, tool=state.tool)
+        chosen = bounds(part) if _meets_stock(prepared, part) else None
+        blocks, spindle = course.segments.block, _spindle(episode)
+        can_change = np.array(log.can_change)[blocks] & (chosen is not None) & (spindle > 0.0)
         yield PathStretch(
             segments=course.segments,
-            spindle=_spindle(episode),
+            spindle=spindle,
             per_revolution=stretch.per_revolution,
             is_free=can_change & ~course.segments.is_rapid,
             can_split=np.array(log.can_split)[blocks],
@@ -105,6 +105,13 @@ def stretches_of(
             bounds=chosen,
             workingstep=name,
         )
+
+
+def _meets_stock(prepared: PreparedRun, part: Part) -> bool:
+    """Whether tool and stock are known, so that a path without contact is in air."""
+    tool = (prepared.tools or {}).get(part.tool)
+    is_known = tool is not None and tool.shape is not None
+    return is_known and prepared.stock(part.name) is not None
 
 
 def _ignore(_episode: Episode, _machine: VirtualMachine) -> None:

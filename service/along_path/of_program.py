@@ -1,6 +1,7 @@
 """Feeds along the paths of a STEP-NC program, within the limits of its plan."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from optimiser.advice import AdviceStatus, Plan
@@ -26,9 +27,24 @@ from stepnc_model.program import Program
 
 
 def along_program(
-    program: Program, plan: Plan, request: AdviceRequest, *, tell: Tell = silent
+    program: Program,
+    plan: Plan,
+    request: AdviceRequest,
+    *,
+    keeps_traces: bool = False,
+    tell: Tell = silent,
 ) -> AlongPath:
     """Plan the feeds along the paths of a program that contains the advice of its plan.
+
+    Parameters
+    ----------
+    program : Program
+    plan : Plan
+    request : AdviceRequest
+    keeps_traces : bool
+        Whether feed, force and power are kept for plots.
+    tell : callable
+        Receives progress.
 
     Raises
     ------
@@ -50,7 +66,8 @@ def along_program(
     def bounds_at(part: Part) -> CutBounds | None:
         return bounds.get(part.name)
 
-    return along_path(prepare, bounds_at, task_of(request, plan.machine), tell=tell)
+    task = replace(task_of(request, plan.machine), keeps_traces=keeps_traces)
+    return along_path(prepare, bounds_at, task, tell=tell)
 
 
 def task_of(request: AdviceRequest, machine: Machine) -> AlongPathTask:

@@ -54,7 +54,7 @@ STEP: tuple[Column[AlongPathStep], ...] = (
         heading="feeds", value=lambda step: None if step.plan is None else step.plan.feeds
     ),
     Column(
-        heading="over bound", form=".1%",
+        heading="above least time", form=".1%",
         value=lambda step: None if step.plan is None else step.plan.gap,
     ),
 )  # fmt: skip
@@ -64,12 +64,11 @@ STEP: tuple[Column[AlongPathStep], ...] = (
 def print_along_path(along: AlongPath) -> None:
     """Print the comparison of both runs, and what limits the feed along the path."""
     print_line("one feed per part -> along the path, both run on the virtual machine")
-    rows = [step for step in along.steps if step.before.duration > 0.0]
     total = f"{along.time_before:.1f} -> {along.time_after:.1f}"
-    print_table(STEP, rows, foot={"part of the program": "total", "time s": total})
+    print_table(STEP, along.shown, foot={"part of the program": "total", "time s": total})
     ratio = along.time_after / along.time_before if along.time_before else 1.0
     print_line(
-        f"time × {ratio:.3f}; {len(along.feeds)} blocks have another feed, {along.parts} splits; "
+        f"time × {ratio:.3f}; {len(along.feeds)} blocks changed, {along.parts} splits; "
         f"run/plan {along.time_after / along.planned_time:.4f}"
     )
     shares = ", ".join(f"{words} {share:.0%}" for words, share in active_shares(along))
@@ -95,7 +94,7 @@ def along_path_record(along: AlongPath) -> dict[str, Any]:
         "blocks": len(along.feeds),
         "splits": along.parts,
         "active_limits": dict(active_shares(along)),
-        "parts": [_step(step) for step in along.steps if step.before.duration > 0.0],
+        "parts": [_step(step) for step in along.shown],
     }
 
 

@@ -156,7 +156,7 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
     add(
         "--tools",
         type=Path,
-        metavar="TOML",
+        metavar="TABLE",
         help="tool table that says which of the program's tools cut over centre or have wipers",
     )
     add_knowledge(parser, "supplies accepted corrections of k_c")
@@ -176,9 +176,18 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
 def _add_check(commands: Commands) -> None:
     """Add the command ``stepnc check``."""
     parser = commands.add_parser(
-        "check", help="show the contents of a program and its errors; exit 3 if it is unusable"
+        "check",
+        help="show the contents of a program or of NC code and its errors; exit 3 if it is "
+        "unusable",
     )
     add_file(parser)
+    parser.add_argument(
+        "--control",
+        default="",
+        metavar="NAME",
+        help="control of NC code: linuxcnc, fanuc, haas, sinumerik or heidenhain; default: "
+        "guessed from the code",
+    )
     add_json(parser)
     parser.set_defaults(run=_check)
 
@@ -312,6 +321,34 @@ def _optimise_folder(options: argparse.Namespace) -> int:
 
 def _check(options: argparse.Namespace) -> int:
     """Run the command ``stepnc check``."""
+    from service.code_contents import is_code
+
+    return (
+        _check_code(options)
+        if options.control or is_code(options.file)
+        else _check_program(options)
+    )
+
+
+def _check_code(options: argparse.Namespace) -> int:
+    """Check NC code."""
+    from service.code_contents import check_code
+    from service.terminal import write_out
+
+    contents = check_code(options.file, control=options.control)
+    if options.json:
+        from service.code_contents_output import code_json
+
+        write_out(code_json(contents))
+    else:
+        from service.code_contents_output import print_code
+
+        print_code(contents)
+    return OK
+
+
+def _check_program(options: argparse.Namespace) -> int:
+    """Check a STEP-NC program."""
     from service.contents import check
     from service.terminal import write_out
 

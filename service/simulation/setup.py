@@ -7,17 +7,16 @@ from typing import Generic, TypeVar
 
 from service.chosen import load_material_named, machine_for, material_for
 from service.files import open_lines
-from service.numbers import require_size, stock_in
 from service.paths.toolpaths import paths_of, with_feeds
+from service.raw_stock import GivenStock, raw_stock_of, stock_map
 from service.reading import Tell, one_of, read_program
 from simulator.library import load_machine
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import loaded_tool, table_tool
 from simulator.machine.virtual import LoadedTool, StockMap
-from simulator.removal.engage import MillingStock
-from simulator.removal.lathe import TurningStock
 from simulator.spec import Machine, MachineKind, MaterialMatch
-from simulator.tool_table import read_tool_table
+from simulator.tool_files.file_unit import FileUnit
+from simulator.tool_files.read import read_tools
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Finding, PostError, Severity, StepNcError
 from stepnc_model.part21.values import Ref
@@ -64,7 +63,11 @@ class CodeRequest:
     dialect: str = ""
     """Dialect of the code; empty: by the file extension."""
     tools: Path | None = None
+    """Tool table, in any format that is read."""
+    tools_unit: FileUnit | None = None
+    """Unit of a tool table that names none; None: mm."""
     stock: str = ""
+    """Raw part, as :func:`service.raw_stock.raw_stock_of` reads it; empty: unknown."""
 
 
 class CountedIterator(Generic[T]):
@@ -168,19 +171,20 @@ def from_code(
     chosen = load_machine(machine)
     match = load_material_named(material) if material else None
     tools = None
+    findings: tuple[Finding, ...] = ()
     if request.tools is not None:
         if match is None:
             raise StepNcError("a tool table without a material: name one with --material")
-        read = read_tool_table(request.tools)
-        tools = {tool.number: table_tool(tool, match.material) for tool in read}
-    raw = stock_in(request.stock) if request.stock else None
+        library = read_tools(request.tools, unit=request.tools_unit)
+        findings += library.findings
+        tools = {tool.number: table_tool(tool, match.material) for tool in library.tools}
+    raw = raw_stock_of(request.stock) if request.stock else None
     size = _size(request.code)
     lines = CountedIterator(_lines(request.code), len)
     clamped = None if raw is None else stock_map(chosen, raw)
-    findings: tuple[Finding, ...] = ()
     if clamped is None or tools is None:
         text = "no material is removed without stock, tool table and material: idle power only"
-        findings = (Finding(severity=Severity.WARNING, message=text),)
+        findings += (Finding(severity=Severity.WARNING, message=text),)
     return PreparedRun(
         name=request.code.name,
         machine=chosen,
@@ -188,7 +192,7 @@ def from_code(
         blocks=_read(request, lines, chosen, {}),
         tools=tools,
         stock=lambda _: clamped,
-        raw=raw,
+        raw=None if raw is None else raw.bounds,
         done=lambda: lines.share(size),
         read=lambda: lines.count,
         findings=findings,
@@ -222,18 +226,6 @@ def _code_of_program(
     )
 
 
-def stock_map(machine: Machine, raw: Stock) -> StockMap:
-    """Build a model of the stock that suits the kind of machine.
-
-    Raises
-    ------
-    StepNcError
-        When the stock has no volume, or exceeds the size of any machine.
-    """
-    require_size(raw)
-    return TurningStock(raw) if machine.kind is MachineKind.LATHE else MillingStock(raw)
-
-
 class _Clamped:
     """Stock of each setup, updated as it is machined. Running state."""
 
@@ -251,9 +243,8 @@ class _Clamped:
         setup = self._setups[workingstep]
         if setup not in self._maps:
             raw = stock_of(self._program, setup)
-            self._maps[setup] = (
-                None if raw is None else stock_map(self._machine, raw.grown(self._margin))
-            )
+            drawn = None if raw is None else GivenStock(bounds=raw.grown(self._margin))
+            self._maps[setup] = None if drawn is None else stock_map(self._machine, drawn)
         return self._maps[setup]
 
 

@@ -10,8 +10,8 @@ from pyarrow import parquet
 from service.agent.replay import LONGEST_LINE
 from service.recording.signals import POSITIONS
 from service.recording.table import TABLES, headings
+from service.stl import read_stl
 from service.storage.files import FileKind
-from service.verification.stl import read_stl
 from simulator.client.columns import TIME
 from simulator.tool_table import read_tool_table
 from stepnc_model.errors import StepNcError

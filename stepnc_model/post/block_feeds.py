@@ -5,7 +5,7 @@ Units mm, mm/s, mm/rev.
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from math import atan2, cos, dist, hypot, sin
+from math import atan2, cos, hypot, sin
 
 from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import (
@@ -119,6 +119,7 @@ def _between(block: Linear | Circular, start: Point, share: float) -> Point:
 
 def _cycle(cycle: DrillingCycle, value: float) -> DrillingCycle:
     """Drilling cycle at another feed, with its expansion."""
+
     def at_rate(block: Block) -> Block:
         if isinstance(block, (Linear, Circular)):
             return replace(block, rate=replace(block.rate, value=value))

@@ -1,0 +1,170 @@
+"""Run of planned feeds on the virtual machine, and what it shows of the plan."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from optimiser.along_path.plan import BlockFeeds
+from optimiser.along_path.stretch import PathStretch, excess
+from service.along_path.course import BlockLog, Choose, stretches_of
+from service.along_path.trace import PathTrace, PathTraceKeeper
+from service.progress import Ticker
+from service.simulation.setup import PreparedRun
+from simulator.machine.samples import Episode
+from simulator.machine.totals import Total, added
+from simulator.machine.virtual import VirtualMachine
+from simulator.motion.segments import ControlModel
+from stepnc_model.errors import Finding
+from stepnc_model.post.block_feeds import with_feeds
+from stepnc_model.post.blocks import Block
+
+EXCESS = 1.002
+"""Feed over the permitted feed above which a part is lowered."""
+
+LEAST_GAP = 1e-6
+"""Length below which two parts of the path follow each other, mm."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LimitStretch:
+    """Part of the path at one active limit."""
+
+    begin: float
+    """Length of the path before the part, mm."""
+    end: float
+    """Length of the path up to its end, mm."""
+    words: str
+    """Name of the limit."""
+
+
+class PartTotals:
+    """Totals of a run by parts of the program, with its signals if asked. Running state."""
+
+    def __init__(self, ticker: Ticker, what: str, *, keeps_trace: bool) -> None:
+        self._totals: list[Total] = []
+        self._names: list[str] = [""]
+        self._ticker, self._what = ticker, what
+        self._keeper = PathTraceKeeper() if keeps_trace else None
+        self.findings: list[Finding] = []
+        """Findings of the machine, which grow during the run."""
+
+    def add(self, episode: Episode, machine: VirtualMachine) -> None:
+        """Add an episode."""
+        at = episode.state.workingstep
+        self._totals += [Total() for _ in range(len(self._totals), at + 1)]
+        self._totals[at] = added(self._totals[at], episode, machine.machine)
+        self._names = ["", *machine.workingsteps]
+        self.findings = machine.findings
+        if self._keeper is not None:
+            self._keeper.add(episode, machine.machine)
+        self._ticker(lambda: f"{self._what}: {machine.now:.0f} s of machining")
+
+    def trace(self) -> PathTrace | None:
+        """Signals of the run; None unless they were kept."""
+        return None if self._keeper is None else self._keeper.trace()
+
+    def rows(self) -> list[tuple[str, Total]]:
+        """Names and totals of the parts, in the order of execution."""
+        return list(zip(self._names, self._totals, strict=False))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanRun:
+    """Run of a plan on the virtual machine."""
+
+    totals: PartTotals
+    excess: dict[tuple[int, int], float]
+    """Feed over the permitted feed of parts that are too fast, by block and row."""
+    limits: tuple[LimitStretch, ...]
+    """Active limits along the path; empty unless signals were kept."""
+
+
+def run_plan(
+    prepared: PreparedRun,
+    feeds: BlockFeeds,
+    bounds: Choose,
+    *,
+    control: ControlModel,
+    totals: PartTotals,
+) -> PlanRun:
+    """Run a plan and compare its feeds with those that each place permits.
+
+    Parameters
+    ----------
+    prepared : PreparedRun
+        The program, prepared anew.
+    feeds : BlockFeeds
+    bounds : callable
+        Bounds of a part of the program.
+    control : ControlModel
+    totals : PartTotals
+        Receives the run.
+
+    Raises
+    ------
+    SimulationError
+        When the machine cannot run the program.
+    """
+    emitted = _EmittedBlocks(prepared, feeds)
+    strip = _LimitStrip(emitted, feeds)
+    ratios: dict[tuple[int, int], float] = {}
+    for stretch in stretches_of(
+        prepared,
+        None,
+        control=control,
+        bounds=bounds,
+        log=BlockLog(emitted),
+        watch=totals.add,
+    ):
+        strip.add(stretch)
+        found = excess(stretch)
+        for row in np.flatnonzero(found > EXCESS).tolist():
+            origin = emitted.origin[int(stretch.segments.block[row])]
+            if origin[0] in feeds:
+                ratios[origin] = max(float(found[row]), ratios.get(origin, 1.0))
+    return PlanRun(totals=totals, excess=ratios, limits=tuple(strip.rows))
+
+
+class _EmittedBlocks:
+    """Blocks at their new feeds, with the block and part that each comes from."""
+
+    def __init__(self, prepared: PreparedRun, feeds: BlockFeeds) -> None:
+        self._log = BlockLog(prepared.blocks)
+        self._feeds = feeds
+        self.origin: list[tuple[int, int]] = [(0, 0)]
+
+    def __iter__(self) -> Iterator[tuple[int, Block]]:
+        for number, block in with_feeds(self._log, self._feeds):
+            last, part = self.origin[-1]
+            self.origin.append((number, part + 1 if number == last else 0))
+            yield self._log.lines[number], block
+
+
+class _LimitStrip:
+    """Active limits along the path of a plan. Running state."""
+
+    def __init__(self, emitted: _EmittedBlocks, feeds: BlockFeeds) -> None:
+        self.rows: list[LimitStretch] = []
+        self._emitted, self._feeds = emitted, feeds
+        self._length = 0.0
+
+    def add(self, stretch: PathStretch) -> None:
+        """Add the segments of a stretch whose feed the plan chose."""
+        segments = stretch.segments
+        ends = self._length + np.cumsum(segments.length)
+        begins = ends - segments.length
+        for row in np.flatnonzero(~segments.is_rapid).tolist():
+            block, part = self._emitted.origin[int(segments.block[row])]
+            if block in self._feeds:
+                words = self._feeds[block][part].reason
+                self._put(float(begins[row]), float(ends[row]), words)
+        self._length = float(ends[-1])
+
+    def _put(self, begin: float, end: float, words: str) -> None:
+        """Add a part, or lengthen the last one at the same limit."""
+        last = self.rows[-1] if self.rows else None
+        if last is not None and last.words == words and begin - last.end < LEAST_GAP:
+            self.rows[-1] = replace(last, end=end)
+        else:
+            self.rows.append(LimitStretch(begin=begin, end=end, words=words))
