@@ -279,6 +279,15 @@ def plan_json(
         "free_speed_saves_s": sum(advice.saving_of_free_speed for advice in plan.advices),
         "workingsteps": [_advice(advice) for advice in plan.advices],
         "total_time_s": {"before": plan.time_before, "after": plan.time_after},
+        "refused": [
+            {
+                "id": each.id,
+                "instance": str(each.ref),
+                "reason": each.reason,
+                "is_infeasible": each.is_infeasible,
+            }
+            for each in plan.refused
+        ],
         "findings": [finding_record(finding) for finding in plan.findings],
         **found,
     })

@@ -8,11 +8,12 @@ from typing import TypeVar
 from service.files import read_bytes
 from service.numbers import stock_in
 from stepnc_model.errors import StepNcError
+from stepnc_model.given import GivenData
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.plausibility import units_by_numbers
 from stepnc_model.program import Program, ResolvedWorkingstep, Stock
 from stepnc_model.toolpath.task import drawn_stock
-from stepnc_model.units import AUTO, PROFILES, UnitProfile
+from stepnc_model.units import AUTO, PROFILES, UnitProfile, speed_from_mm_min
 
 E = TypeVar("E", bound=StrEnum)
 
@@ -39,6 +40,14 @@ def read_program(
     if raw is not None and drawn_stock(program, None) is not None:
         raise StepNcError(f"stock {stock}: '{called}' defines its own raw part; omit the stock")
     return program
+
+
+def given_data(
+    values: tuple[str, ...], teeth: tuple[str, ...], feed_mm_min: float | None
+) -> GivenData:
+    """Data that a file lacks, from the words of a request."""
+    feed = None if feed_mm_min is None else speed_from_mm_min(feed_mm_min)
+    return GivenData(values=values, teeth=teeth, feed=feed)
 
 
 def program_in(

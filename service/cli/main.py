@@ -271,6 +271,8 @@ def _optimise(options: argparse.Namespace) -> int:
         from service.plan_output import print_plan
 
         print_plan(outcome.plan, confirmation, outcome.along)
+    if outcome.plan.has_bad_data:
+        return BAD_INPUT
     if outcome.plan.is_infeasible:
         return INFEASIBLE
     is_passed = confirmation is not None and bool(confirmation.passed)

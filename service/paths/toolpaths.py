@@ -22,9 +22,10 @@ from stepnc_model.post.blocks import Cycles, MachineType
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.dialects import read, write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Program, ProgramLine, Stock
+from stepnc_model.program import Program, ProgramLine, ResolvedWorkingstep, Stock
 from stepnc_model.technology import programmed
-from stepnc_model.toolpath.generate import generate, raised, require_ready
+from stepnc_model.toolpath.generate import generate, raised
+from stepnc_model.toolpath.left_out import LeftOut
 from stepnc_model.toolpath.path import LEFT_OUT, Function, Point, ToolPath
 from stepnc_model.toolpath.task import clamps_of, stock_of
 
@@ -133,7 +134,7 @@ def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
     require_place(output, apart_from=request.file)
     program = read_program(request.file, units=request.units, tell=tell)
     error = refusal(program, program.workingsteps)
-    if error is not None:
+    if error is not None and not request.keep_going:
         raise error
     paths = paths_of(program, keep_going=request.keep_going, tell=tell)
     paths = with_feeds(paths, keep_going=request.keep_going, tell=tell)
@@ -154,25 +155,36 @@ def with_feeds(paths: Paths, *, keep_going: bool, tell: Tell = silent) -> Paths:
     items: list[ToolPath | Function] = []
     faults: list[SchemaError] = []
     steps = {int(step.ref): step for step in paths.program.workingsteps}
-    missing: dict[int, str] = {}
+    left_out = LeftOut(paths.program)
     for item in paths.items:
         step = steps.get(int(item.workingstep)) if isinstance(item, ToolPath) else None
         try:
-            if step is not None:
-                require_ready(paths.program, step, missing)
-                programmed(paths.program, step.technology_ref)
+            if step is not None and isinstance(item, ToolPath):
+                left_out.require_ready(step, item)
+                _require_numbers(paths.program, step, keep_going=keep_going)
             items.append(item)
         except SchemaError as fault:
             if not keep_going:
                 raise
-            if step is not None:
-                missing |= {int(feature): step.id for feature in step.features}
+            if step is not None and isinstance(item, ToolPath):
+                left_out.add(step, item)
                 items.append(_left_out(step.ref, step.id))
             faults.append(fault)
             tell(f"left out: '{item.id}': {fault}")
     if not any(isinstance(item, ToolPath) for item in items):
         raise faults[0]
     return replace(paths, items=tuple(items), faults=(*paths.faults, *faults))
+
+
+def _require_numbers(program: Program, step: ResolvedWorkingstep, *, keep_going: bool) -> None:
+    """Refuse a workingstep without feed or speed, or with numbers that cannot be meant.
+
+    Where one fault ends all, numbers are refused before any path is made.
+    """
+    programmed(program, step.technology_ref)
+    error = refusal(program, (step,)) if keep_going else None
+    if error is not None:
+        raise error
 
 
 def _left_out(ref: Ref[Entity], name: str) -> Function:

@@ -136,6 +136,39 @@ class AdviceRequest(Request):
             "whether tools cut over centre, by their ids", examples=({"END MILL 10MM": True},)
         ),
     ] = field(default_factory=dict, hash=False)
+    given: Annotated[
+        tuple[Name, ...],
+        MaxLen(10_000),
+        About(
+            "value that the file lacks, in its units: #INSTANCE.attribute=value; kept out of "
+            "the file unless --in-place; repeatable",
+            flag="--set", metavar="VALUE", examples=("#46.depth=12",),
+        ),
+    ] = ()  # fmt: skip
+    teeth: Annotated[
+        tuple[Name, ...],
+        MaxLen(1000),
+        About(
+            "number of teeth that the file lacks: TOOL=NUMBER; repeatable",
+            flag="--teeth", metavar="TOOL=N", examples=("T3=2",),
+        ),
+    ] = ()  # fmt: skip
+    feed_mm_min: Annotated[
+        float | None,
+        Interval(gt=0.0, le=1e5),
+        About(
+            "feed of milling technologies that give none, in mm/min", unit="mm/min",
+            name="feed", flag="--feed", metavar="MM_MIN",
+        ),
+    ] = None  # fmt: skip
+    keep_going: Annotated[
+        bool,
+        About(
+            "advise what can be advised and leave every other workingstep as it is; exit 3 "
+            "where the data of one are bad, 4 where one is infeasible",
+            flag="--keep-going",
+        ),
+    ] = False
     allow_plunge: Annotated[
         bool,
         About(
