@@ -80,6 +80,8 @@ class OptimiseResult:
     """Comparison with the simulated run; None if it was not requested."""
     along: "AlongPath | None" = None
     """Feeds along the paths; None if they were not requested."""
+    told: tuple[Finding, ...] = ()
+    """Warnings about the program that were told already."""
 
 
 def optimise(
@@ -109,9 +111,8 @@ def optimise(
         _require_run(program, chosen, machine)
     match = material_for(request.material, program)
     tell(f"material: {match.reason}")
-    safety = request.safety
     factors = _factors(request, files, program, chosen, machine=machine, match=match)
-    notes = tuple(finding_of(each, safety=safety) for each in factors)
+    notes = tuple(finding_of(each, safety=request.safety) for each in factors)
     for note in notes:
         tell(note.message)
     wanted = {int(step.ref) for step in chosen}
@@ -128,7 +129,8 @@ def optimise(
         progress=Progress(tell, total=len(chosen)),
     )
     plan = replace(plan, refused=(*possible.refused, *plan.refused))
-    plan = _with_file_findings(plan, (*findings, *notes), match)
+    told = _remarks(program, tell)
+    plan = _with_file_findings(plan, (*findings, *notes, *told), match)
     changes = apart_from(program, changes_of(plan), plan.refused)
     data = writeback.write(program, changes, profile) if changes else program.file.data
     if changes and factors and profile is FileProfile.OPTIMISATION:
@@ -162,7 +164,9 @@ def optimise(
             tell(NOTHING_WRITTEN)
     _write_views(files, plan, along, tell)
     _tell_conflicts(plan, tell)
-    return OptimiseResult(plan=plan, written=written, confirmation=confirmation, along=along)
+    return OptimiseResult(
+        plan=plan, written=written, confirmation=confirmation, along=along, told=told
+    )
 
 
 def _whole_program(request: AdviceRequest, files: AdviceFiles, tell: Tell) -> Completed:
@@ -201,6 +205,15 @@ def _factors(
         material=match,
         safety=request.safety,
     )
+
+
+def _remarks(program: Program, tell: Tell) -> tuple[Finding, ...]:
+    """Tell the warnings about a program that every command gives."""
+    from service.paths.remarks import program_remarks, tell_remarks  # noqa: PLC0415 (shapely)
+
+    found = program_remarks(program)
+    tell_remarks(found, tell)
+    return found
 
 
 def _write(output: Path, data: bytes, tell: Tell) -> Path:

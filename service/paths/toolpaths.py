@@ -11,6 +11,7 @@ from service.files import (
     write_atomically,
     write_lines,
 )
+from service.paths.remarks import tell_remarks
 from service.progress import Progress
 from service.reading import Tell, one_of, read_program, silent
 from stepnc_model.entities.entity import Entity
@@ -27,6 +28,7 @@ from stepnc_model.technology import programmed
 from stepnc_model.toolpath.generate import generate, raised
 from stepnc_model.toolpath.left_out import LeftOut
 from stepnc_model.toolpath.path import LEFT_OUT, Function, Point, ToolPath
+from stepnc_model.toolpath.remarks import remarks
 from stepnc_model.toolpath.task import clamps_of, stock_of
 
 
@@ -38,6 +40,8 @@ class Paths:
     items: tuple[ToolPath | Function, ...]
     faults: tuple[SchemaError, ...]
     """Reasons why some executables were left out."""
+    told: tuple[Finding, ...] = ()
+    """Warnings about the program that were told already."""
 
     @property
     def paths(self) -> tuple[ToolPath, ...]:
@@ -61,7 +65,8 @@ class Paths:
     @property
     def findings(self) -> tuple[Finding, ...]:
         """Assumptions made for the tool paths."""
-        return tuple(finding for path in self.paths for finding in path.findings)
+        of_paths = tuple(finding for path in self.paths for finding in path.findings)
+        return (*of_paths, *(each for each in self.told if each not in of_paths))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,9 +91,15 @@ def tool_paths(
     StepNcError
         At the first executable for which no path can be generated, unless it keeps going.
     """
-    return paths_of(
-        read_program(path, units=units, tell=tell), keep_going=keep_going, tell=tell
-    )
+    program = read_program(path, units=units, tell=tell)
+    return with_remarks(paths_of(program, keep_going=keep_going, tell=tell), tell)
+
+
+def with_remarks(paths: Paths, tell: Tell) -> Paths:
+    """Tell the warnings about a program, and keep them with its paths."""
+    told = remarks(paths.program, paths.paths)
+    tell_remarks(told, tell)
+    return replace(paths, told=told)
 
 
 def paths_of(program: Program, *, keep_going: bool = False, tell: Tell = silent) -> Paths:
@@ -136,7 +147,7 @@ def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
     error = refusal(program, program.workingsteps)
     if error is not None and not request.keep_going:
         raise error
-    paths = paths_of(program, keep_going=request.keep_going, tell=tell)
+    paths = with_remarks(paths_of(program, keep_going=request.keep_going, tell=tell), tell)
     paths = with_feeds(paths, keep_going=request.keep_going, tell=tell)
     cycles = Cycles.OWN if request.cycles else Cycles.EXPANDED
     count = write_lines(output, nc_lines(paths, control, cycles))

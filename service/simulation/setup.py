@@ -26,6 +26,7 @@ from stepnc_model.post.dialect import SUFFIXES, Dialect
 from stepnc_model.post.dialects import read_blocks
 from stepnc_model.post.neutral import blocks_of, tool_numbers
 from stepnc_model.program import Program, Stock
+from stepnc_model.toolpath.remarks import remarks
 from stepnc_model.toolpath.task import stock_of
 
 T = TypeVar("T")
@@ -53,6 +54,8 @@ class PreparedRun:
     program: Program | None = None
     """STEP-NC program; None for NC code alone."""
     findings: tuple[Finding, ...] = ()
+    remarks: tuple[Finding, ...] = ()
+    """Warnings about the program, the same for every command."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,6 +154,7 @@ def prepared_program(
         read=lambda: blocks.count,
         program=program,
         findings=paths.findings,
+        remarks=remarks(program, paths.paths),
     )
 
 
