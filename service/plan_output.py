@@ -3,7 +3,7 @@
 JSON keys carry their units and never change, because other programs read them.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from math import isfinite
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ from optimiser.stability import Basis
 from service.rendering.columns import Cell, Change, Column
 from service.rendering.records import dump, finding_record, record, records
 from service.rendering.text import RED, print_findings, print_line, print_table
+from stepnc_model.errors import Finding
 from stepnc_model.units import (
     kw_from_watts,
     mm_min_from_speed,
@@ -153,6 +154,7 @@ def print_plan(
     plan: Plan,
     confirmation: "Confirmation | None" = None,
     along: "FeedsAlongPath | None" = None,
+    told: Sequence[Finding] = (),
 ) -> None:
     """Print the advice for a program: a row per workingstep, then totals and findings."""
     material = plan.material.material
@@ -182,7 +184,7 @@ def print_plan(
         from service.along_path.output import print_along_path  # noqa: PLC0415 (numpy)
 
         print_along_path(along)
-    print_findings(plan.findings)
+    print_findings(plan.findings, told=told)
 
 
 def _safety(plan: Plan) -> str:
@@ -279,6 +281,15 @@ def plan_json(
         "free_speed_saves_s": sum(advice.saving_of_free_speed for advice in plan.advices),
         "workingsteps": [_advice(advice) for advice in plan.advices],
         "total_time_s": {"before": plan.time_before, "after": plan.time_after},
+        "refused": [
+            {
+                "id": each.id,
+                "instance": str(each.ref),
+                "reason": each.reason,
+                "is_infeasible": each.is_infeasible,
+            }
+            for each in plan.refused
+        ],
         "findings": [finding_record(finding) for finding in plan.findings],
         **found,
     })

@@ -21,16 +21,17 @@ from service.files import (
 from service.knowledge.corrected import factors_for, finding_of, with_corrections
 from service.knowledge.place import named_place, require_apart
 from service.progress import Progress
-from service.reading import Tell, read_program, selected, silent
+from service.reading import Tell, given_data, read_program, selected, silent
 from service.records import changes_of
+from service.refusals import advisable, apart_from
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
 from simulator.spec import Certainty, Machine, MaterialMatch
 from stepnc_model import writeback
-from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError, WriteError
+from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
 from stepnc_model.file_profile import FileProfile
+from stepnc_model.given import Completed, completed, without_given
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.plausibility import refusal
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.task import stock_of
@@ -79,6 +80,8 @@ class OptimiseResult:
     """Comparison with the simulated run; None if it was not requested."""
     along: "FeedsAlongPath | None" = None
     """Feeds along the paths; None if they were not requested."""
+    told: tuple[Finding, ...] = ()
+    """Warnings about the program that were told already."""
 
 
 def optimise(
@@ -97,24 +100,19 @@ def optimise(
     output = _output(files)
     nc_place = _nc_place(request, files, output)
     require_apart(named_place(files.knowledge), output, files.report, files.feeds, nc_place)
-    program = read_program(
-        files.file, units=request.units, name=files.name, stock=request.stock
-    )
+    whole = _whole_program(request, files, tell)
+    program = whole.program
     chosen = selected(program, request.workingsteps)
     findings = program.file.findings + program.model.findings()
-    _require_usable(program, chosen, findings)
+    possible = advisable(program, chosen, keep_going=request.keep_going)
+    chosen = possible.steps
     machine = with_holding(machine_for(request.machine, program), files.holding)
     if request.is_confirmed:
         _require_run(program, chosen, machine)
     match = material_for(request.material, program)
     tell(f"material: {match.reason}")
-    safety = request.safety
-    factors: tuple[AcceptedFactor, ...] = ()
-    if request.has_corrections:
-        factors = factors_for(
-            files.knowledge, program, chosen, machine=machine, material=match, safety=safety
-        )
-    notes = tuple(finding_of(each, safety=safety) for each in factors)
+    factors = _factors(request, files, program, chosen, machine=machine, match=match)
+    notes = tuple(finding_of(each, safety=request.safety) for each in factors)
     for note in notes:
         tell(note.message)
     wanted = {int(step.ref) for step in chosen}
@@ -130,8 +128,10 @@ def optimise(
         selected=lambda step: int(step.ref) in wanted,
         progress=Progress(tell, total=len(chosen)),
     )
-    plan = _with_file_findings(plan, (*findings, *notes), match)
-    changes = changes_of(plan)
+    plan = replace(plan, refused=(*possible.refused, *plan.refused))
+    told = _remarks(program, tell)
+    plan = _with_file_findings(plan, (*findings, *notes, *told), match)
+    changes = apart_from(program, changes_of(plan), plan.refused)
     data = writeback.write(program, changes, profile) if changes else program.file.data
     if changes and factors and profile is FileProfile.OPTIMISATION:
         data = with_corrections(_read_again(program, data), factors)
@@ -158,12 +158,62 @@ def optimise(
             tell(f"NC code: {nc_place} ({write_lines(nc_place, code)} lines)")
     written = None
     if not files.dry_run:
-        written = _write(output, data, tell) if changes else None
+        kept = data if files.in_place else _without_given(whole, data)
+        written = _write(output, kept, tell) if changes else None
         if written is None:
             tell(NOTHING_WRITTEN)
     _write_views(files, plan, along, tell)
     _tell_conflicts(plan, tell)
-    return OptimiseResult(plan=plan, written=written, confirmation=confirmation, along=along)
+    return OptimiseResult(
+        plan=plan, written=written, confirmation=confirmation, along=along, told=told
+    )
+
+
+def _whole_program(request: AdviceRequest, files: AdviceFiles, tell: Tell) -> Completed:
+    """Program of a file, with the data that the request gives."""
+    program = read_program(
+        files.file, units=request.units, name=files.name, stock=request.stock, tell=tell
+    )
+    data = given_data(request.given, request.teeth, request.feed_mm_min)
+    return completed(program, data)
+
+
+def _without_given(whole: Completed, data: bytes) -> bytes:
+    """Bytes of an advised program without the data that the request gave."""
+    if not whole.given:
+        return data
+    return without_given(_read_again(whole.program, data), whole.given)
+
+
+def _factors(
+    request: AdviceRequest,
+    files: AdviceFiles,
+    program: Program,
+    chosen: tuple[ResolvedWorkingstep, ...],
+    *,
+    machine: Machine,
+    match: MaterialMatch,
+) -> "tuple[AcceptedFactor, ...]":
+    """Accepted corrections of k_c for the tools of some workingsteps."""
+    if not request.has_corrections:
+        return ()
+    return factors_for(
+        files.knowledge,
+        program,
+        chosen,
+        machine=machine,
+        material=match,
+        safety=request.safety,
+    )
+
+
+def _remarks(program: Program, tell: Tell) -> tuple[Finding, ...]:
+    """Tell the warnings about a program that every command gives."""
+    from service.paths.remarks import program_remarks, tell_remarks  # noqa: PLC0415 (shapely)
+
+    found = program_remarks(program)
+    tell_remarks(found, tell)
+    return found
 
 
 def _write(output: Path, data: bytes, tell: Tell) -> Path:
@@ -207,6 +257,8 @@ def _require_run(
 
 
 def _tell_conflicts(plan: Plan, tell: Tell) -> None:
+    for each in plan.refused:
+        tell(f"left as programmed: '{each.id}' ({each.ref}): {each.reason}")
     conflicts = [each for each in plan.advices if each.status is AdviceStatus.INFEASIBLE]
     if conflicts:
         names = ", ".join(f"'{each.workingstep.id}'" for each in conflicts)
@@ -256,6 +308,7 @@ def _task(request: AdviceRequest, tools: "tuple[TableTool, ...]") -> Optimisatio
         centre_cutting={**request.centre_cutting, **_centre_cutting(tools)},
         allow_plunge=request.allow_plunge,
         source=partial(along_paths, is_run=request.is_confirmed),
+        keep_going=request.keep_going,
     )
 
 
@@ -302,30 +355,6 @@ def _read_again(program: Program, data: bytes) -> Program:
     """Parse a program again from its changed bytes."""
     file = Part21File.from_bytes(data, name=program.name)
     return Program(file, units=program.units, name=program.name, stock=program.stock)
-
-
-def _require_usable(
-    program: Program, chosen: tuple[ResolvedWorkingstep, ...], findings: tuple[Finding, ...]
-) -> None:
-    """Refuse a program with errors, or whose numbers appear to be in other units.
-
-    Broken workingsteps do not matter when others are selected by name.
-    """
-    if program.faults and len(chosen) == len(program.workingsteps):
-        raise program.faults[0]
-    if not chosen:
-        raise SchemaError("the program has no machining workingstep")
-    for finding in findings:
-        if finding.severity is Severity.ERROR:
-            raise SchemaError(
-                finding.message,
-                entity=finding.entity,
-                attribute=finding.attribute,
-                line=finding.line,
-            )
-    error = refusal(program, chosen)
-    if error is not None:
-        raise error
 
 
 def _with_file_findings(

@@ -276,7 +276,9 @@ def _optimise(options: argparse.Namespace) -> int:
     else:
         from service.plan_output import print_plan
 
-        print_plan(outcome.plan, confirmation, outcome.along)
+        print_plan(outcome.plan, confirmation, outcome.along, outcome.told)
+    if outcome.plan.has_bad_data:
+        return BAD_INPUT
     if outcome.plan.is_infeasible:
         return INFEASIBLE
     is_passed = confirmation is not None and bool(confirmation.passed)
@@ -356,9 +358,11 @@ def _check_code(options: argparse.Namespace) -> int:
 def _check_program(options: argparse.Namespace) -> int:
     """Check a STEP-NC program."""
     from service.contents import check
-    from service.terminal import write_out
+    from service.paths.remarks import tell_remarks
+    from service.terminal import tell, write_out
 
-    contents = check(options.file, units=options.units)
+    contents = check(options.file, units=options.units, tell=tell)
+    tell_remarks(contents.remarks, tell)
     if options.json:
         from service.contents_output import contents_json
 
@@ -367,7 +371,7 @@ def _check_program(options: argparse.Namespace) -> int:
         from service.contents_output import print_contents
 
         print_contents(contents)
-    return OK if contents.is_usable else BAD_INPUT
+    return OK if contents.is_of_use else BAD_INPUT
 
 
 def _convert(options: argparse.Namespace) -> int:
