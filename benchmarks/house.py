@@ -33,7 +33,6 @@ ALLOWED = {
     "simulator.machine.samples.Rotation": "codes of a column, for readers of samples",
     "simulator.machine.samples.TravelDirection": "codes of columns, for readers of samples",
     "simulator.motion.segments.arc": "paths made by hand, beside lines",
-    "stepnc_model.nc.neutral_blocks.neutral_blocks": "foreign code for the virtual machine",
     "stepnc_model.writeback.records": "reads what is written, for scripts",
 }
 """public names that nothing reaches, with the reason why they stay; 20 at most"""
