@@ -156,6 +156,8 @@ def optimise(
         code = _nc_code(_read_again(program, data), request.nc_control, along, tell)
         if not files.dry_run:
             tell(f"NC code: {nc_place} ({write_lines(nc_place, code)} lines)")
+    if along is not None and request.writes_toolpaths:
+        plan, data = _with_tool_paths(plan, _read_again(program, data), along, profile, tell)
     written = None
     if not files.dry_run:
         kept = data if files.in_place else _without_given(whole, data)
@@ -216,6 +218,17 @@ def _remarks(program: Program, tell: Tell) -> tuple[Finding, ...]:
     return found
 
 
+def _with_tool_paths(
+    plan: Plan, program: Program, along: "AlongPath", profile: FileProfile, tell: Tell
+) -> tuple[Plan, bytes]:
+    """Write feeds along the paths into the program; the plan gets what could not be written."""
+    from service.along_path.path_file import with_tool_paths  # noqa: PLC0415 (numpy, shapely)
+
+    file = with_tool_paths(program, along, profile)
+    tell(f"tool paths written into the program: {file.count}")
+    return replace(plan, findings=(*plan.findings, *file.findings)), file.data
+
+
 def _write(output: Path, data: bytes, tell: Tell) -> Path:
     """Write the optimised program."""
     write_atomically(output, data)
@@ -243,6 +256,8 @@ def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
     require_bounds(request)
     if not request.is_along_path and (request.levels is not None or files.feeds is not None):
         raise StepNcError("--levels and --feeds-csv need --along-path")
+    if request.writes_toolpaths and not request.is_along_path:
+        raise StepNcError("--write-toolpaths needs --along-path")
 
 
 def _require_run(

@@ -200,6 +200,13 @@ class AdviceRequest(Request):
             flag="--jerk",
         ),
     ] = False
+    writes_toolpaths: Annotated[
+        bool,
+        About(
+            "with --along-path: write each path into the program, with its feeds along it",
+            flag="--write-toolpaths",
+        ),
+    ] = False
     stock_margin_mm: Annotated[
         float,
         Interval(ge=0.0, le=100.0),
