@@ -12,7 +12,7 @@ from re import IGNORECASE, compile
 import numpy as np
 
 from service.raw_stock import larger_stock_map, raw_stock_of, stock_map
-from service.simulation.setup import PreparedRun
+from service.simulation.setup import CountedIterator, PreparedRun
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import table_tool
 from simulator.motion.segments import Bools, Ints
@@ -108,7 +108,9 @@ class CodePaths:
         else:
             clamped = stock_map(self.machine, raw)
         moves = replace(self.program.moves, rows=self.program.moves.rows[self._is_run])
-        blocks = neutral_blocks(replace(self.program, moves=moves), name=self.name)
+        blocks = CountedIterator(
+            neutral_blocks(replace(self.program, moves=moves), name=self.name)
+        )
         over = raw.bounds.high[2] + CLEARANCE
         return PreparedRun(
             name=self.name,
@@ -121,8 +123,8 @@ class CodePaths:
             },
             stock=lambda _: clamped,
             raw=raw.bounds,
-            done=lambda: 0.0,
-            read=lambda: 0,
+            done=lambda: blocks.share(len(moves)),
+            read=lambda: blocks.count,
         )
 
     def block_at(self, line: int) -> int:

@@ -141,7 +141,9 @@ def along_path(
     ticker = Ticker(tell)
     given = source.prepare(0.0)
     planner = FeedPlanner(_feed_task(given.machine, task))
-    before = PartTotals(ticker, "planning", keeps_trace=task.keeps_traces)
+    before = PartTotals(
+        ticker, "planning", share=lambda _: given.done(), keeps_trace=task.keeps_traces
+    )
     for stretch in stretches_of(
         given,
         source.prepare(task.margin) if task.margin > 0.0 else None,
@@ -153,8 +155,14 @@ def along_path(
         planner.add(stretch)
     plan = planner.plan()
     feeds: BlockFeeds = dict(block_feeds(plan))
+    whole = max(sum(total.duration for _, total in before.rows()), 1.0)
     for _ in range(MOST_ROUNDS):
-        after = PartTotals(ticker, "running the plan", keeps_trace=task.keeps_traces)
+        after = PartTotals(
+            ticker,
+            "running the plan",
+            share=lambda now: min(now / whole, 1.0),
+            keeps_trace=task.keeps_traces,
+        )
         run = run_plan(source, feeds, control=task.control, totals=after)
         if not run.excess:
             break
