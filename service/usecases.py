@@ -102,6 +102,7 @@ def optimise(
     program = read_program(
         files.file, units=request.units, name=files.name, stock=request.stock
     )
+    profile = writeback.profile_for(program, profile)
     chosen = selected(program, request.workingsteps)
     findings = program.file.findings + program.model.findings()
     _require_usable(program, chosen, findings)
@@ -134,7 +135,7 @@ def optimise(
     )
     plan = _with_file_findings(plan, (*findings, *notes), match)
     changes = changes_of(plan)
-    data = writeback.write(program, changes, profile) if changes else program.file.data
+    data = writeback.write(program, changes, profile) if changes else program.source.data
     if changes and factors and profile is FileProfile.OPTIMISATION:
         data = with_corrections(_read_again(program, data), factors)
     confirmation = None

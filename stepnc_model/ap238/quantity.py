@@ -172,7 +172,7 @@ class Units:
         value = self._instances.value(id, "name")
         if isinstance(value, Enumeration):
             prefix = self._instances.value(id, "prefix")
-            return f"{prefix or ''}{value}".lower()
+            return f"{prefix or ''}{value}".lower()  # MILLI and METRE: millimetre
         return value if isinstance(value, str) else ""
 
     def _length(self, context: int) -> Unit | None:

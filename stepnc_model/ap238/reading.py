@@ -79,6 +79,8 @@ class Converted:
     parameters: tuple[Value, ...]
     origin: int
     rule: Rule | None
+    context: int | None = None
+    """Representation context that gives the units of its geometry."""
 
 
 @dataclass(slots=True)
@@ -250,6 +252,7 @@ class Reader:
                 parameters=parameters,
                 origin=origin.id,
                 rule=origin.rule,
+                context=origin.context,
             )
         )
 
@@ -383,23 +386,25 @@ class Reader:
         ref = self.instances.value(place.id, "unit_component")
         if not isinstance(ref, Ref):
             return ""
-        unit = self.units.unit(int(ref))
+        unit, name = self.units.unit(int(ref)), self.units.name(int(ref))
+        if name in _WRITTEN_NAMES:
+            return _WRITTEN_NAMES[name]
         if unit is not None:
             for kind in (Kind.LENGTH, Kind.ANGLE):
                 if unit.exponents == MEASURES[kind].exponents:
                     return MEASURES[kind].unit
-        return self.units.name(int(ref))
+        return name
 
     def _measured(self, start: Place, place: Place, ending: Ending, attribute: str) -> Value:
         """Number in the unit of ISO 14649."""
-        kind = ending.measure if ending.kind is Kind.TYPED else _MEASURE_OF[ending.kind]
+        kind = measure_kind(ending)
         number, unit = self._number_and_unit(start, place, ending.kind)
         if number is None:
             return None
         if ending.kind is Kind.WRITTEN:
-            kind = Kind.ANGLE if unit is not None and "angle" in unit.exponents else kind
-            if unit is None or unit.exponents not in ({"length": 1.0}, {"angle": 1.0}):
+            if unit is None or self._unit_name(place) not in (_MM, _DEGREE):
                 return _real(number, 1.0)
+            kind = Kind.ANGLE if "angle" in unit.exponents else kind
         measure = MEASURES[kind]
         found = conversion(unit, measure)
         if not found.is_fitting:
@@ -426,11 +431,11 @@ class Reader:
     ) -> tuple[float | None, Unit | None]:
         """Number of a measure with its unit, or a plain number with that of its owner."""
         if kind is Kind.OWN_LENGTH:
-            return number_of(place.value), self._unit_of(start)
+            return number_of(place.value), self.unit_of(start)
         number = number_of(self.instances.value(place.id, "value_component"))
-        return number, self._unit_of(place)
+        return number, self.unit_of(place)
 
-    def _unit_of(self, place: Place) -> Unit | None:
+    def unit_of(self, place: Place) -> Unit | None:
         """Unit of a measure; that of the geometry if it names none."""
         ref = self.instances.value(place.id, "unit_component")
         if isinstance(ref, Ref):
@@ -467,6 +472,19 @@ class Reader:
         )
 
 
+_MM = MEASURES[Kind.LENGTH].unit
+_DEGREE = MEASURES[Kind.ANGLE].unit
+_WRITTEN_NAMES = {
+    "kilowatt": "kW",
+    "newton": "N",
+    "joule": "J",
+    "second": "s",
+    "micrometre": "um",
+    "micrometer": "um",
+    "pascal": "Pa",
+}
+"""Names of units in the files of ISO 14649; their numbers are not converted."""
+
 _MEASURE_OF: Mapping[Kind, Kind] = {
     Kind.LENGTH: Kind.LENGTH,
     Kind.LENGTHS: Kind.LENGTH,
@@ -483,6 +501,11 @@ _MEASURE_OF: Mapping[Kind, Kind] = {
     Kind.ROTATION: Kind.ROTATION,
     Kind.PRESSURE: Kind.PRESSURE,
 }
+
+
+def measure_kind(ending: Ending) -> Kind:
+    """Kind of measure that an ending gives, in the units of ``MEASURES``."""
+    return ending.measure if ending.kind is Kind.TYPED else _MEASURE_OF[ending.kind]
 
 
 def _is_scaled(rule: Rule) -> bool:
