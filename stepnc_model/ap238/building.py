@@ -4,6 +4,7 @@ The builder walks the paths that the reader follows, and makes what it does not 
 begin alike share what they make: several dimensions of a tool stand in one representation.
 """
 
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -68,14 +69,22 @@ class Builder:
         self._draft = draft
         self._nodes: dict[int, int] = dict(known)
         self._made: dict[tuple[int, Step, Step | None, int], int] = {}
+        self._onto_nodes: set[tuple[int, int]] = set()
+        self._named: set[int] = set()
+        """Instances whose name a path asks for."""
         self.unsayable: list[Unsayable] = []
-        self._waiting: list[tuple[int, int, Rule]] = []
+        self._waiting: deque[tuple[int, int, Rule]] = deque()
+
+    @property
+    def built(self) -> Mapping[int, int]:
+        """AIM instances by the instances of ISO 14649 that they stand for."""
+        return self._nodes
 
     def build(self, number: int) -> int | None:
         """AIM instance for an instance of ISO 14649, with all that it refers to."""
         node = self._node(number)
         while self._waiting:
-            waiting, base, rule = self._waiting.pop()
+            waiting, base, rule = self._waiting.popleft()
             self._fill(waiting, base, rule)
         return node
 
@@ -84,7 +93,7 @@ class Builder:
         slot = slots_of(self._class(number))[row.attribute]
         self._row(number, node, row, slot, value)
         while self._waiting:
-            waiting, base, rule = self._waiting.pop()
+            waiting, base, rule = self._waiting.popleft()
             self._fill(waiting, base, rule)
 
     def _class(self, number: int) -> type[Entity]:
@@ -165,11 +174,15 @@ class Builder:
             return
         kind = path.ending.kind
         if kind in (Kind.WRITTEN, Kind.UNIT):
-            self._parameter(number, node, kind, value)
+            self._parameter(node, kind, value)
         elif kind is Kind.CONSTANT:
             return
         elif kind is Kind.VERBATIM or kind is Kind.COORDINATES:
+            if row.attribute == "name" and node in self._named:
+                return
             self._draft.set(node, row.attribute, self._translated(value))
+        elif kind is Kind.REFERENCE and _is_plain_list(path, value):
+            self._draft.set(node, path.steps[0].attribute, self._translated(value))
         elif isinstance(value, tuple) and kind is Kind.REFERENCE:
             for place, item in enumerate(value):
                 self._refer(node, path.steps, item, place)
@@ -208,11 +221,14 @@ class Builder:
         for condition in last.conditions:
             if self._draft.is_new(target):
                 self._fulfil(target, condition)
+        if name:
+            self._named.add(target)
         if last.move is Move.BACK:
             self._draft.put(target, last.attribute, holder)
             return
         present = self._draft.get(holder, last.attribute)
-        if last.attribute not in LISTS and present not in (None, Ref(target)):
+        is_taken = present is not None and (present != Ref(target) or place > 0)
+        if last.attribute not in LISTS and is_taken:
             holder = self._walk(node, steps[:-1], target=(last, target), place=place, fork=True)
         self._draft.put(holder, last.attribute, target)
         if any(self._draft.is_a(target, name) for name in _GEOMETRY):
@@ -227,13 +243,15 @@ class Builder:
 
     def _onto(self, node: int, number: int) -> None:
         """Let an AIM instance stand for a further instance of ISO 14649."""
-        if number in self._nodes:
+        if (number, node) in self._onto_nodes or self._nodes.get(number) == node:
             return
         rule = self._rule(number)
         if rule is None:
             self.unsayable.append(Unsayable(number=number, attribute=""))
             return
-        self._nodes[number] = node
+        # Several measures may share one tolerance: each of them gets its limits.
+        self._onto_nodes.add((number, node))
+        self._nodes.setdefault(number, node)
         self._begin(number, node, rule)
 
     def _walk(
@@ -365,13 +383,9 @@ class Builder:
     def _set_context(self, node: int) -> None:
         """Give a representation the context of geometry in mm and degrees."""
         draft = self._draft
-        if not draft.is_new(node):
+        if not draft.is_new(node) or not draft.is_a(node, "REPRESENTATION"):
             return
-        units = tuple(
-            Ref[object](unit)
-            for unit in (draft.unit("mm"), draft.unit("deg"))
-            if unit is not None
-        )
+        units = tuple(Ref[object](draft.unit(name)) for name in ("mm", "deg"))
         context = draft.shared(
             ("GEOMETRIC_REPRESENTATION_CONTEXT", "GLOBAL_UNIT_ASSIGNED_CONTEXT"),
             {"coordinate_space_dimension": 3, "units": units},
@@ -430,6 +444,8 @@ class Builder:
             return
         if ending.kind in (Kind.TEXT, Kind.OWN_LENGTH, Kind.INTEGER):
             holder = self._walk(node, path.steps[:-1], target=None, place=_mark(path))
+            if last.attribute == "name" and holder in self._named:
+                return
             self._draft.set(holder, last.attribute, _plain(value))
             return
         holder = self._walk(node, path.steps[:-1], target=None, place=0)
@@ -469,9 +485,9 @@ class Builder:
         number = aim_number(ending.kind, value)
         unit = self._draft.unit(unit_name)
         self._draft.set(item, "value_component", Typed(type_, number))
-        self._draft.set(item, "unit_component", None if unit is None else Ref(unit))
+        self._draft.set(item, "unit_component", Ref(unit))
 
-    def _parameter(self, number: int, node: int, kind: Kind, value: Value) -> None:
+    def _parameter(self, node: int, kind: Kind, value: Value) -> None:
         """Give a numeric parameter its number or its unit."""
         if kind is Kind.WRITTEN:
             self._draft.set(node, "value_component", Typed("NUMERIC_MEASURE", value))
@@ -479,10 +495,7 @@ class Builder:
         name = str(value)
         known = {"MM": "mm", "": "1", "degree": "deg", "degrees": "deg"}
         unit = self._draft.unit(known.get(name, name))
-        if unit is None:
-            self.unsayable.append(Unsayable(number=number, attribute="its_parameter_unit"))
-            unit = self._draft.unit("1")
-        self._draft.set(node, "unit_component", None if unit is None else Ref(unit))
+        self._draft.set(node, "unit_component", Ref(unit))
 
 
 def aim_number(kind: Kind, value: Value) -> Real:
@@ -508,6 +521,16 @@ def _is_able(ending: Ending, value: Value, slot: AttributeSlot) -> bool:
     if ending.kind in _MEASURES or ending.kind is Kind.OWN_LENGTH:
         return number_of(value) is not None
     return slot.items is None or isinstance(value, tuple)
+
+
+def _is_plain_list(path: Path, value: Value) -> bool:
+    """Whether a list of references is an attribute of the instance itself."""
+    return (
+        isinstance(value, tuple)
+        and len(path.steps) == 1
+        and path.steps[0].move is Move.FORWARD
+        and path.steps[0].attribute not in LISTS
+    )
 
 
 def _plain(value: Value) -> Value:

@@ -199,8 +199,11 @@ class AimDraft:
                     if uses[int(ref)] <= 0 and int(ref) not in anchors:
                         waiting.append(int(ref))
 
-    def unit(self, name: str) -> int | None:
-        """Unit of a name as ISO 14649 or a record writes it; None if it has none."""
+    def unit(self, name: str) -> int:
+        """Unit of a name as ISO 14649 or a record writes it.
+
+        A name that is not known becomes a unit without dimension, such as a hardness.
+        """
         simple = {
             "mm": ("LENGTH_UNIT", "MILLI", "METRE"),
             "m": ("LENGTH_UNIT", None, "METRE"),
@@ -230,17 +233,16 @@ class AimDraft:
             return self._degree()
         if name == "1":
             return self.shared(("RATIO_UNIT",), {"dimensions": Ref(self._exponents())})
-        if name == "count":
-            return self.shared(
-                ("CONTEXT_DEPENDENT_UNIT",),
-                {"dimensions": Ref(self._exponents()), "name": "count"},
-            )
         powers = {
             "m/s": (("m", 1.0), ("s", -1.0)),
             "rev/s": (("s", -1.0),),
             "N/mm2": (("N", 1.0), ("mm", -2.0)),
         }
-        return self._derived(name, powers[name]) if name in powers else None
+        if name in powers:
+            return self._derived(name, powers[name])
+        return self.shared(
+            ("CONTEXT_DEPENDENT_UNIT",), {"dimensions": Ref(self._exponents()), "name": name}
+        )
 
     def _si_unit(self, kind: str, prefix: str | None, name: str) -> int:
         """SI unit of a dimension."""
@@ -282,7 +284,7 @@ class AimDraft:
             Ref[object](
                 self.shared(
                     ("DERIVED_UNIT_ELEMENT",),
-                    {"unit": Ref(self.unit(unit) or 0), "exponent": Real(power)},
+                    {"unit": Ref(self.unit(unit)), "exponent": Real(power)},
                 )
             )
             for unit, power in powers

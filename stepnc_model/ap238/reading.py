@@ -113,6 +113,8 @@ class Reader:
         self._next = max(file.ids(), default=0) + 1
         self._waiting: deque[tuple[int, Origin]] = deque()
         self._reading = Reading()
+        self._visited: set[int] = set()
+        """Instances on the ways to all values read."""
 
     def read(self) -> Reading:
         """Convert all programs of the file."""
@@ -125,7 +127,31 @@ class Reader:
         while self._waiting:
             number, origin = self._waiting.popleft()
             self._convert(number, origin)
+        self._note_unread()
         return self._reading
+
+    def _note_unread(self) -> None:
+        """Note the properties of converted instances that no path has led to."""
+        known = {each.origin for each in self._reading.converted}
+        for entity, owner in _PROPERTIES:
+            for id in self.instances.of_entity(entity):
+                ref = self.instances.value(id, owner)
+                if isinstance(ref, Ref) and int(ref) in known and id not in self._visited:
+                    self._note(id, f"the property {self._named(id)!r}", owner)
+        for body in self.instances.of_entity("MACHINING_TOOL_BODY_REPRESENTATION"):
+            for value in self.instances.values(body, "items"):
+                for item in references(value):
+                    if body in self._visited and int(item) not in self._visited:
+                        self._note(int(item), f"the dimension {self._named(int(item))!r}", "name")
+
+    def _named(self, id: int) -> str:
+        """Name of an instance, as far as it has one."""
+        return str(self.instances.value(id, "name") or "")
+
+    def _note(self, id: int, what: str, attribute: str) -> None:
+        """Note something that ISO 14649 cannot say, or that is not read here."""
+        message = f"{what} is left out: no attribute of ISO 14649 has a path to it"
+        self._remark(Severity.NOTE, message, id, attribute)
 
     def matches(self, id: int, rule: Rule) -> bool:
         """Whether an instance is one that a rule describes."""
@@ -278,6 +304,8 @@ class Reader:
     ) -> list[Value]:
         """Values that a path leads to."""
         places = self.follow(start, path.steps)
+        for place in places:
+            self._visited.update(place.way)
         if path.ending.kind is Kind.REFERENCE:
             inner = slot.items or slot
             found = (self._reference(place, inner, attribute) for place in places)
@@ -471,6 +499,13 @@ class Reader:
             )
         )
 
+
+_PROPERTIES = (
+    ("ACTION_PROPERTY", "definition"),
+    ("RESOURCE_PROPERTY", "resource"),
+    ("PROPERTY_DEFINITION", "definition"),
+)
+"""Entities of properties, with the attribute that refers to their owner."""
 
 _MM = MEASURES[Kind.LENGTH].unit
 _DEGREE = MEASURES[Kind.ANGLE].unit

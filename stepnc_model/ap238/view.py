@@ -85,11 +85,6 @@ class AimView(Part21File):
         return self.source.findings + self.remarks
 
 
-def iso_text(view: AimView) -> bytes:
-    """Program of ISO 14649 as the bytes of a file of its own."""
-    return view.data
-
-
 def _text(source: Part21File, converted: list[Converted]) -> bytes:
     """File of ISO 14649 with the description and the name of the source."""
     header = [
