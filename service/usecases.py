@@ -102,6 +102,7 @@ def optimise(
     require_apart(named_place(files.knowledge), output, files.report, files.feeds, nc_place)
     whole = _whole_program(request, files, tell)
     program = whole.program
+    profile = writeback.profile_for(program, profile)
     chosen = selected(program, request.workingsteps)
     findings = program.file.findings + program.model.findings()
     possible = advisable(program, chosen, keep_going=request.keep_going)
@@ -132,7 +133,7 @@ def optimise(
     told = _remarks(program, tell)
     plan = _with_file_findings(plan, (*findings, *notes, *told), match)
     changes = apart_from(program, changes_of(plan), plan.refused)
-    data = writeback.write(program, changes, profile) if changes else program.file.data
+    data = writeback.write(program, changes, profile) if changes else program.source.data
     if changes and factors and profile is FileProfile.OPTIMISATION:
         data = with_corrections(_read_again(program, data), factors)
     confirmation = None

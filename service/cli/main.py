@@ -197,10 +197,17 @@ def _add_check(commands: Commands) -> None:
 def _add_convert(commands: Commands) -> None:
     """Add the command ``stepnc convert``."""
     parser = commands.add_parser(
-        "convert", help="convert optimisation records to the other profile without loss"
+        "convert",
+        help="convert a program to AP238 or ISO 14649, or its records to the other profile",
     )
     parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
-    parser.add_argument("--profile", required=True, help="optimisation or standard")
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument(
+        "--to", metavar="STANDARD", help="write the program by another standard: ap238 or iso14649"
+    )
+    what.add_argument(
+        "--profile", help="write the optimisation records in profile optimisation or standard"
+    )
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
     parser.set_defaults(run=_convert)
 
@@ -377,9 +384,17 @@ def _check_program(options: argparse.Namespace) -> int:
 def _convert(options: argparse.Namespace) -> int:
     """Run the command ``stepnc convert``."""
     from service import usecases
+    from service.conversion import Standard, convert_to
     from service.requests.fields import member_of
     from service.terminal import tell
     from stepnc_model.file_profile import FileProfile
+
+    if options.to is not None:
+        standard = member_of(Standard, options.to, "standard")
+        for finding in convert_to(options.file, standard=standard, output=options.output):
+            tell(str(finding))
+        tell(f"{options.output}: written by standard '{standard.value}'")
+        return OK
 
     profile = member_of(FileProfile, options.profile, "profile")
     usecases.convert(options.file, profile=profile, output=options.output)
