@@ -136,22 +136,8 @@ def optimise(
     data = writeback.write(program, changes, profile) if changes else program.source.data
     if changes and factors and profile is FileProfile.OPTIMISATION:
         data = with_corrections(_read_again(program, data), factors)
-    confirmation = None
-    if request.is_confirmed:
-        from service.confirm import confirm  # noqa: PLC0415 (numba takes a second)
-
-        confirmation = confirm(plan, _read_again(program, data), tell=tell)
-    along = None
-    if request.is_along_path:
-        from service.along_path.of_program import along_program  # noqa: PLC0415 (numba)
-
-        along = along_program(
-            _read_again(program, data),
-            plan,
-            request,
-            keeps_traces=files.report is not None,
-            tell=tell,
-        )
+    confirmation = _confirmed(request, program, plan, data, tell)
+    along = _along(request, files, program, plan, data, tell)
     if request.nc_control is not None and nc_place is not None:
         # NC code first: where it cannot be made, nothing is written.
         code = _nc_code(_read_again(program, data), request.nc_control, along, tell)
@@ -169,6 +155,39 @@ def optimise(
     _tell_conflicts(plan, tell)
     return OptimiseResult(
         plan=plan, written=written, confirmation=confirmation, along=along, told=told
+    )
+
+
+def _confirmed(
+    request: AdviceRequest, program: Program, plan: Plan, data: bytes, tell: Tell
+) -> "Confirmation | None":
+    """Comparison of a plan with its simulated run, if it was requested."""
+    if not request.is_confirmed:
+        return None
+    from service.confirm import confirm  # noqa: PLC0415 (numba takes a second)
+
+    return confirm(plan, _read_again(program, data), tell=tell)
+
+
+def _along(
+    request: AdviceRequest,
+    files: AdviceFiles,
+    program: Program,
+    plan: Plan,
+    data: bytes,
+    tell: Tell,
+) -> "FeedsAlongPath | None":
+    """Feeds along the paths of an advised program, if they were requested."""
+    if not request.is_along_path:
+        return None
+    from service.along_path.of_program import along_program  # noqa: PLC0415 (numba)
+
+    return along_program(
+        _read_again(program, data),
+        plan,
+        request,
+        keeps_traces=files.report is not None,
+        tell=tell,
     )
 
 
@@ -220,7 +239,7 @@ def _remarks(program: Program, tell: Tell) -> tuple[Finding, ...]:
 
 
 def _with_tool_paths(
-    plan: Plan, program: Program, along: "AlongPath", profile: FileProfile, tell: Tell
+    plan: Plan, program: Program, along: "FeedsAlongPath", profile: FileProfile, tell: Tell
 ) -> tuple[Plan, bytes]:
     """Write feeds along the paths into the program; the plan gets what could not be written."""
     from service.along_path.path_file import with_tool_paths  # noqa: PLC0415 (numpy, shapely)

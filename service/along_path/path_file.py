@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from service.along_path.course import BlockLog
-from service.along_path.run import AlongPath
+from service.along_path.run import FeedsAlongPath
 from service.paths.toolpaths import paths_of, with_feeds
 from stepnc_model.errors import Finding
 from stepnc_model.file_profile import FileProfile
@@ -25,14 +25,14 @@ class PathFile:
     """Reasons why tool paths of other workingsteps were not written."""
 
 
-def with_tool_paths(program: Program, along: AlongPath, profile: FileProfile) -> PathFile:
+def with_tool_paths(program: Program, along: FeedsAlongPath, profile: FileProfile) -> PathFile:
     """Write the tool paths of a program at the planned feeds into its file.
 
     Parameters
     ----------
     program : Program
         The program that was planned.
-    along : AlongPath
+    along : FeedsAlongPath
     profile : FileProfile
 
     Raises

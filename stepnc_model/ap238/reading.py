@@ -142,7 +142,9 @@ class Reader:
             for value in self.instances.values(body, "items"):
                 for item in references(value):
                     if body in self._visited and int(item) not in self._visited:
-                        self._note(int(item), f"the dimension {self._named(int(item))!r}", "name")
+                        self._note(
+                            int(item), f"the dimension {self._named(int(item))!r}", "name"
+                        )
 
     def _named(self, id: int) -> str:
         """Name of an instance, as far as it has one."""
