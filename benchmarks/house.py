@@ -25,13 +25,14 @@ ROOT = Path(__file__).parents[1]
 PRODUCT = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service")
 
 ALLOWED = {
+    "optimiser.profile.smooth_limit": "problems of paths without jumps, made by hand",
+    "optimiser.profile.tangential_limit": "problems made by hand",
     "kbe.migrations.versions.0001_outcomes.upgrade": "Alembic calls it by this name",
     "service.rest.app.application": "the application by itself, for tests and other servers",
     "service.rest.app.openapi": "the document by itself, for the pages",
     "simulator.machine.samples.Rotation": "codes of a column, for readers of samples",
     "simulator.machine.samples.TravelDirection": "codes of columns, for readers of samples",
     "simulator.motion.segments.arc": "paths made by hand, beside lines",
-    "stepnc_model.nc.neutral_blocks.neutral_blocks": "foreign code for the virtual machine",
     "stepnc_model.writeback.records": "reads what is written, for scripts",
 }
 """public names that nothing reaches, with the reason why they stay; 20 at most"""

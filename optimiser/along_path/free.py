@@ -18,13 +18,16 @@ from optimiser.along_path.runs import MachineFeeds, own_caps
 from optimiser.along_path.stretch import PathStretch, PlaceCaps
 from optimiser.certificate import LimitExcess, certify
 from optimiser.path_grid import PathEnds, PathGrid, path_grid, problem_on
-from optimiser.profile import NamedCaps
+from optimiser.profile import NamedCaps, ProfileProblem
 from optimiser.sweep import sweep_axes
 from simulator.motion.control import corner_squares
-from simulator.motion.segments import Floats
+from simulator.motion.segments import Floats, Segments
 
-STEP = 1.0
-"""Greatest distance between two stations, mm."""
+STEP, JERK_STEP = 0.1, 1.0
+"""Greatest distance between two stations, mm; with limited jerk, which takes much longer."""
+
+MOST_STATIONS = 200_000
+"""Number of stations of a run above which they lie farther apart."""
 
 SUDDEN = 1e9
 """Acceleration of an axis whose limit is not known, mm/s²."""
@@ -87,9 +90,8 @@ def free_profile(
         rows = np.arange(first, last)[segments.length[first:last] > 0.0]
         if segments.is_rapid[first] or not len(rows):
             continue
-        grid = _between_stops(path_grid(segments[rows], step=STEP))
-        ends = offsets[rows][grid.row] + grid.finish
-        found = found.plus(_of_run(grid, ends, places, caps, machine, has_jerk=has_jerk))
+        run = _RunCaps(segments[rows], offsets[rows], places, caps, machine)
+        found = found.plus(run.profile(has_jerk=has_jerk))
     return found
 
 
@@ -109,57 +111,72 @@ def _between_stops(grid: PathGrid) -> PathGrid:
     )
 
 
-def _of_run(
-    grid: PathGrid,
-    ends: Floats,
-    places: PlaceCaps,
-    caps: Caps,
-    machine: MachineFeeds,
-    *,
-    has_jerk: bool,
-) -> FreeProfile:
-    named = _named_caps(grid, ends, places, caps, machine)
-    stops = np.flatnonzero(named.least == 0.0)
-    problem = problem_on(grid, named.least, ends=PathEnds(stops=stops))
-    acceleration = np.where(
-        np.isfinite(machine.limits.acceleration), machine.limits.acceleration, SUDDEN
-    )
-    limit = grid.axis_limit(acceleration)
-    profile = sweep_axes(problem, limit)
-    proof = certify(problem, profile, caps=named, limit=limit)
-    jerk_time = None
-    if has_jerk:
+class _RunCaps:
+    """Feed moves between two rapids, with the caps along them."""
+
+    def __init__(
+        self,
+        segments: Segments,
+        offsets: Floats,
+        places: PlaceCaps,
+        caps: Caps,
+        machine: MachineFeeds,
+    ) -> None:
+        self.segments, self.offsets = segments, offsets
+        self.places, self.caps, self.machine = places, caps, machine
+
+    def profile(self, *, has_jerk: bool) -> FreeProfile:
+        """Free profile of the run."""
+        fine = float(self.segments.length.sum()) / MOST_STATIONS
+        grid, problem, named = self._problem(max(STEP, fine))
+        limit = grid.axis_limit(self._acceleration())
+        profile = sweep_axes(problem, limit)
+        proof = certify(problem, profile, caps=named, limit=limit)
+        jerk_time = self._jerk_time(max(JERK_STEP, fine)) if has_jerk else None
+        return FreeProfile(
+            time=profile.time, bound=proof.bound, jerk_time=jerk_time, worst=proof.worst
+        )
+
+    def _jerk_time(self, step: float) -> float:
         from optimiser.jerk_program import jerk_limited_profile  # noqa: PLC0415 (cvxpy)
 
-        jerk = float(machine.limits.jerk[np.isfinite(machine.limits.jerk)].min())
-        jerk_time = jerk_limited_profile(problem, limit, jerk=jerk).time
-    return FreeProfile(
-        time=profile.time, bound=proof.bound, jerk_time=jerk_time, worst=proof.worst
-    )
+        known = self.machine.limits.jerk[np.isfinite(self.machine.limits.jerk)]
+        if not len(known):
+            raise ValueError("the machine states no jerk of its axes")
+        grid, problem, _ = self._problem(step)
+        limit = grid.axis_limit(self._acceleration())
+        return jerk_limited_profile(problem, limit, jerk=float(known.min())).time
 
+    def _acceleration(self) -> Floats:
+        limits = self.machine.limits.acceleration
+        return np.where(np.isfinite(limits), limits, SUDDEN)
 
-def _named_caps(
-    grid: PathGrid, ends: Floats, places: PlaceCaps, caps: Caps, machine: MachineFeeds
-) -> NamedCaps:
-    """Caps on the squared feed at the stations of a grid, by name."""
-    begins = ends - grid.lengths
-    low = np.searchsorted(places.ends, begins, side="right")
-    high = np.searchsorted(places.ends, ends, side="left")
-    low, high = np.minimum(low, len(caps.feed) - 1), np.minimum(high, len(caps.feed) - 1)
-    used = np.unique(caps.name[low.min() : high.max() + 1])
-    squares = np.full((len(used) + 1, len(grid)), np.inf)
-    for row, number in enumerate(used):
-        feed = np.where(caps.name == number, caps.feed, np.inf)
-        least = np.minimum.reduceat(
-            np.append(feed, np.inf), np.stack((low, high + 1), axis=1).ravel()
-        )[::2]
-        squares[row, :-1] = np.minimum(squares[row, :-1], least**2)
-        squares[row, 1:] = np.minimum(squares[row, 1:], least**2)
-    corner = corner_squares(
-        grid.segments, machine.limits.acceleration, deviation=machine.tolerance
-    )
-    squares[-1, grid.boundaries] = corner
-    names = (*(NAMES[number].words for number in used), CORNER)
-    # A path that turns back stops, whatever is left by rounding.
-    squares[-1][squares[-1] < STANDING] = 0.0
-    return NamedCaps(names=names, squares=np.minimum(squares, GREATEST))
+    def _problem(self, step: float) -> tuple[PathGrid, ProfileProblem, NamedCaps]:
+        """Problem of the run at stations that are at most some distance apart."""
+        grid = _between_stops(path_grid(self.segments, step=step))
+        named = self._named(grid)
+        stops = np.flatnonzero(named.least == 0.0)
+        return grid, problem_on(grid, named.least, ends=PathEnds(stops=stops)), named
+
+    def _named(self, grid: PathGrid) -> NamedCaps:
+        """Caps on the squared feed at the stations of a grid, by name."""
+        places, caps, last = self.places, self.caps, len(self.caps.feed) - 1
+        ends = self.offsets[grid.row] + grid.finish
+        low = np.searchsorted(places.ends, ends - grid.lengths, side="right")
+        high = np.searchsorted(places.ends, ends, side="left")
+        low, high = np.minimum(low, last), np.minimum(high, last)
+        touched = np.stack((low, high + 1), axis=1).ravel()
+        used = np.unique(caps.name[low.min() : high.max() + 1])
+        squares = np.full((len(used) + 1, len(grid)), np.inf)
+        for row, number in enumerate(used):
+            feed = np.append(np.where(caps.name == number, caps.feed, np.inf), np.inf)
+            least = np.minimum.reduceat(feed, touched)[::2] ** 2
+            squares[row, :-1] = np.minimum(squares[row, :-1], least)
+            squares[row, 1:] = np.minimum(squares[row, 1:], least)
+        corner = corner_squares(
+            grid.segments, self.machine.limits.acceleration, deviation=self.machine.tolerance
+        )
+        # A path that turns back stops, whatever is left by rounding.
+        squares[-1, grid.boundaries] = np.where(corner < STANDING, 0.0, corner)
+        names = (*(NAMES[number].words for number in used), CORNER)
+        return NamedCaps(names=names, squares=np.minimum(squares, GREATEST))

@@ -15,7 +15,7 @@ import numpy as np
 
 from service.along_path.plan_run import BRIDGE
 from service.raw_stock import larger_stock_map, raw_stock_of, stock_map
-from service.simulation.setup import PreparedRun
+from service.simulation.setup import CountedIterator, PreparedRun
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import table_tool
 from simulator.motion.segments import Bools, Ints
@@ -151,8 +151,10 @@ class CodePaths:
         beginning = {
             part.row: Comment(text=part.name, workingstep=part.name) for part in self.parts
         }
-        blocks = neutral_blocks(
-            replace(self.program, moves=moves), name=self.name, before=beginning
+        blocks = CountedIterator(
+            neutral_blocks(
+                replace(self.program, moves=moves), name=self.name, before=beginning
+            )
         )
         tools = {
             number: table_tool(tool, self.material.material)
@@ -169,8 +171,8 @@ class CodePaths:
             tools=tools,
             stock=lambda _: clamped,
             raw=raw.bounds,
-            done=lambda: 0.0,
-            read=lambda: 0,
+            done=lambda: blocks.share(len(moves)),
+            read=lambda: blocks.count,
         )
 
     def line(self, part: ToolPart) -> int:

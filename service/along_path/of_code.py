@@ -12,7 +12,7 @@ from optimiser.along_path.tool_bounds import bounds_of_tool
 from optimiser.modes import Mode
 from service.along_path.code_paths import CodeBlocks, CodePaths
 from service.along_path.course import PathSource
-from service.along_path.run import AlongPath, along_path
+from service.along_path.run import FeedsAlongPath, along_path
 from service.along_path.task import task_of
 from service.chosen import (
     DEFAULT_LATHE,
@@ -27,6 +27,7 @@ from service.files import (
     require_place,
     write_atomically,
 )
+from service.numbers import tool_numbers_in
 from service.reading import Tell, silent
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
@@ -48,6 +49,8 @@ class CodeFiles:
     """Files that ``optimise`` reads and writes for NC code."""
 
     file: Path
+    name: str = ""
+    """Name of the program; empty: the name of its file."""
     tools: Path | None = None
     """Tool table or library."""
     tools_unit: FileUnit | None = None
@@ -70,7 +73,7 @@ class CodeAdvice:
     control: str
     frame: str
     """Frame in which the stock stands."""
-    along: AlongPath
+    along: FeedsAlongPath
     rewritten: RewrittenCode
     findings: tuple[Finding, ...]
     written: Path | None
@@ -89,6 +92,7 @@ def optimise_code(
     """
     require_bounds(request)
     output = _output(files)
+    name = files.name or files.file.name
     if files.tools is None or not request.stock:
         raise StepNcError("NC code names no tools and no stock: add --tools and --stock")
     if not request.material:
@@ -104,7 +108,7 @@ def optimise_code(
         program,
         machine,
         material,
-        name=files.file.name,
+        name=name,
         tools=library.by_number,
         stock=request.stock,
     )
@@ -121,7 +125,7 @@ def optimise_code(
     advice = (_advice(code, line, parts) for line, parts in along.feeds.items())
     rewritten = rewrite(program, advice, mark=request.is_marked)
     found = CodeAdvice(
-        program=files.file.name,
+        program=name,
         machine=machine,
         material=material,
         control=program.dialect.value,
@@ -157,21 +161,6 @@ def _output(files: CodeFiles) -> Path:
         if place is not None and not files.dry_run:
             require_place(place, apart_from=files.file)
     return output
-
-
-def tool_numbers_in(words: tuple[str, ...]) -> frozenset[int]:
-    """Numbers of tools given as ``T3`` or ``3``.
-
-    Raises
-    ------
-    StepNcError
-        When a word is no tool number.
-    """
-    numbers = [word.upper().removeprefix("T") for word in words]
-    for word, number in zip(words, numbers, strict=True):
-        if not number.isdecimal():
-            raise StepNcError(f"tool '{word}': expected a number, such as T3")
-    return frozenset(map(int, numbers))
 
 
 def _bounds(code: CodePaths, request: AdviceRequest) -> dict[str, CutBounds]:

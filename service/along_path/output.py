@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from service.along_path.run import AlongPath, AlongPathStep
+from service.along_path.run import AlongPathStep, FeedsAlongPath
 from service.rendering.columns import Change, Column
 from service.rendering.text import print_line, print_table
 from stepnc_model.units import kw_from_watts, mm_min_from_speed, um_from_mm
@@ -61,7 +61,7 @@ STEP: tuple[Column[AlongPathStep], ...] = (
 """Columns of the comparison of one feed per part with feeds along its path."""
 
 
-def print_along_path(along: AlongPath) -> None:
+def print_along_path(along: FeedsAlongPath) -> None:
     """Print the comparison of both runs, and what limits the feed along the path."""
     print_line("one feed per part -> along the path, both run on the virtual machine")
     total = f"{along.time_before:.1f} -> {along.time_after:.1f}"
@@ -76,7 +76,7 @@ def print_along_path(along: AlongPath) -> None:
     print_line(f"share of the path by active limit: {shares}")
 
 
-def free_words(along: AlongPath) -> str:
+def free_words(along: FeedsAlongPath) -> str:
     """State what the cut takes without a control, and how far limits are exceeded."""
     free = along.free
     chosen = sum(step.plan.time for step in along.steps if step.plan is not None)
@@ -91,7 +91,7 @@ def free_words(along: AlongPath) -> str:
     return text + ")"
 
 
-def active_shares(along: AlongPath) -> list[tuple[str, float]]:
+def active_shares(along: FeedsAlongPath) -> list[tuple[str, float]]:
     """Share of the chosen path length at each active limit, the greatest first."""
     lengths: dict[str, float] = {}
     for step in along.steps:
@@ -102,7 +102,7 @@ def active_shares(along: AlongPath) -> list[tuple[str, float]]:
     return [(words, length / whole) for words, length in ordered] if whole > 0.0 else []
 
 
-def along_path_record(along: AlongPath) -> dict[str, Any]:
+def along_path_record(along: FeedsAlongPath) -> dict[str, Any]:
     """Return the feeds along the paths as a JSON object."""
     return {
         "time_s": {"before": along.time_before, "after": along.time_after},
@@ -115,7 +115,7 @@ def along_path_record(along: AlongPath) -> dict[str, Any]:
     }
 
 
-def _free(along: AlongPath) -> dict[str, Any]:
+def _free(along: FeedsAlongPath) -> dict[str, Any]:
     free = along.free
     worst = free.worst
     return {
@@ -169,7 +169,7 @@ PROFILE = "block,part,end_of_block,feed,unit,limit\n"
 """Header of the profile as CSV."""
 
 
-def profile_lines(along: AlongPath) -> Iterator[str]:
+def profile_lines(along: FeedsAlongPath) -> Iterator[str]:
     """Yield the feeds of the changed blocks as lines of a CSV table."""
     yield PROFILE.rstrip()
     for block, parts in along.feeds.items():

@@ -1,6 +1,6 @@
 """Run of planned feeds on the virtual machine, and what it shows of the plan."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +9,7 @@ from optimiser.along_path.plan import BlockFeeds
 from optimiser.along_path.stretch import PathStretch, excess
 from service.along_path.course import NumberedBlocks, PathSource, stretches_of
 from service.along_path.trace import PathTrace, PathTraceKeeper
-from service.progress import Ticker
+from service.progress import Ticker, bar
 from simulator.machine.samples import Episode
 from simulator.machine.totals import Total, added
 from simulator.machine.virtual import VirtualMachine
@@ -41,12 +41,30 @@ class LimitStretch:
 
 
 class PartTotals:
-    """Totals of a run by parts of the program, with its signals if asked. Running state."""
+    """Totals of a run by parts of the program, with its signals if asked. Running state.
 
-    def __init__(self, ticker: Ticker, what: str, *, keeps_trace: bool) -> None:
+    Parameters
+    ----------
+    ticker : Ticker
+    what : str
+        Name of the run in messages.
+    share : callable
+        Share of the run that is done, 0 to 1, at a time of the machine in s.
+    keeps_trace : bool
+        Whether the signals are kept.
+    """
+
+    def __init__(
+        self,
+        ticker: Ticker,
+        what: str,
+        *,
+        share: Callable[[float], float],
+        keeps_trace: bool,
+    ) -> None:
         self._totals: list[Total] = []
         self._names: list[str] = [""]
-        self._ticker, self._what = ticker, what
+        self._ticker, self._what, self._share = ticker, what, share
         self._keeper = PathTraceKeeper() if keeps_trace else None
         self.findings: list[Finding] = []
         """Findings of the machine, which grow during the run."""
@@ -60,7 +78,8 @@ class PartTotals:
         self.findings = machine.findings
         if self._keeper is not None:
             self._keeper.add(episode, machine.machine)
-        self._ticker(lambda: f"{self._what}: {machine.now:.0f} s of machining")
+        now = machine.now
+        self._ticker(lambda: f"{bar(self._share(now))}  {self._what}: {now:.0f} s of machining")
 
     def trace(self) -> PathTrace | None:
         """Signals of the run; None unless they were kept."""

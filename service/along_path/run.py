@@ -75,7 +75,7 @@ class AlongPathStep:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AlongPath:
+class FeedsAlongPath:
     """Feeds along the paths of a program."""
 
     feeds: BlockFeeds
@@ -125,7 +125,9 @@ class AlongPath:
         return sum(len(parts) - 1 for parts in self.feeds.values())
 
 
-def along_path(source: PathSource, task: AlongPathTask, *, tell: Tell = silent) -> AlongPath:
+def along_path(
+    source: PathSource, task: AlongPathTask, *, tell: Tell = silent
+) -> FeedsAlongPath:
     """Plan the feeds along the paths of a program, and run the plan.
 
     Parameters
@@ -143,7 +145,9 @@ def along_path(source: PathSource, task: AlongPathTask, *, tell: Tell = silent) 
     ticker = Ticker(tell)
     given = source.prepare(0.0)
     planner = FeedPlanner(_feed_task(given.machine, task))
-    before = PartTotals(ticker, "planning", keeps_trace=task.keeps_traces)
+    before = PartTotals(
+        ticker, "planning", share=lambda _: given.done(), keeps_trace=task.keeps_traces
+    )
     for stretch in stretches_of(
         given,
         source.prepare(task.margin) if task.margin > 0.0 else None,
@@ -156,14 +160,20 @@ def along_path(source: PathSource, task: AlongPathTask, *, tell: Tell = silent) 
     idle = _idle(before) if task.keeps_idle else frozenset[str]()
     plan = planner.plan(kept=idle)
     feeds: BlockFeeds = dict(block_feeds(plan))
+    whole = max(sum(total.duration for _, total in before.rows()), 1.0)
     for _ in range(MOST_ROUNDS):
-        after = PartTotals(ticker, "running the plan", keeps_trace=task.keeps_traces)
+        after = PartTotals(
+            ticker,
+            "running the plan",
+            share=lambda now: min(now / whole, 1.0),
+            keeps_trace=task.keeps_traces,
+        )
         run = run_plan(source, feeds, control=task.control, totals=after)
         if not run.excess:
             break
         feeds = lowered(feeds, run.excess, keeps_levels=task.levels is not None)
     parts = {part.name: part for part in plan.parts}
-    return AlongPath(
+    return FeedsAlongPath(
         feeds=feeds,
         steps=tuple(
             AlongPathStep(name=name, before=one, after=other, plan=parts.get(name))

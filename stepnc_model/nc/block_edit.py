@@ -139,6 +139,7 @@ def split_block(
     for index, (piece, feed) in enumerate(zip(pieces, feeds, strict=True)):
         is_last = index == len(pieces) - 1
         words = _PieceWords(form, piece, total=total, spent=spent, is_last=is_last)
+        words.is_first = index == 0
         if index == 0:
             line = _first(text, found, words, form)
         else:
@@ -173,6 +174,8 @@ class _PieceWords:
         is_last: bool,
     ) -> None:
         self.form, self.piece, self.is_last = form, piece, is_last
+        self.is_first = False
+        """Whether the piece starts where the block starts."""
         self._total, self._spent = total, spent
         self.moved: dict[int, Decimal] = {}
         """Distance that relative words have moved each axis."""
@@ -185,13 +188,14 @@ class _PieceWords:
             value = left if self.is_last else self.piece.end[axis] - self.piece.start[axis]
             self.moved[axis] = value
             return _exact(value, style)
-        if self.is_last and written:
+        if written and (self.is_last or axis not in self.form.axes):
             return written
         return style.coordinate(self.piece.end[axis])
 
     def centre(self, axis: int, written: str) -> str:
         """Number of a word I, J or K of the piece."""
-        if self.form.is_centre_absolute:
+        is_kept = self.form.is_centre_absolute or axis not in self.form.arc
+        if written and (is_kept or self.is_first):
             return written
         return self.form.style.coordinate(self.piece.offset[axis])
 

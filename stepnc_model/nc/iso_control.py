@@ -162,7 +162,7 @@ class IsoControl:
             return False
         modes, recorder = self.modes, self.recorder
         if code is not None:
-            modes.motion = ModalMotion.LINE if code == "1" else ModalMotion.RAPID
+            modes.to_motion(ModalMotion.LINE if code == "1" else ModalMotion.RAPID)
         if feed is not None:
             recorder.flags = MoveFlag.OWN_FEED.value
             modes.set_feed(float(feed), modes.scale)

@@ -92,6 +92,8 @@ class IsoModes:
         self.is_surface = False
         self.limit: float | None = None
         self.tool: int | None = None
+        self.tool_name = ""
+        self._straight: ModalMotion | None = None
         self.cycle: dict[str, float] = {}
         self.contour: tuple[float, float] | None = None
         """Numbers of the first and last block of the contour of a cycle (G71 P Q)."""
@@ -111,7 +113,7 @@ class IsoModes:
     def forget(self) -> None:
         """Forget position and modal state, as after a program that is not here."""
         self.recorder.at = [nan, nan, nan]
-        self.motion, self.plane, self.is_absolute = None, None, None
+        self.motion, self.plane, self.is_absolute, self._straight = None, None, None, None
         self.forget_feed()
 
     def forget_feed(self) -> None:
@@ -261,8 +263,14 @@ class IsoModes:
         setattr(self, name, value)
 
     def _take_motion(self, motion: ModalMotion | CycleKind, _: BlockWords) -> None:
+        self.to_motion(motion)
+
+    def to_motion(self, motion: ModalMotion | CycleKind) -> None:
+        """Change the motion that axis words execute."""
         if motion is not self.motion:
             self.cycle = {}
+        if isinstance(motion, ModalMotion):
+            self._straight = motion
         self.motion = motion
 
     def _take_frame(self, name: str, _: BlockWords) -> None:
@@ -288,7 +296,8 @@ class IsoModes:
 
     def _cancel(self, _: BlockWords) -> None:
         if isinstance(self.motion, CycleKind):
-            self.motion = None
+            # Elsewhere cycles are a group of their own: the motion before them is in force.
+            self.motion = None if self.dialect is Dialect.LINUXCNC else self._straight
 
     def to_mode(self, mode: FeedMode) -> None:
         """Change the reference of F words, after which no feed is in force."""
@@ -424,9 +433,9 @@ class IsoModes:
         number = words.values.pop("T", None)
         is_macro = "T" in words.macros
         if is_macro:
-            self.tool = None
+            self.tool, self.tool_name = None, ""
         elif number is not None:
-            self.tool = int(number)
+            self.tool, self.tool_name = int(number), ""
         if self.is_lathe and self.dialect in {Dialect.FANUC, Dialect.HAAS}:
             if self.tool is not None and number is not None:
                 self.to_tool(self.tool // 100 if self.tool >= 100 else self.tool)
@@ -437,7 +446,8 @@ class IsoModes:
 
     def to_tool(self, number: int | None) -> None:
         """Change the tool, after which its height is not known."""
-        self.recorder.setting = replace(self.recorder.setting, tool=number)
+        setting = self.recorder.setting
+        self.recorder.setting = replace(setting, tool=number, tool_name=self.tool_name)
         self.recorder.at = [nan] * 3 if self.is_lathe else [*self.recorder.at[:2], nan]
 
     # Moves.

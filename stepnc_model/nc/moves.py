@@ -139,7 +139,9 @@ class ModalSetting:
     """Modal state that consecutive moves share."""
 
     tool: int | None = None
-    """Number of the tool in the spindle; None if none was called."""
+    """Number of the tool in the spindle; None if none was called, or one by its name."""
+    tool_name: str = ""
+    """Name of a tool that is called by its name."""
     spindle: float | None = None
     """Spindle speed, rev/s, negative counter-clockwise (M4); None if not known."""
     surface: float | None = None
@@ -263,6 +265,12 @@ class NcMoves:
         """(N,) array: number of the tool; -1 if none was called."""
         numbers = [-1 if each.tool is None else each.tool for each in self.settings]
         return np.array(numbers or [-1], np.int32)[self.rows["setting"]]
+
+    @cached_property
+    def has_tool(self) -> NDArray[np.bool_]:
+        """(N,) array: whether a tool was called, by its number or its name."""
+        called = [each.tool is not None or each.tool_name != "" for each in self.settings]
+        return np.array(called or [False])[self.rows["setting"]]
 
     @cached_property
     def frame(self) -> NDArray[np.int32]:

@@ -86,7 +86,7 @@ def recognise(data: bytes) -> RecognisedControl:
 
     Examples
     --------
-    >>> recognise(b"%\\nO1234 (PART)\\nG21 G54\\nT1 M6\\n").dialect.value
+    >>> recognise(b"%\nO1234 (PART)\nG21 G54\nT1 M6\n").dialect.value
     'fanuc'
     """
     head = data[:LOOKED_AT]

@@ -194,6 +194,10 @@ class _Rewriting:
             return "its start is not known"
         start, end = self.moves.start[rows], self.moves.end[rows]
         centre, turn = self.moves.centre[rows], self.moves.turn[rows]
+        settings = {self.moves.settings[index] for index in self.moves.rows["setting"][rows]}
+        if all(each.is_relative and not each.is_centre_absolute for each in settings):
+            # Distances mean the same wherever they begin.
+            start, end, centre = start - start, end - start, centre - start
         same = (
             (np.abs(start - start[0]).max() < SAME)
             and (np.abs(end - end[0]).max() < SAME)

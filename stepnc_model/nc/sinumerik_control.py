@@ -41,8 +41,8 @@ CYCLES = {
     "CYCLE88": CycleKind.BORE_STOP,
     "CYCLE89": CycleKind.BORE,
 }
-DEPTH_OF_PECK, BREAKS = 6, 11
-"""Indices of the arguments FDPR or DAM, and VARI, of CYCLE83."""
+FIRST_DEPTH, DEPTH_OF_PECK, BREAKS = 5, 6, 11
+"""Indices of the arguments FDEP, FDPR and VARI of CYCLE83."""
 
 ROUNDING = ("CHF", "CHR", "RND", "RNDM")
 STRANGE_ENDS = ("ANG", "AP", "RP", "I1", "J1", "K1")
@@ -187,11 +187,10 @@ class SinumerikControl(IsoControl):
             words.values["S"] = words.values.pop("S1")
         if "M1" in words.values:
             words.functions.append(round(10.0 * min(words.values.pop("M1"), 1e6)))
-        if words.macros.pop("T", None) is not None:
-            self.modes.tool = None
-            self.remarks.note(
-                self.recorder.block, "a tool called by its name has no number: name its data"
-            )
+        name = words.macros.pop("T", None)
+        if name is not None:
+            self.modes.tool, self.modes.tool_name = None, name.strip('"')
+            self.remarks.note(self.recorder.block, "the tool has a name and no number")
             if self.is_lathe:
                 self.modes.to_tool(None)
         for name in STRANGE_ENDS:
@@ -229,7 +228,8 @@ class SinumerikControl(IsoControl):
         bottom = surface - abs(_given(depth, 0.0)) if bottom == inf else bottom
         kind, step, above = CYCLES[name], 0.0, nan
         if name == "CYCLE83":
-            step = _given(numbers[DEPTH_OF_PECK], 0.0)
+            first = _given(numbers[FIRST_DEPTH], surface)
+            step = _given(numbers[DEPTH_OF_PECK], surface - first)
             kind = (
                 CycleKind.PECK if _given(numbers[BREAKS], 0.0) == 1.0 else CycleKind.CHIP_BREAK
             )

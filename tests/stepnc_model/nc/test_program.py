@@ -235,3 +235,24 @@ def test_short_blocks_mean_the_same_as_with_a_comment(control: Dialect) -> None:
     )
     assert short.moves.rows.tobytes() == long.moves.rows.tobytes()
     assert short.moves.settings == long.moves.settings
+
+
+def test_a_tool_may_have_a_name() -> None:
+    for control, code in (
+        (Dialect.SINUMERIK, b'T="MILL 10"\nM6\nG0 X0 Y0 Z0\nG1 X1 F100\nM30\n'),
+        (Dialect.HEIDENHAIN, b'TOOL CALL "MILL 10" Z S900\nL X+0 Y+0 Z+0 FMAX\nL X+1 F100\n'),
+    ):
+        program = read_program(code, dialect=control)
+        move = program.moves.move(len(program.moves) - 1)
+        assert (move.setting.tool, move.setting.tool_name) == (None, "MILL 10")
+        assert [each.message.split(":")[0] for each in program.findings] == [
+            "the tool has a name and no number"
+        ]
+
+
+def test_the_motion_before_a_cycle_is_in_force_after_it() -> None:
+    code = b"G90 G0 X0. Y0. Z9.\nG81 X1. Z-1. R1. F60.\nG80\nZ20.\nG1 Z3.\n"
+    fanuc = read_program(code, dialect=Dialect.FANUC)
+    assert fanuc.moves.kind[-2:].tolist() == [MoveKind.RAPID, MoveKind.LINE]
+    linuxcnc = read_program(code, dialect=Dialect.LINUXCNC)
+    assert linuxcnc.moves.kind[-2:].tolist() == [MoveKind.UNKNOWN, MoveKind.LINE]

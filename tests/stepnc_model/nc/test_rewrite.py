@@ -158,6 +158,12 @@ def test_a_subprogram_called_with_two_feeds_refuses_the_advice_before_it() -> No
     assert reasons == {10: "a later block is called with different feeds"}
 
 
+def test_a_relative_block_is_divided_for_all_of_its_calls() -> None:
+    code = b"O1\n" + ISO + b"M98 P2 L2\nG90 X0. F70.\nM30\nO2\nG91 G1 X10. F90.\nM99\n"
+    result = rewritten(code, Dialect.FANUC, (10, (0.3, 1.0), (50.0, 60.0)))
+    assert result.data == code.replace(b"G91 G1 X10. F90.\n", b"G91 G1 X3. F50.\nG1 X7. F60.\n")
+
+
 def test_several_pieces_of_advice_on_one_block_give_the_least() -> None:
     code = ISO + b"G1 X10\n"
     result = rewritten(

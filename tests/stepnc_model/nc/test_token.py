@@ -31,7 +31,8 @@ def test_tokens_laid_end_to_end_are_the_block(drawn: bytes | str, control: Diale
 
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize(
-    "text", ["X[", "X[a", "#", "((", '"', "A=(", "Q1=", "o1 a[", "IF [", "X#"]
+    "text",
+    ["X[", "X[a", "#", "((", '"', "A=(", "Q1=", "o1 a[", "IF [", "X#", "#<a", "o<", "aX[b"],
 )
 def test_a_long_line_takes_no_more_than_its_length(control: Dialect, text: str) -> None:
     begun = time.perf_counter()
