@@ -10,6 +10,7 @@ from annotated_types import Interval, Len, MaxLen
 from optimiser.modes import Free, Mode
 from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE
 from service.requests.fields import LONGEST_NAME, About, Request
+from simulator.motion.model_name import ControlModelName
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.units import AUTO, PROFILES
@@ -193,6 +194,14 @@ class AdviceRequest(Request):
             flag="--levels", metavar="K",
         ),
     ] = None  # fmt: skip
+    motion: Annotated[
+        ControlModelName,
+        About(
+            "motion control along the path, which decides how early a feed is commanded: fir, "
+            "junction or exact-stop",
+            flag="--motion",
+        ),
+    ] = ControlModelName.FIR
     is_jerk_limited: Annotated[
         bool,
         About(
