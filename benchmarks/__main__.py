@@ -3,6 +3,7 @@
 from benchmarks import (
     advice,
     agent,
+    along_path,
     breakage,
     closed_loop,
     cluster,
@@ -33,6 +34,7 @@ for title, bench in (
     ("Part 21", part21),
     ("Workingsteps", workingsteps),
     ("Feed along the path", feed_profile),
+    ("Feeds of the samples", along_path),
     ("Whole process", process),
     ("Plan beside run", promised),
     ("Pockets", pockets),

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
+from stepnc_model.ap238.view import AimView, is_aim
 from stepnc_model.binding import Model
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import (
@@ -25,6 +26,7 @@ from stepnc_model.entities.executables import (
     WhileStatement,
     Workplan,
 )
+from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.entities.operations import MachiningOperation
 from stepnc_model.entities.profiles import MachinedSurface, SurfaceTextureParameter
 from stepnc_model.entities.workpiece import Material, Workpiece
@@ -58,9 +60,6 @@ T = TypeVar("T")
 
 MAX_EXECUTABLES = 100_000
 """Greatest number of executables; mutually nested workplans could grow without bound."""
-
-AIM_KEYWORDS = ("PRODUCT_DEFINITION", "MACHINING_WORKPLAN", "MACHINING_PROJECT")
-"""Keywords that occur in AP238 files but not in ISO 14649 files."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,8 +126,15 @@ class Program:
         self.stock = stock
         """Raw part given by the user, for a file that does not describe one."""
         self.units = units
-        self.file = file
-        self.model = Model(file)
+        self.source = file
+        """File as it was read: of ISO 14649, or of AP238."""
+        self.file = _nouns_of(file)
+        """Instances of ISO 14649: the file itself, or what an AP238 file describes."""
+        if self.file is not file and units is not ISO:
+            raise SchemaError(
+                f"an AP238 file names its units: units '{units.name}' do not apply"
+            )
+        self.model = Model(self.file)
         self._faults: dict[int, SchemaError] = {}
         self.executables = tuple(self._walk())
         self.workingsteps = tuple(self._workingsteps())
@@ -136,6 +142,7 @@ class Program:
             dict[int, list[tuple[SurfaceTextureParameter, MachinedSurface]]] | None
         ) = None
         self._by_feature: dict[int, list[ResolvedWorkingstep]] = {}
+        self._drilling, self._other = _technologies(self.workingsteps)
         for step in self.workingsteps:
             for feature in step.features:
                 self._by_feature.setdefault(int(feature), []).append(step)
@@ -152,6 +159,22 @@ class Program:
     def get(self, ref: Ref[T]) -> T:
         """Entity behind a reference."""
         return self.model.get(ref)
+
+    def units_of(self, technology: Ref[Entity]) -> UnitProfile:
+        """Units of the feeds and speeds of a technology.
+
+        Raises
+        ------
+        SchemaError
+            If drilling and another operation share the technology, and the profile gives them
+            different units.
+        """
+        if self.units.drilling_feed is None or int(technology) not in self._drilling:
+            return self.units
+        if int(technology) in self._other:
+            message = "drilling and milling share it, and their feeds have different units"
+            raise self.error(message, technology, "feedrate")
+        return self.units.for_drilling()
 
     def line(self, ref: Ref[Entity]) -> int:
         """Line of an instance, counted from 1."""
@@ -293,10 +316,6 @@ class Program:
         plans = dict(self.model.of_type(Workplan))
         inner = {int(element) for plan in plans.values() for element in plan.its_elements}
         outer = [ref for ref in plans if int(ref) not in inner]
-        if len(outer) != 1 and any(self.file.ids_of(keyword) for keyword in AIM_KEYWORDS):
-            raise SchemaError(
-                "AP238 (AIM) programs are not supported: convert the file to ISO 14649"
-            )
         if len(outer) != 1:
             raise SchemaError(
                 f"no PROJECT, and {len(outer)} workplans that are not nested in another: "
@@ -407,6 +426,13 @@ class Program:
         )
 
 
+def _nouns_of(file: Part21File) -> Part21File:
+    """File whose instances are those of ISO 14649."""
+    if isinstance(file, AimView) or not is_aim(file):
+        return file
+    return AimView.of(file)
+
+
 @dataclass(frozen=True, slots=True)
 class _WalkVisit:
     """Step of the walk: entering an executable, or leaving it."""
@@ -415,6 +441,16 @@ class _WalkVisit:
     level: int
     setup: Ref[Setup] | None
     is_leaving: bool = False
+
+
+def _technologies(steps: tuple[ResolvedWorkingstep, ...]) -> tuple[set[int], set[int]]:
+    """Instance numbers of the technologies of drilling, and of all other operations."""
+    drilling: set[int] = set()
+    other: set[int] = set()
+    for step in steps:
+        is_drilling = isinstance(step.operation, DrillingTypeOperation)
+        (drilling if is_drilling else other).add(int(step.technology_ref))
+    return drilling, other
 
 
 def _children(entity: Entity | None) -> tuple[Ref[Entity], ...]:

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from optimiser.along_path.caps import NAMES, CapName
+from optimiser.along_path.free import FreeProfile, free_profile
 from optimiser.along_path.pieces import FeedPieces, PieceRules, pieces_of
 from optimiser.along_path.runs import MachineFeeds, commands_of, own_caps
 from optimiser.along_path.stretch import PathStretch, PlaceCaps, excess, place_caps
@@ -48,6 +49,8 @@ class FeedTask:
     rules: PieceRules
     levels: int | None = None
     """Largest number of feeds in each part of the program; None: any."""
+    has_jerk: bool = False
+    """Whether the free profile with limited jerk is computed too."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,6 +70,8 @@ class PartPlan:
     """Lower bound of their time within the same caps, s."""
     window_change: float
     """Change of the time in which the control's filter settles, s."""
+    free: FreeProfile
+    """Profile without a control: what blocks and filter cost."""
     feeds: int
     """Number of different feeds."""
     shares: Mapping[CapName, tuple[float, float]]
@@ -100,6 +105,7 @@ class FeedPlanner:
         self.task = task
         self._pieces: dict[str, list[FeedPieces]] = {}
         self._bounds: dict[str, float] = {}
+        self._free: dict[str, FreeProfile] = {}
         self._given_windows: dict[str, float] = {}
         self._excess: dict[str, float] = {}
         """Greatest programmed feed over what the process permits, by part."""
@@ -122,6 +128,9 @@ class FeedPlanner:
         self._pieces.setdefault(name, []).append(pieces)
         self._locked += commands.greatest_locked.tolist()
         self._bounds[name] = self._bounds.get(name, 0.0) + self._least_time(stretch, places)
+        machine, has_jerk = self.task.machine, self.task.has_jerk
+        free = free_profile(stretch, places, machine, has_jerk=has_jerk)
+        self._free[name] = self._free.get(name, FreeProfile()).plus(free)
         most = float(excess(stretch).max(initial=0.0))
         self._excess[name] = max(most, self._excess.get(name, 0.0))
         given = self._given_windows.get(name, 0.0)
@@ -194,6 +203,7 @@ class FeedPlanner:
             unlimited_time=float((free.weight / free.rate).sum()),
             bound=self._bounds[name],
             window_change=self._window(chosen) - self._given_windows[name],
+            free=self._free[name],
             feeds=len(np.unique(chosen.rate)),
             shares=shares,
         )

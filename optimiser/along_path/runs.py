@@ -108,7 +108,7 @@ def commands_of(stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds) 
             runs.append(np.full(len(found[-1].ends), -1))
             continue
         within = caps.at(rows)
-        run = _Run(
+        run = _FeedRun(
             segments[first:last],
             offsets[first : last + 1],
             places.ends[rows],
@@ -174,7 +174,7 @@ class _Smoothed:
     """Time of the run with the settling of the filter, s."""
 
 
-class _Run:
+class _FeedRun:
     """Feed moves between two rapids, with what bounds their feeds."""
 
     def __init__(

@@ -125,10 +125,10 @@ def stretches_of(
     SimulationError
         When the machine cannot run the program.
     """
-    run = _Run(prepared, control, log, watch)
+    run = _CourseRun(prepared, control, log, watch)
     others = None
     if larger is not None:
-        others = _Run(larger, control, BlockLog(larger.blocks), _ignore).stretches()
+        others = _CourseRun(larger, control, BlockLog(larger.blocks), _ignore).stretches()
     for episode, stretch in run.stretches():
         near = None if others is None else next(others)[0]
         course = episode.course
@@ -164,7 +164,7 @@ def _ignore(_episode: Episode, _machine: VirtualMachine) -> None:
     """Ignore an episode."""
 
 
-class _Run:
+class _CourseRun:
     """Run of a program whose stretches are paired with the acts that request them."""
 
     def __init__(

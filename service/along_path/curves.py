@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from service.along_path.plan_run import LimitStretch
-from service.along_path.run import AlongPath
+from service.along_path.run import FeedsAlongPath
 from service.along_path.trace import PathSignal, PathTrace
 from service.buckets import BucketedRun
 from simulator.motion.segments import Floats, Ints
@@ -26,7 +26,7 @@ PLACES = 3
 """Decimal places of lengths, times and values."""
 
 
-def curves_record(along: AlongPath) -> dict[str, Any] | None:
+def curves_record(along: FeedsAlongPath) -> dict[str, Any] | None:
     """Return the curves of both runs as a JSON object; None if no signals were kept.
 
     Each curve has at most :data:`MOST_BUCKETS` stretches, hence twice as many points.

@@ -12,7 +12,7 @@ from optimiser.along_path.tool_bounds import bounds_of_tool
 from optimiser.modes import Mode
 from service.along_path.code_paths import CodeBlocks, CodePaths
 from service.along_path.course import PathSource
-from service.along_path.run import AlongPath, along_path
+from service.along_path.run import FeedsAlongPath, along_path
 from service.along_path.task import task_of
 from service.chosen import (
     DEFAULT_LATHE,
@@ -73,7 +73,7 @@ class CodeAdvice:
     control: str
     frame: str
     """Frame in which the stock stands."""
-    along: AlongPath
+    along: FeedsAlongPath
     rewritten: RewrittenCode
     findings: tuple[Finding, ...]
     written: Path | None

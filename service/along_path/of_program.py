@@ -8,7 +8,7 @@ from optimiser.advice import AdviceStatus, Plan
 from optimiser.along_path.bounds import bounds_of
 from optimiser.along_path.caps import CutBounds
 from service.along_path.course import BlockLog, Part, PathSource
-from service.along_path.run import AlongPath, along_path
+from service.along_path.run import FeedsAlongPath, along_path
 from service.along_path.task import task_of
 from service.chosen import require_axes
 from service.paths.toolpaths import paths_of, with_feeds
@@ -29,7 +29,7 @@ def along_program(
     *,
     keeps_traces: bool = False,
     tell: Tell = silent,
-) -> AlongPath:
+) -> FeedsAlongPath:
     """Plan the feeds along the paths of a program that contains the advice of its plan.
 
     Parameters
@@ -66,14 +66,14 @@ def along_program(
     return along_path(PathSource(prepare=prepare, bounds=bounds_at), task, tell=tell)
 
 
-def nc_lines_along(program: Program, along: AlongPath, control: Dialect) -> Iterator[str]:
+def nc_lines_along(program: Program, along: FeedsAlongPath, control: Dialect) -> Iterator[str]:
     """Generate NC code of a program at the planned feeds, line by line.
 
     Parameters
     ----------
     program : Program
         The program that was planned.
-    along : AlongPath
+    along : FeedsAlongPath
     control : Dialect
     """
     paths = with_feeds(paths_of(program), keep_going=False)

@@ -7,6 +7,7 @@ more than the whole block did, its feed is lowered, and the plan runs once more.
 
 from dataclasses import dataclass
 
+from optimiser.along_path.free import FreeProfile
 from optimiser.along_path.pieces import PieceRules
 from optimiser.along_path.plan import (
     BlockFeeds,
@@ -44,6 +45,8 @@ class AlongPathTask:
     """Rounding of corners by the control that is always permitted, mm."""
     greatest: float | None = None
     """Greatest feed that the user permits, mm/s; None: that of the machine."""
+    has_jerk: bool = False
+    """Whether the free profile with limited jerk is computed too."""
     keeps_traces: bool = False
     """Whether feed, force and power of both runs are kept for plots."""
 
@@ -70,7 +73,7 @@ class AlongPathStep:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AlongPath:
+class FeedsAlongPath:
     """Feeds along the paths of a program."""
 
     feeds: BlockFeeds
@@ -105,12 +108,22 @@ class AlongPath:
         return sum(step.planned_time for step in self.steps)
 
     @property
+    def free(self) -> FreeProfile:
+        """Free profile of all parts together."""
+        whole = FreeProfile()
+        for step in self.steps:
+            whole = whole if step.plan is None else whole.plus(step.plan.free)
+        return whole
+
+    @property
     def parts(self) -> int:
         """Number of parts into which blocks were split beyond their number."""
         return sum(len(parts) - 1 for parts in self.feeds.values())
 
 
-def along_path(source: PathSource, task: AlongPathTask, *, tell: Tell = silent) -> AlongPath:
+def along_path(
+    source: PathSource, task: AlongPathTask, *, tell: Tell = silent
+) -> FeedsAlongPath:
     """Plan the feeds along the paths of a program, and run the plan.
 
     Parameters
@@ -155,7 +168,7 @@ def along_path(source: PathSource, task: AlongPathTask, *, tell: Tell = silent) 
             break
         feeds = lowered(feeds, run.excess, keeps_levels=task.levels is not None)
     parts = {part.name: part for part in plan.parts}
-    return AlongPath(
+    return FeedsAlongPath(
         feeds=feeds,
         steps=tuple(
             AlongPathStep(name=name, before=one, after=other, plan=parts.get(name))
@@ -183,4 +196,5 @@ def _feed_task(machine: Machine, task: AlongPathTask) -> FeedTask:
         ),
         rules=PieceRules(block_time=limits.block_time),
         levels=task.levels,
+        has_jerk=task.has_jerk,
     )

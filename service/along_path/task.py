@@ -27,6 +27,7 @@ def task_of(request: AdviceRequest, machine: Machine) -> AlongPathTask:
         control=control,
         greatest=None if greatest is None else speed_from_mm_min(greatest),
         levels=request.levels,
+        has_jerk=request.is_jerk_limited,
         margin=request.stock_margin_mm,
         tolerance=request.corner_tolerance_mm,
     )

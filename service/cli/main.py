@@ -197,10 +197,19 @@ def _add_check(commands: Commands) -> None:
 def _add_convert(commands: Commands) -> None:
     """Add the command ``stepnc convert``."""
     parser = commands.add_parser(
-        "convert", help="convert optimisation records to the other profile without loss"
+        "convert",
+        help="convert a program to AP238 or ISO 14649, or its records to the other profile",
     )
     parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
-    parser.add_argument("--profile", required=True, help="optimisation or standard")
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument(
+        "--to",
+        metavar="STANDARD",
+        help="write the program by another standard: ap238 or iso14649",
+    )
+    what.add_argument(
+        "--profile", help="write the optimisation records in profile optimisation or standard"
+    )
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
     parser.set_defaults(run=_convert)
 
@@ -276,7 +285,9 @@ def _optimise(options: argparse.Namespace) -> int:
     else:
         from service.plan_output import print_plan
 
-        print_plan(outcome.plan, confirmation, outcome.along)
+        print_plan(outcome.plan, confirmation, outcome.along, outcome.told)
+    if outcome.plan.has_bad_data:
+        return BAD_INPUT
     if outcome.plan.is_infeasible:
         return INFEASIBLE
     is_passed = confirmation is not None and bool(confirmation.passed)
@@ -356,9 +367,11 @@ def _check_code(options: argparse.Namespace) -> int:
 def _check_program(options: argparse.Namespace) -> int:
     """Check a STEP-NC program."""
     from service.contents import check
-    from service.terminal import write_out
+    from service.paths.remarks import tell_remarks
+    from service.terminal import tell, write_out
 
-    contents = check(options.file, units=options.units)
+    contents = check(options.file, units=options.units, tell=tell)
+    tell_remarks(contents.remarks, tell)
     if options.json:
         from service.contents_output import contents_json
 
@@ -367,15 +380,23 @@ def _check_program(options: argparse.Namespace) -> int:
         from service.contents_output import print_contents
 
         print_contents(contents)
-    return OK if contents.is_usable else BAD_INPUT
+    return OK if contents.is_of_use else BAD_INPUT
 
 
 def _convert(options: argparse.Namespace) -> int:
     """Run the command ``stepnc convert``."""
     from service import usecases
+    from service.conversion import Standard, convert_to
     from service.requests.fields import member_of
     from service.terminal import tell
     from stepnc_model.file_profile import FileProfile
+
+    if options.to is not None:
+        standard = member_of(Standard, options.to, "standard")
+        for finding in convert_to(options.file, standard=standard, output=options.output):
+            tell(str(finding))
+        tell(f"{options.output}: written by standard '{standard.value}'")
+        return OK
 
     profile = member_of(FileProfile, options.profile, "profile")
     usecases.convert(options.file, profile=profile, output=options.output)

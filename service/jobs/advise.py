@@ -15,7 +15,7 @@ from service.storage.files import FileKind
 from service.usecases import AdviceFiles, optimise
 
 if TYPE_CHECKING:
-    from service.along_path.run import AlongPath
+    from service.along_path.run import FeedsAlongPath
 
 
 def run(task: RunningJob) -> None:
@@ -107,7 +107,7 @@ def _advise_code(
     })
 
 
-def _keep_curves(task: RunningJob, along: "AlongPath") -> None:
+def _keep_curves(task: RunningJob, along: "FeedsAlongPath") -> None:
     """Keep feed, force and power of both runs for plots."""
     from service.along_path.curves import curves_record  # noqa: PLC0415 (numpy)
 

@@ -12,12 +12,12 @@ from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE
 from service.requests.fields import LONGEST_NAME, About, Request
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.units import PROFILES
+from stepnc_model.units import AUTO, PROFILES
 
 Name = Annotated[str, MaxLen(LONGEST_NAME)]
 
-Units = StrEnum("Units", {name.replace("-", "_"): name for name in PROFILES})  # type: ignore[misc]
-"""Unit profiles of files, by name."""
+Units = StrEnum("Units", {name.replace("-", "_"): name for name in (*PROFILES, AUTO)})  # type: ignore[misc]
+"""Unit profiles of files, by name, and ``auto``."""
 
 ISO = Units("iso")
 """Unit profile that follows the standard."""
@@ -36,7 +36,14 @@ MaterialName = Annotated[
         flag="--material", examples=("c45",),
     ),
 ]  # fmt: skip
-FileUnits = Annotated[Units, About("units of feeds and speeds in the file", flag="--units")]
+FileUnits = Annotated[
+    Units,
+    About(
+        "units of feeds and speeds in the file; auto: the only ones in which all numbers are "
+        "plausible",
+        flag="--units",
+    ),
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -129,6 +136,39 @@ class AdviceRequest(Request):
             "whether tools cut over centre, by their ids", examples=({"END MILL 10MM": True},)
         ),
     ] = field(default_factory=dict, hash=False)
+    given: Annotated[
+        tuple[Name, ...],
+        MaxLen(10_000),
+        About(
+            "value that the file lacks, in its units: #INSTANCE.attribute=value; kept out of "
+            "the file unless --in-place; repeatable",
+            flag="--set", metavar="VALUE", examples=("#46.depth=12",),
+        ),
+    ] = ()  # fmt: skip
+    teeth: Annotated[
+        tuple[Name, ...],
+        MaxLen(1000),
+        About(
+            "number of teeth that the file lacks: TOOL=NUMBER; repeatable",
+            flag="--teeth", metavar="TOOL=N", examples=("T3=2",),
+        ),
+    ] = ()  # fmt: skip
+    feed_mm_min: Annotated[
+        float | None,
+        Interval(gt=0.0, le=1e5),
+        About(
+            "feed of milling technologies that give none, in mm/min", unit="mm/min",
+            name="feed", flag="--feed", metavar="MM_MIN",
+        ),
+    ] = None  # fmt: skip
+    keep_going: Annotated[
+        bool,
+        About(
+            "advise what can be advised and leave every other workingstep as it is; exit 3 "
+            "where the data of one are bad, 4 where one is infeasible",
+            flag="--keep-going",
+        ),
+    ] = False
     allow_plunge: Annotated[
         bool,
         About(
@@ -153,6 +193,20 @@ class AdviceRequest(Request):
             flag="--levels", metavar="K",
         ),
     ] = None  # fmt: skip
+    is_jerk_limited: Annotated[
+        bool,
+        About(
+            "also compute the profile along the path with the jerk of the axes limited",
+            flag="--jerk",
+        ),
+    ] = False
+    writes_toolpaths: Annotated[
+        bool,
+        About(
+            "with --along-path: write each path into the program, with its feeds along it",
+            flag="--write-toolpaths",
+        ),
+    ] = False
     stock_margin_mm: Annotated[
         float,
         Interval(ge=0.0, le=100.0),

@@ -82,13 +82,27 @@ class ExecutableView(View):
     level: int
 
 
+class UseView(View):
+    """Use of a program: tool paths, NC code, simulation or advice."""
+
+    name: str
+    is_possible: bool
+    is_possible_with_material: bool = Field(
+        description="only the name of a material is missing, which a request can give"
+    )
+    reason: str = Field(description="why it is not possible; empty where it is")
+
+
 class ContentsView(View):
     """Contents and findings of a program."""
 
     program: str
     schemas: list[str]
     instances: int
-    is_usable: bool
+    is_usable: bool = Field(
+        description="feeds can be advised or NC code written; a material may have to be named"
+    )
+    uses: list[UseView]
     executables: list[ExecutableView]
     workingsteps: list[WorkingstepView]
     findings: list[FindingView]

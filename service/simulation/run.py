@@ -9,6 +9,7 @@ from service.buckets import BucketedRun
 from service.chosen import require_axes
 from service.files import require_place
 from service.numbers import numbers_in
+from service.paths.remarks import tell_remarks
 from service.progress import Ticker, bar
 from service.raw_stock import KEPT_SUFFIX, file_of_stock
 from service.reading import Tell, silent
@@ -77,6 +78,8 @@ class Simulation:
     totals: tuple[tuple[str, Total], ...]
     """Totals by workingstep in order of execution; the first is for the time before them."""
     findings: tuple[Finding, ...]
+    told: tuple[Finding, ...] = ()
+    """Those of the findings that were told while it ran."""
     samples: int = 0
     """Number of samples written."""
     tools: Mapping[int, LoadedTool] = field(default_factory=dict)
@@ -110,6 +113,7 @@ def simulate(
         When a file, a name, a number or an output is invalid.
     """
     prepared, virtual = waiting_machine(request, files, tell=tell)
+    tell_remarks(prepared.remarks, tell)
     if files.kept is not None and prepared.raw is None:
         raise StepNcError(f"{files.kept}: no stock is known that could be kept")
     disturbance = _disturbance(request, virtual.machine)
@@ -132,7 +136,13 @@ def simulate(
         control=request.control,
         material=prepared.material,
         totals=tuple(zip(("", *virtual.workingsteps), run.totals, strict=True)),
-        findings=(*prepared.findings, *virtual.findings, *untouched(prepared, virtual, run)),
+        findings=(
+            *prepared.findings,
+            *(each for each in prepared.remarks if each not in prepared.findings),
+            *virtual.findings,
+            *untouched(prepared, virtual, run),
+        ),
+        told=prepared.remarks,
         tools=virtual.setup.tools or {},
         samples=0 if run.file is None else run.file.rows,
         trace=None if run.trace is None else run.trace.trace(),

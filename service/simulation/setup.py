@@ -20,11 +20,13 @@ from simulator.tool_files.read import read_tools
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Finding, PostError, Severity, StepNcError
 from stepnc_model.part21.values import Ref
+from stepnc_model.plausibility import refusal
 from stepnc_model.post import blocks as post
 from stepnc_model.post.dialect import SUFFIXES, Dialect
 from stepnc_model.post.dialects import read_blocks
 from stepnc_model.post.neutral import blocks_of, tool_numbers
 from stepnc_model.program import Program, Stock
+from stepnc_model.toolpath.remarks import remarks
 from stepnc_model.toolpath.task import stock_of
 
 T = TypeVar("T")
@@ -52,6 +54,8 @@ class PreparedRun:
     program: Program | None = None
     """STEP-NC program; None for NC code alone."""
     findings: tuple[Finding, ...] = ()
+    remarks: tuple[Finding, ...] = ()
+    """Warnings about the program, the same for every command."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,7 +103,7 @@ def from_program(
     StepNcError
         When the file or a name is invalid.
     """
-    program = read_program(file, units=units, name=name)
+    program = read_program(file, units=units, name=name, tell=tell)
     match = material_for(material, program)
     tell(f"material: {match.reason}")
     return prepared_program(program, machine_for(machine, program), match, tell=tell)
@@ -128,8 +132,11 @@ def prepared_program(
     Raises
     ------
     StepNcError
-        When a tool path cannot be generated.
+        When a tool path cannot be generated, or the numbers cannot be in the program's units.
     """
+    error = refusal(program, program.workingsteps)
+    if error is not None:
+        raise error
     paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
     numbers = tool_numbers(paths.paths)
     steps = sum(len(path.steps) for path in paths.paths)
@@ -147,6 +154,7 @@ def prepared_program(
         read=lambda: blocks.count,
         program=program,
         findings=paths.findings,
+        remarks=remarks(program, paths.paths),
     )
 
 

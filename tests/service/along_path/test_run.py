@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from service.along_path.run import AlongPath
+from service.along_path.run import FeedsAlongPath
 from service.requests.advice import AdviceRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, simulate
@@ -29,7 +29,7 @@ def planned(sample: Path, folder: Path, levels: int | None = None) -> OptimiseRe
     return optimise(request, AdviceFiles(file=sample, output=folder / name))
 
 
-def found(sample: Path, folder: Path, levels: int | None = None) -> AlongPath:
+def found(sample: Path, folder: Path, levels: int | None = None) -> FeedsAlongPath:
     """Feeds along the paths of a sample."""
     along = planned(sample, folder, levels).along
     assert along is not None
