@@ -155,7 +155,7 @@ def test_a_program_of_the_wrong_kind_is_refused_in_words(
 def test_a_step_nc_program_gets_feeds_along_its_paths(client: httpx.Client, done: Done) -> None:
     wish = {
         "machine": "vmc15", "is_along_path": True, "levels": 3, "nc_control": "linuxcnc",
-        "stock_margin_mm": 0.5, "max_feed_mm_min": 3000.0,
+        "max_feed_mm_min": 5000.0,
     }  # fmt: skip
     path = f"/v1/programs/{done.program}/advice"
     id = made(client.post(path, json=wish))
@@ -169,7 +169,7 @@ def test_a_step_nc_program_gets_feeds_along_its_paths(client: httpx.Client, done
     assert "Along the paths" in client.get(f"/v1/advice/{id}/report").text
     code = client.get(f"/v1/advice/{id}/nc").text
     feeds = {float(word) for word in re.findall(r"(?<=\bF)[0-9.]+", code)}
-    assert max(feeds) <= 3000.0
+    assert max(feeds) == 5000.0
     assert len(feeds) > 1
 
 

@@ -31,7 +31,7 @@ def test_a_program_of_the_wrong_kind_is_refused_by_its_name(data_folder: DataFol
     made = programs.add(data_folder, b"G1 X1", name="a.ngc", owner="anna", kind=code)
     assert programs.get(data_folder, made.id).kind is code
     assert programs.require_kind(data_folder, made.id, code) == made
-    with pytest.raises(StepNcError, match="program 'a.ngc' is NC code; this needs a STEP-NC"):
+    with pytest.raises(StepNcError, match=r"program 'a\.ngc' is NC code; this needs"):
         programs.require_kind(data_folder, made.id, kind)
 
 
