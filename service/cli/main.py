@@ -192,7 +192,9 @@ def _add_convert(commands: Commands) -> None:
     parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument(
-        "--to", metavar="STANDARD", help="write the program by another standard: ap238 or iso14649"
+        "--to",
+        metavar="STANDARD",
+        help="write the program by another standard: ap238 or iso14649",
     )
     what.add_argument(
         "--profile", help="write the optimisation records in profile optimisation or standard"

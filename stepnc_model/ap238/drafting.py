@@ -90,6 +90,15 @@ class AimDraft:
             return any(is_a(each, name) for each in self._made[id][0])
         return self._instances.is_a(id, name)
 
+    def made(self) -> tuple[int, ...]:
+        """New instances, in the order in which they were added."""
+        return tuple(self._made)
+
+    def drop_entity(self, id: int, name: str) -> None:
+        """Let a new complex instance no longer be of an entity."""
+        names, values = self._made[id]
+        self._made[id] = tuple(each for each in names if each != name), values
+
     def is_new(self, id: int) -> bool:
         """Whether an instance was added by this draft."""
         return id in self._made

@@ -142,7 +142,9 @@ class Reader:
             for value in self.instances.values(body, "items"):
                 for item in references(value):
                     if body in self._visited and int(item) not in self._visited:
-                        self._note(int(item), f"the dimension {self._named(int(item))!r}", "name")
+                        self._note(
+                            int(item), f"the dimension {self._named(int(item))!r}", "name"
+                        )
 
     def _named(self, id: int) -> str:
         """Name of an instance, as far as it has one."""
@@ -246,7 +248,7 @@ class Reader:
         if condition.texts:
             wanted = {text.casefold() for text in condition.texts}
             return any(isinstance(v, str) and v.strip().casefold() in wanted for v in values)
-        return any(value not in (None, ()) for value in values)
+        return any(value not in (None, (), "") for value in values)
 
     def _number(self, place: Place, rule: Rule) -> Ref[object]:
         """Number of the instance that a place stands for; it is converted once."""
