@@ -10,6 +10,9 @@ from stepnc_model.ap238.instances import references
 from stepnc_model.part21.values import Real, Ref, Typed
 
 
+_QUALIFIED = "QUALIFIED_REPRESENTATION_ITEM"
+
+
 def complete(draft: AimDraft) -> None:
     """Give the new instances of a draft what the AIM requires of them."""
     for id in list(draft.made()):
@@ -32,9 +35,8 @@ def complete(draft: AimDraft) -> None:
             draft.set(id, "rep_2", Ref(origin))
         elif draft.is_a(id, "ITEM_DEFINED_TRANSFORMATION"):
             draft.set(id, "transform_item_1", Ref(_origin(draft)))
-        elif draft.is_a(id, "QUALIFIED_REPRESENTATION_ITEM"):
-            if draft.get(id, "qualifiers") is None:
-                draft.drop_entity(id, "QUALIFIED_REPRESENTATION_ITEM")
+        elif draft.is_a(id, _QUALIFIED) and draft.get(id, "qualifiers") is None:
+            draft.drop_entity(id, _QUALIFIED)
 
 
 def _complete_edge(draft: AimDraft, id: int) -> None:
