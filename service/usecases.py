@@ -307,6 +307,7 @@ def _task(request: AdviceRequest, tools: "tuple[TableTool, ...]") -> Optimisatio
         allow_plunge=request.allow_plunge,
         source=partial(along_paths, is_run=request.is_confirmed),
         keep_going=request.keep_going,
+        ignores_records=request.ignore_record,
     )
 
 

@@ -161,6 +161,14 @@ class AdviceRequest(Request):
             name="feed", flag="--feed", metavar="MM_MIN",
         ),
     ] = None  # fmt: skip
+    ignore_record: Annotated[
+        bool,
+        About(
+            "ignore the limits of optimisation records in the file: motor power, greatest feed "
+            "per tooth, greatest depth",
+            flag="--ignore-record",
+        ),
+    ] = False
     keep_going: Annotated[
         bool,
         About(
