@@ -1,9 +1,9 @@
 """Optimisation record as one flat data class, and its two forms in a file.
 
 Profile ``optimisation`` writes entities of ``schemas/optimisation.exp``; profile ``standard``
-writes prefixed parameters that every ISO 14649 reader accepts. Both hold exactly the same
-numbers, so a record can be converted without loss. Numbers have the units of the file: mm, m/s,
-rev/s, s, kW, N, J, µm.
+writes parameters of ISO 14649 with a prefix and the workingstep in their names, to which no
+instance refers. Both hold exactly the same numbers, so a record can be converted without loss.
+Numbers have the units of the file: mm, m/s, rev/s, s, kW, N, J, µm.
 """
 
 from collections.abc import Iterator, Mapping
@@ -232,13 +232,20 @@ def _from_entities(model: Model, ref: Ref[Entity]) -> AdviceRecord | None:
     )
 
 
-def parameters_of(record: AdviceRecord) -> Iterator[PropertyParameter]:
-    """Parameters with a prefix that hold a record, one for each number or text."""
+def parameters_of(record: AdviceRecord, key: str = "") -> Iterator[PropertyParameter]:
+    """Parameters with a prefix that hold a record, one for each number or text.
+
+    Parameters
+    ----------
+    record : AdviceRecord
+    key : str
+        Workingstep of the record, ``1:ROUGH THE FACE``, which ends the names; empty: none.
+    """
     for each in fields(record):
         value = getattr(record, each.name)
         if value is None:
             continue
-        name = PREFIX + each.name
+        name = PREFIX + each.name + (f":{key}" if key else "")
         if isinstance(value, str):
             yield DescriptiveParameter(parameter_name=name, descriptive_string=value)
         else:
@@ -324,5 +331,5 @@ def _maxima(record: AdviceRecord) -> dict[str, object]:
         return {}
     return {
         "feed_per_tooth_max": record.feed_per_tooth_max,
-        "axial_cutting_depth_max": record.axial_depth_max or record.axial_depth,
+        "axial_cutting_depth_max": record.axial_depth_max,
     }

@@ -10,7 +10,7 @@ from annotated_types import Interval, Len, MaxLen
 from optimiser.modes import Free, Mode
 from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE
 from service.requests.fields import LONGEST_NAME, About, Request
-from stepnc_model.file_profile import FileProfile
+from stepnc_model.file_profile import FileProfile, RecordChoice
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.units import AUTO, PROFILES
 
@@ -84,6 +84,14 @@ class AdviceRequest(Request):
         FileProfile,
         About("how advice is recorded: optimisation or standard", flag="--profile"),
     ] = FileProfile.OPTIMISATION
+    records: Annotated[
+        RecordChoice,
+        About(
+            "all, or none: advice is written into the technologies only, without a plunge feed "
+            "of its own",
+            flag="--records",
+        ),
+    ] = RecordChoice.ALL
     nc_control: Annotated[
         Dialect | None,
         About(
