@@ -56,7 +56,9 @@ def schema(path: Path) -> Schema:
         head, _, body = match[2].partition(";")
         supers = re.search(r"SUBTYPE OF \((.*?)\)\s*$", head.strip(), re.DOTALL)
         name = match[1].lower()
-        found.supertypes[name] = [each.strip() for each in supers[1].split(",")] if supers else []
+        found.supertypes[name] = (
+            [each.strip() for each in supers[1].split(",")] if supers else []
+        )
         found.attributes[name] = [
             (attribute.strip(), " ".join(attributes[2].split()))
             for part in _PARTS.split(body)[0].split(";")
@@ -112,9 +114,9 @@ def _faults(file: Part21File, long_form: Schema, kind: str, value: Value) -> Ite
         return
     if isinstance(value, Ref):
         yield from _reference_faults(file, long_form, kind, value)
-    elif kind in ("label", "text", "identifier") and not isinstance(value, str):
-        yield f"{value!r} where a text is required"
-    elif kind in ("label", "text") and isinstance(value, Enumeration):
+    elif (kind in ("label", "text", "identifier") and not isinstance(value, str)) or (
+        kind in ("label", "text") and isinstance(value, Enumeration)
+    ):
         yield f"{value!r} where a text is required"
     elif kind in long_form.supertypes:
         yield f"{value!r} where a reference to {kind} is required"
