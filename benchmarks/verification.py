@@ -8,7 +8,7 @@ them. ``python -m benchmarks.verification --positions 1000000``
 import argparse
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from multiprocessing import get_context
@@ -268,8 +268,17 @@ SHAFT_ERRORS = (
     lost_second("FINISH CONTOUR", axis=0, below=26.9),
 )  # fmt: skip
 
-SHORT_OFFSETS = (offset(0.15, "THREAD RELIEF"), offset(0.15, "FINISH FACE", axis=2))
+SHORT_OFFSETS = (
+    offset(0.15, "THREAD RELIEF"),
+    offset(-0.15, "THREAD RELIEF"),
+    offset(0.15, "THREAD RELIEF", axis=2),
+    offset(-0.15, "THREAD RELIEF", axis=2),
+    offset(0.15, "FINISH FACE", axis=2),
+)
 """Errors of a groove, at whose bottom the tool turns back between samples, and of a face."""
+
+WALL_OFFSET = 0.15
+"""Offset of the table of all surfaces, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -305,7 +314,7 @@ class FoundError:
         if self.spot is None:
             return False
         share = self.spot.time / self.verification.facts.end if self.error.is_growing else 1.0
-        return abs(self.spot.size - share * self.error.size) <= self.spot.uncertainty
+        return abs(self.spot.size - share * abs(self.error.size)) <= self.spot.uncertainty
 
 
 def found(
@@ -327,7 +336,7 @@ def found(
         for spot in (row.gouge, row.excess)
         if spot.is_beyond
     ]
-    spots.sort(key=lambda pair: pair[1].uncertainty - pair[1].size)
+    spots.sort(key=lambda pair: -pair[1].least)
     return FoundError(error=error, spots=tuple(spots), verification=result)
 
 
@@ -343,6 +352,13 @@ def widened(program: PreparedProgram, tool: int, radius: float) -> PreparedProgr
     return replace(program, cutters=program.cutters | {tool: wide})
 
 
+def told(spot: DeviationSpot) -> str:
+    """Size of a deviation, or its least size if its uncertainty says less."""
+    if spot.size <= spot.uncertainty:
+        return f"at least {spot.least:.4f}"
+    return f"{spot.size:.4f} ± {spot.uncertainty:.4f}"
+
+
 def shown(case: FoundError) -> str:
     """One line of the table."""
     spot, error = case.spot or (case.spots[0][1] if case.spots else None), case.error
@@ -355,7 +371,7 @@ def shown(case: FoundError) -> str:
     place = ", ".join(f"{each:.1f}" for each in spot.position)
     name = next(name for name, each in case.spots if each is spot)
     return (
-        f"| {error.name} | {injected} | {spot.size:.4f} ± {spot.uncertainty:.4f} | {name} | "
+        f"| {error.name} | {injected} | {told(spot)} | {name} | "
         f"{place}; block {spot.block}; {spot.time:.1f} s | {answer} |"
     )
 
@@ -376,6 +392,51 @@ def errors(folder: Path) -> None:
         print("| error | mm | found mm | on | at mm | |\n|---|---|---|---|---|---|")
         for error in cases:
             print(shown(found(error, log, program, folder=folder, request=request)))
+
+
+def walls(folder: Path) -> None:
+    """Print whether each workingstep is found at 10 Hz when it is moved along each axis.
+
+    A row in which a log of 100 Hz shows nothing on its surface either has nothing to find.
+    """
+    for part, request, axes in ((BRACKET, REQUEST, (0, 1, 2)), (SHAFT, SHAFT_REQUEST, (0, 2))):
+        program = prepared(part, request)
+        logs = [run_log(program, rate=rate, feed=_fast) for rate in (10.0, 100.0)]
+        clean_places = found(CLEAN, logs[0], program, folder=folder, request=request)
+        made = set(clean_places.verification.places.workingstep.tolist())
+        print(f"{program.name}, 10 Hz, 1000 mm/min, offsets of {WALL_OFFSET:g} mm")
+        print("| workingstep | " + " | ".join(f"{sign}{'XYZ'[axis]}" for axis in axes
+              for sign in "+-") + " |")  # fmt: skip
+        print("|---|" + "---|" * 2 * len(axes))
+        for row, step in enumerate(program.steps):
+            if row in made:
+                cells = (
+                    _found_wall(
+                        offset(sign * WALL_OFFSET, step.workingstep, axis=axis),
+                        logs, program, folder=folder, request=request,
+                    )
+                    for axis in axes
+                    for sign in (1.0, -1.0)
+                )  # fmt: skip
+                print(f"| {step.workingstep} | " + " | ".join(cells) + " |", flush=True)
+
+
+def _found_wall(
+    error: InjectedError,
+    logs: Sequence[RunLog],
+    program: PreparedProgram,
+    *,
+    folder: Path,
+    request: VerificationRequest,
+) -> str:
+    """Whether an error is found in the first log, or shows in the second, denser one."""
+    sparse = found(error, logs[0], program, folder=folder, request=request)
+    if sparse.spot is not None:
+        return told(sparse.spot)
+    if sparse.spots:
+        return f"on {sparse.spots[0][0]}: {told(sparse.spots[0][1])}"
+    dense = found(error, logs[1], program, folder=folder, request=request)
+    return f"not found, ± {sparse.least:.4f}" if dense.spots else "–"
 
 
 def _slow(speed: Floats) -> Floats:
@@ -418,8 +479,12 @@ def measured(path: Path) -> tuple[float, float]:
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--positions", type=int, default=1_000_000)
+    parser.add_argument("--walls", action="store_true", help="offsets of all surfaces alone")
     options = parser.parse_args(arguments)
     with tempfile.TemporaryDirectory() as name:
+        if options.walls:
+            walls(Path(name))
+            return
         errors(Path(name))
         lengths(Path(name), options.positions)
 

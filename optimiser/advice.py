@@ -12,7 +12,9 @@ from optimiser.problem import BoundSide, Limit, LimitName, Setting
 from optimiser.safety import USUAL_QUANTILE
 from optimiser.stability import Stability
 from simulator.spec import Machine, MaterialMatch
+from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Finding
+from stepnc_model.part21.values import Ref
 from stepnc_model.program import ResolvedWorkingstep
 from stepnc_model.technology import Programmed
 from stepnc_model.tool import Tool
@@ -135,6 +137,18 @@ class Advice:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class RefusedWorkingstep:
+    """Workingstep that cannot be advised, in a plan that keeps going."""
+
+    id: str
+    ref: Ref[Entity]
+    reason: str
+    """What is missing or wrong, with its place in the file."""
+    is_infeasible: bool = False
+    """Whether no setting was found; False where the file lacks or breaks something."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Plan:
     """Optimised feeds for a program: one advice per workingstep."""
 
@@ -146,11 +160,20 @@ class Plan:
     findings: tuple[Finding, ...]
     safety: float = USUAL_QUANTILE
     """Quantile of k_c at which the loads keep their bounds."""
+    refused: tuple[RefusedWorkingstep, ...] = ()
+    """Workingsteps that were left as they are, if the plan keeps going."""
+
+    @property
+    def has_bad_data(self) -> bool:
+        """Whether a workingstep was left as it is because of its data."""
+        return any(not each.is_infeasible for each in self.refused)
 
     @property
     def is_infeasible(self) -> bool:
         """Whether any workingstep has no feasible setting."""
-        return any(advice.status is AdviceStatus.INFEASIBLE for advice in self.advices)
+        return any(advice.status is AdviceStatus.INFEASIBLE for advice in self.advices) or any(
+            each.is_infeasible for each in self.refused
+        )
 
     @property
     def faults(self) -> tuple[str, ...]:

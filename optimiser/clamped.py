@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from math import sqrt
 
+from optimiser.assumed_stock import assumed_stock
 from optimiser.hardest import PathContacts
 from simulator.errors import SimulationError
 from simulator.motion.tool_path import ToolPathRun
@@ -63,6 +64,8 @@ class ClampedStocks:
         self.program = program
         self.machine = machine
         self.stocks: dict[StockPlace, StockMap | None] = {}
+        self.assumed: dict[StockPlace, Stock] = {}
+        """Raw parts that the program does not describe."""
         self._changes: dict[StockPlace, Change] = {}
         """Pending changes by stock, applied when the next workingstep asks for its stock."""
 
@@ -95,6 +98,10 @@ class ClampedStocks:
         """Build the stock map of the raw stock; None when the stock is unknown."""
         try:
             raw = stock_of(self.program, place.setup)
+            if raw is None and not place.is_turning:
+                raw = assumed_stock(self.program, place.setup)
+                if raw is not None:
+                    self.assumed[place] = raw
             if raw is None:
                 return None
             if place.is_turning:

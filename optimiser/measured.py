@@ -15,6 +15,7 @@ from copy import copy
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from optimiser.assumed_stock import words_of
 from optimiser.clamped import Change, ClampedStocks, StockMap, StockPlace, TrialContacts, met_by
 from optimiser.cut import Cut, CutKind
 from optimiser.estimated import GUESSES, estimated_cut
@@ -203,6 +204,11 @@ class MeasuredCuts:
             self._leave_out(step)
             text = f"no tool path: length, time and engagement are estimated ({error})"
             return cut, [*findings, self._warning(step, text)]
+        assumed = self.stocks.assumed.get(self.stocks.place(step))
+        if assumed is not None:
+            at = step.ref if step.setup is None else step.setup
+            text = words_of(assumed)
+            findings.append(self.program.finding(Severity.WARNING, text, at))
         findings += [each for each in seen.path.findings if each.severity is not Severity.NOTE]
         if not seen.meeting.why:
             findings = [each for each in findings if each.message not in GUESSES]

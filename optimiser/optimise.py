@@ -13,7 +13,13 @@ from dataclasses import replace
 from math import isfinite
 
 from optimiser import workingstep as exact
-from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, Plan
+from optimiser.advice import (
+    Advice,
+    AdviceStatus,
+    EvaluatedSetting,
+    Plan,
+    RefusedWorkingstep,
+)
 from optimiser.asked_of_holding import holding_findings, with_holding
 from optimiser.conditions import CuttingConditions, PermittedDeflection
 from optimiser.cut import Cut
@@ -38,10 +44,13 @@ from simulator.errors import LibraryError
 from simulator.library import find_grade
 from simulator.spec import CuttingMaterial, Machine, MachineKind, MaterialMatch, ToolGrade
 from stepnc_model.entities.turning import TurningMachiningOperation
-from stepnc_model.errors import Finding, SchemaError, Severity
+from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError
 from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.record_limits import NO_LIMITS, RecordLimits, record_limits
 from stepnc_model.technology import programmed
 from stepnc_model.tool import Tool, tool_of
+
+_Outcome = Advice | RefusedWorkingstep | None
 
 DEFAULT_QUALITY = 3.2e-3
 """Roughness Ra kept in QC mode when none is required, mm: ISO 1302 general machining."""
@@ -76,26 +85,38 @@ def optimise_program(
     Raises
     ------
     SchemaError
-        When a selected workingstep lacks what a cut needs.
+        When a selected workingstep lacks what a cut needs, unless the task keeps going.
     """
     findings: list[Finding] = []
     advices = []
+    refused = []
     cuts = task.source(program, machine, material.material)
     if task.wipers:
         cuts = WiperCutSource(cuts, task.wipers)
     last = max((step.index for step in program.workingsteps if selected(step)), default=-1)
 
-    def do(step: ResolvedWorkingstep) -> tuple[Advice | None, list[Finding]]:
+    def do(step: ResolvedWorkingstep) -> tuple[_Outcome, list[Finding]]:
         if not selected(step):
             cuts.leave_out(step)
             return None, []
-        with program.using(step.operation_ref):
-            return advise(program, step, cuts, machine=machine, material=material, task=task)
+        try:
+            with program.using(step.operation_ref):
+                return advise(
+                    program, step, cuts, machine=machine, material=material, task=task
+                )
+        except StepNcError as error:
+            if not task.keep_going:
+                raise
+            cuts.leave_out(step)
+            return _refused(step, error), []
 
     for advice, found in cuts.each(program.workingsteps[: last + 1], do):
         if advice is None:
             continue
-        advices.append(advice)
+        if isinstance(advice, RefusedWorkingstep):
+            refused.append(advice)
+        else:
+            advices.append(advice)
         progress()
         # Workingsteps that share a tool produce the same findings about it.
         findings += [finding for finding in found if finding not in findings]
@@ -111,6 +132,17 @@ def optimise_program(
         advices=tuple(advices),
         findings=tuple(findings),
         safety=task.safety,
+        refused=tuple(refused),
+    )
+
+
+def _refused(step: ResolvedWorkingstep, error: StepNcError) -> RefusedWorkingstep:
+    """Workingstep that is left as it is because of an error."""
+    return RefusedWorkingstep(
+        id=step.id,
+        ref=step.ref,
+        reason=str(error),
+        is_infeasible=isinstance(error, OptimisationError),
     )
 
 
@@ -150,7 +182,10 @@ def advise(
         cuts.leave_out(step)
         return replace(untouched, status=AdviceStatus.INFEASIBLE, reason=elsewhere), []
     cut, findings = cuts.cut(step)
+    bounds, found = _bounds(program, step, task)
+    findings += found
     at, found = _conditions(program, step, cut, machine=machine, material=material, task=task)
+    at = replace(at, bounds=bounds)
     at, held = with_holding(at, program, step)
     findings += found + held
     problem = problem_of(cut, at, task)
@@ -195,6 +230,20 @@ def advise(
     fault = plunge_fault(used, at, is_allowed=may)
     advice = replace(advice, plunge_fault=fault, holding_load=load)
     return advice, findings + passed_limits(program, advice)
+
+
+def _bounds(
+    program: Program, step: ResolvedWorkingstep, task: OptimisationTask
+) -> tuple[RecordLimits, list[Finding]]:
+    """Limits that the record in the file sets, with a note that says so."""
+    bounds = record_limits(program, step)
+    if not bounds:
+        return bounds, []
+    if task.ignores_records:
+        text = f"ignored as requested: the record in the file allows {bounds.words}"
+        return NO_LIMITS, [program.finding(Severity.NOTE, text, step.operation_ref)]
+    text = f"kept: the record in the file allows {bounds.words} (--ignore-record)"
+    return bounds, [program.finding(Severity.NOTE, text, step.operation_ref)]
 
 
 def _thread_diameter(program: Program, step: ResolvedWorkingstep, tool: Tool) -> float:

@@ -18,6 +18,7 @@ from math import hypot
 
 from optimiser.conditions import GREATEST_DEFLECTION, PermittedDeflection
 from optimiser.estimate import DEFAULT_SIDE_ALLOWANCE, FINISHING
+from optimiser.left_by_path import left_by_path
 from optimiser.region import closed_outline, points_of, region_of
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.features import (
@@ -287,8 +288,10 @@ def _allowance(program: Program, step: ResolvedWorkingstep) -> float:
     written: float | None = getattr(operation, "allowance_side", None)
     if written is not None:
         return max(0.0, written)
-    # A given tool path states no allowance: it is assumed to finish the wall.
-    if isinstance(operation, (*FINISHING, FreeformOperation)):
+    # A given tool path states no allowance: it finishes the wall unless later ones do.
+    if isinstance(operation, FreeformOperation):
+        return left_by_path(program, step)
+    if isinstance(operation, FINISHING):
         return 0.0
     later = (each.operation for each in program.after(step))
     is_followed = any(isinstance(each, WALL_OPERATIONS) for each in later)

@@ -4,10 +4,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from service.files import read_bytes
-from service.reading import unit_profile
+from service.paths.remarks import program_remarks
+from service.reading import Tell, program_in, silent
+from service.uses import Use, UseName, uses_of
 from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.plausibility import implausible
+from stepnc_model.plausibility import implausible, unit_findings
 from stepnc_model.program import Program
 from stepnc_model.tolerance import tolerance_findings
 
@@ -21,21 +23,33 @@ class Contents:
     instances: int
     program: Program | None
     findings: tuple[Finding, ...]
+    uses: tuple[Use, ...] = ()
+    """Uses of the program; none where it could not be read."""
+    remarks: tuple[Finding, ...] = ()
+    """Those of the findings that every command tells."""
 
     @property
     def is_usable(self) -> bool:
-        """Whether the program could be read and has no errors."""
-        return self.program is not None and not any(
-            finding.severity is Severity.ERROR for finding in self.findings
+        """Whether feeds can be advised or NC code written, with a material if need be."""
+        wanted = {UseName.CODE, UseName.ADVICE}
+        return any(
+            use.is_possible or use.is_possible_with_material
+            for use in self.uses
+            if use.name in wanted
         )
 
+    @property
+    def is_of_use(self) -> bool:
+        """Whether the program can be used for anything."""
+        return any(use.is_possible or use.is_possible_with_material for use in self.uses)
 
-def check(path: Path, *, units: str = "iso", name: str = "") -> Contents:
+
+def check(path: Path, *, units: str = "iso", name: str = "", tell: Tell = silent) -> Contents:
     """Read a STEP-NC file and check it; return its contents and findings."""
-    profile, called = unit_profile(units), name or path.name
+    called = name or path.name
     file = Part21File.from_bytes(read_bytes(path), name=called)
     try:
-        program = Program(file, units=profile, name=called)
+        program = program_in(file, units=units, name=called, tell=tell)
     except SchemaError as error:
         fault = Finding(
             severity=Severity.ERROR,
@@ -48,18 +62,21 @@ def check(path: Path, *, units: str = "iso", name: str = "") -> Contents:
             program=None,
             findings=(*file.findings, fault),
         )
+    found = program_remarks(program)
     return Contents(
         name=called,
         schemas=file.schemas,
         instances=len(file),
         program=program,
-        findings=_all_findings(program),
+        findings=(*_all_findings(program), *found),
+        uses=uses_of(program),
+        remarks=found,
     )
 
 
 def _all_findings(program: Program) -> tuple[Finding, ...]:
-    """Return all findings of a program; check its numbers only if its references are valid."""
+    """Return all findings of a program; tolerances only if its references are valid."""
     findings = program.findings()
-    if any(finding.severity is Severity.ERROR for finding in findings):
-        return findings
-    return findings + implausible(program) + tolerance_findings(program)
+    is_sound = not any(finding.severity is Severity.ERROR for finding in findings)
+    numbers = implausible(program) + unit_findings(program)
+    return findings + numbers + (tolerance_findings(program) if is_sound else ())

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from service.contents import Contents
 from service.rendering.columns import Column
 from service.rendering.records import dump, finding_record, records
-from service.rendering.text import print_findings, print_line, print_table
+from service.rendering.text import YELLOW, print_findings, print_line, print_table
+from service.uses import Use
 from stepnc_model.program import Program, ResolvedWorkingstep
 
 MOST_INDENTED = 20
@@ -54,8 +55,18 @@ def print_contents(contents: Contents) -> None:
     )
     if contents.program is not None:
         print_table(EXECUTABLES, list(_executables(contents.program)))
-    print_findings(contents.findings)
-    print_line("usable" if contents.is_usable else "cannot be used: see the errors above")
+    print_findings(contents.findings, told=contents.remarks)
+    if not contents.uses:
+        print_line("cannot be used: see the errors above")
+        return
+    print_line("usable for:")
+    for use in contents.uses:
+        print_line(f"  {use.name.value}: {_answer(use)}", "" if use.is_possible else YELLOW)
+
+
+def _answer(use: Use) -> str:
+    """Say whether a use is possible, with the reason where it is not."""
+    return "yes" if use.is_possible else f"no: {use.reason}"
 
 
 def _executables(program: Program) -> Iterator[ExecutableRow]:
@@ -80,6 +91,15 @@ def contents_json(contents: Contents) -> str:
         "schemas": list(contents.schemas),
         "instances": contents.instances,
         "is_usable": contents.is_usable,
+        "uses": [
+            {
+                "name": use.name.value,
+                "is_possible": use.is_possible,
+                "is_possible_with_material": use.is_possible_with_material,
+                "reason": use.reason,
+            }
+            for use in contents.uses
+        ],
         "executables": records(EXECUTABLES, _executables(program)) if program else [],
         "workingsteps": records(STEPS, program.workingsteps) if program else [],
         "findings": [finding_record(finding) for finding in contents.findings],

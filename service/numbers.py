@@ -1,4 +1,4 @@
-"""Parsing of comma-separated numbers and raw part dimensions entered by the user."""
+"""Parsing of numbers, raw part dimensions and tool numbers entered by the user."""
 
 from math import isfinite
 
@@ -23,28 +23,45 @@ def numbers_in(text: str, what: str, *, counts: tuple[int, ...]) -> tuple[float,
     except ValueError:
         numbers = ()
     if len(numbers) not in counts or not all(map(isfinite, numbers)):
-        wanted = " or ".join(map(str, counts))
+        words = list(map(str, counts))
+        wanted = " or ".join((", ".join(words[:-1]), words[-1])) if words[1:] else words[0]
         raise StepNcError(f"{what} '{text}': expected {wanted} numbers separated by commas")
     return numbers
 
 
 def stock_in(text: str) -> Stock:
-    """Parse a raw part, in mm: six block corner coordinates, or a bar's diameter and two ends.
+    """Parse a raw part, in mm.
+
+    Six numbers are the corners of a box; three the diameter and two ends of a bar about zero;
+    two its diameter and its length, with its end at z = 0; five the place x, y, the diameter
+    and two ends of an upright bar.
 
     Raises
     ------
     StepNcError
         When the numbers are invalid, or :func:`require_size` refuses the stock.
     """
-    numbers = numbers_in(text, "stock", counts=(3, 6))
-    radius = None
-    if len(numbers) == 3:
-        radius = 0.5 * numbers[0]
-        numbers = (-radius, -radius, numbers[1], radius, radius, numbers[2])
-    low, high = numbers[:3], numbers[3:]
-    stock = Stock(low=(low[0], low[1], low[2]), high=(high[0], high[1], high[2]), radius=radius)
+    match numbers_in(text, "stock", counts=(2, 3, 5, 6)):
+        case (diameter, length):
+            stock = _bar((0.0, 0.0), diameter, (-length, 0.0))
+        case (diameter, low, high):
+            stock = _bar((0.0, 0.0), diameter, (low, high))
+        case (x, y, diameter, low, high):
+            stock = _bar((x, y), diameter, (low, high))
+        case (x0, y0, z0, x1, y1, z1):
+            stock = Stock(low=(x0, y0, z0), high=(x1, y1, z1))
     require_size(stock)
     return stock
+
+
+def _bar(axis: tuple[float, float], diameter: float, ends: tuple[float, float]) -> Stock:
+    """Upright bar about an axis."""
+    radius = 0.5 * diameter
+    return Stock(
+        low=(axis[0] - radius, axis[1] - radius, ends[0]),
+        high=(axis[0] + radius, axis[1] + radius, ends[1]),
+        radius=radius,
+    )
 
 
 def require_size(stock: Stock) -> None:
@@ -53,3 +70,18 @@ def require_size(stock: Stock) -> None:
         if not high - low >= LEAST_SIZE or max(abs(low), abs(high)) > FARTHEST:
             bound = f"must span at least {LEAST_SIZE:g} mm, within {FARTHEST:g} mm of zero"
             raise StepNcError(f"stock: {axis} from {low:g} to {high:g} mm: {bound}")
+
+
+def tool_numbers_in(words: tuple[str, ...]) -> frozenset[int]:
+    """Numbers of tools given as ``T3`` or ``3``.
+
+    Raises
+    ------
+    StepNcError
+        When a word is no tool number.
+    """
+    numbers = [word.upper().removeprefix("T") for word in words]
+    for word, number in zip(words, numbers, strict=True):
+        if not number.isdecimal():
+            raise StepNcError(f"tool '{word}': expected a number, such as T3")
+    return frozenset(map(int, numbers))

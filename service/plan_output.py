@@ -3,7 +3,7 @@
 JSON keys carry their units and never change, because other programs read them.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from math import isfinite
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ from optimiser.stability import Basis
 from service.rendering.columns import Cell, Change, Column
 from service.rendering.records import dump, finding_record, record, records
 from service.rendering.text import RED, print_findings, print_line, print_table
+from stepnc_model.errors import Finding
 from stepnc_model.units import (
     kw_from_watts,
     mm_min_from_speed,
@@ -23,8 +24,8 @@ from stepnc_model.units import (
 )
 
 if TYPE_CHECKING:
-    from service.along_path.run import AlongPath
     from optimiser.advice import ParetoPoint
+    from service.along_path.run import FeedsAlongPath
     from service.confirmation import Confirmation, ConfirmedStep
 
 
@@ -152,7 +153,8 @@ LOAD: tuple[Column[LimitLoad], ...] = (
 def print_plan(
     plan: Plan,
     confirmation: "Confirmation | None" = None,
-    along: "AlongPath | None" = None,
+    along: "FeedsAlongPath | None" = None,
+    told: Sequence[Finding] = (),
 ) -> None:
     """Print the advice for a program: a row per workingstep, then totals and findings."""
     material = plan.material.material
@@ -182,7 +184,7 @@ def print_plan(
         from service.along_path.output import print_along_path  # noqa: PLC0415 (numpy)
 
         print_along_path(along)
-    print_findings(plan.findings)
+    print_findings(plan.findings, told=told)
 
 
 def _safety(plan: Plan) -> str:
@@ -259,7 +261,7 @@ def _stability_words(advice: Advice, state: EvaluatedSetting) -> str:
 def plan_json(
     plan: Plan,
     confirmation: "Confirmation | None" = None,
-    along: "AlongPath | None" = None,
+    along: "FeedsAlongPath | None" = None,
 ) -> str:
     """Return a plan as JSON, with its simulated run and feeds along paths if requested."""
     found = {} if confirmation is None else {"confirmation": _confirmation(confirmation)}
@@ -279,6 +281,15 @@ def plan_json(
         "free_speed_saves_s": sum(advice.saving_of_free_speed for advice in plan.advices),
         "workingsteps": [_advice(advice) for advice in plan.advices],
         "total_time_s": {"before": plan.time_before, "after": plan.time_after},
+        "refused": [
+            {
+                "id": each.id,
+                "instance": str(each.ref),
+                "reason": each.reason,
+                "is_infeasible": each.is_infeasible,
+            }
+            for each in plan.refused
+        ],
         "findings": [finding_record(finding) for finding in plan.findings],
         **found,
     })
@@ -391,11 +402,18 @@ def _sensitivity(advice: Advice) -> dict[str, Any] | None:
     }
 
 
-def report_page(plan: Plan) -> str:
+def report_page(plan: Plan, along: "FeedsAlongPath | None" = None) -> str:
     """Return the HTML report of a plan."""
     from service.figures import plan_figures  # noqa: PLC0415 (plotly)
     from service.rendering.pages import plot, rendered  # noqa: PLC0415 (Jinja)
 
+    along_figures: list[Any] = []
+    along_columns: tuple[Any, ...] = ()
+    if along is not None:
+        from service.along_path.figures import along_path_figures  # noqa: PLC0415 (plotly)
+        from service.along_path.output import STEP  # noqa: PLC0415 (numpy)
+
+        along_figures, along_columns = along_path_figures(along), STEP
     before, after = plan.time_before, plan.time_after
     return rendered(
         "plan.html.jinja",
@@ -407,4 +425,7 @@ def report_page(plan: Plan) -> str:
             for advice in plan.advices
         ],
         plots=[plot(each, f"plot{row}") for row, each in enumerate(plan_figures(plan))],
+        along=along,
+        along_columns=along_columns,
+        along_plots=[plot(each, f"along{row}") for row, each in enumerate(along_figures)],
     )

@@ -8,10 +8,12 @@ from typing import TypeVar
 from service.files import read_bytes
 from service.numbers import stock_in
 from stepnc_model.errors import StepNcError
+from stepnc_model.given import GivenData
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.plausibility import units_by_numbers
+from stepnc_model.program import Program, ResolvedWorkingstep, Stock
 from stepnc_model.toolpath.task import drawn_stock
-from stepnc_model.units import PROFILES, UnitProfile
+from stepnc_model.units import AUTO, PROFILES, UnitProfile, speed_from_mm_min
 
 E = TypeVar("E", bound=StrEnum)
 
@@ -23,25 +25,61 @@ def silent(_message: str) -> None:
     """Discard a message."""
 
 
-def read_program(path: Path, *, units: str, name: str = "", stock: str = "") -> Program:
+def read_program(
+    path: Path, *, units: str, name: str = "", stock: str = "", tell: Tell = silent
+) -> Program:
     """Read a program from a file; its name is the file's name unless another is given.
 
-    A raw part may be passed only if the file itself defines none.
+    A raw part may be passed only if the file itself defines none. With the units ``auto``, the
+    profile that fits is told, with the numbers of each technology.
     """
-    profile = unit_profile(units)
     called = name or path.name
     file = Part21File.from_bytes(read_bytes(path), name=called)
     raw = stock_in(stock) if stock else None
-    program = Program(file, units=profile, name=called, stock=raw)
+    program = program_in(file, units=units, name=called, stock=raw, tell=tell)
     if raw is not None and drawn_stock(program, None) is not None:
         raise StepNcError(f"stock {stock}: '{called}' defines its own raw part; omit the stock")
     return program
 
 
+def given_data(
+    values: tuple[str, ...], teeth: tuple[str, ...], feed_mm_min: float | None
+) -> GivenData:
+    """Data that a file lacks, from the words of a request."""
+    feed = None if feed_mm_min is None else speed_from_mm_min(feed_mm_min)
+    return GivenData(values=values, teeth=teeth, feed=feed)
+
+
+def program_in(
+    file: Part21File,
+    *,
+    units: str,
+    name: str,
+    stock: Stock | None = None,
+    tell: Tell = silent,
+) -> Program:
+    """Program of a file in the named units, or in those that its numbers show.
+
+    Raises
+    ------
+    StepNcError
+        When the units are unknown or, for ``auto``, not shown by the numbers.
+    """
+    if units != AUTO:
+        return Program(file, units=unit_profile(units), name=name, stock=stock)
+    program = Program(file, name=name, stock=stock)
+    profile, evidence = units_by_numbers(program, program.workingsteps)
+    tell(f"units: {profile.name}, the only ones that make all numbers plausible")
+    for each in evidence:
+        tell(f"  line {each.line}: {each.entity}: {each.message}")
+    return Program(file, units=profile, name=name, stock=stock)
+
+
 def unit_profile(name: str) -> UnitProfile:
     """Return the unit profile with the given name."""
     if name not in PROFILES:
-        raise StepNcError(f"unknown units '{name}'; known: {', '.join(PROFILES)}")
+        known = ", ".join((*PROFILES, AUTO))
+        raise StepNcError(f"unknown units '{name}'; known: {known}")
     return PROFILES[name]
 
 

@@ -21,23 +21,24 @@ from service.files import (
 from service.knowledge.corrected import factors_for, finding_of, with_corrections
 from service.knowledge.place import named_place, require_apart
 from service.progress import Progress
-from service.reading import Tell, read_program, selected, silent
+from service.reading import Tell, given_data, read_program, selected, silent
 from service.records import changes_of
+from service.refusals import advisable, apart_from
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
 from simulator.spec import Certainty, Machine, MaterialMatch
 from stepnc_model import writeback
-from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError, WriteError
-from stepnc_model.file_profile import FileProfile
+from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
+from stepnc_model.file_profile import FileProfile, RecordChoice
+from stepnc_model.given import Completed, completed, without_given
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.plausibility import refusal
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.task import stock_of
 from stepnc_model.units import mm_from_um
 
 if TYPE_CHECKING:
-    from service.along_path.run import AlongPath
+    from service.along_path.run import FeedsAlongPath
     from service.confirmation import Confirmation
     from service.knowledge.verbs import AcceptedFactor
     from simulator.tool_table import TableTool
@@ -77,8 +78,10 @@ class OptimiseResult:
     """The STEP-NC file, or None when nothing was written."""
     confirmation: "Confirmation | None" = None
     """Comparison with the simulated run; None if it was not requested."""
-    along: "AlongPath | None" = None
+    along: "FeedsAlongPath | None" = None
     """Feeds along the paths; None if they were not requested."""
+    told: tuple[Finding, ...] = ()
+    """Warnings about the program that were told already."""
 
 
 def optimise(
@@ -91,33 +94,26 @@ def optimise(
     StepNcError
         When the file, a name, a limit or an output is invalid; nothing is written.
     """
-    require_bounds(request)
-    if not request.is_along_path and (request.levels is not None or files.feeds is not None):
-        raise StepNcError("--levels and --feeds-csv need --along-path")
+    _require_sense(request, files)
     task = _task(request, _table(files.tools))
-    profile = request.profile
+    profile = None if request.records is RecordChoice.NONE else request.profile
     output = _output(files)
     nc_place = _nc_place(request, files, output)
     require_apart(named_place(files.knowledge), output, files.report, files.feeds, nc_place)
-    program = read_program(
-        files.file, units=request.units, name=files.name, stock=request.stock
-    )
+    whole = _whole_program(request, files, tell)
+    program = whole.program
     profile = writeback.profile_for(program, profile)
     chosen = selected(program, request.workingsteps)
     findings = program.file.findings + program.model.findings()
-    _require_usable(program, chosen, findings)
+    possible = advisable(program, chosen, keep_going=request.keep_going)
+    chosen = possible.steps
     machine = with_holding(machine_for(request.machine, program), files.holding)
     if request.is_confirmed:
         _require_run(program, chosen, machine)
     match = material_for(request.material, program)
     tell(f"material: {match.reason}")
-    safety = request.safety
-    factors: tuple[AcceptedFactor, ...] = ()
-    if request.has_corrections:
-        factors = factors_for(
-            files.knowledge, program, chosen, machine=machine, material=match, safety=safety
-        )
-    notes = tuple(finding_of(each, safety=safety) for each in factors)
+    factors = _factors(request, files, program, chosen, machine=machine, match=match)
+    notes = tuple(finding_of(each, safety=request.safety) for each in factors)
     for note in notes:
         tell(note.message)
     wanted = {int(step.ref) for step in chosen}
@@ -133,43 +129,160 @@ def optimise(
         selected=lambda step: int(step.ref) in wanted,
         progress=Progress(tell, total=len(chosen)),
     )
-    plan = _with_file_findings(plan, (*findings, *notes), match)
-    changes = changes_of(plan)
+    plan = replace(plan, refused=(*possible.refused, *plan.refused))
+    told = _remarks(program, tell)
+    plan = _with_file_findings(plan, (*findings, *notes, *told), match)
+    changes = apart_from(program, changes_of(plan), plan.refused)
     data = writeback.write(program, changes, profile) if changes else program.source.data
     if changes and factors and profile is FileProfile.OPTIMISATION:
         data = with_corrections(_read_again(program, data), factors)
-    confirmation = None
-    if request.is_confirmed:
-        from service.confirm import confirm  # noqa: PLC0415 (numba takes a second)
-
-        confirmation = confirm(plan, _read_again(program, data), tell=tell)
-    along = None
-    if request.is_along_path:
-        from service.along_path.of_program import along_program  # noqa: PLC0415 (numba)
-
-        along = along_program(_read_again(program, data), plan, request, tell=tell)
+    confirmation = _confirmed(request, program, plan, data, tell)
+    along = _along(request, files, program, plan, data, tell)
     if request.nc_control is not None and nc_place is not None:
         # NC code first: where it cannot be made, nothing is written.
         code = _nc_code(_read_again(program, data), request.nc_control, along, tell)
         if not files.dry_run:
             tell(f"NC code: {nc_place} ({write_lines(nc_place, code)} lines)")
-    if along is not None and files.feeds is not None:
-        from service.along_path.output import profile_lines  # noqa: PLC0415 (numpy)
-
-        tell(f"feeds: {files.feeds} ({write_lines(files.feeds, profile_lines(along))} lines)")
+    if along is not None and request.writes_toolpaths:
+        plan, data = _with_tool_paths(plan, _read_again(program, data), along, profile, tell)
     written = None
-    if changes and not files.dry_run:
-        write_atomically(output, data)
-        written = output
     if not files.dry_run:
-        tell(f"written: {output}" if changes else NOTHING_WRITTEN)
+        kept = data if files.in_place else _without_given(whole, data)
+        written = _write(output, kept, tell) if changes else None
+        if written is None:
+            tell(NOTHING_WRITTEN)
+    _write_views(files, plan, along, tell)
+    _tell_conflicts(plan, tell)
+    return OptimiseResult(
+        plan=plan, written=written, confirmation=confirmation, along=along, told=told
+    )
+
+
+def _confirmed(
+    request: AdviceRequest, program: Program, plan: Plan, data: bytes, tell: Tell
+) -> "Confirmation | None":
+    """Comparison of a plan with its simulated run, if it was requested."""
+    if not request.is_confirmed:
+        return None
+    from service.confirm import confirm  # noqa: PLC0415 (numba takes a second)
+
+    return confirm(plan, _read_again(program, data), tell=tell)
+
+
+def _along(
+    request: AdviceRequest,
+    files: AdviceFiles,
+    program: Program,
+    plan: Plan,
+    data: bytes,
+    tell: Tell,
+) -> "FeedsAlongPath | None":
+    """Feeds along the paths of an advised program, if they were requested."""
+    if not request.is_along_path:
+        return None
+    from service.along_path.of_program import along_program  # noqa: PLC0415 (numba)
+
+    return along_program(
+        _read_again(program, data),
+        plan,
+        request,
+        keeps_traces=files.report is not None,
+        tell=tell,
+    )
+
+
+def _whole_program(request: AdviceRequest, files: AdviceFiles, tell: Tell) -> Completed:
+    """Program of a file, with the data that the request gives."""
+    program = read_program(
+        files.file, units=request.units, name=files.name, stock=request.stock, tell=tell
+    )
+    data = given_data(request.given, request.teeth, request.feed_mm_min)
+    return completed(program, data)
+
+
+def _without_given(whole: Completed, data: bytes) -> bytes:
+    """Bytes of an advised program without the data that the request gave."""
+    if not whole.given:
+        return data
+    return without_given(_read_again(whole.program, data), whole.given)
+
+
+def _factors(
+    request: AdviceRequest,
+    files: AdviceFiles,
+    program: Program,
+    chosen: tuple[ResolvedWorkingstep, ...],
+    *,
+    machine: Machine,
+    match: MaterialMatch,
+) -> "tuple[AcceptedFactor, ...]":
+    """Accepted corrections of k_c for the tools of some workingsteps."""
+    if not request.has_corrections:
+        return ()
+    return factors_for(
+        files.knowledge,
+        program,
+        chosen,
+        machine=machine,
+        material=match,
+        safety=request.safety,
+    )
+
+
+def _remarks(program: Program, tell: Tell) -> tuple[Finding, ...]:
+    """Tell the warnings about a program that every command gives."""
+    from service.paths.remarks import program_remarks, tell_remarks  # noqa: PLC0415 (shapely)
+
+    found = program_remarks(program)
+    tell_remarks(found, tell)
+    return found
+
+
+def _with_tool_paths(
+    plan: Plan,
+    program: Program,
+    along: "FeedsAlongPath",
+    profile: FileProfile | None,
+    tell: Tell,
+) -> tuple[Plan, bytes]:
+    """Write feeds along the paths into the program; the plan gets what could not be written."""
+    from service.along_path.path_file import with_tool_paths  # noqa: PLC0415 (numpy, shapely)
+
+    # Without records a file is for readers that know the standard only.
+    file = with_tool_paths(program, along, profile or FileProfile.STANDARD)
+    tell(f"tool paths written into the program: {file.count}")
+    return replace(plan, findings=(*plan.findings, *file.findings)), file.data
+
+
+def _write(output: Path, data: bytes, tell: Tell) -> Path:
+    """Write the optimised program."""
+    write_atomically(output, data)
+    tell(f"written: {output}")
+    return output
+
+
+def _write_views(
+    files: AdviceFiles, plan: Plan, along: "FeedsAlongPath | None", tell: Tell
+) -> None:
+    """Write the report and the table of feeds, where they were asked for."""
     if files.report is not None:
         from service.plan_output import report_page  # noqa: PLC0415 (plotly takes a second)
 
-        write_atomically(files.report, report_page(plan).encode())
+        write_atomically(files.report, report_page(plan, along).encode())
         tell(f"report: {files.report}")
-    _tell_conflicts(plan, tell)
-    return OptimiseResult(plan=plan, written=written, confirmation=confirmation, along=along)
+    if files.feeds is not None and along is not None:
+        from service.along_path.output import profile_lines  # noqa: PLC0415 (numpy)
+
+        tell(f"feeds: {files.feeds} ({write_lines(files.feeds, profile_lines(along))} lines)")
+
+
+def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
+    """Refuse numbers out of bounds, and options that have no effect."""
+    require_bounds(request)
+    if not request.is_along_path and (request.levels is not None or files.feeds is not None):
+        raise StepNcError("--levels and --feeds-csv need --along-path")
+    if request.writes_toolpaths and not request.is_along_path:
+        raise StepNcError("--write-toolpaths needs --along-path")
 
 
 def _require_run(
@@ -184,6 +297,8 @@ def _require_run(
 
 
 def _tell_conflicts(plan: Plan, tell: Tell) -> None:
+    for each in plan.refused:
+        tell(f"left as programmed: '{each.id}' ({each.ref}): {each.reason}")
     conflicts = [each for each in plan.advices if each.status is AdviceStatus.INFEASIBLE]
     if conflicts:
         names = ", ".join(f"'{each.workingstep.id}'" for each in conflicts)
@@ -233,6 +348,8 @@ def _task(request: AdviceRequest, tools: "tuple[TableTool, ...]") -> Optimisatio
         centre_cutting={**request.centre_cutting, **_centre_cutting(tools)},
         allow_plunge=request.allow_plunge,
         source=partial(along_paths, is_run=request.is_confirmed),
+        keep_going=request.keep_going,
+        ignores_records=request.ignore_record,
     )
 
 
@@ -246,9 +363,9 @@ def _table(tools: Path | None) -> tuple["TableTool", ...]:
     """Read a tool table; empty without a file."""
     if tools is None:
         return ()
-    from simulator.tool_table import read_tool_table  # noqa: PLC0415 (numpy)
+    from simulator.tool_files.read import read_tools  # noqa: PLC0415 (numpy)
 
-    return read_tool_table(tools)
+    return read_tools(tools).tools
 
 
 def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path | None:
@@ -263,7 +380,7 @@ def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path 
 
 
 def _nc_code(
-    program: Program, control: Dialect, along: "AlongPath | None", tell: Tell
+    program: Program, control: Dialect, along: "FeedsAlongPath | None", tell: Tell
 ) -> Iterator[str]:
     """Generate NC code of the optimised program."""
     from service.paths.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (numpy, shapely)
@@ -279,30 +396,6 @@ def _read_again(program: Program, data: bytes) -> Program:
     """Parse a program again from its changed bytes."""
     file = Part21File.from_bytes(data, name=program.name)
     return Program(file, units=program.units, name=program.name, stock=program.stock)
-
-
-def _require_usable(
-    program: Program, chosen: tuple[ResolvedWorkingstep, ...], findings: tuple[Finding, ...]
-) -> None:
-    """Refuse a program with errors, or whose numbers appear to be in other units.
-
-    Broken workingsteps do not matter when others are selected by name.
-    """
-    if program.faults and len(chosen) == len(program.workingsteps):
-        raise program.faults[0]
-    if not chosen:
-        raise SchemaError("the program has no machining workingstep")
-    for finding in findings:
-        if finding.severity is Severity.ERROR:
-            raise SchemaError(
-                finding.message,
-                entity=finding.entity,
-                attribute=finding.attribute,
-                line=finding.line,
-            )
-    error = refusal(program, chosen)
-    if error is not None:
-        raise error
 
 
 def _with_file_findings(

@@ -135,6 +135,7 @@ class LibraryError(SimulationError):
     def __init__(self, message: str, *, path: str, key: str = "", line: int = 0) -> None:
         place = (path, f"line {line}" if line else "", key, message)
         super().__init__(": ".join(part for part in place if part))
+        self.message = message
         self.path = path
         self.key = key
         self.line = line

@@ -102,7 +102,9 @@ def given_keys(table: FileTable) -> list[str]:
     return [each.name for each in fields if getattr(table, each.name) != each.default]
 
 
-def converted(content: object, kind: type[T], path: Path, *, name: str = "") -> T:
+def converted(
+    content: object, kind: type[T], path: Path, *, name: str = "", line: int = 0
+) -> T:
     """Content of a file as the table that it is declared to be.
 
     Parameters
@@ -115,6 +117,8 @@ def converted(content: object, kind: type[T], path: Path, *, name: str = "") -> 
         The file, for messages.
     name : str
         Name of the whole content in messages; empty for the root of a TOML file.
+    line : int
+        Line of the content in messages; 0 if its keys give the place.
 
     Raises
     ------
@@ -126,7 +130,7 @@ def converted(content: object, kind: type[T], path: Path, *, name: str = "") -> 
     except msgspec.ValidationError as error:
         key, message = _fault(error, content, kind)
         place = ".".join(part for part in (name, key) if part)
-        raise LibraryError(message, path=str(path), key=_cut(place)) from error
+        raise LibraryError(message, path=str(path), key=_cut(place), line=line) from error
 
 
 def read_toml(path: Path, kind: type[T]) -> T:
@@ -151,17 +155,21 @@ def read_text(path: Path) -> str:
         raise LibraryError(f"is not UTF-8 text: {error.reason}", path=str(path)) from error
 
 
-def read_bounded(path: Path) -> bytes:
+def read_bounded(path: Path, *, most: int = MOST_BYTES) -> bytes:
     """Bytes of a library file, which is small."""
     try:
         if path.is_char_device():
             raise LibraryError("is a device, not a file", path=str(path))
         with path.open("rb") as file:
-            data = file.read(MOST_BYTES + 1)
+            data = file.read(most + 1)
+    except ValueError as error:
+        raise LibraryError(
+            f"is not a valid file name: {error}", path=repr(str(path))
+        ) from error
     except OSError as error:
         raise LibraryError(f"cannot be read: {error.strerror}", path=str(path)) from error
-    if len(data) > MOST_BYTES:
-        raise LibraryError(f"is larger than {MOST_BYTES} bytes, the most", path=str(path))
+    if len(data) > most:
+        raise LibraryError(f"is larger than {most} bytes, the most", path=str(path))
     return data
 
 

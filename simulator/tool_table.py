@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Annotated
 
 from simulator.errors import LibraryError
+from simulator.material_file import SpeedWindow
 from simulator.removal.cutter import Cutter, Holder, Insert
 from simulator.removal.tool_shape import ENDS
 from simulator.spec import CuttingMaterial, ToolKind
@@ -23,6 +24,7 @@ from simulator.toml_file import (
     read_toml,
     require_together,
     require_whole,
+    require_window,
 )
 from stepnc_model.entities.enums import HandOfToolType
 from stepnc_model.units import rad_from_deg
@@ -35,9 +37,18 @@ EdgeAngle = Annotated[float, quantity(0, 179, "°")]
 HelixAngle = Annotated[float, quantity(0, 75, "°")]
 TaperAngle = Annotated[float, quantity(0, 80, "°")]
 PointAngle = Annotated[float, quantity(30, 180, "°")]
+TrailingAngle = Annotated[float, quantity(0, 89, "°")]
+VendorFeed = Annotated[float, quantity(1e-4, 10, "mm")]
 
 TURNED = {ToolKind.TURNING, ToolKind.GROOVING, ToolKind.THREADING}
-INSERT_KEYS = {"nose_radius_mm", "cutting_edge_angle_deg", "width_mm", "hand"}
+INSERT_KEYS = {
+    "nose_radius_mm",
+    "cutting_edge_angle_deg",
+    "trailing_angle_deg",
+    "width_mm",
+    "hand",
+    "inside",
+}
 CUTTER_KEYS = {
     "diameter_mm",
     "corner_radius_mm",
@@ -47,6 +58,9 @@ CUTTER_KEYS = {
     "holder_diameter_mm",
     "overhang_mm",
 }
+CUSTOMARY_TRAILING_DEG = 5.0
+"""what remains beside κ_r = 95° of the 80° of form C of ISO 1832"""
+
 CUSTOMARY_POINT_DEG = {ToolKind.DRILL: 118.0, ToolKind.COUNTERSINK: 90.0}
 
 
@@ -74,10 +88,20 @@ class TableTool:
     """whether the edges of a mill reach its axis; None: not said"""
     has_wiper: bool = False
     """whether a flat beside the nose of a turning insert smooths the surface"""
+    grade: str = ""
+    """The vendor's name of the grade; empty: not said"""
+    min_feed: float | None = None
+    """Least feed that the vendor recommends, mm per tooth of mills, else per revolution"""
+    max_feed: float | None = None
+    """Greatest feed that the vendor recommends, mm per tooth of mills, else per revolution"""
+    min_cutting_speed: float | None = None
+    """Least cutting speed that the vendor recommends, mm/s"""
+    max_cutting_speed: float | None = None
+    """Greatest cutting speed that the vendor recommends, mm/s"""
 
 
-class ToolRow(FileTable, frozen=True, kw_only=True):
-    """One ``[[tool]]`` row."""
+class ToolRow(SpeedWindow, frozen=True, kw_only=True):
+    """One ``[[tool]]`` row; its windows of feed and speed are those of the vendor."""
 
     number: Number
     kind: ToolKind
@@ -96,10 +120,18 @@ class ToolRow(FileTable, frozen=True, kw_only=True):
     overhang_mm: Length | None = None
     nose_radius_mm: Length = 0.0
     cutting_edge_angle_deg: EdgeAngle = 90.0
+    trailing_angle_deg: TrailingAngle = CUSTOMARY_TRAILING_DEG
     width_mm: Diameter | None = None
     hand: TurningHand = TurningHand.RIGHT
+    inside: bool = False
+    grade: str = ""
+    min_feed_mm: VendorFeed | None = None
+    max_feed_mm: VendorFeed | None = None
 
     def __post_init__(self) -> None:
+        require_window(self, "min_cutting_speed_m_min", "max_cutting_speed_m_min")
+        require_together(self, "min_cutting_speed_m_min", "max_cutting_speed_m_min")
+        require_window(self, "min_feed_mm", "max_feed_mm")
         require_whole(self, "number")
         require_whole(self, "teeth")
         require_together(self, "holder_diameter_mm", "overhang_mm")
@@ -130,8 +162,10 @@ class ToolRow(FileTable, frozen=True, kw_only=True):
         return Insert(
             nose_radius=self.nose_radius_mm,
             cutting_edge_angle=rad_from_deg(self.cutting_edge_angle_deg),
+            trailing_angle=rad_from_deg(self.trailing_angle_deg),
             width=self.width_mm,
             hand=HandOfToolType[self.hand.name],
+            is_inside=self.inside,
         )
 
     def cutter(self) -> Cutter:
@@ -153,6 +187,27 @@ class ToolRow(FileTable, frozen=True, kw_only=True):
         )
 
 
+def tool_of_row(row: ToolRow) -> TableTool:
+    """Tool of a row, in canonical units."""
+    number, helix = int(row.number), row.helix_deg
+    return TableTool(
+        number=number,
+        id=f"{row.kind} T{number}" if row.id is None else row.id,
+        kind=row.kind,
+        cutting_material=row.cutting_material,
+        teeth=int(row.teeth),
+        shape=row.insert() if row.kind in TURNED else row.cutter(),
+        helix_angle=None if helix is None else rad_from_deg(helix),
+        centre_cutting=row.centre_cutting,
+        has_wiper=row.wiper,
+        grade=row.grade,
+        min_feed=row.min_feed_mm,
+        max_feed=row.max_feed_mm,
+        min_cutting_speed=row.speeds[0],
+        max_cutting_speed=row.speeds[1],
+    )
+
+
 class ToolFile(FileTable, frozen=True, kw_only=True):
     """A whole tool table."""
 
@@ -165,8 +220,8 @@ class ToolFile(FileTable, frozen=True, kw_only=True):
                 raise KeyFault(f"tool[{at}].number", f"T{number:g} is there twice")
 
 
-def read_tool_table(path: Path) -> tuple[TableTool, ...]:
-    """Tools of a TOML file.
+def read_tool_rows(path: Path) -> tuple[ToolRow, ...]:
+    """Rows of a TOML file.
 
     Raises
     ------
@@ -176,19 +231,4 @@ def read_tool_table(path: Path) -> tuple[TableTool, ...]:
     rows = read_toml(path, ToolFile).tool
     if not rows:
         raise LibraryError("has no [[tool]]", path=str(path))
-    return tuple(_tool(row) for row in rows)
-
-
-def _tool(row: ToolRow) -> TableTool:
-    number, helix = int(row.number), row.helix_deg
-    return TableTool(
-        number=number,
-        id=f"{row.kind} T{number}" if row.id is None else row.id,
-        kind=row.kind,
-        cutting_material=row.cutting_material,
-        teeth=int(row.teeth),
-        shape=row.insert() if row.kind in TURNED else row.cutter(),
-        helix_angle=None if helix is None else rad_from_deg(helix),
-        centre_cutting=row.centre_cutting,
-        has_wiper=row.wiper,
-    )
+    return rows

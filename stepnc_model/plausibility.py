@@ -1,18 +1,21 @@
 """Check for implausible numbers, a sign that a program is written in other units.
 
-The unit of a file's numbers cannot be inferred, so nothing is guessed: implausible numbers
-become findings, which name the unit profiles that would make them plausible.
+Implausible numbers become findings. Where exactly one unit profile makes all numbers of a
+program plausible, it is proposed with the numbers that it gives; nothing is converted unless
+the user asks for it. Two profiles that fit are never decided between: a feed of 0.1 may be per
+tooth or per revolution, and only somebody who knows the program can tell.
 """
 
 from collections.abc import Iterator, Sequence
-from math import pi
+from dataclasses import dataclass
+from math import isclose, pi
 
 from stepnc_model.entities.enums import Hand
 from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.technology import Number, Programmed, ProgrammedQuantity, programmed
 from stepnc_model.tool import hand_of, tool_of
-from stepnc_model.units import PROFILES, UnitProfile
+from stepnc_model.units import ISO, PROFILES, UnitProfile, m_min_from_speed, rpm_from_rev_s
 
 MAX_SPINDLE_SPEED = 300.0
 """Greatest plausible spindle speed, rev/s; only dental and circuit-board machines exceed it."""
@@ -29,6 +32,29 @@ LEAST_FEED_PER_TOOTH = 5e-4
 MAX_TURNING_FEED = 5.0
 """Greatest plausible turning feed, mm per revolution."""
 
+SAME_SPEED = 0.002
+"""Relative difference up to which a cutting speed counts as that of the spindle speed."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class UnitProposal:
+    """Unit profiles that make all numbers of some workingsteps plausible."""
+
+    profiles: tuple[UnitProfile, ...]
+    """Profiles that fit and differ in at least one number, in the order of ``PROFILES``."""
+    evidence: tuple[Finding, ...]
+    """Numbers of each technology as the first of them gives them."""
+
+    @property
+    def only(self) -> UnitProfile | None:
+        """The profile, if only one fits."""
+        return self.profiles[0] if len(self.profiles) == 1 else None
+
+    @property
+    def words(self) -> str:
+        """Options that would choose a fitting profile."""
+        return " or ".join(profile.name for profile in self.profiles)
+
 
 def implausible(program: Program) -> tuple[Finding, ...]:
     """Findings about implausible numbers in all workingsteps of a program."""
@@ -44,12 +70,10 @@ def refusal(program: Program, steps: Sequence[ResolvedWorkingstep]) -> SchemaErr
     for step in steps:
         for finding in _findings(program, step):
             if finding.severity is Severity.WARNING and finding.rule == RULE:
-                fitting = [
-                    name for name, units in PROFILES.items() if _all_fit(program, steps, units)
-                ]
+                words = proposal(program, steps).words
                 advice = (
-                    f"plausible with --units {' or '.join(fitting)}"
-                    if fitting
+                    f"plausible with --units {words}"
+                    if words
                     else "no unit profile makes all numbers plausible"
                 )
                 return SchemaError(
@@ -59,6 +83,90 @@ def refusal(program: Program, steps: Sequence[ResolvedWorkingstep]) -> SchemaErr
                     line=finding.line,
                 )
     return None
+
+
+def proposal(program: Program, steps: Sequence[ResolvedWorkingstep]) -> UnitProposal:
+    """Unit profiles that make all numbers of some workingsteps plausible, with evidence.
+
+    Profiles that give the same numbers count once. Where a technology gives both a cutting
+    speed and a spindle speed, profiles in which they agree come before those in which they do
+    not. Workingsteps that cannot be read are passed over.
+
+    Parameters
+    ----------
+    program : Program
+        Program in any unit profile.
+    steps : sequence of ResolvedWorkingstep
+
+    Returns
+    -------
+    UnitProposal
+    """
+    found: dict[tuple[_UnitReading, ...], UnitProfile] = {}
+    for units in PROFILES.values():
+        readings = _readings(program, steps, units)
+        if readings is not None:
+            found.setdefault(readings, units)
+    agreeing = {
+        readings: units
+        for readings, units in found.items()
+        if any(each.agrees for each in readings)
+        and not any(each.agrees is False for each in readings)
+    }
+    chosen = agreeing or found
+    first = next(iter(chosen.items()), None)
+    return UnitProposal(
+        profiles=tuple(chosen.values()),
+        evidence=() if first is None else tuple(_evidence(program, *first)),
+    )
+
+
+def units_by_numbers(
+    program: Program, steps: Sequence[ResolvedWorkingstep]
+) -> tuple[UnitProfile, tuple[Finding, ...]]:
+    """The only unit profile that makes all numbers plausible, with the numbers that it gives.
+
+    Raises
+    ------
+    SchemaError
+        If several profiles fit, or none does.
+    """
+    found = proposal(program, steps)
+    if found.only is not None:
+        return found.only, found.evidence
+    if not found.profiles:
+        raise SchemaError("units auto: no unit profile makes all numbers plausible")
+    raise SchemaError(
+        f"units auto: the numbers are plausible with --units {found.words}; name one of them"
+        + (" (iso is the standard)" if ISO in found.profiles else "")
+    )
+
+
+def unit_findings(program: Program) -> tuple[Finding, ...]:
+    """Findings that propose units, for a program whose numbers cannot be in its units."""
+    error = refusal(program, program.workingsteps)
+    if error is None:
+        return ()
+    found = proposal(program, program.workingsteps)
+    name = program.units.name
+    if found.only is not None:
+        text = (
+            f"the numbers cannot be in the units '{name}', and all are plausible with "
+            f"--units {found.only.name}"
+        )
+        return _warned(text), *found.evidence
+    if found.profiles:
+        text = (
+            f"the numbers cannot be in the units '{name}'; they are plausible with "
+            f"--units {found.words}: name the one that the program was written in"
+        )
+        return (_warned(text),)
+    text = f"the numbers cannot be in the units '{name}' nor in any other known ones"
+    return (_warned(text),)
+
+
+def _warned(text: str) -> Finding:
+    return Finding(severity=Severity.WARNING, message=text, rule=RULE)
 
 
 RULE = "ISO 14649-10 4.2.1"
@@ -134,18 +242,110 @@ def _oddities(
         yield conditions.feed, text
 
 
-def _all_fit(
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _UnitReading:
+    """Numbers of one workingstep in a unit profile, rounded to be compared."""
+
+    technology: int
+    spindle_speed: float
+    """Spindle speed, rev/s; 0 for a constant cutting speed in turning."""
+    cutting_speed: float
+    """Cutting speed, mm/s; 0 for a constant spindle speed in turning."""
+    feed_per_turn: float
+    """Feed per revolution, mm; in turning at a constant cutting speed perhaps in mm/s."""
+    teeth: int
+    agrees: bool | None
+    """Whether the cutting speed given beside a spindle speed is that of the tool."""
+
+
+def _readings(
     program: Program, steps: Sequence[ResolvedWorkingstep], units: UnitProfile
-) -> bool:
-    """Whether a unit profile makes the numbers of all workingsteps plausible."""
+) -> tuple[_UnitReading, ...] | None:
+    """Numbers of the workingsteps in a unit profile; None if some are not plausible."""
     other = Program(program.file, units=units, name=program.name)
+    found: list[_UnitReading] = []
     for step in steps:
         try:
             with other.using(step.operation_ref):
                 conditions = programmed(other, step.technology_ref)
-                oddities = list(_oddities(other, step, conditions))
+                if any(True for _ in _oddities(other, step, conditions)):
+                    return None
+                found.append(_reading(other, step, conditions, units))
         except SchemaError:
-            continue
-        if oddities:
-            return False
-    return True
+            if units.drilling_feed is not None and _is_shared(other, step):
+                return None
+    return tuple(found)
+
+
+def _is_shared(program: Program, step: ResolvedWorkingstep) -> bool:
+    """Whether a technology is refused because two kinds of operation share it."""
+    try:
+        program.units_of(step.technology_ref)
+    except SchemaError:
+        return True
+    return False
+
+
+def _reading(
+    program: Program, step: ResolvedWorkingstep, conditions: Programmed, units: UnitProfile
+) -> _UnitReading:
+    """Numbers of one workingstep."""
+    tool = tool_of(program, step.tool_ref)
+    speed, feed = conditions.speed, conditions.feed
+    is_spindle = speed.quantity is ProgrammedQuantity.SPINDLE_SPEED
+    if tool.diameter <= 0.0:
+        turning = speed.value if is_spindle else 0.0
+        around = 0.0 if is_spindle else speed.value
+        is_per_time = feed.quantity is ProgrammedQuantity.FEED and turning > 0.0
+        per_turn = feed.value / turning if is_per_time else feed.value
+    else:
+        turning = conditions.spindle_speed(tool.diameter)
+        around = pi * tool.diameter * turning
+        per_turn = conditions.feed_per_tooth(turning, tool.teeth) * tool.teeth
+    return _UnitReading(
+        technology=int(step.technology_ref),
+        spindle_speed=_short(turning),
+        cutting_speed=_short(around),
+        feed_per_turn=_short(per_turn),
+        teeth=tool.teeth,
+        agrees=_agrees(program, step, units, around) if conditions.has_both_speeds else None,
+    )
+
+
+def _agrees(
+    program: Program, step: ResolvedWorkingstep, units: UnitProfile, around: float
+) -> bool:
+    """Whether the cutting speed of a technology is that of its spindle speed."""
+    written = getattr(program.get(step.technology_ref), "cutspeed", None)
+    return written is not None and isclose(
+        written * units.cutting_speed, around, rel_tol=SAME_SPEED
+    )
+
+
+def _short(value: float) -> float:
+    """Value rounded to nine digits."""
+    return float(f"{value:.9g}")
+
+
+def _evidence(
+    program: Program, readings: tuple[_UnitReading, ...], units: UnitProfile
+) -> Iterator[Finding]:
+    """Numbers of each technology in a unit profile, once."""
+    seen: set[str] = set()
+    for each in readings:
+        ref = next(
+            step.technology_ref
+            for step in program.workingsteps
+            if int(step.technology_ref) == each.technology
+        )
+        parts = []
+        if each.spindle_speed > 0.0:
+            parts.append(f"{rpm_from_rev_s(each.spindle_speed):.4g} rpm")
+        if each.cutting_speed > 0.0:
+            parts.append(f"{m_min_from_speed(each.cutting_speed):.3g} m/min")
+        parts.append(f"{each.feed_per_turn / each.teeth:.3g} mm per tooth")
+        text = f"in units '{units.name}': {', '.join(parts)}"
+        finding = program.finding(Severity.NOTE, text, ref)
+        if str(finding) not in seen:
+            seen.add(str(finding))
+            yield finding

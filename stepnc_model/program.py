@@ -26,6 +26,8 @@ from stepnc_model.entities.executables import (
     WhileStatement,
     Workplan,
 )
+from stepnc_model.entities.measures import PropertyParameter
+from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.entities.operations import MachiningOperation
 from stepnc_model.entities.profiles import MachinedSurface, SurfaceTextureParameter
 from stepnc_model.entities.workpiece import Material, Workpiece
@@ -141,6 +143,8 @@ class Program:
             dict[int, list[tuple[SurfaceTextureParameter, MachinedSurface]]] | None
         ) = None
         self._by_feature: dict[int, list[ResolvedWorkingstep]] = {}
+        self._named: dict[str, list[Ref[Entity]]] | None = None
+        self._drilling, self._other = _technologies(self.workingsteps)
         for step in self.workingsteps:
             for feature in step.features:
                 self._by_feature.setdefault(int(feature), []).append(step)
@@ -157,6 +161,30 @@ class Program:
     def get(self, ref: Ref[T]) -> T:
         """Entity behind a reference."""
         return self.model.get(ref)
+
+    def parameters_named(self, prefix: str) -> dict[str, list[Ref[Entity]]]:
+        """Numeric and descriptive parameters of the file by name, those with a prefix."""
+        if self._named is None:
+            self._named = {}
+            for ref, parameter in self.model.of_type(PropertyParameter):
+                self._named.setdefault(parameter.parameter_name, []).append(ref)
+        return {name: refs for name, refs in self._named.items() if name.startswith(prefix)}
+
+    def units_of(self, technology: Ref[Entity]) -> UnitProfile:
+        """Units of the feeds and speeds of a technology.
+
+        Raises
+        ------
+        SchemaError
+            If drilling and another operation share the technology, and the profile gives them
+            different units.
+        """
+        if self.units.drilling_feed is None or int(technology) not in self._drilling:
+            return self.units
+        if int(technology) in self._other:
+            message = "drilling and milling share it, and their feeds have different units"
+            raise self.error(message, technology, "feedrate")
+        return self.units.for_drilling()
 
     def line(self, ref: Ref[Entity]) -> int:
         """Line of an instance, counted from 1."""
@@ -423,6 +451,16 @@ class _WalkVisit:
     level: int
     setup: Ref[Setup] | None
     is_leaving: bool = False
+
+
+def _technologies(steps: tuple[ResolvedWorkingstep, ...]) -> tuple[set[int], set[int]]:
+    """Instance numbers of the technologies of drilling, and of all other operations."""
+    drilling: set[int] = set()
+    other: set[int] = set()
+    for step in steps:
+        is_drilling = isinstance(step.operation, DrillingTypeOperation)
+        (drilling if is_drilling else other).add(int(step.technology_ref))
+    return drilling, other
 
 
 def _children(entity: Entity | None) -> tuple[Ref[Entity], ...]:

@@ -120,7 +120,7 @@ def programmed(program: Program, ref: Ref[Entity]) -> Programmed:
 
 def _milling(program: Program, ref: Ref[Entity], technology: MillingTechnology) -> Programmed:
     """Read an ISO 14649-11 milling technology."""
-    units = program.units
+    units = program.units_of(ref)
     quantity = _feed_quantity(units.feed)
     feed = _number(program, ref, "feedrate", quantity, scale=units.feed_scale) or _number(
         program, ref, "feedrate_per_tooth", ProgrammedQuantity.FEED_PER_TOOTH, scale=1.0
@@ -156,7 +156,7 @@ def _adaptive(
     program: Program, ref: Ref[Entity], technology: AdaptiveMillingTechnology
 ) -> Programmed:
     """Read NIST's proposed form, in which feed and speed are entities that allow adaptation."""
-    units = program.units
+    units = program.units_of(ref)
     speed_entity = program.get(technology.its_speed)
     feed_entity = program.get(technology.its_feed)
     is_cutting = isinstance(speed_entity, Cutspeed)
@@ -190,7 +190,7 @@ def _adaptive(
 
 def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) -> Programmed:
     """Read an ISO 14649-12 turning technology."""
-    units = program.units
+    units = program.units_of(ref)
     quantity = _feed_quantity(units.feed)
     feed = _number(program, ref, "feedrate", quantity, scale=units.feed_scale) or _number(
         program, ref, "feed_per_revolution", ProgrammedQuantity.FEED_PER_REVOLUTION, scale=1.0

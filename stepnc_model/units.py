@@ -6,11 +6,11 @@ and rpm.
 
 A :class:`UnitProfile` gives the units in which a program writes its feeds and speeds. ISO
 14649-10 §4.2.1 prescribes m/s for speeds and rev/s for spindles when the file names no unit.
-Many public files use other units, which cannot be inferred from the numbers, so another profile
-is chosen by the user and never guessed.
+Many public files use other units, so another profile is chosen by the user, or by
+:mod:`stepnc_model.plausibility` where it is the only one that makes all numbers plausible.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import pi
 
@@ -191,12 +191,21 @@ class UnitProfile:
 
     name: str
     feed: FeedUnit
+    """Unit of ``feedrate``, of drilling too unless ``drilling_feed`` gives another."""
     cutting_speed: float
     """Factor from the file's ``cutspeed`` to mm/s."""
     cutting_speed_unit: str
     spindle: float
     """Factor from the file's ``spindle`` to rev/s."""
     spindle_unit: str
+    drilling_feed: FeedUnit | None = None
+    """Unit of ``feedrate`` in drilling, boring and reaming; None for that of ``feed``."""
+
+    def for_drilling(self) -> "UnitProfile":
+        """Units of the feeds and speeds of drilling operations."""
+        if self.drilling_feed is None:
+            return self
+        return replace(self, feed=self.drilling_feed, drilling_feed=None)
 
     @property
     def feed_scale(self) -> float:
@@ -209,7 +218,9 @@ class UnitProfile:
         }[self.feed]
 
 
-def _profile(name: str, feed: FeedUnit, *, rpm: bool) -> UnitProfile:
+def _profile(
+    name: str, feed: FeedUnit, *, rpm: bool, drilling: FeedUnit | None = None
+) -> UnitProfile:
     """Unit profile with cutting speeds in m/min, as in shop-floor files."""
     return UnitProfile(
         name=name,
@@ -218,7 +229,11 @@ def _profile(name: str, feed: FeedUnit, *, rpm: bool) -> UnitProfile:
         cutting_speed_unit="m/min",
         spindle=1.0 / SECONDS_PER_MINUTE if rpm else 1.0,
         spindle_unit="rpm" if rpm else "rev/s",
+        drilling_feed=drilling,
     )
+
+
+_PER_TOOTH, _PER_TURN = FeedUnit.MM_PER_TOOTH, FeedUnit.MM_PER_REVOLUTION
 
 
 ISO = UnitProfile(
@@ -239,5 +254,11 @@ PROFILES = {
         _profile("rpm-mmrev", FeedUnit.MM_PER_REVOLUTION, rpm=True),
         _profile("revs-mmtooth", FeedUnit.MM_PER_TOOTH, rpm=False),
         _profile("revs-mmrev", FeedUnit.MM_PER_REVOLUTION, rpm=False),
+        _profile("rpm-mmtooth-mmrev", _PER_TOOTH, rpm=True, drilling=_PER_TURN),
+        _profile("revs-mmtooth-mmrev", _PER_TOOTH, rpm=False, drilling=_PER_TURN),
     )
 }
+"""Unit profiles by name; ``mmtooth-mmrev`` is per tooth in milling, per turn in drilling."""
+
+AUTO = "auto"
+"""Name that stands for the only profile that makes all numbers of a file plausible."""

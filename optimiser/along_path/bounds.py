@@ -1,10 +1,7 @@
 """Bounds along the path that follow from the advice for a workingstep."""
 
-from collections.abc import Iterator
-
 from optimiser.advice import Advice
 from optimiser.along_path.caps import CapName, CutBounds
-from optimiser.cut import Cut, CutKind
 from optimiser.limits import STRAIGHT_DOWN
 from optimiser.plunge_feed import permitted_plunge
 from optimiser.problem import BoundSide, LimitName

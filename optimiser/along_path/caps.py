@@ -1,8 +1,8 @@
 """Greatest feed at each station of a path, with the name of the limit that gives it.
 
-Each limit is inverted into a feed per tooth: a Kienzle force grows with ``f^(1−m)``, so the feed
-at a bound is ``(bound/load)^(1/(1−m))``. The loads are those of the virtual machine at the
-station's own engagement: mean force and power from section and mean chip, forces along the
+Each limit is inverted into a feed per tooth: a Kienzle force grows with ``f^(1−m)``, so the
+feed at a bound is ``(bound/load)^(1/(1−m))``. The loads are those of the virtual machine at
+the station's own engagement: mean force and power from section and mean chip, forces along the
 helix from the contact arc. They are written apart from the virtual machine, which judges them.
 
 Units: mm, mm/s, rev/s, N, W, N·mm.
@@ -176,9 +176,7 @@ def _plunge(stations: Stations, greatest: float, descent: Floats) -> Floats:
     return np.where(is_down, greatest / steep, inf)
 
 
-def _chip_bounds(
-    stations: Stations, bounds: CutBounds
-) -> Iterator[tuple[CapName, Floats]]:
+def _chip_bounds(stations: Stations, bounds: CutBounds) -> Iterator[tuple[CapName, Floats]]:
     """Catalogue feed per tooth at the engagement of each station."""
     cut, at = bounds.cut, bounds.at
     base = catalogue_feed(cut, at)
@@ -229,7 +227,9 @@ def _force_bounds(
     is_solid = is_drilled & _is_solid(stations, point)
     chisel = chisel_factors(point.chisel_ratio)
     factor = force_factor(at) * at.safety_factor
-    force = factor * kienzle.k_c11 * ratio**-kienzle.m_c * np.where(is_solid, chisel.torque, 1.0)
+    force = (
+        factor * kienzle.k_c11 * ratio**-kienzle.m_c * np.where(is_solid, chisel.torque, 1.0)
+    )
     force *= stations.peak_section * cut.tool.teeth / (pi * diameter)
 
     def feed_at(bound: Floats | float, load: Floats) -> Floats:
@@ -275,9 +275,7 @@ def _spindle_bounds(bounds: CutBounds, spindle: Floats) -> tuple[Floats, Floats]
     return power, torque
 
 
-def _bending_bounds(
-    stations: Stations, bounds: CutBounds
-) -> Iterator[tuple[CapName, Floats]]:
+def _bending_bounds(stations: Stations, bounds: CutBounds) -> Iterator[tuple[CapName, Floats]]:
     """Limits on deflection and bending stress of an end mill."""
     cut, at, grade = bounds.cut, bounds.at, bounds.at.grade
     if grade is None:

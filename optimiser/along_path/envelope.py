@@ -1,4 +1,4 @@
-"""Lower envelope of step functions along a path: the least of the caps that cover each place."""
+"""Lower envelope of intervals along a path: the least of the caps that cover each place."""
 
 from dataclasses import dataclass
 

@@ -1,8 +1,8 @@
 """One feed for each block, or for each part of a block that is split.
 
-Controls take one feed per block. A block may be split where its greatest permitted feed changes;
-its parts must not be too short, and no part runs faster than the control takes blocks. The parts
-are chosen exactly, by dynamic programming over the places of the block.
+Controls take one feed per block. A block may be split where its greatest permitted feed
+changes; its parts must not be too short, and no part runs faster than the control takes
+blocks. The parts are chosen exactly, by dynamic programming over the places of the block.
 
 Units: mm, mm/s, s.
 """
@@ -82,10 +82,10 @@ def pieces_of(stretch: PathStretch, commands: Commands, rules: PieceRules) -> Fe
     block = segments.block[segment]
     first = _changes(block)
     group, chosen = np.zeros(len(at), dtype=np.int64), np.zeros(len(at))
+    can_split = stretch.can_split[segment].astype(np.float64)
     _choose(
         np.append(first, len(at)),
-        np.stack((length, weight, rate, programmed), axis=1),
-        stretch.can_split[segment].astype(np.int64),
+        np.stack((length, weight, rate, programmed, can_split), axis=1),
         np.array([rules.least_length, rules.least_gain, rules.kept_loss, rules.block_time]),
         (np.zeros(len(at) + 1), np.zeros(len(at) + 1, dtype=np.int64)),
         group,
@@ -140,7 +140,7 @@ def _least_rows(rate: Floats, starts: Ints, group: Ints) -> Ints:
     return order[starts]
 
 
-LENGTH, WEIGHT, RATE, PROGRAMMED = range(4)
+LENGTH, WEIGHT, RATE, PROGRAMMED, CAN_SPLIT = range(5)
 LEAST_LENGTH, LEAST_GAIN, KEPT_LOSS, BLOCK_TIME = range(4)
 
 
@@ -148,7 +148,6 @@ LEAST_LENGTH, LEAST_GAIN, KEPT_LOSS, BLOCK_TIME = range(4)
 def _choose(
     first: Ints,
     atoms: Floats,
-    can_split: Ints,
     rules: Floats,
     desk: tuple[Floats, Ints],
     group: Ints,
@@ -172,7 +171,9 @@ def _choose(
                 weight += atoms[begin, WEIGHT]
                 least = min(least, atoms[begin, RATE])
                 is_whole = begin == low and end == high
-                if not is_whole and (can_split[low] == 0 or length < rules[LEAST_LENGTH]):
+                if not is_whole and (
+                    atoms[low, CAN_SPLIT] == 0.0 or length < rules[LEAST_LENGTH]
+                ):
                     continue
                 time = max(weight / least, rules[BLOCK_TIME]) + rules[LEAST_GAIN]
                 if cost[begin] + time < cost[end]:

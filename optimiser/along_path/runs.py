@@ -1,9 +1,9 @@
 """Fastest feed commands along a stretch that a control turns into permitted feeds.
 
-A run is the part of a stretch between two rapids. The control chooses its filter by the greatest
-feed of the run: a faster feed in air smooths more, so that slow feeds must reach farther and
-corners must be slower. The greatest feed of each run is therefore chosen by trial, by the time
-that results.
+A run is the part of a stretch between two rapids. The control chooses its filter by the
+greatest feed of the run: a faster feed in air smooths more, so that slow feeds must reach
+farther and corners must be slower. The greatest feed of each run is therefore chosen by trial,
+by the time that results.
 
 Units: mm, mm/s, s.
 """
@@ -108,8 +108,12 @@ def commands_of(stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds) 
             runs.append(np.full(len(found[-1].ends), -1))
             continue
         within = caps.at(rows)
-        run = _Run(
-            segments[first:last], offsets[first : last + 1], places.ends[rows], within, machine,
+        run = _FeedRun(
+            segments[first:last],
+            offsets[first : last + 1],
+            places.ends[rows],
+            within,
+            machine,
             clearance_of(stretch),
         )
         found.append(run.fastest())
@@ -170,7 +174,7 @@ class _Smoothed:
     """Time of the run with the settling of the filter, s."""
 
 
-class _Run:
+class _FeedRun:
     """Feed moves between two rapids, with what bounds their feeds."""
 
     def __init__(
@@ -194,9 +198,7 @@ class _Run:
         self.corner_sines = sine[bent]
         self.bends = curvatures(segments)
         # A plan rounds no corner more than the program does, or than the tolerance.
-        self.given = smoothing_of(
-            machine.control, machine.limits, float(segments.speed.max())
-        )
+        self.given = smoothing_of(machine.control, machine.limits, float(segments.speed.max()))
         slower = np.minimum(moving.speed[1:], moving.speed[:-1])[bent]
         rounding = self.given.corner_gain * slower * self.corner_sines
         self.corner_tolerance = np.maximum(rounding, machine.tolerance)

@@ -1,36 +1,32 @@
 """Feeds along the paths of a program: the plan, and what the virtual machine makes of it.
 
 The program runs on the virtual machine twice to learn what its tools meet, in its stock and in
-one that is larger by a margin. The plan runs again; where a block that was split meets a little
-more than the whole block did, its feed is lowered, and it runs once more.
+one that is larger by a margin. Then the plan runs; where a block that was split meets a little
+more than the whole block did, its feed is lowered, and the plan runs once more.
 """
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-import numpy as np
-
+from optimiser.along_path.free import FreeProfile
 from optimiser.along_path.pieces import PieceRules
-from optimiser.along_path.plan import FeedPlanner, FeedTask, PartPlan, block_feeds
+from optimiser.along_path.plan import (
+    BlockFeeds,
+    FeedPlanner,
+    FeedTask,
+    PartPlan,
+    block_feeds,
+    lowered,
+)
 from optimiser.along_path.runs import MachineFeeds
-from optimiser.along_path.stretch import excess
-from service.along_path.course import BlockLog, Choose, stretches_of
+from service.along_path.course import PathSource, stretches_of
+from service.along_path.plan_run import LimitStretch, PartTotals, run_plan
+from service.along_path.trace import PathTrace
 from service.progress import Ticker
 from service.reading import Tell, silent
-from service.simulation.setup import PreparedRun
-from simulator.machine.samples import Episode
-from simulator.machine.totals import Total, added
-from simulator.machine.virtual import VirtualMachine
+from simulator.machine.totals import Total
 from simulator.motion.segments import ControlModel, axis_limits
+from simulator.spec import Machine
 from stepnc_model.errors import Finding
-from stepnc_model.post.block_feeds import BlockPart, with_feeds
-from stepnc_model.post.blocks import Block
-
-Feeds = dict[int, tuple[BlockPart, ...]]
-"""Parts of the blocks that change, by the number of the block."""
-
-EXCESS = 1.002
-"""Feed over the permitted feed above which a part is lowered."""
 
 MOST_ROUNDS = 4
 """Greatest number of runs of a plan."""
@@ -47,6 +43,14 @@ class AlongPathTask:
     """Distance from the stock within which nothing counts as air, mm."""
     tolerance: float = 0.05
     """Rounding of corners by the control that is always permitted, mm."""
+    greatest: float | None = None
+    """Greatest feed that the user permits, mm/s; None: that of the machine."""
+    keeps_idle: bool = False
+    """Whether parts of the program that meet no stock keep their feeds."""
+    has_jerk: bool = False
+    """Whether the free profile with limited jerk is computed too."""
+    keeps_traces: bool = False
+    """Whether feed, force and power of both runs are kept for plots."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,15 +75,26 @@ class AlongPathStep:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AlongPath:
+class FeedsAlongPath:
     """Feeds along the paths of a program."""
 
-    feeds: Feeds
+    feeds: BlockFeeds
     steps: tuple[AlongPathStep, ...]
+    idle: tuple[str, ...] = ()
+    """Parts of the program that kept their feeds because they meet no stock."""
     findings: tuple[Finding, ...] = ()
     """Findings of the run at the planned feeds."""
-    rounds: int = 1
-    """Number of runs of the plan."""
+    before_trace: PathTrace | None = None
+    """Signals of the run at the given feeds; None unless they were asked for."""
+    after_trace: PathTrace | None = None
+    """Signals of the run at the planned feeds."""
+    limits: tuple[LimitStretch, ...] = ()
+    """Active limits along the path."""
+
+    @property
+    def shown(self) -> tuple[AlongPathStep, ...]:
+        """Parts of the program that take time."""
+        return tuple(step for step in self.steps if step.before.duration > 0.0)
 
     @property
     def time_before(self) -> float:
@@ -97,26 +112,27 @@ class AlongPath:
         return sum(step.planned_time for step in self.steps)
 
     @property
+    def free(self) -> FreeProfile:
+        """Free profile of all parts together."""
+        whole = FreeProfile()
+        for step in self.steps:
+            whole = whole if step.plan is None else whole.plus(step.plan.free)
+        return whole
+
+    @property
     def parts(self) -> int:
         """Number of parts into which blocks were split beyond their number."""
         return sum(len(parts) - 1 for parts in self.feeds.values())
 
 
 def along_path(
-    prepare: Callable[[float], PreparedRun],
-    bounds: Choose,
-    task: AlongPathTask,
-    *,
-    tell: Tell = silent,
-) -> AlongPath:
+    source: PathSource, task: AlongPathTask, *, tell: Tell = silent
+) -> FeedsAlongPath:
     """Plan the feeds along the paths of a program, and run the plan.
 
     Parameters
     ----------
-    prepare : callable
-        Prepares the program anew, in a stock that is larger by a distance in mm.
-    bounds : callable
-        Bounds of a part of the program; None if its feed may not be chosen.
+    source : PathSource
     task : AlongPathTask
     tell : callable
         Receives progress.
@@ -127,108 +143,69 @@ def along_path(
         When the machine cannot run the program.
     """
     ticker = Ticker(tell)
-    given, log = prepare(0.0), None
-    log = BlockLog(given.blocks)
-    larger = prepare(task.margin) if task.margin > 0.0 else None
-    machine = given.machine
-    limits = axis_limits(machine)
-    feeds_of_machine = MachineFeeds(
-        control=task.control,
-        limits=limits,
-        greatest=machine.max_feed,
-        tolerance=task.tolerance,
+    given = source.prepare(0.0)
+    planner = FeedPlanner(_feed_task(given.machine, task))
+    before = PartTotals(
+        ticker, "planning", share=lambda _: given.done(), keeps_trace=task.keeps_traces
     )
-    rules = PieceRules(block_time=limits.block_time)
-    planner = FeedPlanner(FeedTask(machine=feeds_of_machine, rules=rules, levels=task.levels))
-    before = _Totals(ticker, "planning")
     for stretch in stretches_of(
-        given, larger, control=task.control, bounds=bounds, log=log, watch=before.add
+        given,
+        source.prepare(task.margin) if task.margin > 0.0 else None,
+        control=task.control,
+        bounds=source.bounds,
+        log=source.numbered(given),
+        watch=before.add,
     ):
         planner.add(stretch)
-    plan = planner.plan()
-    feeds = dict(block_feeds(plan))
-    rounds = 0
-    while True:
-        rounds += 1
-        after, ratios, findings = _run(prepare(0.0), feeds, bounds, task, ticker)
-        if not ratios or rounds == MOST_ROUNDS:
+    idle = _idle(before) if task.keeps_idle else frozenset[str]()
+    plan = planner.plan(kept=idle)
+    feeds: BlockFeeds = dict(block_feeds(plan))
+    whole = max(sum(total.duration for _, total in before.rows()), 1.0)
+    for _ in range(MOST_ROUNDS):
+        after = PartTotals(
+            ticker,
+            "running the plan",
+            share=lambda now: min(now / whole, 1.0),
+            keeps_trace=task.keeps_traces,
+        )
+        run = run_plan(source, feeds, control=task.control, totals=after)
+        if not run.excess:
             break
-        feeds = _lowered(feeds, ratios)
+        feeds = lowered(feeds, run.excess, keeps_levels=task.levels is not None)
     parts = {part.name: part for part in plan.parts}
-    steps = tuple(
-        AlongPathStep(name=name, before=one, after=other, plan=parts.get(name))
-        for (name, one), (_, other) in zip(before.rows(), after.rows(), strict=True)
+    return FeedsAlongPath(
+        feeds=feeds,
+        steps=tuple(
+            AlongPathStep(name=name, before=one, after=other, plan=parts.get(name))
+            for (name, one), (_, other) in zip(before.rows(), after.rows(), strict=True)
+        ),
+        idle=tuple(sorted(idle)),
+        findings=tuple(after.findings),
+        before_trace=before.trace(),
+        after_trace=after.trace(),
+        limits=run.limits,
     )
-    return AlongPath(feeds=feeds, steps=steps, findings=findings, rounds=rounds)
 
 
-class _Totals:
-    """Totals of a run by its parts. Running state."""
-
-    def __init__(self, ticker: Ticker, what: str) -> None:
-        self._totals: list[Total] = []
-        self._names: list[str] = [""]
-        self._ticker, self._what = ticker, what
-
-    def add(self, episode: Episode, machine: VirtualMachine) -> None:
-        """Add an episode."""
-        at = episode.state.workingstep
-        self._totals += [Total() for _ in range(len(self._totals), at + 1)]
-        self._totals[at] = added(self._totals[at], episode, machine.machine)
-        self._names = ["", *machine.workingsteps]
-        self._ticker(lambda: f"{self._what}: {machine.now:.0f} s of machining")
-
-    def rows(self) -> list[tuple[str, Total]]:
-        """Names and totals of the parts, in the order of execution."""
-        return list(zip(self._names, self._totals, strict=False))
+def _idle(totals: PartTotals) -> frozenset[str]:
+    """Names of the parts of a program that remove nothing."""
+    return frozenset(name for name, total in totals.rows() if total.volume <= 0.0)
 
 
-class _Emitted:
-    """Blocks at their new feeds, with the block and part that each comes from."""
-
-    def __init__(self, prepared: PreparedRun, feeds: Feeds) -> None:
-        self._log = BlockLog(prepared.blocks)
-        self._feeds = feeds
-        self.origin: list[tuple[int, int]] = [(0, 0)]
-
-    def __iter__(self) -> Iterator[tuple[int, Block]]:
-        for number, block in with_feeds(self._log, self._feeds):
-            last, part = self.origin[-1]
-            self.origin.append((number, part + 1 if number == last else 0))
-            yield self._log.lines[number], block
-
-
-def _run(
-    prepared: PreparedRun, feeds: Feeds, bounds: Choose, task: AlongPathTask, ticker: Ticker
-) -> tuple[_Totals, dict[tuple[int, int], float], tuple[Finding, ...]]:
-    """Run a plan; return totals, and the excess of parts over their permitted feeds."""
-    emitted = _Emitted(prepared, feeds)
-    log = BlockLog(emitted)
-    totals = _Totals(ticker, "running the plan")
-    ratios: dict[tuple[int, int], float] = {}
-    machines: list[VirtualMachine] = []
-
-    def watch(episode: Episode, machine: VirtualMachine) -> None:
-        totals.add(episode, machine)
-        machines[:] = [machine]
-
-    changed = replace(prepared, blocks=iter(()))
-    for stretch in stretches_of(
-        changed, None, control=task.control, bounds=bounds, log=log, watch=watch
-    ):
-        found = excess(stretch)
-        for row in np.flatnonzero(found > EXCESS).tolist():
-            origin = emitted.origin[int(stretch.segments.block[row])]
-            if origin[0] in feeds:
-                ratios[origin] = max(float(found[row]), ratios.get(origin, 1.0))
-    return totals, ratios, tuple(machines[0].findings) if machines else ()
-
-
-def _lowered(feeds: Feeds, ratios: dict[tuple[int, int], float]) -> Feeds:
-    """Feeds in which each part that is too fast is lowered."""
-    lowered = dict(feeds)
-    for (block, row), ratio in ratios.items():
-        parts = list(lowered[block])
-        parts[row] = replace(parts[row], rate=parts[row].rate / ratio)
-        lowered[block] = tuple(parts)
-    return lowered
+def _feed_task(machine: Machine, task: AlongPathTask) -> FeedTask:
+    """Task of the optimiser for a machine."""
+    limits = axis_limits(machine)
+    return FeedTask(
+        machine=MachineFeeds(
+            control=task.control,
+            limits=limits,
+            greatest=min(
+                (each for each in (machine.max_feed, task.greatest) if each is not None),
+                default=None,
+            ),
+            tolerance=task.tolerance,
+        ),
+        rules=PieceRules(block_time=limits.block_time),
+        levels=task.levels,
+        has_jerk=task.has_jerk,
+    )

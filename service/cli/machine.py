@@ -12,6 +12,7 @@ from service.cli.options import CONTROLS, LIMIT_EXCEEDED, OK, Commands, add_json
 
 if TYPE_CHECKING:
     from service.simulation.run import RunFiles
+    from simulator.tool_files.file_unit import FileUnit
 
 
 USUAL_RATE = 10.0
@@ -30,12 +31,21 @@ def add_code(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("--nc", type=Path, metavar="CODE", help="run this NC code instead of the program's own")
     add("--dialect", default="", metavar="NAME", help=f"dialect of the NC code: {CONTROLS}")
-    add("--tools", type=Path, metavar="TOML", help="tool table, for NC code without a program")
+    add(
+        "--tools",
+        type=Path,
+        metavar="TABLE",
+        help="tool table, for NC code without a program: TOML or CSV, LinuxCNC's tool.tbl, a "
+        "library of Fusion (.json, .tools), HSMWorks (.hsmlib) or FreeCAD (.fctl)",
+    )
+    add("--tools-unit", default="", metavar="UNIT", help="unit of a tool.tbl: mm or inch")
     add(
         "--stock",
         default="",
-        metavar="NUMBERS",
-        help="stock for NC code without a program: x0,y0,z0,x1,y1,z1 or diameter,z0,z1 in mm",
+        metavar="STOCK",
+        help="stock for NC code without a program, in mm: x0,y0,z0,x1,y1,z1 of a box, "
+        "diameter,z0,z1 or diameter,length of a bar, x,y,diameter,z0,z1 of an upright bar, an "
+        "STL file, or an .npz file of --keep-stock",
     )
 
 
@@ -137,6 +147,9 @@ def _simulate_options(parser: argparse.ArgumentParser) -> None:
     add("--carbon-g-kwh", type=float, metavar="G", help="grams of CO2 per kWh (default 480)")
     add("-o", "--output", type=Path, metavar="FILE", help="write the run, .parquet or .csv")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
+    add("--keep-stock", type=Path, metavar="NPZ",
+        help="write the remaining stock, which --stock of a later run can take",
+    )  # fmt: skip
     add("--mtconnect", type=Path, metavar="XML",
         help="write the run as an MTConnect document; in a folder its name is MACHINE_PART.xml",
     )  # fmt: skip
@@ -163,11 +176,14 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
     code = None
     if options.nc is None and (options.dialect or options.tools or options.stock):
         raise StepNcError("--dialect, --tools and --stock need NC code: name it with --nc")
+    if options.tools_unit and options.tools is None:
+        raise StepNcError("--tools-unit needs a tool table: name it with --tools")
     if options.nc is not None:
         code = CodeRequest(
             code=options.nc,
             dialect=options.dialect,
             tools=options.tools,
+            tools_unit=length_unit(options.tools_unit),
             stock=options.stock,
         )
     return RunFiles(
@@ -175,7 +191,16 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
         code=code,
         output=options.output,
         report=getattr(options, "report", None),
+        kept=getattr(options, "keep_stock", None),
     )
+
+
+def length_unit(name: str) -> "FileUnit | None":
+    """Return the unit of a tool table that names none; None if none is given."""
+    from service.reading import one_of
+    from simulator.tool_files.file_unit import FileUnit
+
+    return one_of(FileUnit, name, "unit") if name else None
 
 
 def _simulate(options: argparse.Namespace) -> int:

@@ -136,7 +136,7 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         "file",
         type=Path,
         metavar="FILE",
-        help="a STEP-NC program (Part 21), or a folder of them",
+        help="a STEP-NC program (Part 21), a folder of them, or NC code",
     )
     add_options(parser, AdviceRequest)
     add(
@@ -156,9 +156,11 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
     add(
         "--tools",
         type=Path,
-        metavar="TOML",
-        help="tool table that says which of the program's tools cut over centre or have wipers",
+        metavar="TABLE",
+        help="tool table: the tools of NC code; of a program, which cut over centre or have "
+        "wipers",
     )
+    add("--tools-unit", default="", metavar="UNIT", help="unit of a tool.tbl: mm or inch")
     add_knowledge(parser, "supplies accepted corrections of k_c")
     add(
         "--feeds-csv",
@@ -176,9 +178,18 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
 def _add_check(commands: Commands) -> None:
     """Add the command ``stepnc check``."""
     parser = commands.add_parser(
-        "check", help="show the contents of a program and its errors; exit 3 if it is unusable"
+        "check",
+        help="show the contents of a program or of NC code and its errors; exit 3 if it is "
+        "unusable",
     )
     add_file(parser)
+    parser.add_argument(
+        "--control",
+        default="",
+        metavar="NAME",
+        help="control of NC code: linuxcnc, fanuc, haas, sinumerik or heidenhain; default: "
+        "guessed from the code",
+    )
     add_json(parser)
     parser.set_defaults(run=_check)
 
@@ -238,6 +249,8 @@ def _exit_code(error: Exception) -> int:
 def _optimise(options: argparse.Namespace) -> int:
     """Run the command ``optimise``."""
     from service import usecases
+    from service.cli.code import optimise_code
+    from service.code_contents import is_code
     from service.requests.advice import AdviceRequest
     from service.requests.fields import from_options
     from service.terminal import tell, write_out
@@ -247,6 +260,8 @@ def _optimise(options: argparse.Namespace) -> int:
         return _optimise_folder(options)
     if options.cluster:
         raise StepNcError("--cluster runs the programs of a folder: name a folder")
+    if is_code(options.file):
+        return optimise_code(options)
     outcome = usecases.optimise(
         from_options(AdviceRequest, options),
         usecases.AdviceFiles(
@@ -270,7 +285,9 @@ def _optimise(options: argparse.Namespace) -> int:
     else:
         from service.plan_output import print_plan
 
-        print_plan(outcome.plan, confirmation, outcome.along)
+        print_plan(outcome.plan, confirmation, outcome.along, outcome.told)
+    if outcome.plan.has_bad_data:
+        return BAD_INPUT
     if outcome.plan.is_infeasible:
         return INFEASIBLE
     is_passed = confirmation is not None and bool(confirmation.passed)
@@ -321,10 +338,40 @@ def _optimise_folder(options: argparse.Namespace) -> int:
 
 def _check(options: argparse.Namespace) -> int:
     """Run the command ``stepnc check``."""
-    from service.contents import check
+    from service.code_contents import is_code
+
+    return (
+        _check_code(options)
+        if options.control or is_code(options.file)
+        else _check_program(options)
+    )
+
+
+def _check_code(options: argparse.Namespace) -> int:
+    """Check NC code."""
+    from service.code_contents import check_code
     from service.terminal import write_out
 
-    contents = check(options.file, units=options.units)
+    contents = check_code(options.file, control=options.control)
+    if options.json:
+        from service.code_contents_output import code_json
+
+        write_out(code_json(contents))
+    else:
+        from service.code_contents_output import print_code
+
+        print_code(contents)
+    return OK
+
+
+def _check_program(options: argparse.Namespace) -> int:
+    """Check a STEP-NC program."""
+    from service.contents import check
+    from service.paths.remarks import tell_remarks
+    from service.terminal import tell, write_out
+
+    contents = check(options.file, units=options.units, tell=tell)
+    tell_remarks(contents.remarks, tell)
     if options.json:
         from service.contents_output import contents_json
 
@@ -333,7 +380,7 @@ def _check(options: argparse.Namespace) -> int:
         from service.contents_output import print_contents
 
         print_contents(contents)
-    return OK if contents.is_usable else BAD_INPUT
+    return OK if contents.is_of_use else BAD_INPUT
 
 
 def _convert(options: argparse.Namespace) -> int:

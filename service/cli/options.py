@@ -40,7 +40,9 @@ def add_file(parser: argparse.ArgumentParser) -> None:
         "--units",
         default="iso",
         help="units of feeds and speeds in the file: iso (m/s, rev/s; default), rpm-mmin, "
-        "rpm-mmtooth, rpm-mmrev, revs-mmtooth or revs-mmrev",
+        "rpm-mmtooth, rpm-mmrev, revs-mmtooth, revs-mmrev, rpm-mmtooth-mmrev, "
+        "revs-mmtooth-mmrev (per tooth in milling, per turn in drilling), or auto: the only "
+        "ones in which all numbers are plausible",
     )
 
 

@@ -38,7 +38,7 @@ def _verify_options(parser: argparse.ArgumentParser) -> None:
     add(
         "--tools",
         type=Path,
-        metavar="TOML",
+        metavar="TABLE",
         help="tool table with the measured tools, by the program's numbers; without a program, "
         "all tools by the numbers of the log",
     )

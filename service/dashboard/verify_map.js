@@ -81,7 +81,7 @@ function limit() {
   return most;
 }
 
-const isSeen = (at) => Math.abs(state.map.deviation_mm[at]) > state.map.uncertainty_mm[at];
+const isSeen = (at) => state.map.least_mm[at] > 0;
 /** Deviation that is coloured: none where it does not exceed its uncertainty, unless all are wanted. */
 const shownOf = (at) => (state.show === "all" || isSeen(at) ? state.map.deviation_mm[at] : 0);
 

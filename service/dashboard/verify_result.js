@@ -11,17 +11,19 @@ let job = null, result = null;
 /** Return the deviation of a sign on a surface, as one object. */
 function spot(row, sign) {
   const get = (name) => row[`${sign}_${name}`];
-  return { sign, size: get("mm"), uncertainty: get("uncertainty_mm"), at: get("at_mm"), block: get("block"),
+  return { sign, size: get("mm"), uncertainty: get("uncertainty_mm"),
+    least: get("least_mm") ?? get("mm") - get("uncertainty_mm"), at: get("at_mm"), block: get("block"),
     time: get("time_s"), by: get("cut_by"), row };
 }
 
-const excessOf = (one) => one.size - one.uncertainty;
-const isSeen = (one) => one.size > one.uncertainty;
+const excessOf = (one) => one.least;
+const isSeen = (one) => one.least > 0;
 const isWrong = (one) => isSeen(one) && one.size >= result.tolerance_mm - MICRO;
 const most = (spots, of) => spots.reduce((best, each) => (best && of(best) >= of(each) ? best : each), null);
 const worse = (row) => most(SIGNS.map((sign) => spot(row, sign)), excessOf);
 
-const size = (one) => `${fixed(one.size, 4)} ± ${fixed(one.uncertainty, 4)} mm`;
+const size = (one) => `${fixed(one.size, 4)} ± ${fixed(one.uncertainty, 4)} mm${
+  isSeen(one) && one.size <= one.uncertainty ? `, at least ${fixed(one.least, 4)} mm` : ""}`;
 const on = (row) => (row.workingstep === "raw part" ? `${row.surface} of the raw part` : `${row.surface} of ${row.workingstep}`);
 const xyz = (at) => at.map((each) => fixed(each, 2)).join(", ");
 const where = (one) => [`at ${xyz(one.at)} mm`, one.block ? `block ${one.block}` : "",

@@ -191,7 +191,10 @@ def _row(name: str, plan: Plan, *, is_exceeded: bool) -> ProgramRow:
     advice = [each for each in plan.advices if each.status is AdviceStatus.ADVISED]
     conflicts = [each for each in plan.advices if each.status is AdviceStatus.INFEASIBLE]
     status, message = ProgramStatus.ADVISED, ""
-    if conflicts:
+    if plan.has_bad_data:
+        status = ProgramStatus.BAD
+        message = "; ".join(f"'{each.id}': {each.reason}" for each in plan.refused)
+    elif conflicts:
         status, message = ProgramStatus.INFEASIBLE, _names(conflicts)
     elif is_exceeded or plan.faults:
         status, message = ProgramStatus.EXCEEDED, "; ".join(plan.faults)

@@ -52,7 +52,7 @@ def print_paths(paths: Paths) -> None:
     """Print a row for each tool path, then the assumptions made."""
     print_line(f"{paths.program.name}: {len(paths.paths)} tool paths")
     print_table(PATHS, [_row(paths, item) for item in paths.items])
-    print_findings(paths.findings)
+    print_findings(paths.findings, told=paths.told)
 
 
 def _row(paths: Paths, item: ToolPath | Function) -> PathRow:

@@ -11,6 +11,7 @@ from service.files import (
     write_atomically,
     write_lines,
 )
+from service.paths.remarks import tell_remarks
 from service.progress import Progress
 from service.reading import Tell, one_of, read_program, silent
 from stepnc_model.entities.entity import Entity
@@ -22,10 +23,12 @@ from stepnc_model.post.blocks import Cycles, MachineType
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.dialects import read, write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Program, ProgramLine, Stock
+from stepnc_model.program import Program, ProgramLine, ResolvedWorkingstep, Stock
 from stepnc_model.technology import programmed
-from stepnc_model.toolpath.generate import generate, raised, require_ready
+from stepnc_model.toolpath.generate import generate, raised
+from stepnc_model.toolpath.left_out import LeftOut
 from stepnc_model.toolpath.path import LEFT_OUT, Function, Point, ToolPath
+from stepnc_model.toolpath.remarks import remarks
 from stepnc_model.toolpath.task import clamps_of, stock_of
 
 
@@ -37,6 +40,8 @@ class Paths:
     items: tuple[ToolPath | Function, ...]
     faults: tuple[SchemaError, ...]
     """Reasons why some executables were left out."""
+    told: tuple[Finding, ...] = ()
+    """Warnings about the program that were told already."""
 
     @property
     def paths(self) -> tuple[ToolPath, ...]:
@@ -60,7 +65,8 @@ class Paths:
     @property
     def findings(self) -> tuple[Finding, ...]:
         """Assumptions made for the tool paths."""
-        return tuple(finding for path in self.paths for finding in path.findings)
+        of_paths = tuple(finding for path in self.paths for finding in path.findings)
+        return (*of_paths, *(each for each in self.told if each not in of_paths))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,7 +91,15 @@ def tool_paths(
     StepNcError
         At the first executable for which no path can be generated, unless it keeps going.
     """
-    return paths_of(read_program(path, units=units), keep_going=keep_going, tell=tell)
+    program = read_program(path, units=units, tell=tell)
+    return with_remarks(paths_of(program, keep_going=keep_going, tell=tell), tell)
+
+
+def with_remarks(paths: Paths, tell: Tell) -> Paths:
+    """Tell the warnings about a program, and keep them with its paths."""
+    told = remarks(paths.program, paths.paths)
+    tell_remarks(told, tell)
+    return replace(paths, told=told)
 
 
 def paths_of(program: Program, *, keep_going: bool = False, tell: Tell = silent) -> Paths:
@@ -129,11 +143,11 @@ def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
     control = one_of(Dialect, request.control.lower(), "control")
     output = request.output or beside(request.file, control.suffix)
     require_place(output, apart_from=request.file)
-    program = read_program(request.file, units=request.units)
+    program = read_program(request.file, units=request.units, tell=tell)
     error = refusal(program, program.workingsteps)
-    if error is not None:
+    if error is not None and not request.keep_going:
         raise error
-    paths = paths_of(program, keep_going=request.keep_going, tell=tell)
+    paths = with_remarks(paths_of(program, keep_going=request.keep_going, tell=tell), tell)
     paths = with_feeds(paths, keep_going=request.keep_going, tell=tell)
     cycles = Cycles.OWN if request.cycles else Cycles.EXPANDED
     count = write_lines(output, nc_lines(paths, control, cycles))
@@ -152,25 +166,36 @@ def with_feeds(paths: Paths, *, keep_going: bool, tell: Tell = silent) -> Paths:
     items: list[ToolPath | Function] = []
     faults: list[SchemaError] = []
     steps = {int(step.ref): step for step in paths.program.workingsteps}
-    missing: dict[int, str] = {}
+    left_out = LeftOut(paths.program)
     for item in paths.items:
         step = steps.get(int(item.workingstep)) if isinstance(item, ToolPath) else None
         try:
-            if step is not None:
-                require_ready(paths.program, step, missing)
-                programmed(paths.program, step.technology_ref)
+            if step is not None and isinstance(item, ToolPath):
+                left_out.require_ready(step, item)
+                _require_numbers(paths.program, step, keep_going=keep_going)
             items.append(item)
         except SchemaError as fault:
             if not keep_going:
                 raise
-            if step is not None:
-                missing |= {int(feature): step.id for feature in step.features}
+            if step is not None and isinstance(item, ToolPath):
+                left_out.add(step, item)
                 items.append(_left_out(step.ref, step.id))
             faults.append(fault)
             tell(f"left out: '{item.id}': {fault}")
     if not any(isinstance(item, ToolPath) for item in items):
         raise faults[0]
     return replace(paths, items=tuple(items), faults=(*paths.faults, *faults))
+
+
+def _require_numbers(program: Program, step: ResolvedWorkingstep, *, keep_going: bool) -> None:
+    """Refuse a workingstep without feed or speed, or with numbers that cannot be meant.
+
+    Where one fault ends all, numbers are refused before any path is made.
+    """
+    programmed(program, step.technology_ref)
+    error = refusal(program, (step,)) if keep_going else None
+    if error is not None:
+        raise error
 
 
 def _left_out(ref: Ref[Entity], name: str) -> Function:

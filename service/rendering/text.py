@@ -102,11 +102,13 @@ def print_line(text: str, colour: str = "") -> None:
     sys.stdout.write(coloured(clean(text), colour if wants_colours() else "") + "\n")
 
 
-def print_findings(findings: Sequence[Finding]) -> None:
-    """Print findings without duplicates, errors first."""
+def print_findings(findings: Sequence[Finding], *, told: Sequence[Finding] = ()) -> None:
+    """Print findings without duplicates, errors first; not those that were told already."""
+    said = {str(finding) for finding in told}
     order = list(Severity)[::-1]
     ranked = sorted(findings, key=lambda finding: order.index(finding.severity))
     unique = {str(finding): COLOURS[finding.severity] for finding in ranked}
+    unique = {text: colour for text, colour in unique.items() if text not in said}
     for text, colour in list(unique.items())[:MOST_FINDINGS]:
         print_line(text, colour)
     if len(unique) > MOST_FINDINGS:

@@ -10,14 +10,15 @@ from annotated_types import Interval, Len, MaxLen
 from optimiser.modes import Free, Mode
 from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE
 from service.requests.fields import LONGEST_NAME, About, Request
-from stepnc_model.file_profile import FileProfile
+from simulator.motion.model_name import ControlModelName
+from stepnc_model.file_profile import FileProfile, RecordChoice
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.units import PROFILES
+from stepnc_model.units import AUTO, PROFILES
 
 Name = Annotated[str, MaxLen(LONGEST_NAME)]
 
-Units = StrEnum("Units", {name.replace("-", "_"): name for name in PROFILES})  # type: ignore[misc]
-"""Unit profiles of files, by name."""
+Units = StrEnum("Units", {name.replace("-", "_"): name for name in (*PROFILES, AUTO)})  # type: ignore[misc]
+"""Unit profiles of files, by name, and ``auto``."""
 
 ISO = Units("iso")
 """Unit profile that follows the standard."""
@@ -36,7 +37,14 @@ MaterialName = Annotated[
         flag="--material", examples=("c45",),
     ),
 ]  # fmt: skip
-FileUnits = Annotated[Units, About("units of feeds and speeds in the file", flag="--units")]
+FileUnits = Annotated[
+    Units,
+    About(
+        "units of feeds and speeds in the file; auto: the only ones in which all numbers are "
+        "plausible",
+        flag="--units",
+    ),
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,6 +85,14 @@ class AdviceRequest(Request):
         FileProfile,
         About("how advice is recorded: optimisation or standard", flag="--profile"),
     ] = FileProfile.OPTIMISATION
+    records: Annotated[
+        RecordChoice,
+        About(
+            "all, or none: advice is written into the technologies only, without a plunge feed "
+            "of its own",
+            flag="--records",
+        ),
+    ] = RecordChoice.ALL
     nc_control: Annotated[
         Dialect | None,
         About(
@@ -129,6 +145,47 @@ class AdviceRequest(Request):
             "whether tools cut over centre, by their ids", examples=({"END MILL 10MM": True},)
         ),
     ] = field(default_factory=dict, hash=False)
+    given: Annotated[
+        tuple[Name, ...],
+        MaxLen(10_000),
+        About(
+            "value that the file lacks, in its units: #INSTANCE.attribute=value; kept out of "
+            "the file unless --in-place; repeatable",
+            flag="--set", metavar="VALUE", examples=("#46.depth=12",),
+        ),
+    ] = ()  # fmt: skip
+    teeth: Annotated[
+        tuple[Name, ...],
+        MaxLen(1000),
+        About(
+            "number of teeth that the file lacks: TOOL=NUMBER; repeatable",
+            flag="--teeth", metavar="TOOL=N", examples=("T3=2",),
+        ),
+    ] = ()  # fmt: skip
+    feed_mm_min: Annotated[
+        float | None,
+        Interval(gt=0.0, le=1e5),
+        About(
+            "feed of milling technologies that give none, in mm/min", unit="mm/min",
+            name="feed", flag="--feed", metavar="MM_MIN",
+        ),
+    ] = None  # fmt: skip
+    ignore_record: Annotated[
+        bool,
+        About(
+            "ignore the limits of optimisation records in the file: motor power, greatest feed "
+            "per tooth, greatest depth",
+            flag="--ignore-record",
+        ),
+    ] = False
+    keep_going: Annotated[
+        bool,
+        About(
+            "advise what can be advised and leave every other workingstep as it is; exit 3 "
+            "where the data of one are bad, 4 where one is infeasible",
+            flag="--keep-going",
+        ),
+    ] = False
     allow_plunge: Annotated[
         bool,
         About(
@@ -153,6 +210,28 @@ class AdviceRequest(Request):
             flag="--levels", metavar="K",
         ),
     ] = None  # fmt: skip
+    motion: Annotated[
+        ControlModelName,
+        About(
+            "motion control along the path, which decides how early a feed is commanded: fir, "
+            "junction or exact-stop",
+            flag="--motion",
+        ),
+    ] = ControlModelName.FIR
+    is_jerk_limited: Annotated[
+        bool,
+        About(
+            "also compute the profile along the path with the jerk of the axes limited",
+            flag="--jerk",
+        ),
+    ] = False
+    writes_toolpaths: Annotated[
+        bool,
+        About(
+            "with --along-path: write each path into the program, with its feeds along it",
+            flag="--write-toolpaths",
+        ),
+    ] = False
     stock_margin_mm: Annotated[
         float,
         Interval(ge=0.0, le=100.0),
@@ -169,3 +248,39 @@ class AdviceRequest(Request):
             unit="mm", name="corner tolerance", flag="--corner-tolerance", metavar="MM",
         ),
     ] = 0.05  # fmt: skip
+    max_feed_mm_min: Annotated[
+        float | None,
+        Interval(gt=0.0, le=1e6),
+        About(
+            "greatest feed along the path, in mm/min (default: that of the machine)",
+            unit="mm/min", name="greatest feed", flag="--max-feed", metavar="MM_MIN",
+        ),
+    ] = None  # fmt: skip
+    finish: Annotated[
+        tuple[Name, ...],
+        MaxLen(1000),
+        About(
+            "of NC code: a tool that leaves final surfaces, such as T3; repeatable; what "
+            "follows a comment with the word FINISH does too",
+            flag="--finish", metavar="TOOL",
+        ),
+    ] = ()  # fmt: skip
+    keep: Annotated[
+        tuple[Name, ...],
+        MaxLen(1000),
+        About(
+            "of NC code: a tool whose feeds stay as programmed; repeatable",
+            flag="--keep", metavar="TOOL",
+        ),
+    ] = ()  # fmt: skip
+    dialect: Annotated[
+        Dialect | None,
+        About(
+            "of NC code: its control (default: recognised by what it says)",
+            flag="--dialect", metavar="CONTROL",
+        ),
+    ] = None  # fmt: skip
+    is_marked: Annotated[
+        bool,
+        About("of NC code: add the reason of each changed feed as a comment", flag="--mark"),
+    ] = False

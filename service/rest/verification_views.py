@@ -34,12 +34,16 @@ class SurfaceView(View):
     surface: str = Field(description="wall, floor, face or diameter")
     gouge_mm: float
     gouge_uncertainty_mm: float
+    gouge_least_mm: float | None = Field(
+        default=None, description="least size; not positive where it may be none"
+    )
     gouge_at_mm: list[float] = Field(description="x, y and z of the place")
     gouge_block: int = Field(description="block of the program; 0: none")
     gouge_time_s: float | None = Field(description="time in the log; null: none came near")
     gouge_cut_by: str = Field(description="workingstep that the log shows then")
     excess_mm: float
     excess_uncertainty_mm: float
+    excess_least_mm: float | None = None
     excess_at_mm: list[float]
     excess_block: int
     excess_time_s: float | None
@@ -120,6 +124,7 @@ class SurfaceMapView(View):
     z_mm: list[float]
     deviation_mm: list[float] = Field(description="excess positive, gouge negative")
     uncertainty_mm: list[float]
+    least_mm: list[float] = Field(description="least size; not positive where it may be none")
     workingstep: list[int] = Field(description="place in workingsteps, from 0")
     kind: list[int] = Field(description="place in kinds, from 0")
     block: list[int] = Field(description="block of the program; 0: none")

@@ -192,7 +192,7 @@ def print_simulation(simulation: Simulation, *, carbon: CarbonFactor = WORLD) ->
         print_line(_deviation(simulation.deviation))
     for text in exceeded(simulation, found):
         print_line(f"limit exceeded: {text}", RED)
-    print_findings(simulation.findings)
+    print_findings(simulation.findings, told=simulation.told)
 
 
 def _deviation(seeded: SeededDeviation) -> str:

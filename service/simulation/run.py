@@ -9,12 +9,15 @@ from service.buckets import BucketedRun
 from service.chosen import require_axes
 from service.files import require_place
 from service.numbers import numbers_in
+from service.paths.remarks import tell_remarks
 from service.progress import Ticker, bar
+from service.raw_stock import KEPT_SUFFIX, file_of_stock
 from service.reading import Tell, silent
 from service.requests.fields import require_bounds
 from service.requests.runs import ForceView, SimulationRequest
 from service.run_file import require_suffix
 from service.simulation.gathering import RunCollector, SampleWatcher
+from service.simulation.remaining import keep_stock, untouched
 from service.simulation.setup import (
     CodeRequest,
     PreparedRun,
@@ -57,6 +60,8 @@ class RunFiles:
     """NC code to run instead of the program's own paths."""
     output: Path | None = None
     report: Path | None = None
+    kept: Path | None = None
+    """File for the stock that the run leaves, which a later run can take."""
     recorded: Path | None = None
     """Recorded run of the program that ``control`` evaluates instead of running it."""
 
@@ -73,6 +78,8 @@ class Simulation:
     totals: tuple[tuple[str, Total], ...]
     """Totals by workingstep in order of execution; the first is for the time before them."""
     findings: tuple[Finding, ...]
+    told: tuple[Finding, ...] = ()
+    """Those of the findings that were told while it ran."""
     samples: int = 0
     """Number of samples written."""
     tools: Mapping[int, LoadedTool] = field(default_factory=dict)
@@ -106,6 +113,9 @@ def simulate(
         When a file, a name, a number or an output is invalid.
     """
     prepared, virtual = waiting_machine(request, files, tell=tell)
+    tell_remarks(prepared.remarks, tell)
+    if files.kept is not None and prepared.raw is None:
+        raise StepNcError(f"{files.kept}: no stock is known that could be kept")
     disturbance = _disturbance(request, virtual.machine)
     run = RunCollector(virtual, disturbance, rate=request.rate_hz, watchers=watchers)
     if files.report is not None:
@@ -117,13 +127,22 @@ def simulate(
     finally:
         if run.file is not None and run.file.place is not None:
             tell(f"written: {run.file.place} ({run.file.rows} samples)")
+    if files.kept is not None:
+        keep_stock(virtual, files.kept)
+        tell(f"written: {files.kept} (remaining stock, in coordinates of its setup)")
     return Simulation(
         program=prepared.name,
         machine=virtual.machine,
         control=request.control,
         material=prepared.material,
         totals=tuple(zip(("", *virtual.workingsteps), run.totals, strict=True)),
-        findings=(*prepared.findings, *virtual.findings),
+        findings=(
+            *prepared.findings,
+            *(each for each in prepared.remarks if each not in prepared.findings),
+            *virtual.findings,
+            *untouched(prepared, virtual, run),
+        ),
+        told=prepared.remarks,
         tools=virtual.setup.tools or {},
         samples=0 if run.file is None else run.file.rows,
         trace=None if run.trace is None else run.trace.trace(),
@@ -247,8 +266,12 @@ def _require_files(files: RunFiles) -> None:
         raise StepNcError("the program defines tools and stock; omit --tools and --stock")
     if files.output is not None:
         require_suffix(files.output)
-    inputs = [files.file, *((code.code, code.tools) if code else ())]
-    outputs = [files.output, files.report]
+    inputs = [files.file]
+    if code is not None:
+        inputs += [code.code, code.tools, file_of_stock(code.stock)]
+    if files.kept is not None and files.kept.suffix.lower() != KEPT_SUFFIX:
+        raise WriteError(f"must end with {KEPT_SUFFIX}", path=str(files.kept))
+    outputs = [files.output, files.report, files.kept]
     for row, place in enumerate(outputs):
         if place is None:
             continue

@@ -7,25 +7,26 @@ from typing import Generic, TypeVar
 
 from service.chosen import load_material_named, machine_for, material_for
 from service.files import open_lines
-from service.numbers import require_size, stock_in
 from service.paths.toolpaths import paths_of, with_feeds
+from service.raw_stock import GivenStock, raw_stock_of, stock_map
 from service.reading import Tell, one_of, read_program
 from simulator.library import load_machine
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import loaded_tool, table_tool
 from simulator.machine.virtual import LoadedTool, StockMap
-from simulator.removal.engage import MillingStock
-from simulator.removal.lathe import TurningStock
 from simulator.spec import Machine, MachineKind, MaterialMatch
-from simulator.tool_table import read_tool_table
+from simulator.tool_files.file_unit import FileUnit
+from simulator.tool_files.read import read_tools
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Finding, PostError, Severity, StepNcError
 from stepnc_model.part21.values import Ref
+from stepnc_model.plausibility import refusal
 from stepnc_model.post import blocks as post
 from stepnc_model.post.dialect import SUFFIXES, Dialect
 from stepnc_model.post.dialects import read_blocks
 from stepnc_model.post.neutral import blocks_of, tool_numbers
 from stepnc_model.program import Program, Stock
+from stepnc_model.toolpath.remarks import remarks
 from stepnc_model.toolpath.task import stock_of
 
 T = TypeVar("T")
@@ -53,6 +54,8 @@ class PreparedRun:
     program: Program | None = None
     """STEP-NC program; None for NC code alone."""
     findings: tuple[Finding, ...] = ()
+    remarks: tuple[Finding, ...] = ()
+    """Warnings about the program, the same for every command."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,7 +66,11 @@ class CodeRequest:
     dialect: str = ""
     """Dialect of the code; empty: by the file extension."""
     tools: Path | None = None
+    """Tool table, in any format that is read."""
+    tools_unit: FileUnit | None = None
+    """Unit of a tool table that names none; None: mm."""
     stock: str = ""
+    """Raw part, as :func:`service.raw_stock.raw_stock_of` reads it; empty: unknown."""
 
 
 class CountedIterator(Generic[T]):
@@ -96,7 +103,7 @@ def from_program(
     StepNcError
         When the file or a name is invalid.
     """
-    program = read_program(file, units=units, name=name)
+    program = read_program(file, units=units, name=name, tell=tell)
     match = material_for(material, program)
     tell(f"material: {match.reason}")
     return prepared_program(program, machine_for(machine, program), match, tell=tell)
@@ -125,8 +132,11 @@ def prepared_program(
     Raises
     ------
     StepNcError
-        When a tool path cannot be generated.
+        When a tool path cannot be generated, or the numbers cannot be in the program's units.
     """
+    error = refusal(program, program.workingsteps)
+    if error is not None:
+        raise error
     paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
     numbers = tool_numbers(paths.paths)
     steps = sum(len(path.steps) for path in paths.paths)
@@ -144,6 +154,7 @@ def prepared_program(
         read=lambda: blocks.count,
         program=program,
         findings=paths.findings,
+        remarks=remarks(program, paths.paths),
     )
 
 
@@ -164,19 +175,20 @@ def from_code(
     chosen = load_machine(machine)
     match = load_material_named(material) if material else None
     tools = None
+    findings: tuple[Finding, ...] = ()
     if request.tools is not None:
         if match is None:
             raise StepNcError("a tool table without a material: name one with --material")
-        read = read_tool_table(request.tools)
-        tools = {tool.number: table_tool(tool, match.material) for tool in read}
-    raw = stock_in(request.stock) if request.stock else None
+        library = read_tools(request.tools, unit=request.tools_unit)
+        findings += library.findings
+        tools = {tool.number: table_tool(tool, match.material) for tool in library.tools}
+    raw = raw_stock_of(request.stock) if request.stock else None
     size = _size(request.code)
     lines = CountedIterator(_lines(request.code), len)
     clamped = None if raw is None else stock_map(chosen, raw)
-    findings: tuple[Finding, ...] = ()
     if clamped is None or tools is None:
         text = "no material is removed without stock, tool table and material: idle power only"
-        findings = (Finding(severity=Severity.WARNING, message=text),)
+        findings += (Finding(severity=Severity.WARNING, message=text),)
     return PreparedRun(
         name=request.code.name,
         machine=chosen,
@@ -184,7 +196,7 @@ def from_code(
         blocks=_read(request, lines, chosen, {}),
         tools=tools,
         stock=lambda _: clamped,
-        raw=raw,
+        raw=None if raw is None else raw.bounds,
         done=lambda: lines.share(size),
         read=lambda: lines.count,
         findings=findings,
@@ -218,18 +230,6 @@ def _code_of_program(
     )
 
 
-def stock_map(machine: Machine, raw: Stock) -> StockMap:
-    """Build a model of the stock that suits the kind of machine.
-
-    Raises
-    ------
-    StepNcError
-        When the stock has no volume, or exceeds the size of any machine.
-    """
-    require_size(raw)
-    return TurningStock(raw) if machine.kind is MachineKind.LATHE else MillingStock(raw)
-
-
 class _Clamped:
     """Stock of each setup, updated as it is machined. Running state."""
 
@@ -247,9 +247,8 @@ class _Clamped:
         setup = self._setups[workingstep]
         if setup not in self._maps:
             raw = stock_of(self._program, setup)
-            self._maps[setup] = (
-                None if raw is None else stock_map(self._machine, raw.grown(self._margin))
-            )
+            drawn = None if raw is None else GivenStock(bounds=raw.grown(self._margin))
+            self._maps[setup] = None if drawn is None else stock_map(self._machine, drawn)
         return self._maps[setup]
 
 

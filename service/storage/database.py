@@ -66,6 +66,8 @@ SCHEMA = (
         id TEXT PRIMARY KEY, pid INTEGER NOT NULL, seen REAL NOT NULL
     ) STRICT
     """,
+    # Programs of earlier versions are STEP-NC programs.
+    "ALTER TABLE programs ADD COLUMN kind TEXT NOT NULL DEFAULT 'step-nc'",
 )
 """Migration script of each version; the file's version is the number of scripts applied."""
 

@@ -43,6 +43,8 @@ class DeviationSpot:
     """Size of the deviation, mm."""
     uncertainty: float
     """mm"""
+    least: float
+    """Size that the deviation has at least, mm; not positive where it may be none."""
     position: tuple[float, float, float]
     """mm"""
     block: int
@@ -54,8 +56,8 @@ class DeviationSpot:
 
     @property
     def is_beyond(self) -> bool:
-        """Whether the deviation exceeds its uncertainty."""
-        return self.size > self.uncertainty
+        """Whether the deviation exceeds its uncertainty, or is certain by the samples alone."""
+        return self.least > 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,7 +88,7 @@ class SurfaceDeviation:
     def worse(self) -> DeviationSpot:
         """The one of both that exceeds its uncertainty by more."""
         pair = (self.gouge, self.excess)
-        return max(pair, key=lambda spot: spot.size - spot.uncertainty)
+        return max(pair, key=lambda spot: spot.least)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -149,14 +151,16 @@ def _kind(found: Verification, is_wall: bool) -> SurfaceKind:
 
 
 def _spot(found: Verification, places: SurfacePlaces, sign: float) -> DeviationSpot:
-    """Deviation of a sign that exceeds its uncertainty by most, or stays below by least."""
+    """Deviation of a sign with the greatest least size, or the nearest to its uncertainty."""
     size = np.maximum(sign * places.deviation, 0.0)
-    row = int((size - places.uncertainty).argmax())
+    least = np.where(size > 0.0, places.least, -places.uncertainty)
+    row = int(least.argmax())
     x, y, z = places.position[row].tolist()
     by = int(places.cut_by[row])
     return DeviationSpot(
         size=float(size[row]),
         uncertainty=float(places.uncertainty[row]),
+        least=float(least[row]),
         position=(x, y, z),
         block=int(places.block[row]),
         time=float(places.time[row]),

@@ -89,8 +89,7 @@ def _limit(found: Verification) -> float:
 
 def _chosen(places: SurfacePlaces, most: int) -> Ints:
     """Rows of places to show: the greatest deviations, and others evenly spread."""
-    beyond = np.abs(places.deviation) - places.uncertainty
-    return shown_rows(places.position, beyond, most=most)
+    return shown_rows(places.position, places.least, most=most)
 
 
 def _marker(deviation: Floats, limit: float, size: float) -> dict[str, object]:

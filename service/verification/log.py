@@ -349,8 +349,10 @@ class LogFile:
             position[:, axis] = np.interp(
                 samples.time, samples.time[rows], samples.position[rows, axis]
             )
+        is_measured = np.asarray(is_known.all(axis=1))
         # The last complete row stays for the interpolation of the next piece.
-        return replace(samples, position=position)[first:end], samples[end:]
+        known = replace(samples, position=position, is_measured=is_measured)
+        return known[first:end], samples[end:]
 
     def _lacking(self, position: Floats) -> str:
         lacking = np.flatnonzero(~np.isfinite(position).any(axis=0))

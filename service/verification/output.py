@@ -36,6 +36,12 @@ def _nominal(row: SurfaceDeviation) -> str | None:
     return " to ".join(f"{round(each, 4) + 0.0:+.4f}" for each in row.nominal)
 
 
+def _at_least(row: SurfaceDeviation) -> float | None:
+    """Least size of a deviation that is certain although it is below its uncertainty, mm."""
+    worse = row.worse
+    return worse.least if worse.is_beyond and worse.size <= worse.uncertainty else None
+
+
 SURFACES: tuple[Column[Row], ...] = (
     Column(key="workingstep", heading="workingstep", is_key=True, kind=str,
            value=lambda row: row.workingstep),
@@ -45,6 +51,7 @@ SURFACES: tuple[Column[Row], ...] = (
     Column(key="gouge_mm", heading="gouge mm", form=".4f", value=lambda row: row.gouge.size),
     Column(key="gouge_uncertainty_mm", heading="±", form=".4f",
            value=lambda row: row.gouge.uncertainty),
+    Column(key="gouge_least_mm", value=lambda row: row.gouge.least),
     Column(key="gouge_at_mm", value=lambda row: row.gouge.position),
     Column(key="gouge_block", value=lambda row: row.gouge.block),
     Column(key="gouge_time_s", value=lambda row: _time(row.gouge)),
@@ -52,6 +59,8 @@ SURFACES: tuple[Column[Row], ...] = (
     Column(key="excess_mm", heading="excess mm", form=".4f", value=lambda row: row.excess.size),
     Column(key="excess_uncertainty_mm", heading="±", form=".4f",
            value=lambda row: row.excess.uncertainty),
+    Column(key="excess_least_mm", value=lambda row: row.excess.least),
+    Column(heading="at least mm", form=".4f", is_optional=True, value=_at_least),
     Column(key="excess_at_mm", value=lambda row: row.excess.position),
     Column(key="excess_block", value=lambda row: row.excess.block),
     Column(key="excess_time_s", value=lambda row: _time(row.excess)),
@@ -185,6 +194,7 @@ def write_places(path: Path, found: Verification) -> int:
         **{f"{axis}_mm": places.position[:, row] for row, axis in enumerate("xyz")},
         "deviation_mm": places.deviation,
         "uncertainty_mm": places.uncertainty,
+        "least_mm": places.least,
         "time_s": places.time,
         "block": places.block,
     }

@@ -10,15 +10,15 @@ from service.numbers import stock_in
 from service.reading import Tell, read_program, silent
 from service.requests.verification import VerificationRequest
 from service.simulation.setup import PreparedRun, prepared_program
+from service.stl import read_stl
 from service.verification.log import ProgramNames
-from service.verification.stl import read_stl
 from simulator.library import load_machine
 from simulator.machine.acts import MoveStretch, ToolTo, WorkingstepTo
 from simulator.machine.interpreter import interpret
 from simulator.motion.segments import Floats
 from simulator.removal.cutter import Cutter, Insert
 from simulator.spec import Machine, MachineKind, MaterialMatch
-from simulator.tool_table import read_tool_table
+from simulator.tool_files.read import read_tools
 from simulator.verification.path import ProgrammedPath, ProgrammedRun, programmed_path
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program, Stock
@@ -140,7 +140,7 @@ def required_setup(
     """
     given = {
         "--required STL": required,
-        "--tools TOML": tools,
+        "--tools TABLE": tools,
         "--stock NUMBERS": request.stock,
         "--machine NAME": request.machine,
     }
@@ -154,7 +154,7 @@ def required_setup(
         raise StepNcError("--with-deflection needs a program (--program): it is simulated")
     machine = load_machine(request.machine)
     kind = Insert if machine.kind is MachineKind.LATHE else Cutter
-    table = read_tool_table(tools)
+    table = read_tools(tools).tools
     if not any(isinstance(tool.shape, kind) for tool in table):
         what = "turns" if kind is Insert else "rotates"
         raise StepNcError(f"{tools}: no tool {what}: {machine.name} needs one")
@@ -223,7 +223,7 @@ def with_tools(program: PreparedProgram, path: Path) -> PreparedProgram:
         When the table is invalid, or has other tools.
     """
     found: dict[int, Cutter | Insert | None] = {}
-    for tool in read_tool_table(path):
+    for tool in read_tools(path).tools:
         if tool.number not in program.cutters:
             known = ", ".join(f"T{number}" for number in sorted(program.cutters))
             raise StepNcError(

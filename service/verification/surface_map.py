@@ -29,7 +29,10 @@ ENOUGH = 0.6
 MOST_TRIES = 24
 """Sizes of cubes that are tried; the first is at most 200 times too small."""
 
-NUMBERS = ("x_mm", "y_mm", "z_mm", "deviation_mm", "uncertainty_mm", "time_s")
+LEAST = "least_mm"
+"""Column of the size that a deviation has at least."""
+
+NUMBERS = ("x_mm", "y_mm", "z_mm", "deviation_mm", "uncertainty_mm", LEAST, "time_s")
 
 TURNED = b"is_turned"
 """Key in the file's metadata: whether the part is turned."""
@@ -63,7 +66,9 @@ def write_surface(path: Path, found: Verification) -> None:
         When the disk refuses.
     """
     places = found.places
-    numbers = (*places.position.T, places.deviation, places.uncertainty, places.time)
+    numbers = (
+        *places.position.T, places.deviation, places.uncertainty, places.least, places.time,
+    )  # fmt: skip
     columns: dict[str, pa.Array] = {
         name: pa.array(values.astype(np.float32))
         for name, values in zip(NUMBERS, numbers, strict=True)
@@ -97,9 +102,10 @@ def read_map(path: Path, *, most: int) -> SurfaceMap:
         When the file does not exist.
     """
     table = parquet.read_table(path)
+    if LEAST not in table.column_names:  # maps of earlier versions
+        table = table.append_column(LEAST, _beyond(table))
     position = np.column_stack([table.column(name).to_numpy() for name in NUMBERS[:3]])
-    size = np.abs(table.column("deviation_mm").to_numpy())
-    beyond = size - table.column("uncertainty_mm").to_numpy()
+    beyond = table.column(LEAST).to_numpy()
     rows = shown_rows(position, beyond, most=most)
     omitted = np.delete(beyond, rows)
     names: dict[str, tuple[str, ...]] = {}
@@ -121,6 +127,12 @@ def read_map(path: Path, *, most: int) -> SurfaceMap:
         left_out=len(omitted),
         left_out_beyond=float(omitted.max(initial=0.0)),
     )
+
+
+def _beyond(table: pa.Table) -> pa.Array:
+    """By how much the size of each deviation exceeds its uncertainty, mm."""
+    size = np.abs(table.column("deviation_mm").to_numpy())
+    return pa.array(size - table.column("uncertainty_mm").to_numpy())
 
 
 def shown_rows(position: Floats, beyond: Floats, *, most: int) -> Ints:

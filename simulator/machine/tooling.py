@@ -12,7 +12,8 @@ from simulator.physics.flutes import CuttingEdges
 from simulator.physics.strength import end_mill
 from simulator.removal.cutter import Cutter
 from simulator.removal.tool_shape import THREADS, shape_of, tool_kind
-from simulator.spec import CuttingMaterial, Taylor, ToolKind, WorkMaterial
+from simulator.spec import CuttingMaterial, Taylor, ToolGrade, ToolKind, WorkMaterial
+from simulator.table_grade import grade_of_table_tool
 from simulator.tool_table import TableTool
 from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.values import Ref
@@ -52,7 +53,10 @@ def loaded_tool(
     # Carbide if no material is given, as in the optimiser.
     cutting_material = edge_material(tool.edge_material) or CuttingMaterial.CARBIDE
     shape = shape_of(program, ref)
-    edge = _edge(kind, cutting_material, tool.teeth, shape=shape, material=material)
+    grade = grade_for(kind, cutting_material, material)
+    edge = _edge(
+        kind, cutting_material, tool.teeth, shape=shape, material=material, grade=grade
+    )
     return LoadedTool(
         number=number,
         id=tool.id,
@@ -65,7 +69,12 @@ def loaded_tool(
 def table_tool(tool: TableTool, material: WorkMaterial, *, factor: float = 1.0) -> LoadedTool:
     """Prepare a tool of a tool table for the virtual machine."""
     edge = _edge(
-        tool.kind, tool.cutting_material, tool.teeth, shape=tool.shape, material=material
+        tool.kind,
+        tool.cutting_material,
+        tool.teeth,
+        shape=tool.shape,
+        material=material,
+        grade=grade_of_table_tool(tool, material),
     )
     if edge.flutes is not None and tool.helix_angle is not None:
         edge = replace(edge, flutes=replace(edge.flutes, helix_angle=tool.helix_angle))
@@ -92,9 +101,9 @@ def _edge(
     *,
     shape: Shape | None,
     material: WorkMaterial,
+    grade: ToolGrade | None,
 ) -> CuttingEdge:
     """Cutting edge of a tool in a material, with the compliance of an end mill."""
-    grade = grade_for(kind, cutting_material, material)
     correction = correction_of(material, grade, cutting_material)
     edge = CuttingEdge(
         teeth=teeth,

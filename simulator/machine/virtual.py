@@ -247,6 +247,8 @@ class VirtualMachine:
         """Ids of workingsteps in the order in which they begin; episodes number them from 1."""
         self.tool: LoadedTool | None = None
         self.findings: list[Finding] = []
+        self.reach: tuple[Floats, Floats] | None = None
+        """Lowest and highest position of feed moves, (3,) each, mm; None before the first."""
         self._stock: StockMap | None = None
         self._stocks: list[StockMap] = []
         self._clamp("")
@@ -257,6 +259,11 @@ class VirtualMachine:
         self._movements = 0
         """Number of movements that have been drawn."""
         self._said: set[str] = set()
+
+    @property
+    def stocks(self) -> tuple[StockMap, ...]:
+        """Stocks that were clamped, in order, as the program left them so far."""
+        return tuple(self._stocks)
 
     def run(self, steps: Iterable[ProgramAct]) -> Iterator[Episode]:
         """Run a program and yield its episodes, one after another without gaps.
@@ -386,7 +393,7 @@ class VirtualMachine:
             back=stretch.back,
             power_factor=self._drawn(segments),
         )
-        self._has_fed = self._has_fed or not bool(segments.is_rapid.all())
+        self._feed_through(segments)
         self._worn(course)
         episode = Episode(
             begin=begin,
@@ -398,6 +405,18 @@ class VirtualMachine:
         )
         self.position = segments.end[-1]
         return episode
+
+    def _feed_through(self, segments: Segments) -> None:
+        """Remember that feed moves have occurred, and where."""
+        is_feed = ~segments.is_rapid
+        if not is_feed.any():
+            return
+        self._has_fed = True
+        ends = np.concatenate((segments.start[is_feed], segments.end[is_feed]))
+        low, high = ends.min(axis=0), ends.max(axis=0)
+        if self.reach is not None:
+            low, high = np.minimum(low, self.reach[0]), np.maximum(high, self.reach[1])
+        self.reach = low, high
 
     def _follow(self, stretch: MoveStretch, spindle: SpindleCourse) -> None:
         """Store the spindle's course and its last programmed speed."""

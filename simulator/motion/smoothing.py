@@ -1,17 +1,17 @@
 """How far a control smooths a path: the memory of its filter, corners and arcs. Units mm, s.
 
-A control with a fixed-time filter averages the commanded velocity over a window W = T1 + T2. The
-tool lags half a window behind the command, so that a feed c holds at a place only if the command
-is at most c from ``c·W/2`` before it to ``c·W/2`` after it: while the whole window lies in that
-stretch, the mean is at most c; before, the tool has not reached the place, and after, it has left
-it. A control that plans its speed along the path (exact stop, junction deviation) keeps each
-feed where it is commanded.
+A control with a fixed-time filter averages the commanded velocity over a window W = T1 + T2.
+The tool lags half a window behind the command, so that a feed c holds at a place only if the
+command is at most c from ``c·W/2`` before it to ``c·W/2`` after it: while the whole window
+lies in that stretch, the mean is at most c; before, the tool has not reached the place, and
+after, it has left it. A control that plans its speed along the path (exact stop, junction
+deviation) keeps each feed where it is commanded.
 
 References
 ----------
 .. [1] Corners are rounded by ``e = v·(T1/4 + T2²/(12·T1))·sin(φ/2)``; see
-   :mod:`simulator.motion.fir`. An arc of radius r shrinks by ``v²·(T1² + T2²)/(24·r)``, the first
-   term of the filter's gain at the frequency v/r.
+   :mod:`simulator.motion.fir`. An arc of radius r shrinks by ``v²·(T1² + T2²)/(24·r)``, the
+   first term of the filter's gain at the frequency v/r.
 """
 
 from dataclasses import dataclass

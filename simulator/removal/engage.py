@@ -81,7 +81,8 @@ class MillingStock:
 
     Parameters
     ----------
-    stock : Stock
+    stock : Stock or ZMap
+        Raw part, or the map of a stock that has a shape already.
     cell : float, mm
         Size of the map's cells; by default chosen from the stock and the smallest tool.
     smallest_diameter : float, mm
@@ -89,10 +90,18 @@ class MillingStock:
     """
 
     def __init__(
-        self, stock: Stock, *, cell: float | None = None, smallest_diameter: float = inf
+        self,
+        stock: Stock | ZMap,
+        *,
+        cell: float | None = None,
+        smallest_diameter: float = inf,
     ) -> None:
-        size = cell_size(stock, smallest_diameter=smallest_diameter) if cell is None else cell
-        self.map: ZMap = zmap_of(stock, cell=size)
+        self.map: ZMap
+        if isinstance(stock, ZMap):
+            self.map = stock
+        else:
+            usual = cell_size(stock, smallest_diameter=smallest_diameter)
+            self.map = zmap_of(stock, cell=usual if cell is None else cell)
         self.volume = 0.0
         """Volume removed so far according to the map, mm³."""
         self.collisions: list[Collision] = []

@@ -89,24 +89,41 @@ def zmap_of(stock: Stock, *, cell: float) -> ZMap:
     if not 0.0 < cell < np.inf:
         raise ValueError(f"cell {cell:g} mm must be positive")
     columns, rows = (max(1, ceil(float(side) / cell - 1e-9)) for side in size[:2])
-    heights = np.full((columns, rows), stock.high[2], dtype=np.float64)
+    return zmap_of_heights(np.full((columns, rows), stock.high[2], dtype=np.float64), stock)
+
+
+def zmap_of_heights(heights: Floats, bounds: Stock) -> ZMap:
+    """Create the map of a stock that already has a shape.
+
+    No cell counts as cut, so that no engagement is taken for exact where the shape decides it.
+
+    Parameters
+    ----------
+    heights : (X, Y) array, mm
+        Heights of the cells, from the bottom to the top of the bounds; kept by the map. Beside
+        a bar they become the bottom.
+    bounds : Stock
+        Box around the stock, or the bar from which it was cut.
+    """
+    columns, rows = heights.shape
+    dx = float(bounds.high[0] - bounds.low[0]) / columns
+    dy = float(bounds.high[1] - bounds.low[1]) / rows
     owner = np.full((columns, rows), UNCUT, dtype=np.int32)
-    dx, dy = float(size[0]) / columns, float(size[1]) / rows
-    if stock.radius is not None:
-        across = (np.arange(columns) + 0.5) * dx - 0.5 * size[0]
-        along = (np.arange(rows) + 0.5) * dy - 0.5 * size[1]
-        beside = across[:, None] ** 2 + along**2 > stock.radius**2
-        heights[beside] = stock.low[2]
+    if bounds.radius is not None:
+        across = (np.arange(columns) + 0.5 - 0.5 * columns) * dx
+        along = (np.arange(rows) + 0.5 - 0.5 * rows) * dy
+        beside = across[:, None] ** 2 + along**2 > bounds.radius**2
+        heights[beside] = bounds.low[2]
         owner[beside] = OUTSIDE
     grid = HeightGrid(
         heights=heights,
         owner=owner,
-        x=stock.low[0],
-        y=stock.low[1],
+        x=bounds.low[0],
+        y=bounds.low[1],
         dx=dx,
         dy=dy,
-        bottom=stock.low[2],
-        top=stock.high[2],
-        radius=stock.radius or 0.0,
+        bottom=bounds.low[2],
+        top=bounds.high[2],
+        radius=bounds.radius or 0.0,
     )
     return ZMap(grid=grid)

@@ -10,7 +10,9 @@ way s that the tool goes between samples,
 * at corners that turn by α, ``s/2 · sin(α/2)``: ``s/(2·√2)`` at square corners, and ``s/2``
   where the tool turns back, as at the bottom of a hole.
 
-A bound counts wherever the programmed path turns within s of the place. Units mm, s and rad.
+A bound counts wherever the programmed path turns within s of the place. At the samples
+themselves the tool was: a gouge that one of them makes on a turned part is certain, whatever
+the tool did in between. Units mm, s and rad.
 """
 
 from collections.abc import Sequence
@@ -65,6 +67,8 @@ class SurfacePlaces:
     """Deviation along the normal, (N,), mm: excess positive, gouge negative."""
     uncertainty: Floats
     """Uncertainty of the deviation, (N,), mm."""
+    certain: Floats
+    """Size that it has at least, by the samples alone, (N,), mm; 0 where they tell none."""
     area: Floats
     """Area that a place stands for, (N,), mm²."""
     workingstep: Ints
@@ -93,9 +97,15 @@ class SurfacePlaces:
         })
 
     @property
+    def least(self) -> Floats:
+        """Size that a deviation has at least, (N,), mm; not positive where it may be none."""
+        beyond = np.abs(self.deviation) - self.uncertainty
+        return np.where(self.certain > 0.0, np.maximum(beyond, self.certain), beyond)
+
+    @property
     def is_beyond(self) -> Bools:
-        """Whether a deviation is greater than its uncertainty, (N,)."""
-        return np.abs(self.deviation) > self.uncertainty
+        """Whether a deviation is greater than its uncertainty, or certain, (N,)."""
+        return self.least > 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -173,6 +183,7 @@ def _wall_places(part: ProgrammedPart, logged: LoggedPart) -> SurfacePlaces:
         position=position,
         deviation=logged.targets.away - walls.rest,
         uncertainty=wall_uncertainty(logged, bend + rounding_uncertainty(logged.facts) + EXACT),
+        certain=np.zeros(len(position)),
         area=walls.area,
         workingstep=steps,
         block=path.block[segment],
@@ -270,6 +281,7 @@ def _floor_places(part: ProgrammedPart, logged: LoggedPart) -> SurfacePlaces:
         position=floors.position,
         deviation=floors.deviation,
         uncertainty=height + floors.uncertainty,
+        certain=np.zeros(len(owner)),
         area=floors.area,
         workingstep=np.where(is_cut, path.workingstep[segment], -1),
         block=np.where(is_cut, path.block[segment], 0),

@@ -53,17 +53,28 @@ class LoggedSamples:
     """Number of the tool, (N,)."""
     workingstep: Ints
     """Index of the workingstep of the program, (N,); -1 where it is unknown."""
+    is_measured: Bools | None = None
+    """Whether no coordinate of a position is interpolated, so that the tool was there, (N,);
+    None: of none."""
 
     def __len__(self) -> int:
         return len(self.time)
 
     def __getitem__(self, rows: slice) -> "LoggedSamples":
         return LoggedSamples(
+            is_measured=None if self.is_measured is None else self.is_measured[rows],
             time=self.time[rows],
             position=self.position[rows],
             tool=self.tool[rows],
             workingstep=self.workingstep[rows],
         )
+
+    @property
+    def measured(self) -> Bools:
+        """Whether the tool was at each position, (N,)."""
+        if self.is_measured is None:
+            return np.ones(len(self), dtype=np.bool_)
+        return self.is_measured
 
 
 @dataclass(kw_only=True)
@@ -361,7 +372,11 @@ def lower_near(heights: Floats, grid: HeightGrid, row: Floats, reach: float) -> 
 
 def joined(parts: Sequence[LoggedSamples]) -> LoggedSamples:
     """Samples of several parts in one."""
+    is_measured = None
+    if any(part.is_measured is not None for part in parts):
+        is_measured = np.concatenate([part.measured for part in parts])
     return LoggedSamples(
+        is_measured=is_measured,
         time=np.concatenate([part.time for part in parts]),
         position=np.concatenate([part.position for part in parts]),
         tool=np.concatenate([part.tool for part in parts]),

@@ -156,6 +156,7 @@ def required_places(part: RequiredPart, logged: LoggedPart) -> SurfacePlaces:
             wall_uncertainty(logged, logged.walls.bend + part.sag + rounding + EXACT),
             height + floors.uncertainty,
         )),
+        certain=np.zeros(sum(counts)),
         area=np.concatenate((part.area, floors.area)),
         workingstep=by,
         block=np.zeros(sum(counts), dtype=np.int64),

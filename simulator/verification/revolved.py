@@ -159,6 +159,7 @@ def _side(part: RequiredBar, logged: LoggedBar, *, is_bore: bool) -> SurfacePlac
         position=found.position,
         deviation=found.deviation,
         uncertainty=nearest.bend + found.uncertainty,
+        certain=found.gouge,
         area=points.area,
         workingstep=by,
         block=np.zeros(len(by), dtype=np.int64),

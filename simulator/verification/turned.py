@@ -51,6 +51,9 @@ CHANGED = 1e-7
 LIMIT = 1e-3
 """Uncertainty of the comparison itself, mm."""
 
+LEAST_GOUGE = 0.01
+"""Least depth of a gouge that samples alone make certain, mm."""
+
 Shape = Cutter | Insert
 
 
@@ -158,6 +161,8 @@ class LoggedBar:
         self.bar = TurningStock(stock, reference.cell)
         self.possible = TurningStock(stock, reference.cell)
         """What is left if the tool went everywhere that it may have gone unseen."""
+        self.certain = TurningStock(stock, reference.cell)
+        """What is left if the tool cut only where samples show it, near corners of the log."""
         self._shapes = shapes
         self._steps = SampleSteps(stock.high[2])
         self._nearest = unmet(self.bar.outer.shape)
@@ -188,6 +193,11 @@ class LoggedBar:
                 reach = max(float(part.unseen[end]), self.bar.cell)
                 around = _box_around(position[end - 1], position[end], reach)
                 _cut(self.possible, lines(around, speed=1.0), shape)
+            # On straights the line between samples is as certain as they are.
+            shown = position[(part.bend > LIMIT) & part.samples.measured]
+            if len(shown):
+                standing = lines(list(np.repeat(shown, 2, axis=0)), speed=1.0)[::2]
+                _cut(self.certain, standing, shape)
             for block in part.blocks():
                 self._cut_block(part, block, shape)
 
@@ -295,6 +305,8 @@ class ProfileComparison:
     """(P,), mm: excess positive, gouge negative."""
     uncertainty: Floats
     """Uncertainty by rounding and cells, (P,), mm."""
+    gouge: Floats
+    """Depth that a gouge has at least, by the samples alone, (P,), mm; 0 without one."""
     nearest: NearestSamples
     """Samples that made what is nearest to each place, (P,)."""
 
@@ -320,8 +332,31 @@ def compared_profiles(
         position=np.column_stack([points.radius, np.zeros(len(place)), points.z]),
         deviation=deviation,
         uncertainty=np.asarray(limit + unknown),
+        gouge=_least_gouge(radius, place, limit, bar, logged, is_bore=is_bore),
         nearest=_made_by(logged, points.cell, line, is_bore=is_bore),
     )
+
+
+def _least_gouge(
+    radius: Floats,
+    place: Floats,
+    limit: Floats,
+    bar: TurningStock,
+    logged: LoggedBar,
+    *,
+    is_bore: bool,
+) -> Floats:
+    """Depth of the gouge that samples alone make at places of a profile, (P,), mm."""
+    other = logged.certain.inner if is_bore else logged.certain.outer
+    parts = (points_along(radius, other, bar), points_on_faces(radius, other, bar))
+    sign = np.concatenate([each.sign for each in parts])
+    is_less = sign > 0.0 if is_bore else sign < 0.0
+    found = np.zeros(len(place))
+    if is_less.any():
+        profile = np.column_stack([other, bar.z])
+        away = profile_distance(place[is_less], profile, bar.cell) - limit[is_less]
+        found[is_less] = np.where(away >= LEAST_GOUGE, away, 0.0)
+    return found
 
 
 def _made_by(logged: LoggedBar, cell: Ints, line: Ints, *, is_bore: bool) -> NearestSamples:
@@ -394,6 +429,7 @@ def _side(part: TurnedPart, logged: LoggedBar, *, is_bore: bool) -> SurfacePlace
         position=found.position,
         deviation=found.deviation,
         uncertainty=np.where(is_cut, bend, 0.0) + found.uncertainty,
+        certain=found.gouge,
         area=points.area,
         workingstep=np.where(is_cut, path.workingstep[segment], -1),
         block=np.where(is_cut, path.block[segment], 0),

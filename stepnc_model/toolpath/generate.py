@@ -1,7 +1,7 @@
 """Tool paths of a whole program, in program order.
 
 An executable for which no path can be made raises an error, or is passed to the caller, who
-continues with the rest: the other workingsteps do not depend on it.
+continues with the workingsteps that do not depend on it by their geometry.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -24,6 +24,7 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, ProgramLine, ResolvedWorkingstep
 from stepnc_model.toolpath.explicit.operation import explicit_path, rapid_movement_path
 from stepnc_model.toolpath.hole.operation import hole_path
+from stepnc_model.toolpath.left_out import LeftOut
 from stepnc_model.toolpath.milling.operation import milling_path
 from stepnc_model.toolpath.path import Function, ToolPath
 from stepnc_model.toolpath.task import job_of
@@ -59,26 +60,28 @@ def generate(program: Program, on_fault: OnFault = raised) -> Iterator[ToolPath 
     """
     steps = {int(step.ref): step for step in program.workingsteps}
     skipped: int | None = None
-    missing: dict[int, str] = {}
+    left_out = LeftOut(program)
     setup: Ref[Setup] | None = None
     for executable in program.executables:
         if skipped is not None and executable.level > skipped:
             continue
         skipped = None
         step = steps.get(int(executable.ref))
+        path: ToolPath | None = None
         try:
             if step is not None:
                 if setup is not None and step.setup != setup:
                     yield _new_setup(program, step)
                 setup = step.setup
-                require_ready(program, step, missing)
-                yield workingstep_path(program, step)
+                path = workingstep_path(program, step)
+                left_out.require_ready(step, path)
+                yield path
             else:
                 yield from _other(program, executable)
         except SchemaError as error:
             skipped = executable.level
             if step is not None:
-                missing |= {int(feature): step.id for feature in step.features}
+                left_out.add(step, path)
             on_fault(executable, error)
 
 

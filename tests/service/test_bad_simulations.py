@@ -218,9 +218,9 @@ def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
         ({"machine": "lathe22"}, "line 4: word Y10: not used by this block"),
         ({"material": "x"}, "unknown material 'x'; similar names:"),
         ({"material": ""}, "a tool table without a material: name one with --material"),
-        ({"stock": "text"}, "stock 'text': expected 3 or 6 numbers separated by commas"),
-        ({"stock": "1,2,3,4"}, "stock '1,2,3,4': expected 3 or 6 numbers"),
-        ({"stock": "nan,0,0,1,1,1"}, "stock 'nan,0,0,1,1,1': expected 3 or 6 numbers"),
+        ({"stock": "text"}, "stock 'text': expected numbers separated by commas, an STL file"),
+        ({"stock": "1,2,3,4"}, "stock '1,2,3,4': expected 2, 3, 5 or 6 numbers"),
+        ({"stock": "nan,0,0,1,1,1"}, "stock 'nan,0,0,1,1,1': expected 2, 3, 5 or 6 numbers"),
         (
             {"stock": "0,0,0,0,0,0"},
             "stock: x from 0 to 0 mm: must span at least 0.01 mm, within 100000 mm",

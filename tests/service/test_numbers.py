@@ -42,9 +42,25 @@ def test_three_numbers_are_a_bar_about_zero(diameter: float, low: float, length:
     assert (bar.low[2], bar.high[2]) == (low, low + length)
 
 
+def test_two_numbers_are_a_bar_that_ends_at_zero() -> None:
+    assert stock_in("60,150") == stock_in("60,-150,0")
+
+
+def test_five_numbers_are_an_upright_bar_elsewhere() -> None:
+    bar = stock_in("10,-20,60,-40,2")
+    assert bar == Stock(low=(-20.0, -50.0, -40.0), high=(40.0, 10.0, 2.0), radius=30.0)
+
+
+@pytest.mark.parametrize("text", ["7", "1,2,3,4", "1,2,3,4,5,6,7"])
+def test_other_counts_are_refused(text: str) -> None:
+    with pytest.raises(StepNcError, match="expected 2, 3, 5 or 6 numbers"):
+        stock_in(text)
+
+
 @pytest.mark.parametrize(
     ("text", "axis", "low", "high"),
     [
+        ("60,-1", "z", "1", "0"),
         ("0,0,0,10,0,5", "y", "0", "0"),
         ("10,0,0,0,10,5", "x", "10", "0"),
         ("60,2,-150", "z", "2", "-150"),

@@ -31,8 +31,8 @@ def test_the_name_says_spindle_and_feed(name: str, feed: FeedUnit, spindle_unit:
     assert (profile.name, profile.feed, profile.spindle_unit) == (name, feed, spindle_unit)
 
 
-def test_six_profiles_are_known() -> None:
-    assert len(PROFILES) == 6
+def test_eight_profiles_are_known() -> None:
+    assert len(PROFILES) == 8
 
 
 @pytest.mark.parametrize("name", [name for name in PROFILES if name != "iso"])

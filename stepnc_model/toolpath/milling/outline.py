@@ -159,14 +159,10 @@ def course(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> Chain:
     """Course of travel along which a profile is swept, as a chain."""
     path = job.program.get(ref)
     placed = frame.inner(frame_of(job.program, getattr(path, "placement", None)))
-    require_upright(job, placed, ref)
     if isinstance(path, LinearPath):
-        length = size(job.program, path.distance, ref)
-        x, y, z = direction_of(job.program, path.its_direction)
-        if abs(z) > TINY:
-            raise job.fault("the course of travel leaves its plane", ref, "its_direction")
-        ends = [(0.0, 0.0), (length * x, length * y)]
-        return (line(*(_on_plane(placed, end) for end in ends)),)
+        require_upright(job, frame, ref)
+        return (_straight(job, path, placed, ref),)
+    require_upright(job, placed, ref)
     if isinstance(path, CompleteCircularPath):
         return circle(_on_plane(placed, (0.0, 0.0)), size(job.program, path.radius, ref))
     if isinstance(path, PartialCircularPath):
@@ -174,6 +170,22 @@ def course(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> Chain:
     if isinstance(path, GeneralPath):
         return _chain(job, path.swept_path, placed)
     raise job.fault("is not a course of travel", ref)
+
+
+def _straight(
+    job: ToolPathTask, path: LinearPath, placed: Frame, ref: Ref[Entity]
+) -> ContourEdge:
+    """Straight course of travel; only its direction must lie in the plane of the feature.
+
+    Files are known whose placement turns the axis away from the tool.
+    """
+    length = size(job.program, path.distance, ref)
+    x, y, z = direction_of(job.program, path.its_direction)
+    begin = placed.origin
+    end = placed.point((length * x, length * y, length * z))
+    if abs(end[2] - begin[2]) > TINY * max(1.0, length):
+        raise job.fault("the course of travel leaves its plane", ref, "its_direction")
+    return line(complex(begin[0], begin[1]), complex(end[0], end[1]))
 
 
 def chain_of(segments: tuple[Segment, ...]) -> Chain:

@@ -15,6 +15,7 @@ from benchmarks.verification import (
     SHAFT_ERRORS,
     SHAFT_REQUEST,
     SHORT_OFFSETS,
+    InjectedError,
     RunLog,
     found,
     offset,
@@ -122,16 +123,27 @@ def fast_shaft_log() -> RunLog:
     return run_log(shaft(), rate=10.0, feed=lambda speed: np.full_like(speed, 1000.0 / 60.0))
 
 
-def test_the_bottom_of_a_groove_is_uncertain_at_10_hz(tmp_path: Path) -> None:
-    groove, _ = SHORT_OFFSETS
+def test_what_is_left_at_the_bottom_of_a_groove_is_uncertain_at_10_hz(tmp_path: Path) -> None:
+    groove = SHORT_OFFSETS[0]
     answer = found(groove, fast_shaft_log(), shaft(), folder=tmp_path, request=SHAFT_REQUEST)
     assert not answer.spots
     assert answer.least > groove.size
     assert "not found" in shown(answer)
 
 
+@pytest.mark.parametrize("error", SHORT_OFFSETS[1:4], ids=["-X", "+Z", "-Z"])
+def test_gouges_of_a_groove_are_certain_where_a_sample_shows_them(
+    error: InjectedError, tmp_path: Path
+) -> None:
+    answer = found(error, fast_shaft_log(), shaft(), folder=tmp_path, request=SHAFT_REQUEST)
+    spot = max((spot for _, spot in answer.spots), key=lambda each: each.least)
+    assert 0.12 < spot.least <= 0.15 < spot.uncertainty
+    assert "at least 0.1" in shown(answer)
+    assert answer.verification.has_errors
+
+
 def test_a_face_is_found_at_10_hz(tmp_path: Path) -> None:
-    _, face = SHORT_OFFSETS
+    face = SHORT_OFFSETS[4]
     assert found(
         face, fast_shaft_log(), shaft(), folder=tmp_path, request=SHAFT_REQUEST
     ).is_right

@@ -139,6 +139,8 @@ def test_random_offsets_lie_within_the_uncertainty(
             np.abs(found.deviation - truth.deviation) - found.uncertainty - truth.uncertainty
         )
         assert wrong.max() <= CLOSE
+        gouge = np.maximum(-truth.deviation, 0.0) + truth.uncertainty
+        assert (found.certain - gouge).max() <= CLOSE
 
 
 def test_a_lost_corner_is_no_excess_though_material_was_left_before() -> None:

@@ -1,5 +1,6 @@
 """Turned parts: a shoulder, by a sharp right-hand insert."""
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -52,6 +53,38 @@ def test_an_offset_along_the_axis_is_a_gouge_on_the_face_to_a_cell() -> None:
     face = places[places.is_wall & places.is_beyond]
     assert len(face)
     assert -face.deviation.min() == pytest.approx(0.15, abs=PART.bar.cell)
+
+
+def plunge(*, measured: bool) -> SurfacePlaces:
+    """Places of a groove in whose bottom one sample lies 0.1 mm too deep."""
+    way = ((22.0, 0.0, -20.0), (15.0, 0.0, -20.0), (22.0, 0.0, -20.0))
+    blade = Insert(width=3.0)
+    run = ProgrammedRun(
+        cutter=blade, tool=1, workingstep=0,
+        segments=lines([list(each) for each in way], speed=5.0),
+    )  # fmt: skip
+    part = turned_part(programmed_path([run]), BAR)
+    points = np.array([[22.0, 0.0, -20.0], [14.9001, 0.0, -20.0], [22.0, 0.0, -20.0]])
+    samples = samples_at(points)
+    left = LoggedBar(part.bar, BAR, {1: blade})
+    left.add(replace(samples, is_measured=np.full(3, measured)))
+    return turned_places(part, left)
+
+
+def test_a_gouge_is_certain_where_the_tool_was() -> None:
+    places = plunge(measured=True)
+    bottom = places[~places.is_wall & (places.position[:, 0] == 15.0)]
+    assert bottom.uncertainty.min() > 1.0
+    assert bottom.deviation.min() == pytest.approx(-0.0999)
+    assert bottom.certain.max() == pytest.approx(0.1, abs=2e-3)
+    assert bottom.is_beyond.any()
+    assert bottom.least.max() == bottom.certain.max()
+
+
+def test_an_interpolated_position_makes_nothing_certain() -> None:
+    places = plunge(measured=False)
+    assert places.certain.max() == 0.0
+    assert not places.is_beyond.any()
 
 
 def test_a_face_is_known_between_its_ends_however_far_the_tool_moves_there() -> None:

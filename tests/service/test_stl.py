@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from service.verification.stl import read_stl
+from service.stl import read_stl
 from stepnc_model.errors import StepNcError
 from tests.service.verification.files import write_stl
 from tests.simulator.verification.box import box

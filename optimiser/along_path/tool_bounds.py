@@ -1,0 +1,154 @@
+"""Bounds along the path of a tool of which only the tool table is known, as for NC code.
+
+What a STEP-NC program says of a workingstep is not known: roughness and tolerance apply where
+the user says that a tool finishes.
+"""
+
+from dataclasses import replace
+from math import isinf
+
+from optimiser.along_path.caps import CapName, CutBounds
+from optimiser.conditions import CuttingConditions, PermittedDeflection
+from optimiser.cut import Cut, CutKind, Texture
+from optimiser.optimise import DEFAULT_QUALITY
+from optimiser.plunge_feed import permitted_plunge
+from optimiser.problem import BoundSide, Setting
+from optimiser.roughness import surface_limits
+from optimiser.safety import safety_factor
+from optimiser.tolerance import GREATEST_AT_WALL
+from simulator.removal.cutter import Cutter, Insert
+from simulator.removal.tool_shape import ENDS, THREADS
+from simulator.spec import Machine, ToolGrade, ToolKind, WorkMaterial
+from simulator.table_grade import grade_of_table_tool
+from simulator.tool_table import TableTool
+from stepnc_model.tool import Tool
+
+TEXTURES = {
+    ToolKind.FACEMILL: (Texture.CORNER_PER_REVOLUTION,),
+    ToolKind.ENDMILL: (Texture.CORNER_PER_TOOTH, Texture.WALL),
+    ToolKind.TURNING: (Texture.CORNER_PER_REVOLUTION,),
+    ToolKind.BORING_BAR: (Texture.CORNER_PER_REVOLUTION,),
+}
+"""Surfaces that a finishing tool may leave; all of them must keep the roughness."""
+
+
+def bounds_of_tool(
+    tool: TableTool,
+    machine: Machine,
+    material: WorkMaterial,
+    *,
+    quantile: float,
+    is_finishing: bool,
+    roughness: float | None,
+) -> CutBounds | None:
+    """Bounds of a tool in a material; None for threading, whose feed is its pitch.
+
+    Parameters
+    ----------
+    tool : TableTool
+    machine : Machine
+    material : WorkMaterial
+    quantile : float
+        Quantile of k_c at which loads keep their bounds.
+    is_finishing : bool
+        Whether the tool leaves final surfaces.
+    roughness : float or None, mm
+        Roughness Ra of final surfaces; None: general machining.
+    """
+    if tool.kind in THREADS:
+        return None
+    spread = material.spread
+    is_margin = not machine.only_stated_limits and spread is not None
+    grade = grade_of_table_tool(tool, material)
+    cut = _cut(tool, grade, is_finishing=is_finishing)
+    at = CuttingConditions(
+        machine=machine,
+        material=material if tool.max_feed is None else _without_feeds(material),
+        cutting_material=tool.cutting_material,
+        grade=grade,
+        roughness=(roughness or DEFAULT_QUALITY) if is_finishing else None,
+        deflection=PermittedDeflection(value=GREATEST_AT_WALL)
+        if is_finishing
+        else PermittedDeflection(),
+        centre_cutting=tool.centre_cutting,
+        safety_factor=safety_factor(spread, quantile) if is_margin and spread else 1.0,
+    )
+    surface = _surface_feed(cut, at)
+    return CutBounds(
+        cut=cut,
+        at=at,
+        fixed=() if surface is None else ((CapName.ROUGHNESS, surface),),
+        plunge=permitted_plunge(cut, at),
+    )
+
+
+def _without_feeds(material: WorkMaterial) -> WorkMaterial:
+    """Material without feeds of its own, which the vendor's take the place of."""
+    return replace(material, max_feed_per_tooth=None, max_feed_per_tooth_ratio=None)
+
+
+def _cut(tool: TableTool, grade: ToolGrade | None, *, is_finishing: bool) -> Cut:
+    """Cut of a tool of the table; its setting has no meaning."""
+    shape = tool.shape
+    helix = tool.helix_angle
+    if helix is None:
+        helix = 0.0 if grade is None else grade.helix_angle
+    return Cut(
+        kind=_kind(tool),
+        tool=_tool(tool, shape),
+        tool_kind=tool.kind,
+        diameter=shape.diameter if isinstance(shape, Cutter) else 0.0,
+        programmed=Setting(feed=1.0, depth=1.0, passes=1, speed=1.0),
+        length=0.0,
+        total_depth=1.0,
+        is_depth_free=False,
+        helix_angle=helix,
+        corner_radius=_corner(shape),
+        parallel_land=grade.parallel_land if grade and tool.kind is ToolKind.FACEMILL else 0.0,
+        is_finishing=is_finishing,
+    )
+
+
+def _kind(tool: TableTool) -> CutKind:
+    if isinstance(tool.shape, Insert):
+        return CutKind.TURNING if tool.shape.width is None else CutKind.GROOVING
+    return CutKind.DRILLING if tool.kind in ENDS else CutKind.MILLING
+
+
+def _corner(shape: Cutter | Insert) -> float:
+    return shape.nose_radius if isinstance(shape, Insert) else shape.corner_radius
+
+
+def _tool(tool: TableTool, shape: Cutter | Insert) -> Tool:
+    """Tool with the data that the cutting physics needs."""
+    if isinstance(shape, Insert):
+        return Tool(
+            id=tool.id,
+            keyword="",
+            corner_radius=shape.nose_radius,
+            cutting_edge_angle=shape.cutting_edge_angle,
+            width=shape.width,
+            has_wiper=tool.has_wiper,
+        )
+    return Tool(
+        id=tool.id,
+        keyword="",
+        diameter=shape.diameter,
+        teeth=tool.teeth,
+        corner_radius=shape.corner_radius,
+        cutting_edge_length=None if isinf(shape.edge_length) else shape.edge_length,
+        cutting_edge_angle=shape.cutting_edge_angle,
+        point_angle=shape.point_angle,
+        centre_cutting=tool.centre_cutting,
+    )
+
+
+def _surface_feed(cut: Cut, at: CuttingConditions) -> float | None:
+    """Greatest feed per tooth that keeps the roughness of all surfaces, mm; None: any."""
+    feeds = [
+        limit.feed_at_bound(1.0, 1.0)
+        for texture in TEXTURES.get(cut.tool_kind, ())
+        for limit in surface_limits(replace(cut, texture=texture), at)
+        if limit.sense is BoundSide.AT_MOST
+    ]
+    return min(feeds, default=None)

@@ -1,0 +1,155 @@
+"""Raw part of NC code as the user gives it: numbers, a mesh, or what an earlier run left.
+
+One place for every command: :func:`raw_stock_of` reads it, :func:`stock_map` makes the map that
+tools cut.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from service.files import read_bytes
+from service.numbers import require_size, stock_in
+from service.stl import read_stl
+from simulator.machine.virtual import StockMap
+from simulator.motion.segments import Floats
+from simulator.removal.engage import MillingStock
+from simulator.removal.grown import grown_milling_stock, grown_turning_stock
+from simulator.removal.lathe import TurningStock
+from simulator.removal.stock_file import kept_stock
+from simulator.spec import Machine, MachineKind
+from simulator.verification.mesh_stock import bounds_of, milling_stock_of, turning_stock_of
+from stepnc_model.errors import StepNcError
+from stepnc_model.program import Stock
+
+KEPT_SUFFIX = ".npz"
+"""Ending of a file that keeps a stock."""
+
+MESH_SUFFIX = ".stl"
+
+OFF_AXIS = 1e-6
+"""Greatest distance of a bar's axis from that of a lathe, mm."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class GivenStock:
+    """Raw part in coordinates of the program."""
+
+    bounds: Stock
+    """Its box or bar, or the box around it."""
+    triangles: Floats | None = None
+    """Triangles of a mesh, (T, 3, 3), mm; None: it is no mesh."""
+    kept: MillingStock | TurningStock | None = None
+    """Stock that an earlier run left; it is cut further, so it serves one run."""
+    name: str = ""
+    """File it was read from; empty for numbers."""
+
+
+def file_of_stock(text: str) -> Path | None:
+    """Path of the file that a stock is read from; None for numbers."""
+    path = Path(text.strip())
+    return path if path.suffix.lower() in {KEPT_SUFFIX, MESH_SUFFIX} else None
+
+
+def raw_stock_of(text: str) -> GivenStock:
+    """Read a raw part.
+
+    Parameters
+    ----------
+    text : str
+        Numbers in mm: ``x0,y0,z0,x1,y1,z1`` of a box, ``diameter,z0,z1`` of a bar about zero,
+        ``diameter,length`` of a bar that ends at z = 0, or ``x,y,diameter,z0,z1`` of an upright
+        bar elsewhere. Otherwise the path of an STL file in mm (``.stl``), or of a stock that a
+        run kept (``.npz``).
+
+    Raises
+    ------
+    StepNcError
+        When the numbers or the file are invalid, or the size is not that of a stock.
+    """
+    path = file_of_stock(text)
+    if path is not None and path.suffix.lower() == KEPT_SUFFIX:
+        bounds, kept = kept_stock(read_bytes(path), str(path))
+        return GivenStock(bounds=bounds, kept=kept, name=str(path))
+    if path is not None:
+        triangles = read_stl(path)
+        raw = GivenStock(bounds=bounds_of(triangles), triangles=triangles, name=str(path))
+        _require_size(raw)
+        return raw
+    if "," not in text:
+        raise StepNcError(
+            f"stock '{text}': expected numbers separated by commas, an STL file "
+            f"({MESH_SUFFIX}) or a kept stock ({KEPT_SUFFIX})"
+        )
+    return GivenStock(bounds=stock_in(text))
+
+
+def stock_map(machine: Machine, raw: GivenStock) -> StockMap:
+    """Build the map of a raw part that suits the kind of machine.
+
+    Raises
+    ------
+    StepNcError
+        When the stock has no volume or exceeds the size of any machine, lies beside the axis
+        of a lathe, is no body of revolution there, or was kept by another kind of machine.
+    """
+    _require_size(raw)
+    if machine.kind is not MachineKind.LATHE:
+        if isinstance(raw.kept, TurningStock):
+            raise _of_other(raw, machine, "a lathe")
+        if raw.triangles is not None:
+            return milling_stock_of(raw.triangles)
+        return MillingStock(raw.bounds) if raw.kept is None else raw.kept
+    if isinstance(raw.kept, MillingStock):
+        raise _of_other(raw, machine, "a mill")
+    if raw.kept is not None:
+        return raw.kept
+    if raw.triangles is not None:
+        try:
+            return turning_stock_of(raw.triangles)
+        except ValueError as error:
+            raise StepNcError(f"{raw.name}: {error}") from error
+    _require_on_axis(raw.bounds, machine)
+    return TurningStock(raw.bounds)
+
+
+def larger_stock_map(machine: Machine, raw: GivenStock, margin: float) -> StockMap:
+    """Build the map of a raw part that is larger all around by a margin, mm.
+
+    Raises
+    ------
+    StepNcError
+        When :func:`stock_map` would raise it.
+    """
+    if raw.triangles is None and raw.kept is None:
+        return stock_map(machine, replace(raw, bounds=raw.bounds.grown(margin)))
+    drawn = stock_map(machine, raw)
+    if isinstance(drawn, TurningStock):
+        return grown_turning_stock(drawn, margin)
+    if isinstance(drawn, MillingStock):
+        return grown_milling_stock(drawn, margin)
+    return drawn
+
+
+def _require_size(raw: GivenStock) -> None:
+    """Refuse a size that no stock has, with the name of its file."""
+    try:
+        require_size(raw.bounds)
+    except StepNcError as error:
+        raise StepNcError(f"{raw.name}: {error}" if raw.name else str(error)) from error
+
+
+def _of_other(raw: GivenStock, machine: Machine, kind: str) -> StepNcError:
+    return StepNcError(f"{raw.name}: was kept by {kind}, but {machine.name} is none")
+
+
+def _require_on_axis(bounds: Stock, machine: Machine) -> None:
+    """Refuse a bar beside the axis of a lathe."""
+    if bounds.radius is None:
+        return
+    for axis, low, high in zip("xy", bounds.low, bounds.high[:2], strict=False):
+        middle = 0.5 * (low + high)
+        if abs(middle) > OFF_AXIS:
+            raise StepNcError(
+                f"stock: the bar's axis lies at {axis} = {middle:g} mm; {machine.name} turns "
+                "it about x = y = 0"
+            )

@@ -1,0 +1,48 @@
+"""Grade of a tool of a tool table: that of the library, with what the table says instead."""
+
+from dataclasses import replace
+
+from simulator.library import grade_for
+from simulator.spec import ToolGrade, WorkMaterial
+from simulator.tool_table import TableTool
+
+
+def grade_of_table_tool(tool: TableTool, material: WorkMaterial) -> ToolGrade | None:
+    """Grade of a tool in a material.
+
+    The vendor's windows of feed and speed, the helix angle and the name of the grade replace
+    those of the library where the table gives them.
+
+    Parameters
+    ----------
+    tool : TableTool
+    material : WorkMaterial
+
+    Returns
+    -------
+    ToolGrade or None
+        None if the library has no grade of this kind for the material.
+    """
+    grade = grade_for(tool.kind, tool.cutting_material, material)
+    if grade is None:
+        return None
+    if tool.helix_angle is not None:
+        grade = replace(grade, helix_angle=tool.helix_angle)
+    if tool.grade:
+        grade = replace(grade, name=tool.grade)
+    if tool.min_feed is not None or tool.max_feed is not None:
+        # A window in mm takes the place of one relative to the diameter.
+        grade = replace(
+            grade,
+            min_feed_ratio=None,
+            max_feed_ratio=None,
+            min_feed=tool.min_feed,
+            max_feed=tool.max_feed,
+        )
+    if tool.min_cutting_speed is not None or tool.max_cutting_speed is not None:
+        grade = replace(
+            grade,
+            min_cutting_speed=tool.min_cutting_speed,
+            max_cutting_speed=tool.max_cutting_speed,
+        )
+    return grade

@@ -1,0 +1,1 @@
+"""Tool tables in the formats of controls and CAM systems."""

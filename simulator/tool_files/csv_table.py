@@ -1,0 +1,116 @@
+"""Tool table as CSV: one tool a line, the keys of a ``[[tool]]`` row as column headings.
+
+Columns are separated by commas, semicolons or tabulators; numbers have decimal points. Empty
+cells are absent keys. Lines that begin with ``#`` are remarks.
+"""
+
+import csv
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+from simulator.errors import LibraryError
+from simulator.tool_files.placed_row import GivenValue, PlacedRow, ToolRows, placed_row
+from simulator.tool_table import ToolRow
+
+SEPARATORS = ",;\t"
+
+TEXTS = {"id", "kind", "cutting_material", "hand", "grade"}
+"""Columns whose cells are texts, even when they look like numbers."""
+
+FLAGS = {"true": True, "yes": True, "false": False, "no": False}
+
+FLAG_COLUMNS = {"centre_cutting", "wiper", "inside"}
+
+NEEDED = ("number", "kind")
+"""Columns that every table has."""
+
+Row = tuple[int, list[str]]
+"""Line, counted from 1, and cells."""
+
+
+def read_csv(text: str, path: Path) -> ToolRows:
+    """Read the rows of a CSV table.
+
+    Parameters
+    ----------
+    text : str
+    path : Path
+        The file, for messages.
+
+    Raises
+    ------
+    LibraryError
+        With the line, the column, the value, the bound and the unit.
+    """
+    rows = _rows(text, path)
+    at, heading = next(rows, (1, []))
+    columns = [cell.strip().lower() for cell in heading]
+    _require_columns(columns, path, at)
+    return ToolRows(rows=tuple(_placed(columns, row, path) for row in rows))
+
+
+def is_heading(line: str) -> bool:
+    """Whether a line is the heading of such a table."""
+    cells = {cell.strip().strip('"').lower() for cell in line.split(_separator(line))}
+    return set(NEEDED) <= cells
+
+
+def _separator(line: str) -> str:
+    return max(SEPARATORS, key=line.count)
+
+
+def _rows(text: str, path: Path) -> Iterator[Row]:
+    """Lines with cells, without remarks and empty lines."""
+    lines = text.splitlines()
+    first = next((line for line in lines if line.strip() and line.lstrip()[0] != "#"), "")
+    reader = csv.reader(lines, delimiter=_separator(first), strict=True)
+    begin = 1
+    try:
+        for cells in reader:
+            if any(cell.strip() for cell in cells) and not cells[0].lstrip().startswith("#"):
+                yield begin, cells
+            begin = reader.line_num + 1
+    except csv.Error as error:
+        raise LibraryError(f"is not CSV: {error}", path=str(path), line=begin) from error
+
+
+def _require_columns(columns: list[str], path: Path, line: int) -> None:
+    """Refuse headings that are missing, unknown or there twice."""
+    known = ", ".join(sorted(ToolRow.__struct_fields__))
+    for column, count in Counter(columns).items():
+        if column not in ToolRow.__struct_fields__:
+            message = f"unknown column; known: {known}"
+            raise LibraryError(message, path=str(path), key=column or "''", line=line)
+        if count > 1:
+            message = f"{count} columns have this heading"
+            raise LibraryError(message, path=str(path), key=column, line=line)
+    for column in NEEDED:
+        if column not in columns:
+            message = f"missing; the heading has {', '.join(columns)}"
+            raise LibraryError(message, path=str(path), key=column, line=line)
+
+
+def _placed(columns: list[str], row: Row, path: Path) -> PlacedRow:
+    line, cells = row
+    if len(cells) > len(columns):
+        message = f"{len(cells)} cells; the heading has {len(columns)}"
+        raise LibraryError(message, path=str(path), line=line)
+    given = {
+        column: GivenValue(value=_value(column, cell.strip()), place=column)
+        for column, cell in zip(columns, cells, strict=False)
+        if cell.strip()
+    }
+    return placed_row(given, path, line=line)
+
+
+def _value(column: str, cell: str) -> object:
+    """Cell as the type of its column; what cannot be converted stays a text."""
+    if column in TEXTS:
+        return cell
+    if column in FLAG_COLUMNS:
+        return FLAGS.get(cell.lower(), cell)
+    try:
+        return float(cell)
+    except ValueError:
+        return cell

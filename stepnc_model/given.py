@@ -1,0 +1,224 @@
+"""Data that a file lacks, given by the user: a depth, a number of teeth, a feed.
+
+They are set into the text that is read, so that paths, loads and advice follow from them, and
+can be withdrawn afterwards: what was given then stands nowhere in the file, and what was
+advised on its basis does. Units are those of the file.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from stepnc_model.binding import Model
+from stepnc_model.draft import Draft
+from stepnc_model.entities.conversion import AttributeSlot, slots_of
+from stepnc_model.entities.measures import TolerancedLengthMeasure
+from stepnc_model.entities.tools import MillingCuttingTool
+from stepnc_model.errors import Part21Error, SchemaError, Severity
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.values import Real, Ref, Value
+from stepnc_model.program import Program
+from stepnc_model.units import FeedUnit, m_s_from_speed, mm_min_from_speed
+
+_PLACE = re.compile(r"\s*#(\d{1,18})\s*\.\s*(\w+)\s*=(.*)", re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GivenData:
+    """Data for a file that lacks them, in the words of the user."""
+
+    values: tuple[str, ...] = ()
+    """Attributes of instances, ``#46.depth=12``."""
+    teeth: tuple[str, ...] = ()
+    """Numbers of teeth by the id of the tool, ``T3=2``."""
+    feed: float | None = None
+    """Feed of milling technologies that give none, mm/s."""
+
+    def __bool__(self) -> bool:
+        return bool(self.values or self.teeth or self.feed is not None)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GivenValue:
+    """Attribute that was set, with what stood there before."""
+
+    ref: Ref[object]
+    attribute: str
+    before: Value
+    value: Value
+    added: tuple[int, ...] = ()
+    """Instances that were added for it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Completed:
+    """Program with the data that were given."""
+
+    program: Program
+    given: tuple[GivenValue, ...]
+
+
+def completed(program: Program, data: GivenData) -> Completed:
+    """Set data into a program.
+
+    Parameters
+    ----------
+    program : Program
+    data : GivenData
+
+    Returns
+    -------
+    Completed
+        The program, read again from its changed text, and what was set.
+
+    Raises
+    ------
+    SchemaError
+        If an instance, an attribute, a tool or a value is not valid.
+    """
+    if not data:
+        return Completed(program=program, given=())
+    draft = Draft(program)
+    given = [_set(draft, text) for text in data.values]
+    given += [each for text in data.teeth for each in _teeth(draft, text)]
+    if data.feed is not None:
+        given += _feeds(draft, data.feed)
+    found = _read(program, draft.edits.apply())
+    for each in given:
+        _require_taken(found.model, each)
+    return Completed(program=found, given=tuple(given))
+
+
+def without_given(program: Program, given: Sequence[GivenValue]) -> bytes:
+    """Bytes of a program with given data withdrawn, where they were not changed since.
+
+    Parameters
+    ----------
+    program : Program
+        Program that holds the given data, and perhaps advice.
+    given : sequence of GivenValue
+
+    Returns
+    -------
+    bytes
+    """
+    draft = Draft(program)
+    for each in given:
+        place = program.model.position(each.ref, each.attribute)
+        if program.file.parameters(int(each.ref))[place] == each.value:
+            draft.put(each.ref, each.attribute, each.before)
+            draft.remove(each.added)
+    return draft.edits.apply()
+
+
+def _read(program: Program, data: bytes) -> Program:
+    file = Part21File.from_bytes(data, name=program.name)
+    return Program(file, units=program.units, name=program.name, stock=program.stock)
+
+
+def _set(draft: Draft, text: str) -> GivenValue:
+    """Set one attribute from text like ``#46.depth=12``."""
+    program, found = draft.program, _PLACE.fullmatch(text)
+    if found is None:
+        raise SchemaError(f"'{text}': expected #INSTANCE.attribute=value")
+    number, attribute, written = int(found[1]), found[2], found[3].strip()
+    ref: Ref[object] = Ref(number)
+    entity = program.model.get(ref)
+    slots = slots_of(type(entity))  # type: ignore[arg-type]
+    if attribute not in slots:
+        known = ", ".join(slots)
+        raise program.error(f"has no attribute '{attribute}'; known: {known}", Ref(number))
+    value, added = _fitting(draft, slots[attribute], _value(written, text))
+    return _put(draft, ref, attribute, value, added)
+
+
+def _put(
+    draft: Draft, ref: Ref[object], attribute: str, value: Value, added: tuple[int, ...] = ()
+) -> GivenValue:
+    """Set an attribute and remember what stood there."""
+    values = draft.program.file.parameters(int(ref))
+    place = draft.program.model.position(ref, attribute)
+    before = values[place] if place < len(values) else None
+    draft.put(ref, attribute, value)
+    return GivenValue(ref=ref, attribute=attribute, before=before, value=value, added=added)
+
+
+def _value(written: str, text: str) -> Value:
+    """Value of a parameter as Part 21 writes it."""
+    lines = ("ISO-10303-21;", "HEADER;", "ENDSEC;", "DATA;", f"#1=X({written});", "ENDSEC;")
+    data = "\n".join((*lines, "END-ISO-10303-21;")).encode()
+    try:
+        file = Part21File.from_bytes(data)
+        values = file.parameters(1)
+    except (Part21Error, KeyError):
+        values = ()
+    if len(values) != 1 or len(file.ids()) != 1:
+        raise SchemaError(f"'{text}': '{written}' is not a value of Part 21")
+    return values[0]
+
+
+def _fitting(draft: Draft, slot: AttributeSlot, value: Value) -> tuple[Value, tuple[int, ...]]:
+    """Value for a slot, with instances added where a number stands for a length or a plane."""
+    is_number = isinstance(value, (int, float)) and not isinstance(value, Ref)
+    if not is_number:
+        return value, ()
+    number = float(value)  # type: ignore[arg-type]
+    if int in slot.plain and float not in slot.plain:
+        return value, ()
+    if slot.plain or not slot.references:
+        return Real(number), ()
+    if TolerancedLengthMeasure in slot.references:
+        added = draft.edits.add("TOLERANCED_LENGTH_MEASURE", (Real(number), None))
+        return added, (int(added),)
+    if any("SURFACE" in each.keyword or each.keyword == "PLANE" for each in slot.references):
+        point = draft.edits.add("CARTESIAN_POINT", ("", (Real(0.0), Real(0.0), Real(-number))))
+        place = draft.edits.add("AXIS2_PLACEMENT_3D", ("", point, None, None))
+        plane = draft.edits.add("PLANE", ("", place))
+        return plane, (int(point), int(place), int(plane))
+    return value, ()
+
+
+def _teeth(draft: Draft, text: str) -> Iterator[GivenValue]:
+    """Set the number of teeth of a tool from text like ``T3=2``."""
+    program = draft.program
+    name, _, count = text.rpartition("=")
+    if not name or not count.strip().isdecimal():
+        raise SchemaError(f"'{text}': expected TOOL=NUMBER of teeth")
+    bodies = {
+        int(tool.its_tool_body)
+        for _, tool in program.model.of_type(MillingCuttingTool)
+        if tool.its_id == name.strip() and tool.its_tool_body is not None
+    }
+    if not bodies:
+        known = ", ".join(f"'{t.its_id}'" for _, t in program.model.of_type(MillingCuttingTool))
+        raise SchemaError(f"no tool '{name.strip()}'; known: {known or 'none'}")
+    for body in sorted(bodies):
+        yield _put(draft, Ref(body), "number_of_teeth", int(count))
+
+
+def _feeds(draft: Draft, feed: float) -> Iterator[GivenValue]:
+    """Set the feed of milling technologies that give none."""
+    program = draft.program
+    for step in {int(each.technology_ref): each for each in program.workingsteps}.values():
+        technology = program.get(step.technology_ref)
+        feeds = [getattr(technology, name, None) for name in ("feedrate", "feedrate_per_tooth")]
+        if not hasattr(technology, "feedrate_per_tooth") or any(feeds):
+            continue
+        unit = program.units_of(step.technology_ref).feed
+        number = {
+            FeedUnit.METRES_PER_SECOND: m_s_from_speed(feed),
+            FeedUnit.MM_PER_MINUTE: mm_min_from_speed(feed),
+        }.get(unit)
+        if number is None:
+            message = f"the file's feeds are in {unit.value}: give this one as #N.feedrate"
+            raise program.error(message, step.technology_ref, "feedrate")
+        yield _put(draft, step.technology_ref, "feedrate", Real(number))
+
+
+def _require_taken(model: Model, given: GivenValue) -> None:
+    """Refuse a value that the attribute cannot hold."""
+    for finding in model.findings():
+        label = model.file.label(int(given.ref))
+        is_here = finding.entity == label and finding.attribute == given.attribute
+        if is_here and finding.severity is Severity.ERROR:
+            raise SchemaError(finding.message, entity=label, attribute=given.attribute)

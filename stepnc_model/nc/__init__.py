@@ -1,0 +1,1 @@
+"""NC code of any origin: read without loss, executed, and rewritten in its feeds alone."""

@@ -1,0 +1,483 @@
+"""Tolerant control for Heidenhain Klartext.
+
+After Heidenhain, "iTNC 530 User's Manual, Conversational Programming". Blocks that are not
+understood are reported; from there the position is unknown until the program states it anew.
+"""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from math import copysign, cos, hypot, isnan, nan, radians, sin
+
+from stepnc_model.nc.arcs import centre_of_radius, turn_of
+from stepnc_model.nc.drilling import cycle_moves, drilling
+from stepnc_model.nc.flow import ProgramFlow, places
+from stepnc_model.nc.klartext_words import KlartextWords, klartext_words
+from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind
+from stepnc_model.nc.recorder import MoveRecorder
+from stepnc_model.nc.remarks import Remarks
+from stepnc_model.nc.text import NcText
+from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
+from stepnc_model.units import mm_from_inches, rev_s_from_rpm
+
+MINUTE = 60.0
+
+LABELS = re.compile(
+    rb"^[ \t]*(?:[0-9]+[ \t]+)?LBL[ \t]*([1-9][0-9]*|\"[^\"\r\n]*\")", re.M | re.I
+)
+
+CYCLES = {
+    "200": CycleKind.DRILL,
+    "201": CycleKind.BORE,
+    "203": CycleKind.DRILL,
+    "205": CycleKind.DRILL,
+    "206": CycleKind.TAP,
+    "207": CycleKind.TAP,
+    "240": CycleKind.DRILL,
+}
+QUIET_CYCLES = {"9", "13", "32", "14", "20", "247"}
+"""Dwell, orientation, tolerance, contour data and preset: none moves an axis."""
+
+QUIET = frozenset({
+    *{"BLK", "TOOL_DEF", "BEGIN", "END", "STOP", "FUNCTION", "SEL", "PATTERN", "HEAD"},
+    *{"TCH", "ERROR", "FN"},
+})
+PLANES = {"XY": ArcPlane.XY, "XZ": ArcPlane.ZX, "YZ": ArcPlane.YZ}
+PATHS = {"L", "C", "CR", "CC", "CP", "LP", "CTP", "CT", "CHF", "RND", "LN"}
+END_FUNCTIONS = {20, 300}
+
+
+class HeidenhainControl:
+    """Control that executes one Klartext program. Running state."""
+
+    def __init__(self, text: NcText) -> None:
+        self.text = text
+        self.recorder = MoveRecorder()
+        self.recorder.frames = {"preset": 0}
+        self.remarks = Remarks(text)
+        self.flow = ProgramFlow(text, self.recorder)
+        self.scale = 1.0
+        self.centre: dict[str, float] = {}
+        self.spindle = 0.0
+        self.sense = 0.0
+        self.shift = [0.0, 0.0, 0.0]
+        self.cycle: tuple[str, dict[str, float], int] | None = None
+        self.rotary: dict[str, float] = {}
+        self.is_called_always = False
+        self._labels = dict(reversed(list(places(text, LABELS))))
+        self._paths: dict[str, Callable[[KlartextWords], None]] = {
+            "L": self._line,
+            "C": self._circle,
+            "CR": self._radius,
+            "CC": self._pole,
+            "CP": self._helix,
+        }
+
+    def run(self) -> None:
+        """Execute the program from its first block to its end.
+
+        Raises
+        ------
+        PostError
+            If the program repeats or nests blocks without end, with the line.
+        """
+        block, size = 0, len(self.text)
+        while block < size:
+            self.flow.step(block)
+            block = self._execute(block)
+
+    def _execute(self, block: int) -> int:
+        words = klartext_words(self.text.block(block))
+        recorder = self.recorder
+        recorder.block = block
+        recorder.flags = self._flags(words).value
+        head = words.names[0] if words.names else ""
+        if not words.is_empty:
+            following = self._steered(words, block)
+            if following is not None:
+                return following
+        if head in PATHS:
+            self._path(head, words)
+        elif head in {"TOOL", "CYCL", "PLANE", "APPR", "DEP", "TRANS"}:
+            self._other(head, words)
+        elif head and head not in QUIET and not words.functions:
+            self.lose(f"{head} is not known")
+        elif words.strange and not words.assigned:
+            self.lose(f"'{words.strange[0]}' is not known")
+        self._functions(words)
+        return len(self.text) if END_FUNCTIONS & set(words.functions) else block + 1
+
+    def lose(self, why: str) -> None:
+        """Report a block that is not understood; the position is unknown after it."""
+        self.remarks.lost(self.recorder.block, why)
+        self.recorder.unknown()
+
+    def _flags(self, words: KlartextWords) -> MoveFlag:
+        flags = MoveFlag(0)
+        if words.macros:
+            flags |= MoveFlag.MACRO
+        if "F" in words.values or "F" in words.macros or "FU" in words.values:
+            flags |= MoveFlag.OWN_FEED
+        if any(
+            code not in {30, 40, 50, 80, 90, 130, 140, 0, 10, 20, 300}
+            for code in words.functions
+        ):
+            flags |= MoveFlag.FIXED
+        if words.is_skippable:
+            flags |= MoveFlag.SKIPPABLE
+        return flags
+
+    # Flow.
+
+    def _steered(self, words: KlartextWords, block: int) -> int | None:
+        """Next block if this one steers the program, else None."""
+        head, numbers = words.names, words.numbers
+        if head[:1] == ["LBL"]:
+            if words.label == "0":
+                following = self.flow.leave() if self.flow.is_called else None
+                return block + 1 if following is None else following
+            return block + 1
+        if head[:2] == ["CALL", "LBL"]:
+            return self._called(words, block)
+        if head[:1] == ["CALL"] or (head[:1] == ["SEL"] and "PGM" in head):
+            self.remarks.lost(block, "another program is called")
+            self.recorder.unknown()
+            self._forget_feed()
+            return block + 1
+        if head[:1] == ["FN"] and numbers and numbers[0] in {9.0, 10.0, 11.0, 12.0}:
+            return self._condition(block)
+        if head[:1] == ["IF"] or "GOTO" in head:
+            return self._condition(block)
+        if head[:2] == ["BEGIN", "PGM"]:
+            self.scale = mm_from_inches(1.0) if "INCH" in head else 1.0
+            setting = self.recorder.setting
+            self.recorder.setting = replace(setting, unit=self.scale, is_centre_absolute=True)
+            return block + 1
+        if head[:2] == ["END", "PGM"]:
+            return len(self.text)
+        return None
+
+    def _condition(self, block: int) -> int:
+        self.remarks.lost(block, "conditions and jumps are not evaluated")
+        self.recorder.unknown()
+        self.recorder.standing |= MoveFlag.CONDITIONAL.value
+        return block + 1
+
+    def _called(self, words: KlartextWords, block: int) -> int:
+        target = self._labels.get(words.label)
+        if target is None:
+            self.remarks.lost(block, f"the label {words.label} is not in this file")
+            self.recorder.unknown()
+            self._forget_feed()
+            return block + 1
+        times = words.values.get("REP")
+        if times is None and "REP" not in words.names:
+            return self.flow.call(block, target + 1)
+        return self.flow.repeat(block, target + 1, times=max(0, int(times or 0)))
+
+    # Feed, spindle, tool.
+
+    def _forget_feed(self) -> None:
+        self.recorder.word, self.recorder.fed_by = nan, self.recorder.block
+        self.recorder.is_fresh = True
+        self.recorder.standing |= MoveFlag.MACRO_FEED.value
+
+    def _feed(self, words: KlartextWords) -> bool:
+        """Take F or FU of a path block; return whether the block is a rapid."""
+        recorder = self.recorder
+        if "F" in words.macros or "FU" in words.macros or "AUTO" in words.names:
+            self._forget_feed()
+        for name, mode in (("F", FeedMode.PER_MINUTE), ("FU", FeedMode.PER_REVOLUTION)):
+            value = words.values.get(name)
+            if value is not None:
+                per_minute = mode is FeedMode.PER_MINUTE
+                recorder.setting = replace(recorder.setting, mode=mode)
+                recorder.word = value * self.scale / (MINUTE if per_minute else 1.0)
+                recorder.fed_by, recorder.is_fresh = recorder.block, True
+                recorder.standing &= ~MoveFlag.MACRO_FEED.value
+        if "FZ" in words.values or "FT" in words.values:
+            self._forget_feed()
+        return "FMAX" in words.names or "MAX" in words.names
+
+    def _functions(self, words: KlartextWords) -> None:
+        for code, sense in ((30, 1.0), (40, -1.0), (50, 0.0), (130, 1.0), (140, -1.0)):
+            if code in words.functions:
+                self.sense = sense
+                self._turn()
+        if {910, 920} & set(words.functions):
+            self.recorder.at = [nan, nan, nan]
+
+    def _turn(self) -> None:
+        speed = self.sense * rev_s_from_rpm(self.spindle) + 0.0
+        known = None if isnan(speed) else speed
+        self.recorder.setting = replace(self.recorder.setting, spindle=known)
+
+    def _other(self, head: str, words: KlartextWords) -> None:
+        """Execute what is no path: tools, cycles, planes, approaches."""
+        names = words.names
+        if names[:2] == ["TOOL", "CALL"]:
+            self._tool(words)
+        elif names[:2] == ["TOOL", "DEF"]:
+            return
+        elif names[:2] == ["CYCL", "DEF"]:
+            self._define(words)
+        elif names[:2] == ["CYCL", "CALL"]:
+            if "PAT" in names or "POS" in names:
+                self.lose("a cycle call with positions of its own is not expanded")
+            else:
+                self._drill()
+        elif head == "PLANE":
+            self._transform("RESET" not in names)
+        else:
+            self.lose(f"{head} is not expanded")
+            self._feed(words)
+
+    def _tool(self, words: KlartextWords) -> None:
+        if "S" in words.values or "S" in words.macros:
+            self.spindle = words.values.get("S", nan)
+            self._turn()
+        self._feed(words)
+        if words.numbers:
+            tool = int(words.numbers[0])
+            self.recorder.setting = replace(self.recorder.setting, tool=tool, tool_name="")
+            self.recorder.at[2] = nan
+        elif words.texts:
+            self.recorder.setting = replace(
+                self.recorder.setting, tool=None, tool_name=words.texts[0].strip('"')
+            )
+            self.remarks.note(self.recorder.block, "the tool has a name and no number")
+            self.recorder.at[2] = nan
+
+    def _transform(self, is_on: bool) -> None:
+        flag = MoveFlag.TRANSFORMED.value
+        if is_on:
+            self.recorder.standing |= flag
+        else:
+            self.recorder.standing &= ~flag
+        self.recorder.at = [nan, nan, nan]
+
+    def _define(self, words: KlartextWords) -> None:
+        """Take the definition of a cycle."""
+        number = words.cycle.partition(".")[0]
+        if number in {"7", "8", "10", "11", "26", "19"}:
+            self._coordinates(words, number)
+        elif number in CYCLES:
+            self.cycle = number, dict(words.assigned), self.recorder.block
+        elif words.cycle == "9.1":
+            self.recorder.dwell(max(0.0, words.numbers[-1] if words.numbers else 0.0))
+        elif number not in QUIET_CYCLES:
+            self.cycle = None
+            if number not in {"21", "22", "23", "24", "25", "27", "28", "29"}:
+                self.cycle = number, {}, self.recorder.block
+
+    def _coordinates(self, words: KlartextWords, number: str) -> None:
+        """Take a shift of the datum, or a mirror, rotation, scale or tilt."""
+        if words.cycle.endswith(".0"):
+            return
+        if number == "7":
+            new = list(self.shift)
+            for axis, letter in enumerate("XYZ"):
+                if letter in words.values:
+                    new[axis] = self.scale * words.values[letter]
+                elif f"I{letter}" in words.values:
+                    new[axis] += self.scale * words.values[f"I{letter}"]
+                elif letter in words.macros or f"I{letter}" in words.macros:
+                    new[axis] = nan
+            at = self.recorder.at
+            self.recorder.at = [a + o - s for a, o, s in zip(at, self.shift, new, strict=True)]
+            self.shift = new
+            self._name_frame()
+            return
+        given = [*words.values.values()]
+        neutral = 1.0 if number in {"11", "26"} else 0.0
+        is_on = bool(words.macros) or any(value != neutral for value in given)
+        is_on = is_on or (number == "8" and bool(set("XYZ") & set(words.names)))
+        self._transform(is_on)
+
+    def _name_frame(self) -> None:
+        shifted = ", ".join(
+            f"{axis} {value:g}"
+            for axis, value in zip("XYZ", self.shift, strict=True)
+            if value != 0.0
+        )
+        name = f"preset shifted by {shifted}" if shifted else "preset"
+        frame = self.recorder.frame(name)
+        self.recorder.setting = replace(self.recorder.setting, frame=frame)
+
+    # Paths.
+
+    def _path(self, head: str, words: KlartextWords) -> None:
+        if "RL" in words.names or "RR" in words.names:
+            self.recorder.standing |= MoveFlag.COMPENSATED.value
+        elif "R0" in words.names:
+            self.recorder.flags |= self.recorder.standing & MoveFlag.COMPENSATED.value
+            self.recorder.standing &= ~MoveFlag.COMPENSATED.value
+        path = self._paths.get(head)
+        if head in {"RND", "CHF"}:
+            self._rounded(words)
+        elif path is not None:
+            path(words)
+        else:
+            is_rapid = self._feed(words)
+            self.lose(f"the path {head} is not understood" if not is_rapid else head)
+
+    def _rounded(self, words: KlartextWords) -> None:
+        """A chamfer or rounding between two lines: its neighbours stay in one piece."""
+        self.recorder.round_corner()
+        if "F" in words.values:
+            self.remarks.note(self.recorder.block, "the feed of a rounding is left alone")
+
+    def _coordinate(self, words: KlartextWords, axis: int) -> float:
+        letter = "XYZ"[axis]
+        at = self.recorder.at[axis]
+        if letter in words.macros or f"I{letter}" in words.macros:
+            return nan
+        if f"I{letter}" in words.values:
+            return at + self.scale * words.values[f"I{letter}"]
+        value = words.values.get(letter)
+        return at if value is None else self.scale * value
+
+    def _end(self, words: KlartextWords) -> list[float]:
+        if any(name in words.values for name in ("IPA", "PA", "PR", "IPR")):
+            return [nan, nan, nan]
+        return [self._coordinate(words, axis) for axis in range(3)]
+
+    def _line(self, words: KlartextWords) -> None:
+        is_rapid = self._feed(words)
+        self._rotary(words)
+        if not any(letter in words.values or letter in words.macros for letter in _AXES):
+            return
+        kind = MoveKind.RAPID if is_rapid else MoveKind.LINE
+        self.recorder.move(kind, self._end(words))
+        self._called_after(words)
+
+    def _rotary(self, words: KlartextWords) -> None:
+        for letter in "ABCUVW":
+            if letter in words.macros or f"I{letter}" in words.macros:
+                self.rotary[letter] = nan
+            elif letter in words.values or f"I{letter}" in words.values:
+                before = self.rotary.get(letter, 0.0)
+                added = words.values.get(f"I{letter}", 0.0)
+                self.rotary[letter] = words.values.get(letter, before + added)
+                self.recorder.flags |= MoveFlag.ROTARY.value
+        if any(value != 0.0 for value in self.rotary.values()):
+            self.recorder.standing |= MoveFlag.ROTARY.value
+        else:
+            self.recorder.standing &= ~MoveFlag.ROTARY.value
+
+    def _called_after(self, words: KlartextWords) -> None:
+        """Execute the cycle after a move with M99, or after each with M89."""
+        if 890 in words.functions:
+            self.is_called_always = True
+        if 990 in words.functions or self.is_called_always:
+            self._drill()
+        if 990 in words.functions:
+            self.is_called_always = False
+
+    def _pole(self, words: KlartextWords) -> None:
+        self.centre = {}
+        for axis, letter in enumerate("XYZ"):
+            is_given = any(
+                name in values
+                for name in (letter, f"I{letter}")
+                for values in (words.values, words.macros)
+            )
+            if is_given:
+                self.centre[letter] = self._coordinate(words, axis)
+        if not self.centre and not words.values and not isnan(sum(self.recorder.at[:2])):
+            self.centre = {"X": self.recorder.at[0], "Y": self.recorder.at[1]}
+
+    def _middle(self) -> tuple[ArcPlane | None, Point]:
+        plane = PLANES.get("".join(sorted(self.centre)))
+        x, y, z = (
+            self.centre.get(letter, value)
+            for letter, value in zip("XYZ", self.recorder.at, strict=True)
+        )
+        return plane, (x, y, z)
+
+    def _circle(self, words: KlartextWords) -> None:
+        self._feed(words)
+        plane, centre = self._middle()
+        self._arc(words, plane, centre)
+
+    def _radius(self, words: KlartextWords) -> None:
+        self._feed(words)
+        axes = "".join(sorted(letter for letter in "XYZ" if letter in _lettered(words)))
+        plane = PLANES.get(axes, ArcPlane.XY)
+        sense = words.sense
+        radius = words.values.get("R", nan) * self.scale
+        centre = centre_of_radius(
+            self.recorder.at, self._end(words), radius=radius, plane=plane, sense=sense
+        )
+        self._arc(words, plane, centre)
+
+    def _arc(self, words: KlartextWords, plane: ArcPlane | None, centre: Point) -> None:
+        end = self._end(words)
+        if plane is None or not words.sense:
+            self.lose("an arc without its centre or its direction")
+            self.recorder.at = end
+            return
+        turn = turn_of(self.recorder.at, end, centre, plane, sense=words.sense)
+        start = self.recorder.at
+        known = [start[axis] + end[axis] for axis in plane.axes[:2]]
+        if isnan(turn) and not isnan(sum(known)):
+            self.lose("the arc does not fit its ends")
+            self.recorder.at = end
+            return
+        self.recorder.arc(end, centre, turn=turn, plane=plane)
+
+    def _helix(self, words: KlartextWords) -> None:
+        """Arc about the pole by an angle, with a rise."""
+        self._feed(words)
+        plane, centre = self._middle()
+        angle = words.values.get("IPA")
+        if plane is not ArcPlane.XY or angle is None or not words.sense:
+            self.lose("a polar arc without IPA about a pole in X and Y")
+            return
+        at = self.recorder.at
+        turn = copysign(radians(abs(angle)), words.sense)
+        u, v = at[0] - centre[0], at[1] - centre[1]
+        z = self._coordinate(words, 2)
+        end = (
+            centre[0] + u * cos(turn) - v * sin(turn),
+            centre[1] + u * sin(turn) + v * cos(turn),
+            z,
+        )
+        self.recorder.flags |= MoveFlag.POLAR.value
+        if isnan(hypot(u, v)):
+            end = (nan, nan, z)
+        self.recorder.arc(end, centre, turn=turn, plane=plane)
+
+    def _drill(self) -> None:
+        """Execute the last defined cycle at the position of the tool."""
+        if self.cycle is None or self.cycle[0] not in CYCLES:
+            self.lose("this cycle is not expanded")
+            return
+        number, values, block = self.cycle
+        recorder, scale = self.recorder, self.scale
+        x, y, _ = recorder.at
+        surface, depth = values.get("Q203", 0.0), values.get("Q201", nan)
+        top = scale * (surface + values.get("Q200", 0.0))
+        kind, step = CYCLES[number], scale * values.get("Q202", 0.0)
+        if kind is CycleKind.DRILL and step:
+            kind = CycleKind.PECK
+        hole = drilling(kind, (x, y), retract=top, bottom=scale * (surface + depth), step=step)
+        kept = recorder.word, recorder.fed_by
+        recorder.word = scale * values.get("Q206", nan) / MINUTE
+        recorder.fed_by, recorder.is_fresh = block, True
+        recorder.flags |= MoveFlag.CYCLE.value | MoveFlag.FIXED.value
+        recorder.move(MoveKind.RAPID, (x, y, top))
+        for move, end in cycle_moves(hole):
+            recorder.move(move, end)
+        if values.get("Q204"):
+            recorder.move(MoveKind.RAPID, (x, y, scale * (surface + values["Q204"])))
+        recorder.word, recorder.fed_by = kept
+        recorder.is_fresh = True
+
+
+_AXES = (*"XYZ", "IX", "IY", "IZ", "PA", "PR", "IPA", "IPR", *"ABCUVW")
+
+
+def _lettered(words: KlartextWords) -> set[str]:
+    """Axes that a block names, absolute or relative."""
+    return {name.removeprefix("I") for name in (*words.values, *words.macros)}

@@ -1,0 +1,229 @@
+"""Flow of programs in the manner of ISO 6983: subprograms, repeats and conditions.
+
+Conditions are not evaluated: their blocks are executed once, and what they change is unknown
+afterwards.
+"""
+
+import re
+from typing import Protocol
+
+from stepnc_model.nc.block_words import BlockWords
+from stepnc_model.nc.flow import ProgramFlow, places
+from stepnc_model.nc.moves import MoveFlag
+from stepnc_model.nc.recorder import MoveRecorder
+from stepnc_model.nc.remarks import Remarks
+from stepnc_model.nc.text import NcText
+from stepnc_model.post.dialect import Dialect
+
+
+class Steered(Protocol):
+    """Control whose program is steered."""
+
+    text: NcText
+    dialect: Dialect
+    recorder: MoveRecorder
+    remarks: Remarks
+    flow: ProgramFlow
+
+    def forget(self) -> None:
+        """Forget position and modal state."""
+        ...
+
+    def modal(self) -> tuple[object, ...]:
+        """Position and modal state, to be compared with a later one."""
+        ...
+
+    def forget_changed(self, changed: set[int]) -> None:
+        """Forget the parts of the modal state with these indices."""
+        ...
+
+
+PROGRAMS = re.compile(rb"^[ \t]*/?[ \t]*(?:N[0-9]+[ \t]*)?[O:][ \t]*([0-9]+)", re.M | re.I)
+SUBPROGRAMS = re.compile(rb"^[ \t]*o[ \t]*([0-9]+|<[^>\r\n]*>)[ \t]*sub\b", re.M | re.I)
+ENDS = re.compile(rb"^[ \t]*o[ \t]*([0-9]+|<[^>\r\n]*>)[ \t]*endsub\b", re.M | re.I)
+LOCAL = re.compile(rb"^[ \t]*N([0-9]+)", re.M | re.I)
+JUMPS = re.compile(rb"M97|M99[ \t]*P|GOTO", re.I)
+STATEMENT = re.compile(r"o\s*([0-9]+|<[^>]*>|\S+?)\s*([a-z]+)\s*(.*)", re.I | re.S)
+COUNT = re.compile(r"\[?\s*([0-9]+)(?:\.0*)?\s*\]?")
+
+END_OF_PROGRAM = {20, 300}
+
+
+class IsoFlow:
+    """Steering of one program. Running state."""
+
+    def __init__(self, control: Steered) -> None:
+        self._control = control
+        self._text, self._flow = control.text, control.flow
+        self._is_linuxcnc = control.dialect is Dialect.LINUXCNC
+        pattern = SUBPROGRAMS if self._is_linuxcnc else PROGRAMS
+        self._programs = dict(reversed(list(places(self._text, pattern))))
+        self._ends = dict(places(self._text, ENDS)) if self._is_linuxcnc else {}
+        self._numbers: dict[str, int] = {}
+        if not self._is_linuxcnc and JUMPS.search(self._text.data):
+            self._numbers = dict(reversed(list(places(self._text, LOCAL))))
+        self.targets: set[int | None] = set()
+        """Block numbers that jumps may lead to."""
+        self._repeats: dict[str, int] = {}
+        self._times: dict[int, int] = {}
+        self._open: list[tuple[str, str]] = []
+        self._before: tuple[object, ...] | None = None
+        self._changed: set[int] = set()
+        self._is_begun = False
+        self._percents = 0
+
+    def follow(self, words: BlockWords, block: int) -> int | None:
+        """Next block if this one only steers the program, else None."""
+        if words.is_percent and words.is_empty:
+            self._percents += 1
+            return len(self._text) if self._is_begun and self._percents > 1 else block + 1
+        if not words.is_empty:
+            begun, self._is_begun = self._is_begun, True
+            number = words.values.get("O")
+            if number is not None and not self._is_linuxcnc:
+                return self._named(begun, block)
+        if words.flows:
+            return self.statement(words.flows[0], block)
+        if 650 in words.codes or 660 in words.codes:
+            return self._outside(block, "a macro call")
+        if 980 in words.functions or 970 in words.functions:
+            return self._called(words, block)
+        if 990 in words.functions:
+            return self._returned(words, block)
+        return None
+
+    def ended(self, words: BlockWords, block: int) -> int:
+        """Block after this one, which may end the program."""
+        if END_OF_PROGRAM & set(words.functions) and not self._open:
+            return len(self._text)
+        return block + 1
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the program has begun and no condition is open."""
+        return self._is_begun and self._before is None
+
+    def watch(self) -> None:
+        """Remember what a condition changes."""
+        if self._before is not None:
+            self._note_changes()
+
+    @property
+    def _is_conditional(self) -> bool:
+        return bool(self._control.recorder.standing & MoveFlag.CONDITIONAL)
+
+    def _named(self, is_begun: bool, block: int) -> int:
+        """Pass the head of a program; the next program ends the one before it."""
+        if not is_begun or not self._control.recorder.count:
+            return block + 1
+        if self._flow.is_called:
+            return block + 1
+        return len(self._text)
+
+    def _called(self, words: BlockWords, block: int) -> int:
+        """Call a subprogram by M98, or by M97 at a block number."""
+        number, times = words.values.get("P"), int(words.values.get("L", 1.0))
+        if number is None:
+            return self._outside(block, "a call without P")
+        is_local = 970 in words.functions
+        target = self._target(number, is_local=is_local)
+        if target is None and not is_local and number >= 10_000:
+            times, number = int(number // 10_000), number % 10_000
+            target = self._target(number, is_local=False)
+        if target is None:
+            return self._outside(block, f"the subprogram {number:g} is not in this file")
+        if self._is_conditional and self._flow.is_inside(target):
+            return self._outside(block, "a call of itself")
+        return self._flow.call(block, target, times=times)
+
+    def _target(self, number: float, *, is_local: bool) -> int | None:
+        found = self._numbers if is_local else self._programs
+        for name, block in found.items():
+            if int(name) == int(number):
+                return block
+        return None
+
+    def _returned(self, words: BlockWords, block: int) -> int:
+        """Return from a subprogram; the main program ends, where a control begins anew."""
+        if "P" in words.values:
+            self._control.remarks.lost(block, "a return to another block")
+            self._begin_condition()
+        following = self._flow.leave()
+        return len(self._text) if following is None else following
+
+    def _outside(self, block: int, why: str) -> int:
+        """Pass a call of something that is not here."""
+        self._control.remarks.lost(block, why)
+        self._control.recorder.unknown()
+        self._control.forget()
+        return block + 1
+
+    def statement(self, text: str, block: int) -> int:
+        """Execute a statement that steers the program; return the next block."""
+        found = STATEMENT.fullmatch(text) if self._is_linuxcnc else None
+        if found is None:
+            self._control.remarks.lost(block, "conditions and jumps are not evaluated")
+            self._control.recorder.unknown()
+            self._begin_condition()
+            return block + 1
+        name, keyword, rest = found[1].upper(), found[2].lower(), found[3]
+        if keyword == "sub":
+            return self._ends.get(name, len(self._text) - 1) + 1
+        if keyword == "call":
+            target = self._programs.get(name)
+            if target is None:
+                return self._outside(
+                    block, f"the subprogram {name.lower()} is not in this file"
+                )
+            if self._is_conditional and self._flow.is_inside(target + 1):
+                return self._outside(block, "a call of itself")
+            return self._flow.call(block, target + 1)
+        if keyword == "return" and self._open:
+            return block + 1
+        if keyword in {"endsub", "return"}:
+            following = self._flow.leave()
+            return block + 1 if following is None else following
+        return self._looped(name, keyword, rest, block)
+
+    def _looped(self, name: str, keyword: str, rest: str, block: int) -> int:
+        """Repeat a number of times, or execute what depends on a condition once."""
+        if keyword == "repeat":
+            count = COUNT.fullmatch(rest.strip())
+            if count is not None:
+                self._repeats[name] = block
+                self._times[block] = min(int(count[1]), 10**9)
+                return block + 1
+        if keyword == "endrepeat" and name in self._repeats:
+            start = self._repeats[name]
+            return self._flow.repeat(block, start + 1, times=self._times[start] - 1)
+        is_end = keyword in {"endif", "endwhile", "endrepeat"} or (name, "do") in self._open
+        if is_end:
+            self._open = [each for each in self._open if each[0] != name]
+            if not self._open:
+                self._end_condition()
+        elif keyword in {"if", "while", "do", "repeat"}:
+            if not self._open:
+                self._control.remarks.lost(block, "conditions are not evaluated")
+                self._begin_condition()
+            self._open.append((name, keyword))
+        return block + 1
+
+    def _begin_condition(self) -> None:
+        self._control.recorder.standing |= MoveFlag.CONDITIONAL.value
+        self._before = self._control.modal()
+        self._changed = set()
+
+    def _end_condition(self) -> None:
+        """Forget what the blocks of a condition have changed."""
+        control = self._control
+        control.recorder.standing &= ~MoveFlag.CONDITIONAL.value
+        changed, self._before = self._changed, None
+        if changed:
+            control.recorder.unknown()
+            control.forget_changed(changed)
+
+    def _note_changes(self) -> None:
+        assert self._before is not None
+        now = self._control.modal()
+        pairs = enumerate(zip(self._before, now, strict=True))
+        self._changed |= {index for index, (one, other) in pairs if one != other}

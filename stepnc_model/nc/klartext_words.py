@@ -1,0 +1,115 @@
+"""Words of one block of Heidenhain Klartext."""
+
+import re
+from dataclasses import dataclass, field
+
+from stepnc_model.nc.token import NUMBER, TokenKind, tokens
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.words import LARGEST
+
+PLAIN = re.compile(NUMBER)
+
+
+@dataclass(slots=True, kw_only=True)
+class KlartextWords:
+    """Words of one block, sorted."""
+
+    names: list[str] = field(default_factory=list)
+    """Keywords, in the order of the block."""
+    numbers: list[float] = field(default_factory=list)
+    """Numbers without an address, without the block number."""
+    values: dict[str, float] = field(default_factory=dict)
+    """Number of each address."""
+    macros: dict[str, str] = field(default_factory=dict)
+    """Variable of each address that takes its value from one."""
+    assigned: dict[str, float] = field(default_factory=dict)
+    """Values given to Q parameters, as far as they are numbers."""
+    functions: list[int] = field(default_factory=list)
+    """M codes in tenths."""
+    texts: list[str] = field(default_factory=list)
+    strange: list[str] = field(default_factory=list)
+    cycle: str = ""
+    """Number of a defined cycle, such as ``200`` or ``7.1``."""
+    label: str = ""
+    """Label of LBL and CALL LBL."""
+    is_skippable: bool = False
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether the block names nothing that a control executes."""
+        return not (self.names or self.values or self.functions)
+
+    @property
+    def sense(self) -> float:
+        """1 for DR+, -1 for DR-, 0 without one of them."""
+        if "DR+" in self.names:
+            return 1.0
+        return -1.0 if "DR-" in self.names else 0.0
+
+
+def klartext_words(text: str) -> KlartextWords:
+    """Sort the words of a block.
+
+    Examples
+    --------
+    >>> words = klartext_words("12 L X+10 IY-2 R0 F500 M3")
+    >>> words.names, words.values, words.functions
+    (['L', 'R0'], {'X': 10.0, 'IY': -2.0, 'F': 500.0}, [30])
+    """
+    words = KlartextWords()
+    is_first = True
+    for kind, start, end, name, value in tokens(text, Dialect.HEIDENHAIN):
+        if kind in {TokenKind.SPACE, TokenKind.LINE_END, TokenKind.COMMENT}:
+            continue
+        if kind is TokenKind.NUMBER:
+            if not is_first:
+                _number(words, value)
+        elif kind is TokenKind.WORD:
+            _word(words, name, value)
+        elif kind is TokenKind.MACRO:
+            words.macros[name] = value
+        elif kind is TokenKind.NAME:
+            words.names.append(name)
+        elif kind is TokenKind.ASSIGNMENT:
+            words.assigned[name] = float(value) if PLAIN.fullmatch(value) else float("nan")
+        elif kind is TokenKind.TEXT:
+            _text(words, value)
+        elif kind is TokenKind.SKIP and is_first:
+            words.is_skippable = True
+        elif kind is TokenKind.OTHER:
+            words.strange.append(text[start:end])
+        is_first = False
+    return words
+
+
+def _word(words: KlartextWords, name: str, text: str) -> None:
+    """Take an address with a number."""
+    value = float(text)
+    if not abs(value) <= LARGEST:
+        words.strange.append(f"{name}{text[:20]}")
+        words.macros[name] = text
+    elif name == "M":
+        words.functions.append(round(10.0 * value))
+    else:
+        words.values[name] = value
+
+
+def _number(words: KlartextWords, value: str) -> None:
+    """Take a number without an address: of a cycle, a label, or another."""
+    last = words.names[-1:]
+    number = min(float(value), LARGEST)
+    if last == ["DEF"] and words.names[:1] == ["CYCL"] and not words.cycle:
+        words.cycle = value
+    elif last == ["LBL"] and not words.label:
+        words.label = value
+    elif last == ["REP"] or (words.names[:1] == ["CALL"] and "REP" in words.names):
+        words.values.setdefault("REP", number)
+    else:
+        words.numbers.append(number)
+
+
+def _text(words: KlartextWords, value: str) -> None:
+    if words.names[-1:] == ["LBL"]:
+        words.label = value.upper()
+    else:
+        words.texts.append(value)

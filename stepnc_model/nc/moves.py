@@ -1,0 +1,425 @@
+"""Executed moves of an NC program, in columns.
+
+A row is one straight or circular move that the control executes: a block in a subprogram gives
+one row for each call, a canned cycle one row for each of its moves. Coordinates are those of
+the program in mm, in the frame of the row; on a lathe x is a radius. Unknown coordinates are
+NaN. Rows name their block, so that advice finds its way back into the file.
+"""
+
+from dataclasses import dataclass, replace
+from enum import IntEnum, IntFlag, StrEnum
+from functools import cached_property
+from math import inf, nan, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stepnc_model.toolpath.path import ArcPlane, Point
+
+Floats = NDArray[np.float64]
+
+
+class MoveKind(IntEnum):
+    """Kinds of executed moves."""
+
+    RAPID = 0
+    LINE = 1
+    ARC = 2
+    """Arc or helix."""
+    THREAD = 3
+    """Move synchronised with the spindle: its feed is a lead, not to be changed."""
+    UNKNOWN = 4
+    """Block that may move the machine in a way that is not understood."""
+    DWELL = 5
+    """Pause; its word is the time, s."""
+
+
+class FeedMode(StrEnum):
+    """Reference of an F word."""
+
+    PER_MINUTE = "per minute"
+    PER_REVOLUTION = "per revolution"
+    INVERSE_TIME = "inverse time"
+    """F is the number of such moves in a minute (G93)."""
+
+
+class MoveFlag(IntFlag):
+    """Properties of a move that bound what may be done to its block."""
+
+    COMPENSATED = 1 << 0
+    """Cutter radius compensation is on: the path is as commanded, not that of the tool."""
+    ROUNDED = 1 << 1
+    """The block carries a chamfer or rounding at its end."""
+    MACRO = 1 << 2
+    """The block takes a value from a variable or an expression."""
+    TARGET = 1 << 3
+    """The block is a target of jumps or repeats."""
+    CYCLE = 1 << 4
+    """Part of a canned cycle."""
+    TRANSFORMED = 1 << 5
+    """Coordinates are rotated, scaled, mirrored, polar or tilted."""
+    ROTARY = 1 << 6
+    """A rotary or second linear axis moves in this block."""
+    CONDITIONAL = 1 << 7
+    """Whether and how often the block is executed depends on values that are not known."""
+    NO_FEED = 1 << 8
+    """No feed is in force, or it is 0."""
+    MACRO_FEED = 1 << 9
+    """The feed in force is given by a variable or an expression."""
+    OWN_FEED = 1 << 10
+    """The block holds an F word."""
+    FRESH_FEED = 1 << 11
+    """An F word was executed since the previous row."""
+    MACHINE = 1 << 12
+    """Move in coordinates of the machine, such as G28 or G53."""
+    MANY_TURNS = 1 << 13
+    """Arc whose turns are counted by a word of the block."""
+    FIXED = 1 << 14
+    """The block holds words that act once at a time that is not known."""
+    POLAR = 1 << 15
+    """End given as angle and radius, or in another form that cannot be split."""
+    SKIPPABLE = 1 << 16
+    """Block delete: executed here, but the operator may skip it."""
+    EXACT = 1 << 17
+    """Exact stop at the end of the block."""
+    OFFSET = 1 << 18
+    """The block changes an offset or a frame."""
+    UNPOINTED = 1 << 19
+    """A coordinate has no decimal point: some controls count it in µm."""
+
+
+UNADVISED = (
+    MoveFlag.MACRO_FEED
+    | MoveFlag.CONDITIONAL
+    | MoveFlag.TRANSFORMED
+    | MoveFlag.ROTARY
+    | MoveFlag.MACHINE
+    | MoveFlag.NO_FEED
+)
+"""Flags of moves whose feed is left alone."""
+
+UNSPLIT = (
+    UNADVISED
+    | MoveFlag.COMPENSATED
+    | MoveFlag.ROUNDED
+    | MoveFlag.MACRO
+    | MoveFlag.TARGET
+    | MoveFlag.CYCLE
+    | MoveFlag.MANY_TURNS
+    | MoveFlag.FIXED
+    | MoveFlag.POLAR
+    | MoveFlag.OFFSET
+    | MoveFlag.UNPOINTED
+)
+"""Flags of moves whose block stays in one piece."""
+
+REASONS = {
+    MoveFlag.COMPENSATED: "cutter radius compensation",
+    MoveFlag.ROUNDED: "a chamfer or rounding",
+    MoveFlag.MACRO: "a value from a variable",
+    MoveFlag.TARGET: "a target of jumps",
+    MoveFlag.CYCLE: "a canned cycle",
+    MoveFlag.TRANSFORMED: "rotated, scaled or tilted coordinates",
+    MoveFlag.ROTARY: "another axis than X, Y and Z",
+    MoveFlag.CONDITIONAL: "a conditional part of the program",
+    MoveFlag.NO_FEED: "no feed in force",
+    MoveFlag.MACRO_FEED: "a feed from a variable",
+    MoveFlag.MACHINE: "coordinates of the machine",
+    MoveFlag.MANY_TURNS: "an arc of counted turns",
+    MoveFlag.FIXED: "words that act once",
+    MoveFlag.POLAR: "polar or other ends",
+    MoveFlag.OFFSET: "a change of offset",
+    MoveFlag.UNPOINTED: "coordinates without a decimal point",
+}
+"""Reasons for which a block is left alone or in one piece, as messages name them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModalSetting:
+    """Modal state that consecutive moves share."""
+
+    tool: int | None = None
+    """Number of the tool in the spindle; None if none was called, or one by its name."""
+    tool_name: str = ""
+    """Name of a tool that is called by its name."""
+    spindle: float | None = None
+    """Spindle speed, rev/s, negative counter-clockwise (M4); None if not known."""
+    surface: float | None = None
+    """Constant surface speed, mm/s; None at constant spindle speed."""
+    limit: float | None = None
+    """Greatest spindle speed at constant surface speed, rev/s."""
+    mode: FeedMode = FeedMode.PER_MINUTE
+    frame: int = 0
+    """Index of the frame in :attr:`NcMoves.frames`."""
+    unit: float = 1.0
+    """Length of one unit of the program, mm."""
+    is_diameter: bool = False
+    """Whether X words are diameters."""
+    is_relative: bool = False
+    """Whether axis words are distances from the last position (G91)."""
+    is_centre_absolute: bool = False
+    """Whether I, J and K are coordinates rather than distances from the start (G90.1)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NcMove:
+    """One executed move, for readers that go through them one by one."""
+
+    kind: MoveKind
+    start: Point
+    end: Point
+    centre: Point | None
+    """Centre of an arc; its coordinate along the normal of the plane has no meaning."""
+    turn: float
+    """Angle of an arc, rad, positive counter-clockwise; 0 for a line."""
+    plane: ArcPlane
+    feed: float
+    """Feed, mm/s; NaN for rapids and where it is not known."""
+    word: float
+    """Feed in force, mm/s, mm per revolution or 1/s by mode."""
+    seconds: float
+    """Time of a dwell, s; 0 for moves."""
+    block: int
+    call: int
+    flags: MoveFlag
+    setting: ModalSetting
+
+
+ROW = np.dtype([
+    ("start", np.float64, (3,)),
+    ("end", np.float64, (3,)),
+    ("word", np.float64),
+    ("block", np.int32),
+    ("fed_by", np.int32),
+    ("call", np.int32),
+    ("arc", np.int32),
+    ("setting", np.int32),
+    ("flags", np.int32),
+    ("kind", np.int8),
+])
+ARC_NUMBERS = 5
+"""Columns of :attr:`NcMoves.arcs`."""
+PLANES = tuple(ArcPlane)
+"""Planes by the index in :attr:`NcMoves.arcs`."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class NcMoves:
+    """Executed moves as columns; views of one compact table, N rows."""
+
+    rows: NDArray[np.void]
+    """(N,) structured array of the dtype :data:`ROW`."""
+    arcs: Floats
+    """(M, 5) array: centre x, y, z, mm, turn, rad, and index of the plane, of each arc."""
+    settings: tuple[ModalSetting, ...]
+    frames: tuple[str, ...]
+    """Names of the frames, such as ``G54``."""
+    calls: tuple[tuple[int, int], ...]
+    """Call each call was made from, and the calling block; the main program is call 0."""
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @property
+    def start(self) -> Floats:
+        """(N, 3) array: start points, mm; NaN where unknown."""
+        return self.rows["start"]
+
+    @property
+    def end(self) -> Floats:
+        """(N, 3) array: end points, mm; NaN where unknown."""
+        return self.rows["end"]
+
+    @property
+    def kind(self) -> NDArray[np.int8]:
+        """(N,) array: values of :class:`MoveKind`."""
+        return self.rows["kind"]
+
+    @property
+    def block(self) -> NDArray[np.int32]:
+        """(N,) array: index of the block in the file."""
+        return self.rows["block"]
+
+    @property
+    def call(self) -> NDArray[np.int32]:
+        """(N,) array: index of the call or repeat in :attr:`calls`; 0 in the main program."""
+        return self.rows["call"]
+
+    @property
+    def flags(self) -> NDArray[np.int32]:
+        """(N,) array: values of :class:`MoveFlag`."""
+        return self.rows["flags"]
+
+    @property
+    def fed_by(self) -> NDArray[np.int32]:
+        """(N,) array: block whose F word is in force; -1 if none."""
+        return self.rows["fed_by"]
+
+    @property
+    def word(self) -> Floats:
+        """(N,) array: feed in force, mm/s, mm per revolution or 1/s by mode; NaN if none."""
+        return self.rows["word"]
+
+    @cached_property
+    def tool(self) -> NDArray[np.int32]:
+        """(N,) array: number of the tool; -1 if none was called."""
+        numbers = [-1 if each.tool is None else each.tool for each in self.settings]
+        return np.array(numbers or [-1], np.int32)[self.rows["setting"]]
+
+    @cached_property
+    def has_tool(self) -> NDArray[np.bool_]:
+        """(N,) array: whether a tool was called, by its number or its name."""
+        called = [each.tool is not None or each.tool_name != "" for each in self.settings]
+        return np.array(called or [False])[self.rows["setting"]]
+
+    @cached_property
+    def frame(self) -> NDArray[np.int32]:
+        """(N,) array: index of the frame in :attr:`frames`."""
+        numbers = [each.frame for each in self.settings]
+        return np.array(numbers or [0], np.int32)[self.rows["setting"]]
+
+    @cached_property
+    def mode(self) -> NDArray[np.int32]:
+        """(N,) array: index of the feed mode in the order of :class:`FeedMode`."""
+        order = list(FeedMode)
+        numbers = [order.index(each.mode) for each in self.settings]
+        return np.array(numbers or [0], np.int32)[self.rows["setting"]]
+
+    @cached_property
+    def centre(self) -> Floats:
+        """(N, 3) array: centres of arcs, mm; NaN for lines."""
+        return self._of_arcs(slice(0, 3), nan)
+
+    @cached_property
+    def turn(self) -> Floats:
+        """(N,) array: angles of arcs, rad, positive counter-clockwise; 0 for lines."""
+        return self._of_arcs(3, 0.0)
+
+    @cached_property
+    def normal(self) -> NDArray[np.int64]:
+        """(N,) array: axis along the normal of an arc's plane; 2 for lines."""
+        index = self._of_arcs(4, 0.0).astype(np.int64)
+        return np.array([plane.axes[2] for plane in PLANES], np.int64)[index]
+
+    @cached_property
+    def length(self) -> Floats:
+        """(N,) array: lengths of the moves, mm; NaN where unknown."""
+        delta = self.end - self.start
+        length = np.sqrt(np.einsum("ij,ij->i", delta, delta))
+        found = np.flatnonzero(self.rows["arc"] >= 0)
+        if len(found):
+            normal = self.normal[found]
+            radial = self.start[found] - self.centre[found]
+            every = np.arange(len(found))
+            rise = delta[found][every, normal]
+            radial[every, normal] = 0.0
+            radius = np.sqrt(np.einsum("ij,ij->i", radial, radial))
+            length[found] = np.hypot(radius * self.turn[found], rise)
+        return length
+
+    @cached_property
+    def spindle(self) -> Floats:
+        """(N,) array: spindle speed at the end of each move, rev/s, signed; NaN if unknown.
+
+        At constant surface speed it follows from x, up to its limit.
+        """
+        speeds = [nan if each.spindle is None else each.spindle for each in self.settings]
+        surfaces = [nan if each.surface is None else each.surface for each in self.settings]
+        limits = [np.inf if each.limit is None else each.limit for each in self.settings]
+        index = self.rows["setting"]
+        speed = np.array(speeds or [nan])[index]
+        surface = np.array(surfaces or [nan])[index]
+        limit = np.array(limits or [np.inf])[index]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            turning = np.minimum(surface / (2.0 * pi * np.abs(self.end[:, 0])), limit)
+        sign = np.where(np.signbit(speed), -1.0, 1.0)
+        return np.where(np.isnan(surface), speed, sign * turning)
+
+    @cached_property
+    def feed(self) -> Floats:
+        """(N,) array: feed, mm/s; NaN for rapids, threads and where it is not known."""
+        per_minute, per_revolution, inverse = range(3)
+        mode, word = self.mode, self.word
+        has_inverse = any(each.mode is FeedMode.INVERSE_TIME for each in self.settings)
+        length = self.length if has_inverse else word
+        with np.errstate(invalid="ignore"):
+            feed = np.select(
+                [mode == per_minute, mode == per_revolution, mode == inverse],
+                [word, word * np.abs(self.spindle), word * length],
+                nan,
+            )
+        is_fed = np.isin(self.kind, (MoveKind.LINE, MoveKind.ARC))
+        return np.where(is_fed & (feed > 0.0), feed, nan)
+
+    @cached_property
+    def is_known(self) -> NDArray[np.bool_]:
+        """(N,) array: whether start, end and, of arcs, the centre are known."""
+        known = ~(np.isnan(self.start).any(axis=1) | np.isnan(self.end).any(axis=1))
+        return known & ~np.isnan(self.turn) & (self.kind != MoveKind.UNKNOWN)
+
+    @cached_property
+    def is_advisable(self) -> NDArray[np.bool_]:
+        """(N,) array: whether the feed of the move may be advised."""
+        is_fed = np.isin(self.kind, (MoveKind.LINE, MoveKind.ARC))
+        return self.is_known & is_fed & ((self.flags & int(UNADVISED)) == 0)
+
+    @cached_property
+    def is_splittable(self) -> NDArray[np.bool_]:
+        """(N,) array: whether the block of the move may be split."""
+        return self.is_advisable & ((self.flags & int(UNSPLIT)) == 0)
+
+    def fastest(self, rows: NDArray[np.int64]) -> float:
+        """Greatest spindle speed in some rows, rev/s; 0 if not known.
+
+        At constant surface speed it is that of the least distance from the axis; infinite at
+        the axis without a limit.
+        """
+        fastest = 0.0
+        for row in rows.tolist():
+            setting = self.settings[int(self.rows["setting"][row])]
+            if setting.surface is None:
+                fastest = max(fastest, abs(setting.spindle or 0.0))
+                continue
+            one, other = float(self.start[row][0]), float(self.end[row][0])
+            radius = 0.0 if one * other <= 0.0 else min(abs(one), abs(other))
+            speed = setting.surface / (2.0 * pi * radius) if radius else inf
+            fastest = max(fastest, min(speed, setting.limit or inf))
+        return fastest
+
+    def part(self, begin: int, end: int) -> "NcMoves":
+        """Return some consecutive rows, whose derived columns need little memory."""
+        return replace(self, rows=self.rows[begin:end])
+
+    def move(self, index: int) -> NcMove:
+        """Return one row as a value."""
+        row = self.rows[index]
+        arc = int(row["arc"])
+        numbers = self.arcs[arc] if arc >= 0 else None
+        return NcMove(
+            kind=MoveKind(int(row["kind"])),
+            start=_point(row["start"]),
+            end=_point(row["end"]),
+            centre=None if numbers is None else _point(numbers),
+            turn=0.0 if numbers is None else float(numbers[3]),
+            plane=ArcPlane.XY if numbers is None else PLANES[int(numbers[4])],
+            feed=float(self.feed[index]),
+            word=float(row["word"]),
+            seconds=float(row["word"]) if row["kind"] == MoveKind.DWELL else 0.0,
+            block=int(row["block"]),
+            call=int(row["call"]),
+            flags=MoveFlag(int(row["flags"])),
+            setting=self.settings[int(row["setting"])],
+        )
+
+    def _of_arcs(self, column: int | slice, filled: float) -> Floats:
+        """Spread a column of the arcs over all rows."""
+        index = self.rows["arc"]
+        values = self.arcs[:, column]
+        spread = np.full((len(index), *values.shape[1:]), filled)
+        found = index >= 0
+        spread[found] = values[index[found]]
+        return spread
+
+
+def _point(numbers: Floats) -> Point:
+    return float(numbers[0]), float(numbers[1]), float(numbers[2])

@@ -1,0 +1,141 @@
+"""NC programs of any origin, read without loss and executed once.
+
+:func:`read_program` keeps the bytes, executes them on a tolerant control, and gives the moves
+with remarks on what was not understood. :mod:`stepnc_model.nc.rewrite` changes the feeds.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from stepnc_model.errors import Finding, PostError
+from stepnc_model.nc.heidenhain_control import HeidenhainControl
+from stepnc_model.nc.iso_control import IsoControl
+from stepnc_model.nc.moves import UNADVISED, FeedMode, MoveFlag, MoveKind, NcMoves
+from stepnc_model.nc.recognise import recognise
+from stepnc_model.nc.remarks import Remarks
+from stepnc_model.nc.sinumerik_control import SinumerikControl
+from stepnc_model.nc.text import NcText, text_of
+from stepnc_model.post.blocks import MachineType
+from stepnc_model.post.dialect import Dialect
+
+CHUNK = 1 << 16
+"""Rows that are looked at together."""
+
+Control = IsoControl | HeidenhainControl
+
+
+@dataclass(frozen=True, kw_only=True)
+class NcProgram:
+    """NC program with its bytes, its executed moves, and remarks on it."""
+
+    text: NcText
+    dialect: Dialect
+    machine: MachineType
+    hints: tuple[str, ...]
+    """Pieces of the program that speak for the control; empty if it was named."""
+    moves: NcMoves
+    unit: float
+    """Length of one unit of the program at its end, mm."""
+    findings: tuple[Finding, ...]
+    """What was not understood, and what is missing, by line."""
+
+
+def read_program(
+    data: bytes, *, dialect: Dialect | None = None, machine: MachineType | None = None
+) -> NcProgram:
+    r"""Read an NC program and execute it.
+
+    Parameters
+    ----------
+    data : bytes
+        Content of the file; any bytes are accepted.
+    dialect : Dialect, optional
+        Control; guessed from the program if it is not given.
+    machine : MachineType, optional
+        Kind of machine; guessed as well.
+
+    Raises
+    ------
+    PostError
+        If the program repeats or nests blocks without end, with the line, or if the dialect
+        has no NC code.
+
+    Examples
+    --------
+    >>> program = read_program(b"G21 G90\nG0 X0 Y0 Z5\nG1 Z-1 F60\nX10\n")
+    >>> program.moves.feed
+    array([nan,  1.,  1.])
+    """
+    guess = recognise(data)
+    chosen = guess.dialect if dialect is None else dialect
+    if chosen is Dialect.CANONICAL:
+        raise PostError("canonical commands are no NC code: name the control of the program")
+    kind = guess.machine if machine is None else machine
+    text = text_of(data, chosen)
+    control = _control(text, chosen, kind)
+    control.run()
+    moves = control.recorder.moves()
+    for begin in range(0, len(moves), CHUNK):
+        _remark(control.remarks, moves.part(begin, begin + CHUNK))
+    return NcProgram(
+        text=text,
+        dialect=chosen,
+        machine=kind,
+        hints=guess.hints if dialect is None else (),
+        moves=moves,
+        unit=control.scale,
+        findings=control.remarks.all(),
+    )
+
+
+def _control(text: NcText, dialect: Dialect, machine: MachineType) -> Control:
+    if dialect is Dialect.HEIDENHAIN:
+        return HeidenhainControl(text)
+    if dialect is Dialect.SINUMERIK:
+        return SinumerikControl(text, dialect, machine)
+    return IsoControl(text, dialect, machine)
+
+
+def _remark(remarks: Remarks, moves: NcMoves) -> None:
+    """Remark what the moves lack: a feed, a turning spindle, a tool."""
+    is_fed = np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC))
+    is_macro = (moves.flags & int(MoveFlag.MACRO_FEED)) != 0
+    per_revolution = moves.mode == list(FeedMode).index(FeedMode.PER_REVOLUTION)
+    is_zero = is_fed & (moves.word == 0.0)
+    checks = (
+        (is_zero, "the feed is 0"),
+        (is_fed & np.isnan(moves.word) & ~is_macro, "no feed F is in force"),
+        (
+            is_fed & per_revolution & (moves.word > 0.0) & (moves.spindle == 0.0),
+            "a feed per revolution while the spindle is stopped",
+        ),
+        (is_fed & ~moves.has_tool, "no tool was called before this cut"),
+        (
+            is_fed & ((moves.flags & int(MoveFlag.UNPOINTED)) != 0),
+            "a coordinate without decimal point is read in whole units, "
+            "which some controls count in µm",
+        ),
+    )
+    for is_so, why in checks:
+        for block in _first_of_runs(is_so, moves):
+            remarks.warn(block, why)
+    left = int(UNADVISED) & ~int(MoveFlag.NO_FEED)
+    for flag in (MoveFlag.TRANSFORMED, MoveFlag.ROTARY):
+        name = {
+            MoveFlag.TRANSFORMED: "coordinates are rotated, scaled or tilted",
+            MoveFlag.ROTARY: "a rotary or further axis is not at 0",
+        }[flag]
+        is_so = is_fed & ((moves.flags & int(flag) & left) != 0)
+        for block in _first_of_runs(is_so, moves):
+            remarks.warn(block, f"{name}: the feed is left alone")
+
+
+def _first_of_runs(is_so: np.ndarray, moves: NcMoves) -> Iterator[int]:
+    """Blocks with which uninterrupted runs of such moves begin."""
+    if not is_so.any():
+        return
+    before = np.concatenate((np.zeros(1, np.bool_), is_so[:-1]))
+    for block in np.unique(moves.block[is_so & ~before]):
+        yield int(block)

@@ -1,0 +1,152 @@
+"""Collector of executed moves: a control goes through a program and records what it does."""
+
+import struct
+from array import array
+from collections.abc import Sequence
+from math import nan
+
+import numpy as np
+
+from stepnc_model.nc.moves import (
+    ARC_NUMBERS,
+    PLANES,
+    ROW,
+    ModalSetting,
+    MoveFlag,
+    MoveKind,
+    NcMoves,
+)
+from stepnc_model.toolpath.path import ArcPlane, Point
+
+_PACKED = struct.Struct("<7d6ib")
+_FLAGS_AT = 7 * 8 + 5 * 4
+"""Offset of the flags in a row."""
+_ROUNDED = MoveFlag.ROUNDED.value
+
+
+class MoveRecorder:
+    """Collector of executed moves; it keeps the position and the modal setting.
+
+    Running state: a control moves it from block to block.
+    """
+
+    def __init__(self, *, has_y: bool = True) -> None:
+        self._has_y = has_y
+        self._at: list[float] = [nan, nan if has_y else 0.0, nan]
+        self.word = nan
+        """Feed in force, mm/s, mm per revolution or 1/s."""
+        self.fed_by = -1
+        self.block = 0
+        self.call = 0
+        self.flags = 0
+        """Flags of all moves of the block."""
+        self.standing = 0
+        """Flags of all moves until they are taken away, such as compensation."""
+        self.is_fresh = False
+        """Whether an F word was executed since the last row."""
+        self._carried = 0
+        """Flags that a corner rounded by the last block gives to the next row."""
+        self.frames: dict[str, int] = {"G54": 0}
+        self.calls: list[tuple[int, int]] = [(0, -1)]
+        self._setting = ModalSetting()
+        self._settings: dict[ModalSetting, int] = {self._setting: 0}
+        self._index = 0
+        self._rows = bytearray()
+        self._arcs = array("d")
+
+    @property
+    def at(self) -> list[float]:
+        """Position of the tool, mm; NaN where unknown. On a lathe y is 0."""
+        return self._at
+
+    @at.setter
+    def at(self, at: list[float]) -> None:
+        self._at = at
+        if not self._has_y:
+            at[1] = 0.0
+
+    @property
+    def setting(self) -> ModalSetting:
+        """Modal setting in force."""
+        return self._setting
+
+    @setting.setter
+    def setting(self, setting: ModalSetting) -> None:
+        self._setting = setting
+        self._index = self._settings.setdefault(setting, len(self._settings))
+
+    @property
+    def count(self) -> int:
+        """Number of rows recorded so far."""
+        return len(self._rows) // _PACKED.size
+
+    def frame(self, name: str) -> int:
+        """Index of a frame by its name."""
+        return self.frames.setdefault(name, len(self.frames))
+
+    def move(self, kind: MoveKind, end: Sequence[float], *, flags: int = 0) -> None:
+        """Record a straight move and go to its end."""
+        self._add(kind, end, -1, flags)
+
+    def arc(self, end: Sequence[float], centre: Point, *, turn: float, plane: ArcPlane) -> None:
+        """Record an arc or helix and go to its end."""
+        index = len(self._arcs) // ARC_NUMBERS
+        self._arcs.extend((*centre, turn, float(PLANES.index(plane))))
+        self._add(MoveKind.ARC, end, index, 0)
+
+    def dwell(self, seconds: float) -> None:
+        """Record a pause."""
+        kept, self.word = self.word, seconds
+        self._add(MoveKind.DWELL, self.at, -1, 0)
+        self.word = kept
+
+    def unknown(self) -> None:
+        """Record that a block may move all axes in a way that is not understood."""
+        self._add(MoveKind.UNKNOWN, (nan, nan, nan), -1, 0)
+
+    def carry(self, flag: MoveFlag) -> None:
+        """Give a flag to the next row alone."""
+        self._carried |= flag.value
+
+    def round_corner(self) -> None:
+        """Record that the corner between the last row and the next one is rounded."""
+        if self._rows:
+            at = len(self._rows) - _PACKED.size + _FLAGS_AT
+            old = int.from_bytes(self._rows[at : at + 4], "little")
+            self._rows[at : at + 4] = (old | _ROUNDED).to_bytes(4, "little")
+        self._carried = _ROUNDED
+
+    def _add(self, kind: MoveKind, end: Sequence[float], arc: int, flags: int) -> None:
+        flags |= self.flags | self.standing
+        carried, self._carried = self._carried, flags & _ROUNDED
+        flags |= carried
+        if self.is_fresh:
+            flags |= MoveFlag.FRESH_FEED.value
+            self.is_fresh = False
+        is_unfed = not self.word > 0.0 and not flags & MoveFlag.MACRO_FEED
+        if is_unfed and kind in {MoveKind.LINE, MoveKind.ARC}:
+            flags |= MoveFlag.NO_FEED.value
+        here, there = self._at, list(end)
+        self.at = there
+        self._rows += _PACKED.pack(
+            *here,
+            *there,
+            self.word,
+            self.block,
+            self.fed_by,
+            self.call,
+            arc,
+            self._index,
+            flags,
+            kind,
+        )
+
+    def moves(self) -> NcMoves:
+        """All moves recorded so far."""
+        return NcMoves(
+            rows=np.frombuffer(self._rows, ROW),
+            arcs=np.frombuffer(self._arcs, np.float64).reshape(-1, ARC_NUMBERS),
+            settings=tuple(self._settings),
+            frames=tuple(self.frames),
+            calls=tuple(self.calls),
+        )

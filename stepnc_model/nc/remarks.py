@@ -1,0 +1,44 @@
+"""Remarks on an NC program: what was not understood, by line, with its text."""
+
+from stepnc_model.errors import Finding, FindingList, Severity
+from stepnc_model.nc.text import NcText
+from stepnc_model.post.words import shown
+
+
+class Remarks:
+    """Collector of the remarks on one program; each block is remarked once for a reason."""
+
+    def __init__(self, text: NcText) -> None:
+        self._text = text
+        self._list = FindingList()
+        self._said: set[tuple[int, str]] = set()
+
+    def lost(self, block: int, why: str) -> None:
+        """Remark that a block is not understood and stays as it is."""
+        self.warn(block, f"not understood: {why}")
+
+    def warn(self, block: int, why: str) -> None:
+        """Remark something about a block that a machinist should see."""
+        self._add(block, why, Severity.WARNING)
+
+    def note(self, block: int, why: str) -> None:
+        """Remark an assumption about a block."""
+        self._add(block, why, Severity.NOTE)
+
+    def all(self) -> tuple[Finding, ...]:
+        """All remarks by line."""
+        return self._list.all()
+
+    def _add(self, block: int, why: str, severity: Severity) -> None:
+        if (block, why) in self._said:
+            return
+        if self._list.has_room(severity):
+            self._said.add((block, why))
+        text = shown(self._text.block(block))
+        self._list.add(
+            Finding(
+                severity=severity,
+                message=f"{why}: {text}" if text else why,
+                line=self._text.line(block),
+            )
+        )

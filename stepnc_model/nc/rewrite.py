@@ -1,0 +1,424 @@
+"""Rewriting of an NC program: only F words change, and blocks are divided.
+
+After each changed stretch the programmed feed is put in force again, for blocks that have no
+advice and no F word of their own. The order of execution decides: a block in a subprogram that
+would need another feed for each call refuses the advice before it.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stepnc_model.nc.advice import BlockAdvice, RewrittenCode, UnchangedBlock, least_of
+from stepnc_model.nc.block_edit import BlockForm, feed_token, split_block, with_feed, with_mark
+from stepnc_model.nc.moves import (
+    REASONS,
+    UNADVISED,
+    UNSPLIT,
+    FeedMode,
+    ModalSetting,
+    MoveFlag,
+    MoveKind,
+    NcMove,
+    NcMoves,
+)
+from stepnc_model.nc.number_style import style_of
+from stepnc_model.nc.program import NcProgram
+from stepnc_model.nc.split import MovePiece, WordScale, divided
+from stepnc_model.nc.token import TokenKind, tokens
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.units import mm_min_from_speed
+
+SAME = 1e-6
+"""Greatest distance of two executions of a block that is split, mm."""
+
+EQUAL = 1e-6
+"""Relative difference below which two feeds are the same."""
+
+
+@dataclass(slots=True, kw_only=True)
+class _Plan:
+    """Change of one block."""
+
+    advice: BlockAdvice
+    pieces: list[MovePiece]
+    feeds: list[str]
+    """Number of the F word of each piece."""
+    setting: ModalSetting
+    move: NcMove
+    needs: bool = False
+    """Whether the feed in force before the block differs in one execution."""
+
+
+@dataclass(slots=True)
+class _Trace:
+    """Result of following the feed in force through the program."""
+
+    restored: dict[int, int] = field(default_factory=dict)
+    """Block whose F word is to be put in force again before each of these blocks."""
+    refused: dict[int, str] = field(default_factory=dict)
+
+
+def rewrite(
+    program: NcProgram, advice: Iterable[BlockAdvice], *, mark: bool = False
+) -> RewrittenCode:
+    """Write advised feeds into an NC program.
+
+    Parameters
+    ----------
+    program : NcProgram
+    advice : iterable of BlockAdvice
+        Several on one block, such as one for each call, give its least feed at every place.
+    mark : bool
+        Whether changed blocks get a comment with the reason.
+
+    Returns
+    -------
+    RewrittenCode
+        New bytes, with the blocks that did not get what was advised and the reasons.
+
+    Raises
+    ------
+    ValueError
+        If advice names a block that the program does not have.
+    """
+    return _Rewriting(program, least_of(advice), mark=mark).result()
+
+
+class _Rewriting:
+    """Rewriting of one program."""
+
+    def __init__(
+        self, program: NcProgram, advice: dict[int, BlockAdvice], *, mark: bool
+    ) -> None:
+        self.program, self.moves, self.mark = program, program.moves, mark
+        self.style = style_of(program.text, program.dialect, unit=program.unit)
+        self.unchanged: list[UnchangedBlock] = []
+        self._order = np.zeros(0, np.int64)
+        self._sorted = np.zeros(0, np.int32)
+        if advice:
+            self._order = np.argsort(self.moves.block, kind="stable")
+            self._sorted = self.moves.block[self._order]
+        self._feed_words: dict[int, str | None] = {}
+        self.plans: dict[int, _Plan] = {}
+        for block in sorted(advice):
+            plan = self._planned(advice[block])
+            if plan is not None:
+                self.plans[block] = plan
+
+    def result(self) -> RewrittenCode:
+        """Follow the feed through the program, then put the bytes together."""
+        trace = self._traced()
+        while trace.refused:
+            for block, reason in trace.refused.items():
+                del self.plans[block]
+                self._leave(block, reason)
+            trace = self._traced()
+        return self._assembled(trace)
+
+    # Plans of the blocks.
+
+    def _planned(self, advice: BlockAdvice) -> _Plan | None:
+        block = advice.block
+        if not 0 <= block < len(self.program.text):
+            raise ValueError(
+                f"block {block}: the program has {len(self.program.text)} blocks, from 0"
+            )
+        rows = self._fed_rows(block)
+        reason = self._hindrance(rows)
+        if reason:
+            self._leave(block, reason)
+            return None
+        first = self.moves.move(int(rows[0]))
+        ends, feeds = list(advice.ends), list(advice.feeds)
+        if len(set(feeds)) > 1:
+            why = self._joining(rows)
+            if why:
+                self._leave(block, why, is_unsplit=True)
+                ends, feeds = [1.0], [min(feeds)]
+        form = self._scale(first.setting)
+        is_short = len(ends) > 1
+        pieces = divided(first, ends, feeds, scale=form, by_radius=self._is_by_radius(block))
+        if is_short and len(pieces) == 1 and len(set(feeds)) > 1:
+            self._leave(
+                block,
+                "too short for its pieces, or an arc that cannot be divided",
+                is_unsplit=True,
+            )
+        texts = [self._number(rows, first, piece) for piece in pieces]
+        if any(float(text) <= 0.0 for text in texts):
+            self._leave(block, "the advised feed is below the resolution of its F word")
+            return None
+        return _Plan(
+            advice=advice, pieces=pieces, feeds=texts, setting=first.setting, move=first
+        )
+
+    def _fed_rows(self, block: int) -> NDArray[np.int64]:
+        """Rows of a block that move at a feed."""
+        low, high = np.searchsorted(self._sorted, (block, block + 1))
+        rows = self._order[low:high]
+        kinds = self.moves.kind[rows]
+        return rows[np.isin(kinds, (MoveKind.LINE, MoveKind.ARC, MoveKind.UNKNOWN))]
+
+    def _hindrance(self, rows: NDArray[np.int64]) -> str:
+        """Reason why the feed of a block is left alone, or an empty string."""
+        if not len(rows):
+            return "the block does not move at a feed"
+        if (self.moves.kind[rows] == MoveKind.UNKNOWN).any():
+            return "the block is not understood"
+        flags = MoveFlag(int(np.bitwise_or.reduce(self.moves.flags[rows])))
+        if flags & UNADVISED:
+            return _named(flags & UNADVISED)
+        if not self.moves.is_advisable[rows].all():
+            return "its start or end is not known"
+        modes = {self.moves.move(int(row)).setting.mode for row in rows}
+        if len(modes) > 1:
+            return "its executions have feeds in different modes"
+        if FeedMode.PER_REVOLUTION in modes and not 0.0 < self.moves.fastest(rows) < inf:
+            return "the spindle speed is not known or not limited"
+        if self.program.dialect is Dialect.HEIDENHAIN and flags & MoveFlag.CYCLE:
+            return "the feed of a cycle stands in its definition"
+        if self.program.dialect is Dialect.SINUMERIK and flags & MoveFlag.CYCLE:
+            return "the feed of a cycle is in force before its call"
+        return ""
+
+    def _joining(self, rows: NDArray[np.int64]) -> str:
+        """Reason why a block stays in one piece, or an empty string."""
+        flags = MoveFlag(int(np.bitwise_or.reduce(self.moves.flags[rows])))
+        if flags & UNSPLIT:
+            return _named(flags & UNSPLIT)
+        if not self.moves.is_known[rows].all():
+            return "its start is not known"
+        start, end = self.moves.start[rows], self.moves.end[rows]
+        centre, turn = self.moves.centre[rows], self.moves.turn[rows]
+        settings = {self.moves.settings[index] for index in self.moves.rows["setting"][rows]}
+        if all(each.is_relative and not each.is_centre_absolute for each in settings):
+            # Distances mean the same wherever they begin.
+            start, end, centre = start - start, end - start, centre - start
+        same = (
+            (np.abs(start - start[0]).max() < SAME)
+            and (np.abs(end - end[0]).max() < SAME)
+            and (np.isnan(turn[0]) or np.abs(turn - turn[0]).max() < SAME)
+            and (np.isnan(centre[0]).any() or np.abs(centre - centre[0]).max() < SAME)
+        )
+        return "" if same else "its executions begin or end at different places"
+
+    def _leave(self, block: int, reason: str, *, is_unsplit: bool = False) -> None:
+        line = self.program.text.line(block)
+        self.unchanged.append(
+            UnchangedBlock(block=block, line=line, reason=reason, is_unsplit=is_unsplit)
+        )
+
+    def _scale(self, setting: ModalSetting) -> WordScale:
+        return WordScale(unit=setting.unit, is_diameter=setting.is_diameter, style=self.style)
+
+    def _is_by_radius(self, block: int) -> bool:
+        """Whether an arc of the block is given by its radius."""
+        text, dialect = self.program.text.block(block), self.program.dialect
+        found = [t for t in tokens(text, dialect) if t.kind in {TokenKind.WORD, TokenKind.NAME}]
+        return any(t.name in {"R", "CR"} for t in found)
+
+    def _number(self, rows: NDArray[np.int64], move: NcMove, piece: MovePiece) -> str:
+        """Number of the F word of a piece, for the execution that allows least."""
+        setting, mode = move.setting, move.setting.mode
+        if mode is FeedMode.PER_MINUTE:
+            return self.style.feed(mm_min_from_speed(piece.feed) / setting.unit, mode)
+        if mode is FeedMode.INVERSE_TIME:
+            value = mm_min_from_speed(piece.feed) / piece.length if piece.length else inf
+            return self.style.feed(min(value, 1e6), mode)
+        return self.style.feed(piece.feed / self.moves.fastest(rows) / setting.unit, mode)
+
+    # The feed in force.
+
+    def _traced(self) -> _Trace:
+        """Follow the feed in force through all moves, as it will be."""
+        trace = _Trace()
+        for each in self.plans.values():
+            each.needs = False
+        changed: int | None = None
+        for row in _rows(self.moves):
+            if row.flags & MoveFlag.FRESH_FEED:
+                changed = None
+            if row.kind in {MoveKind.RAPID, MoveKind.DWELL}:
+                continue
+            plan = self.plans.get(row.block)
+            if plan is not None:
+                before = self._in_force(changed, row.fed_by)
+                plan.needs |= not _is_equal(before, plan.feeds[0])
+                changed = None if row.is_inverse else row.block
+            elif changed is not None and not row.is_inverse:
+                self._put_back(trace, row, changed)
+                changed = None
+        return trace
+
+    def _in_force(self, changed: int | None, fed_by: int) -> str | None:
+        """Number of the F word that is in force before a block."""
+        if changed is not None:
+            return self.plans[changed].feeds[-1]
+        return self._feed_word(fed_by)
+
+    def _feed_word(self, block: int) -> str | None:
+        """Number of the F word of a block of the file; None without one."""
+        if block < 0:
+            return None
+        if block not in self._feed_words:
+            token = feed_token(self.program.text.block(block), self.program.dialect)
+            is_number = token is not None and token.kind is TokenKind.WORD
+            self._feed_words[block] = token.value if token is not None and is_number else None
+        return self._feed_words[block]
+
+    def _put_back(self, trace: _Trace, row: "_Row", changed: int) -> None:
+        """Note that a block needs the programmed feed, or refuse the advice before it."""
+        programmed = self._feed_word(row.fed_by)
+        if row.flags & MoveFlag.OWN_FEED and row.fed_by == row.block:
+            return
+        if programmed is None:
+            if row.fed_by >= 0 or row.flags & MoveFlag.MACRO_FEED:
+                trace.refused[changed] = "a later block needs a feed that is not known"
+            return
+        if _is_equal(programmed, self.plans[changed].feeds[-1]):
+            return
+        known = trace.restored.get(row.block)
+        if known is not None and not _is_equal(self._feed_word(known), programmed):
+            trace.refused[changed] = "a later block is called with different feeds"
+            return
+        trace.restored[row.block] = row.fed_by
+
+    # The new bytes.
+
+    def _assembled(self, trace: _Trace) -> RewrittenCode:
+        text, data = self.program.text, self.program.text.data
+        parts: list[bytes] = []
+        behind = changed = added = 0
+        for block in sorted({*self.plans, *trace.restored}):
+            old = text.block(block)
+            if block in self.plans:
+                new = self._changed(self.plans[block], old)
+                changed += new != old
+                added += new.count("\n") - old.count("\n") if new != old else 0
+            else:
+                new = self._restored(block, old, trace.restored[block])
+            begin, end = int(text.starts[block]), int(text.starts[block + 1])
+            parts += (data[behind:begin], new.encode("latin-1"))
+            behind = end
+        parts.append(data[behind:])
+        return RewrittenCode(
+            data=b"".join(parts),
+            changed=changed,
+            added=added,
+            restored=len(trace.restored),
+            unchanged=tuple(sorted(self.unchanged, key=lambda each: each.block)),
+        )
+
+    def _changed(self, plan: _Plan, text: str) -> str:
+        """Text of a block with its new feeds."""
+        dialect, gap = self.program.dialect, self.style.gap
+        own = feed_token(text, dialect)
+        head = plan.feeds[0]
+        is_own = own is not None and own.kind is TokenKind.WORD
+        if (is_own and own is not None and _is_equal(own.value, head)) or (
+            own is None and not plan.needs
+        ):
+            head = ""
+        if len(plan.pieces) == 1:
+            new = with_feed(text, head, dialect=dialect, gap=gap) if head else text
+        else:
+            feeds = [
+                head,
+                *(
+                    ""
+                    if _is_equal(a, b) and plan.setting.mode is not FeedMode.INVERSE_TIME
+                    else b
+                    for a, b in zip(plan.feeds, plan.feeds[1:], strict=False)
+                ),
+            ]
+            new = split_block(text, plan.pieces, feeds, self._form(plan))
+        if self.mark and plan.advice.reason and new != text:
+            new = _marked_first(new, plan.advice.reason, dialect)
+        return new
+
+    def _form(self, plan: _Plan) -> BlockForm:
+        move, setting = plan.move, plan.setting
+        moving = {axis for axis in range(3) if abs(move.end[axis] - move.start[axis]) > 0.0}
+        arc: tuple[int, ...] = ()
+        if move.kind is MoveKind.ARC:
+            arc = tuple(sorted(move.plane.axes[:2]))
+            moving |= set(arc)
+        return BlockForm(
+            dialect=self.program.dialect,
+            style=self.style,
+            scale=self._scale(setting),
+            is_relative=setting.is_relative,
+            is_centre_absolute=setting.is_centre_absolute,
+            axes=tuple(sorted(moving)),
+            arc=arc,
+        )
+
+    def _restored(self, block: int, text: str, fed_by: int) -> str:
+        """Text of a block with the programmed feed before or in it."""
+        dialect, gap = self.program.dialect, self.style.gap
+        source = self.program.text.block(fed_by)
+        token = feed_token(source, dialect)
+        assert token is not None
+        word = source[token.start : token.end]
+        kinds = self.moves.kind[self._fed_rows(block)]
+        if (
+            len(kinds)
+            and (kinds != MoveKind.UNKNOWN).all()
+            and feed_token(text, dialect) is None
+        ):
+            return with_feed(text, word, dialect=dialect, gap=gap)
+        head = f"L{gap}" if dialect is Dialect.HEIDENHAIN else ""
+        return f"{head}{word}{self.style.newline}{text}"
+
+
+def _marked_first(text: str, reason: str, dialect: Dialect) -> str:
+    """Several lines with a comment in the first."""
+    first, newline, rest = text.partition("\n")
+    return with_mark(first + newline, reason, dialect=dialect) + rest
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """Row of the moves, as far as the feed in force concerns it."""
+
+    block: int
+    fed_by: int
+    kind: int
+    flags: int
+    is_inverse: bool
+
+
+CHUNK = 1 << 16
+
+
+def _rows(moves: NcMoves) -> Iterator[_Row]:
+    """Rows of the moves in the order of their execution."""
+    inverse = list(FeedMode).index(FeedMode.INVERSE_TIME)
+    for begin in range(0, len(moves), CHUNK):
+        part = slice(begin, begin + CHUNK)
+        columns = (
+            moves.block[part].tolist(),
+            moves.fed_by[part].tolist(),
+            moves.kind[part].tolist(),
+            moves.flags[part].tolist(),
+            (moves.mode[part] == inverse).tolist(),
+        )
+        for values in zip(*columns, strict=True):
+            yield _Row(*values)
+
+
+def _is_equal(one: str | None, other: str | None) -> bool:
+    """Whether two numbers of F words are the same feed."""
+    if one is None or other is None:
+        return False
+    a, b = float(one), float(other)
+    return abs(a - b) <= EQUAL * max(abs(a), abs(b))
+
+
+def _named(flags: MoveFlag) -> str:
+    """Reasons that flags stand for."""
+    return ", ".join(text for flag, text in REASONS.items() if flags & flag)

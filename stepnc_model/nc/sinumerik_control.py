@@ -1,0 +1,304 @@
+"""Tolerant control for Sinumerik 840D: the words, cycles and flow in which it differs.
+
+After Siemens, "SINUMERIK 840D sl Fundamentals" and "Job Planning".
+"""
+
+import re
+from collections.abc import Sequence
+from functools import partial
+from math import inf, isnan, nan
+
+from stepnc_model.nc import iso_codes
+from stepnc_model.nc.block_words import BlockWords
+from stepnc_model.nc.drilling import cycle_moves, drilling
+from stepnc_model.nc.flow import places
+from stepnc_model.nc.iso_control import IsoControl
+from stepnc_model.nc.iso_flow import IsoFlow, Steered
+from stepnc_model.nc.iso_modes import INCH, CodeTable, IsoModes, ModalMotion, Shot
+from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind
+from stepnc_model.nc.text import NcText
+from stepnc_model.nc.token import NUMBER
+from stepnc_model.post.blocks import MachineType
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.words import LARGEST
+from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
+from stepnc_model.units import rev_s_from_rpm
+
+LABELS = re.compile(rb"^[ \t]*/?[ \t]*(?:N[0-9]+[ \t]*)?([A-Z_]{2}[A-Z0-9_]*):", re.M | re.I)
+REPEAT = re.compile(r"REPEAT\s+([A-Z_]{2}\w*)(?:\s+P\s*=?\s*([0-9]+))?", re.I)
+END_LABEL = "ENDLABEL"
+COMPONENT = re.compile(rf"(IC|AC)\(\s*({NUMBER})\s*\)", re.I)
+
+CYCLES = {
+    "CYCLE81": CycleKind.DRILL,
+    "CYCLE82": CycleKind.DWELL,
+    "CYCLE83": CycleKind.PECK,
+    "CYCLE84": CycleKind.TAP,
+    "CYCLE840": CycleKind.TAP,
+    "CYCLE85": CycleKind.BORE,
+    "CYCLE86": CycleKind.BORE_STOP,
+    "CYCLE87": CycleKind.BORE_STOP,
+    "CYCLE88": CycleKind.BORE_STOP,
+    "CYCLE89": CycleKind.BORE,
+}
+FIRST_DEPTH, DEPTH_OF_PECK, BREAKS = 5, 6, 11
+"""Indices of the arguments FDEP, FDPR and VARI of CYCLE83."""
+
+ROUNDING = ("CHF", "CHR", "RND", "RNDM")
+STRANGE_ENDS = ("ANG", "AP", "RP", "I1", "J1", "K1")
+"""Addresses that give the end of a move in a form that is not understood."""
+
+
+class SinumerikFlow(IsoFlow):
+    """Steering of one Sinumerik program: repeats by label. Running state."""
+
+    def __init__(self, control: Steered) -> None:
+        super().__init__(control)
+        self._labels = dict(reversed(list(places(control.text, LABELS))))
+
+    def statement(self, text: str, block: int) -> int:
+        """Repeat from a label to this block; other statements depend on conditions."""
+        found = REPEAT.fullmatch(text)
+        target = self._labels.get(found[1].upper()) if found is not None else None
+        if found is None or target is None or target > block:
+            return super().statement(text, block)
+        return self._flow.repeat(block, target, times=int(found[2] or 1))
+
+    def ended(self, words: BlockWords, block: int) -> int:
+        """Block after this one; M17 and RET return to the program that called."""
+        if 170 in words.functions or "RET" in words.names:
+            following = self._flow.leave()
+            return len(self._text) if following is None else following
+        return super().ended(words, block)
+
+
+class SinumerikModes(IsoModes):
+    """Modal state of one Sinumerik control. Running state."""
+
+    def own_codes(self) -> CodeTable:
+        """Actions of the G codes in which Sinumerik differs."""
+        thread = partial(self._take_motion, ModalMotion.THREAD)
+        table: CodeTable = {
+            **dict.fromkeys(iso_codes.SINUMERIK_INCHES, partial(self._take, "scale", INCH)),
+            **dict.fromkeys(iso_codes.SINUMERIK_METRIC, partial(self._take, "scale", 1.0)),
+            **dict.fromkeys((630, 3310, 3320), thread),
+            1530: partial(self._take, "shot", Shot.MACHINE),
+            9610: partial(self._take_mode, FeedMode.PER_MINUTE),
+        }
+        for code, place in ((740, "the reference point"), (750, "a fixed point")):
+            table[code] = partial(self._leave_for, f"G{code // 10} moves to {place}")
+        return table
+
+    def _leave_for(self, why: str, _: BlockWords) -> None:
+        self.lose(why)
+
+
+class SinumerikControl(IsoControl):
+    """Control that executes one Sinumerik program. Running state."""
+
+    def __init__(self, text: NcText, dialect: Dialect, machine: MachineType) -> None:
+        super().__init__(text, dialect, machine)
+        self._modal_call: tuple[str, str] | None = None
+
+    def settle(self, words: BlockWords) -> None:
+        """Take names and assignments, then the words of ISO 6983."""
+        for name in words.names:
+            self._name(name, words)
+        for name, arguments in words.calls:
+            self._call(name, arguments)
+        self._assignments(words)
+        super().settle(words)
+        if self.is_lathe and "T" in words.values:
+            words.functions.append(60)
+        if "D" in words.values:
+            self.modes.lose_height()
+        if 960 in words.codes or 970 in words.codes:
+            self.modes.to_mode(FeedMode.PER_REVOLUTION)
+        self._dwell_words(words)
+
+    def has_plain_moves(self) -> bool:
+        """Whether axis words alone say where a move ends; not while a cycle follows each."""
+        return self._modal_call is None and super().has_plain_moves()
+
+    def rounding(self, words: BlockWords) -> Sequence[str]:
+        """Addresses of chamfers and roundings at the end of a line."""
+        modal = words.values.get("RNDM")
+        if modal is not None:
+            self.modes.stand(MoveFlag.ROUNDED, modal != 0.0)
+        return ROUNDING
+
+    def start_modes(self, machine: MachineType) -> IsoModes:
+        """Modal state at the start of the program."""
+        return SinumerikModes(self.recorder, self.dialect, machine)
+
+    def steer(self) -> IsoFlow:
+        """Steering of the program."""
+        return SinumerikFlow(self)
+
+    def _dwell_words(self, words: BlockWords) -> None:
+        """Drop the words of a dwell, which are no coordinates."""
+        if 40 in words.codes:
+            words.values.pop("S", None)
+
+    def _name(self, name: str, words: BlockWords) -> None:
+        """Take a keyword, or the call of a program that is not here."""
+        if name in {"TRANS", "ATRANS"}:
+            self._trans(words, is_added=name == "ATRANS")
+        elif name in {"DIAMON", "DIAM90"}:
+            self.modes.is_diameter = True
+        elif name == "DIAMOF":
+            self.modes.is_diameter = False
+        elif name in iso_codes.SINUMERIK_TRANSFORMS:
+            has_arguments = bool(words.values or words.macros or words.calls)
+            self.modes.transform(has_arguments or name.startswith("TRA"))
+            for letter in ("X", "Y", "Z", "RPL"):
+                words.values.pop(letter, None)
+                words.macros.pop(letter, None)
+        elif name == "TRAFOOF":
+            self.modes.transform(False)
+        elif name in {"SUPA"}:
+            self.recorder.flags |= MoveFlag.MACHINE.value
+        elif name == "MCALL":
+            self._modal_call = None
+        elif name in {"RET"} or name in iso_codes.SINUMERIK_QUIET:
+            return
+        elif not name.startswith("%_N_") and name != END_LABEL:
+            self.modes.lose(f"the program or keyword {name} is not known")
+            self.modes.forget()
+
+    def _trans(self, words: BlockWords, *, is_added: bool) -> None:
+        """Shift the coordinates by TRANS or ATRANS."""
+        old = self.modes.shift if is_added else [0.0, 0.0, 0.0]
+        if not is_added:
+            self.modes.transform(False)
+        new = []
+        for axis, letter in enumerate("XYZ"):
+            is_macro = words.macros.pop(letter, None) is not None
+            value = self.modes.scale * words.values.pop(letter, 0.0)
+            new.append(nan if is_macro else old[axis] + value)
+        self.modes.shift_to(new)
+
+    def _assignments(self, words: BlockWords) -> None:
+        """Take addresses with an equals sign that are no coordinates."""
+        limit = words.values.pop("LIMS", None)
+        if limit is not None:
+            self.modes.limit = rev_s_from_rpm(limit)
+        if "S1" in words.values:
+            words.values["S"] = words.values.pop("S1")
+        if "M1" in words.values:
+            words.functions.append(round(10.0 * min(words.values.pop("M1"), 1e6)))
+        name = words.macros.pop("T", None)
+        if name is not None:
+            self.modes.tool, self.modes.tool_name = None, name.strip('"')
+            self.remarks.note(self.recorder.block, "the tool has a name and no number")
+            if self.is_lathe:
+                self.modes.to_tool(None)
+        for name in STRANGE_ENDS:
+            if name in words.values or name in words.macros:
+                self.modes.lose(f"ends given by {name} are not understood")
+
+    def _call(self, name: str, arguments: str) -> None:
+        """Take a cycle or another name with arguments."""
+        is_modal = name.startswith("MCALL")
+        cycle = name.removeprefix("MCALL")
+        if is_modal:
+            self._modal_call = cycle, arguments
+        elif cycle in CYCLES:
+            self._drill_here(cycle, arguments)
+        elif cycle in iso_codes.SINUMERIK_TRANSFORMS:
+            self.modes.transform(bool(arguments.strip()))
+        elif cycle not in iso_codes.SINUMERIK_QUIET:
+            self.modes.lose(f"the cycle or program {cycle} is not expanded")
+            self.modes.forget()
+
+    def _move(self, words: BlockWords) -> None:
+        super()._move(words)
+        if self._modal_call is not None and self.has_axes(words) and not self.modes.lost:
+            self._drill_here(*self._modal_call)
+
+    def _drill_here(self, name: str, arguments: str) -> None:
+        """Execute a drilling cycle at the position of the tool."""
+        numbers = [_number(each) for each in arguments.split(",")]
+        numbers += [inf] * (DEPTH_OF_PECK + 10 - len(numbers))
+        back, surface, safe, bottom, depth = numbers[:5]
+        if name not in CYCLES or isnan(sum(v for v in numbers[:5] if v != inf)):
+            self.modes.lose(f"the cycle {name} is not expanded")
+            return
+        surface, safe = _given(surface, 0.0), abs(_given(safe, 0.0))
+        bottom = surface - abs(_given(depth, 0.0)) if bottom == inf else bottom
+        kind, step, above = CYCLES[name], 0.0, nan
+        if name == "CYCLE83":
+            first = _given(numbers[FIRST_DEPTH], surface)
+            step = _given(numbers[DEPTH_OF_PECK], surface - first)
+            kind = (
+                CycleKind.PECK if _given(numbers[BREAKS], 0.0) == 1.0 else CycleKind.CHIP_BREAK
+            )
+        self.recorder.flags |= MoveFlag.CYCLE.value
+        x, y, _ = self.recorder.at
+        top = self.modes.scale * (surface + safe)
+        back = self.modes.scale * _given(back, surface + safe)
+        self.recorder.move(MoveKind.RAPID, (x, y, back))
+        self.recorder.move(MoveKind.RAPID, (x, y, top))
+        hole = drilling(
+            kind,
+            (x, y),
+            retract=top,
+            bottom=self.modes.scale * bottom,
+            step=self.modes.scale * step,
+            above=above,
+        )
+        for move, end in cycle_moves(hole):
+            self.recorder.move(move, end)
+        self.recorder.move(MoveKind.RAPID, (x, y, back))
+
+    def coordinate(self, words: BlockWords, axis: int, letter: str) -> float:
+        """Coordinate of one axis, which IC() or AC() may make relative or absolute."""
+        found = COMPONENT.fullmatch(words.macros.get(letter, ""))
+        if found is None:
+            return super().coordinate(words, axis, letter)
+        half = 0.5 if axis == 0 and self.modes.is_diameter else 1.0
+        value = self.modes.scale * half * float(found[2])
+        return value if found[1].upper() == "AC" else self.recorder.at[axis] + value
+
+    def radius(self, words: BlockWords) -> float | None:
+        """Radius that CR= gives for an arc, mm, or None."""
+        if "CR" in words.macros:
+            return nan
+        value = words.values.get("CR")
+        return None if value is None else value * self.modes.scale
+
+    def centre(self, words: BlockWords, plane: ArcPlane) -> Point:
+        """Centre of an arc by I, J and K, or by the angle AR=, mm."""
+        middle = list(super().centre(words, plane))
+        for axis in plane.axes[:2]:
+            found = COMPONENT.fullmatch(words.macros.get("IJK"[axis], ""))
+            if found is not None:
+                value = self.modes.scale * float(found[2])
+                half = 0.5 if axis == 0 and self.modes.is_diameter else 1.0
+                is_relative = found[1].upper() == "IC"
+                middle[axis] = self.recorder.at[axis] + value if is_relative else half * value
+        if "AR" in words.values or "AR" in words.macros:
+            return (nan, nan, nan)
+        return middle[0], middle[1], middle[2]
+
+    def seconds(self, words: BlockWords) -> float:
+        """Time of a dwell, s: its F word."""
+        return self.modes.pause
+
+    def turns(self, words: BlockWords) -> int:
+        """Full turns of an arc by TURN=."""
+        return max(0, min(int(words.values.get("TURN", 0.0)), 1000))
+
+
+def _number(text: str) -> float:
+    """Argument of a cycle: infinite if it is left out, NaN if it is no number."""
+    text = text.strip()
+    if not text:
+        return inf
+    value = float(text) if re.fullmatch(NUMBER, text) else nan
+    return value if abs(value) <= LARGEST else nan
+
+
+def _given(value: float, default: float) -> float:
+    """Argument of a cycle, or its default if it is left out."""
+    return default if value == inf else value

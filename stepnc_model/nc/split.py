@@ -1,0 +1,260 @@
+"""Division of a move into pieces whose ends a control can read.
+
+Ends are rounded to the resolution of the program; the last end stays as it is written. Each
+piece of an arc is proven: about its rounded centre, or with its radius, it runs where the whole
+arc runs.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from math import copysign, cos, hypot, isnan, pi, sin
+
+from stepnc_model.nc.arcs import centre_of_radius, turn_of
+from stepnc_model.nc.moves import MoveKind, NcMove
+from stepnc_model.nc.number_style import NumberStyle
+from stepnc_model.toolpath.path import Point
+
+SHORTEST = 5
+"""Least length of a piece in steps of the resolution."""
+
+SLACK = 4.0
+"""Greatest deviation of a piece from its arc in steps of the resolution."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MovePiece:
+    """Piece of a move, in units of the program."""
+
+    end: tuple[Decimal, Decimal, Decimal]
+    """End by axis, as absolute words count it."""
+    start: tuple[Decimal, Decimal, Decimal]
+    offset: tuple[Decimal, Decimal, Decimal]
+    """Centre of the arc from the start of the piece, as I, J and K count it."""
+    turn: float
+    feed: float
+    """Feed, mm/s."""
+    length: float
+    """Length, mm."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WordScale:
+    """Words of coordinates of a program: their units, and X as a diameter."""
+
+    unit: float
+    is_diameter: bool
+    style: NumberStyle
+
+    def word(self, value: float, axis: int) -> Decimal:
+        """Coordinate in mm as a rounded word."""
+        return self.style.rounded(value / self.factor(axis))
+
+    def factor(self, axis: int) -> float:
+        """Length of one unit of an axis word, mm."""
+        return self.unit * (0.5 if axis == 0 and self.is_diameter else 1.0)
+
+    @property
+    def step(self) -> float:
+        """Resolution of the program, mm."""
+        return float(self.unit * 10.0**-self.style.places)
+
+
+def divided(
+    move: NcMove,
+    ends: Sequence[float],
+    feeds: Sequence[float],
+    *,
+    scale: WordScale,
+    by_radius: bool,
+) -> list[MovePiece]:
+    """Divide a move; pieces that are too short join a neighbour, at the lower feed.
+
+    Parameters
+    ----------
+    move : NcMove
+        Line or arc with known ends.
+    ends, feeds : sequence of float
+        Fractions of the move, the last is 1, and feeds, mm/s.
+    scale : WordScale
+    by_radius : bool
+        Whether the program gives arcs by their radius.
+
+    Returns
+    -------
+    list of MovePiece
+        One piece if the move cannot be divided.
+    """
+    fractions, speeds = _joined(move, ends, feeds, scale)
+    while True:
+        pieces = _pieces(move, fractions, speeds, scale)
+        bad = next(
+            (
+                i
+                for i, piece in enumerate(pieces)
+                if not _is_sound(move, piece, scale, by_radius)
+            ),
+            None,
+        )
+        if bad is None or len(pieces) == 1:
+            return pieces
+        _join(fractions, speeds, bad)
+
+
+def point_at(move: NcMove, fraction: float) -> Point:
+    """Point of a move at a fraction of its length, mm."""
+    if move.kind is not MoveKind.ARC or move.centre is None:
+        x, y, z = (a + fraction * (b - a) for a, b in zip(move.start, move.end, strict=True))
+        return x, y, z
+    first, second, normal = move.plane.axes
+    point = list(move.start)
+    u = move.start[first] - move.centre[first]
+    v = move.start[second] - move.centre[second]
+    angle = fraction * move.turn
+    point[first] = move.centre[first] + u * cos(angle) - v * sin(angle)
+    point[second] = move.centre[second] + u * sin(angle) + v * cos(angle)
+    point[normal] += fraction * (move.end[normal] - move.start[normal])
+    return point[0], point[1], point[2]
+
+
+def length_of(move: NcMove) -> float:
+    """Length of a line or arc, mm."""
+    rise = [b - a for a, b in zip(move.start, move.end, strict=True)]
+    if move.kind is not MoveKind.ARC or move.centre is None:
+        return hypot(*rise)
+    first, second, normal = move.plane.axes
+    radius = hypot(
+        move.start[first] - move.centre[first], move.start[second] - move.centre[second]
+    )
+    return hypot(radius * move.turn, rise[normal])
+
+
+def _joined(
+    move: NcMove, ends: Sequence[float], feeds: Sequence[float], scale: WordScale
+) -> tuple[list[float], list[float]]:
+    """Fractions and feeds without pieces that are too short for the resolution."""
+    length = length_of(move)
+    least = SHORTEST * scale.step / length if length > 0.0 else 2.0
+    fractions: list[float] = []
+    speeds: list[float] = []
+    for end, feed in zip(ends, feeds, strict=True):
+        if speeds and speeds[-1] == feed:
+            fractions[-1] = end
+        else:
+            fractions.append(end)
+            speeds.append(feed)
+    while len(fractions) > 1:
+        sizes = [end - start for start, end in zip([0.0, *fractions], fractions, strict=False)]
+        short = min(range(len(sizes)), key=sizes.__getitem__)
+        if sizes[short] >= least:
+            break
+        _join(fractions, speeds, short)
+    return fractions, speeds
+
+
+def _join(fractions: list[float], speeds: list[float], index: int) -> None:
+    """Join a piece to its neighbour, at the lower feed."""
+    at = index if index + 1 < len(fractions) else index - 1
+    speeds[at] = min(speeds[at], speeds[at + 1])
+    del speeds[at + 1], fractions[at]
+
+
+def _pieces(
+    move: NcMove, fractions: Sequence[float], feeds: Sequence[float], scale: WordScale
+) -> list[MovePiece]:
+    length = length_of(move)
+    pieces: list[MovePiece] = []
+    start, before = move.start, 0.0
+    for fraction, feed in zip(fractions, feeds, strict=True):
+        is_last = fraction == fractions[-1]
+        point = move.end if is_last else point_at(move, fraction)
+        words = _words(point, scale)
+        rounded = _rounded(move.end if is_last else words, scale, is_exact=is_last)
+        offset = (Decimal(0),) * 3
+        if move.centre is not None:
+            offset = _offset(move, start, scale)
+        pieces.append(
+            MovePiece(
+                end=words,
+                start=_words(start, scale),
+                offset=(offset[0], offset[1], offset[2]),
+                turn=move.turn * (fraction - before),
+                feed=feed,
+                length=length * (fraction - before),
+            )
+        )
+        start, before = rounded, fraction
+    return pieces
+
+
+def _words(point: Point, scale: WordScale) -> tuple[Decimal, Decimal, Decimal]:
+    return scale.word(point[0], 0), scale.word(point[1], 1), scale.word(point[2], 2)
+
+
+def _rounded(words: Sequence[Decimal | float], scale: WordScale, *, is_exact: bool) -> Point:
+    """Point in mm that words lead to."""
+    x, y, z = (
+        float(word) if is_exact else float(word) * scale.factor(axis)
+        for axis, word in enumerate(words)
+    )
+    return x, y, z
+
+
+def _offset(move: NcMove, start: Point, scale: WordScale) -> tuple[Decimal, Decimal, Decimal]:
+    """Centre from the start of a piece; I of a lathe is a radius."""
+    assert move.centre is not None
+    x, y, z = (
+        scale.style.rounded((c - s) / scale.unit)
+        for c, s in zip(move.centre, start, strict=True)
+    )
+    return x, y, z
+
+
+def _is_sound(move: NcMove, piece: MovePiece, scale: WordScale, by_radius: bool) -> bool:
+    """Whether a piece runs where the whole move runs, within the resolution."""
+    if move.kind is not MoveKind.ARC or move.centre is None:
+        return piece.start != piece.end
+    plane = move.plane
+    first, second, _ = plane.axes
+    start = _rounded(piece.start, scale, is_exact=False)
+    end = _rounded(piece.end, scale, is_exact=False)
+    chord = hypot(end[first] - start[first], end[second] - start[second])
+    if chord < SHORTEST * scale.step:
+        return False
+    sense = copysign(1.0, piece.turn)
+    if by_radius:
+        if abs(abs(piece.turn) - pi) < 0.05 * pi:
+            return False
+        radius = hypot(
+            move.start[first] - move.centre[first], move.start[second] - move.centre[second]
+        )
+        radius = scale.unit * float(scale.style.rounded(radius / scale.unit))
+        signed = radius if abs(piece.turn) <= pi else -radius
+        centre = centre_of_radius(start, end, radius=signed, plane=plane, sense=sense)
+    else:
+        x, y, z = (s + float(o) * scale.unit for s, o in zip(start, piece.offset, strict=True))
+        centre = (x, y, z)
+    turn = turn_of(start, end, centre, plane, sense=sense)
+    if isnan(turn):
+        return False
+    size = hypot(start[first] - centre[first], start[second] - centre[second])
+    if size * abs(turn - piece.turn) > SLACK * scale.step:
+        return False
+    return _is_along(move, (start, end, centre), turn, scale)
+
+
+def _is_along(
+    move: NcMove, arc: tuple[Point, Point, Point], turn: float, scale: WordScale
+) -> bool:
+    """Whether the middle of a piece lies on the circle of the whole arc."""
+    assert move.centre is not None
+    start, _, centre = arc
+    first, second, _ = move.plane.axes
+    u, v = start[first] - centre[first], start[second] - centre[second]
+    half = 0.5 * turn
+    x = centre[first] + u * cos(half) - v * sin(half) - move.centre[first]
+    y = centre[second] + u * sin(half) + v * cos(half) - move.centre[second]
+    true = hypot(
+        move.start[first] - move.centre[first], move.start[second] - move.centre[second]
+    )
+    return abs(hypot(x, y) - true) <= SLACK * scale.step

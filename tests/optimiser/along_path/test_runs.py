@@ -1,0 +1,145 @@
+"""Feed commands behind a control's filter: the motion of the axes keeps every cap."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from optimiser.along_path.caps import NAMES, CapName
+from optimiser.along_path.pieces import PieceRules, pieces_of
+from optimiser.along_path.runs import Commands, commands_of
+from simulator.motion.model_name import ControlModelName
+from simulator.motion.segments import Segments, lines
+from simulator.motion.smoothing import smoothing_of
+from tests.optimiser.along_path.stretches import (
+    FIR,
+    LIMITS,
+    places_of,
+    straight,
+    stretch_of,
+    with_control,
+)
+
+PLACES = st.lists(
+    st.tuples(st.floats(0.05, 30.0), st.sampled_from([2.0, 5.0, 8.0, 20.0, 60.0, np.inf])),
+    min_size=2,
+    max_size=12,
+)
+
+
+def commanded(segments: Segments, commands: Commands) -> Segments:
+    """Segments of the commands: one for each place."""
+    begins = np.concatenate(([0.0], commands.ends[:-1]))
+    offsets = np.concatenate(([0.0], np.cumsum(segments.length)))
+    row = commands.segment
+    kept = commands.ends > begins
+    start = segments.position(row, begins - offsets[row])
+    end = segments.position(row, commands.ends - offsets[row])
+    return replace(
+        segments[row],
+        start=start,
+        end=end,
+        speed=commands.caps.feed,
+        block=np.arange(len(row)),
+    )[kept]
+
+
+def speeds_of(path: Segments) -> tuple[np.ndarray, np.ndarray]:
+    """Places along a path, mm, and speeds of the axes there, mm/s."""
+    motion = FIR.control.plan(path, LIMITS)
+    times = np.linspace(0.0, motion.duration, 4000)
+    at = motion.at(times)
+    offsets = np.concatenate(([0.0], np.cumsum(path.length)))
+    return offsets[at.segment] + at.station, np.linalg.norm(at.velocity, axis=1)
+
+
+@settings(max_examples=60)
+@given(PLACES)
+def test_axes_never_exceed_a_cap(places: list[tuple[float, float]]) -> None:
+    ends = np.cumsum([length for length, _ in places]).tolist()
+    caps = [cap for _, cap in places]
+    segments = straight([ends[-1]])
+    commands = commands_of(stretch_of(segments), places_of(segments, ends, caps), FIR)
+    where, speed = speeds_of(commanded(segments, commands))
+    # Speeds are compared just inside the places, whose ends belong to two of them.
+    row = np.searchsorted(ends, where)
+    inside = np.abs(where[:, None] - np.array([0.0, *ends])).min(axis=1) > 1e-6
+    row = np.minimum(row, len(caps) - 1)
+    assert (speed[inside] <= np.array(caps)[row][inside] * (1.0 + 1e-9)).all()
+
+
+@settings(max_examples=40)
+@given(PLACES, st.floats(1.0, 3.0))
+def test_wider_caps_take_no_more_time(places: list[tuple[float, float]], factor: float) -> None:
+    ends = np.cumsum([length for length, _ in places]).tolist()
+    caps = [cap for _, cap in places]
+    segments = straight([ends[-1]])
+
+    def time(by: float) -> float:
+        wider = [by * cap for cap in caps]
+        found = commands_of(stretch_of(segments), places_of(segments, ends, wider), FIR)
+        greatest = float(found.caps.feed.max())
+        window = smoothing_of(FIR.control, LIMITS, greatest).window
+        return float((np.diff(found.ends, prepend=0.0) / found.caps.feed).sum()) + window
+
+    # The greatest feed is tried on a grid, so that a wider cap may miss the best by little.
+    assert time(factor) <= 1.02 * time(1.0)
+
+
+def test_corners_are_rounded_no_more_than_permitted() -> None:
+    segments = lines([(0, 0, 0), (40, 0, 0), (40, 40, 0)], speed=5.0)
+    commands = commands_of(
+        stretch_of(segments), places_of(segments, [40.0, 80.0], [np.inf, np.inf]), FIR
+    )
+    motion = FIR.control.plan(commanded(segments, commands), LIMITS)
+    at = motion.at(np.linspace(0.0, motion.duration, 20_000)).position
+    nearest = np.linalg.norm(at - np.array([40.0, 0.0, 0.0]), axis=1).min()
+    given = smoothing_of(FIR.control, LIMITS, 5.0).corner_gain * 5.0 * np.sin(np.pi / 4.0)
+    assert nearest <= max(FIR.tolerance, given) * 1.001
+    assert CapName.CORNER in {NAMES[number] for number in commands.caps.name}
+
+
+@pytest.mark.parametrize("name", [ControlModelName.EXACT_STOP, ControlModelName.JUNCTION])
+def test_a_control_without_a_filter_needs_no_guard(name: ControlModelName) -> None:
+    segments = straight([30.0])
+    places = places_of(segments, [10.0, 20.0, 30.0], [np.inf, 5.0, np.inf])
+    commands = commands_of(stretch_of(segments), places, with_control(FIR, name))
+    assert commands.ends.tolist() == [10.0, 20.0, 30.0]
+    assert commands.caps.feed.tolist() == [300.0, 5.0, 300.0]
+
+
+def test_a_locked_feed_stays_and_its_neighbours_wait_for_it() -> None:
+    segments = straight([10.0, 10.0, 10.0])
+    stretch = replace(stretch_of(segments), is_free=np.array([True, False, True]))
+    commands = commands_of(
+        stretch, places_of(segments, [10.0, 20.0, 30.0], [np.inf, np.inf, np.inf]), FIR
+    )
+    locked = commands.segment == 1
+    assert (commands.caps.feed[locked] == 10.0).all()
+    where, speed = speeds_of(commanded(segments, commands))
+    assert speed[(where > 10.0) & (where < 20.0)].max() <= 10.0 * (1.0 + 1e-9)
+
+
+def test_the_parts_of_a_block_cover_it_and_keep_its_caps() -> None:
+    segments = straight([30.0], speed=4.0)
+    ends, caps = [3.0, 3.2, 9.0, 30.0], [20.0, 5.0, 20.0, np.inf]
+    commands = commands_of(stretch_of(segments), places_of(segments, ends, caps), FIR)
+    pieces = pieces_of(stretch_of(segments), commands, PieceRules(least_length=0.5))
+    assert pieces.begin[0] == 0.0
+    assert pieces.begin[1:] == pytest.approx((pieces.begin + pieces.length)[:-1])
+    assert pieces.length.sum() == pytest.approx(30.0)
+    assert (pieces.length >= 0.5 - 1e-9).all()
+    for begin, length, rate in zip(pieces.begin, pieces.length, pieces.rate, strict=True):
+        starts = np.concatenate(([0.0], commands.ends[:-1]))
+        touched = (starts < begin + length - 1e-9) & (commands.ends > begin + 1e-9)
+        assert rate <= commands.caps.feed[touched].min() * (1.0 + 1e-12)
+
+
+def test_a_programmed_feed_near_the_best_is_kept() -> None:
+    segments = straight([30.0], speed=4.95)
+    stretch = stretch_of(segments)
+    commands = commands_of(stretch, places_of(segments, [30.0], [5.0]), FIR)
+    pieces = pieces_of(stretch, commands, PieceRules())
+    assert pieces.rate.tolist() == [4.95]

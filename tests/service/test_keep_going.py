@@ -1,0 +1,236 @@
+"""One bad workingstep does not keep the others from advice, nor from NC code."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from service.cli.main import main, optimise_main
+from service.paths.toolpaths import PostRequest, post
+from stepnc_model.errors import SchemaError
+from stepnc_model.given import GivenData, completed, without_given
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.program import Program
+from stepnc_model.technology import programmed
+
+HEAD = [
+    "ISO-10303-21;",
+    "HEADER;",
+    "FILE_SCHEMA(('MACHINING_SCHEMA'));",
+    "ENDSEC;",
+    "DATA;",
+]
+BAD_INPUT = 3
+
+OTHER = {
+    "#31": "#31=ROUND_HOLE('BAD',#6,(),#90,#91,#93,$,#94);",
+    "#41": "#41=DRILLING($,$,'OP BAD',10.,$,#51,#61,#63,$,$,$,$,$,$);",
+    "#51": "#51=MILLING_CUTTING_TOOL('T2',#53,(),$,$,$);",
+    "#53": "#53=TWIST_DRILL(#54,2,.RIGHT.,.F.,$);",
+    "#61": "#61=MILLING_TECHNOLOGY(0.004,.TCP.,$,-16.,$,.F.,.F.,.F.,$);",
+}
+
+
+def program(**changed: str) -> bytes:
+    """Two holes 60 mm apart, the second one changed."""
+    other = {**OTHER, **{f"#{name[1:]}": text for name, text in changed.items()}}
+    return "\n".join([
+        *HEAD,
+        "#1=PROJECT('P',#2,(#6),$,$,$);",
+        "#2=WORKPLAN('W',(#3,#4,#5),$,#7,$);",
+        "#3=MACHINING_WORKINGSTEP('GOOD',$,#30,#40,$);",
+        "#4=MACHINING_WORKINGSTEP('BAD',$,#31,#41,$);",
+        "#5=MACHINING_WORKINGSTEP('AFTER',$,#32,#42,$);",
+        "#6=WORKPIECE('W',#8,0.01,$,$,#9,());",
+        "#7=SETUP('S',#10,$,(#11));",
+        "#8=MATERIAL('C45','C45',());",
+        "#9=BLOCK('B',#10,120.,60.,30.);",
+        "#10=AXIS2_PLACEMENT_3D('',#12,$,$);",
+        "#11=WORKPIECE_SETUP(#6,#10,$,$,());",
+        "#12=CARTESIAN_POINT('',(0.,0.,0.));",
+        "#30=ROUND_HOLE('GOOD',#6,(),#80,#91,#93,$,#94);",
+        other["#31"],
+        "#32=ROUND_HOLE('AFTER',#6,(),#85,#91,#93,$,#94);",
+        "#40=DRILLING($,$,'OP',10.,$,#50,#60,#63,$,$,$,$,$,$);",
+        other["#41"],
+        "#42=DRILLING($,$,'OP AFTER',10.,$,#50,#62,#63,$,$,$,$,$,$);",
+        "#50=MILLING_CUTTING_TOOL('T1',#52,(),$,$,$);",
+        other["#51"],
+        "#52=TWIST_DRILL(#54,2,.RIGHT.,.F.,$);",
+        other["#53"],
+        "#54=MILLING_TOOL_DIMENSION(10.,$,$,60.,$,$,$);",
+        "#60=MILLING_TECHNOLOGY(0.004,.TCP.,$,-16.,$,.F.,.F.,.F.,$);",
+        other["#61"],
+        "#62=MILLING_TECHNOLOGY(0.004,.TCP.,$,-16.,$,.F.,.F.,.F.,$);",
+        "#63=MILLING_MACHINE_FUNCTIONS(.T.,$,$,.F.,$,(),.T.,$,$,());",
+        "#80=AXIS2_PLACEMENT_3D('',#81,$,$);",
+        "#81=CARTESIAN_POINT('',(20.,30.,30.));",
+        "#85=AXIS2_PLACEMENT_3D('',#86,$,$);",
+        "#86=CARTESIAN_POINT('',(50.,30.,30.));",
+        "#90=AXIS2_PLACEMENT_3D('',#95,$,$);",
+        "#91=PLANE('',#92);",
+        "#92=AXIS2_PLACEMENT_3D('',#96,$,$);",
+        "#93=TOLERANCED_LENGTH_MEASURE(10.,$);",
+        "#94=FLAT_HOLE_BOTTOM();",
+        "#95=CARTESIAN_POINT('',(80.,30.,30.));",
+        "#96=CARTESIAN_POINT('',(0.,0.,-15.));",
+        "ENDSEC;",
+        "END-ISO-10303-21;\n",
+    ]).encode()  # fmt: skip
+
+
+NO_FEED = {"_61": "#61=MILLING_TECHNOLOGY($,.TCP.,$,-16.,$,.F.,.F.,.F.,$);"}
+NO_DEPTH = {"_31": "#31=ROUND_HOLE('BAD',#6,(),#90,$,#93,$,#94);"}
+NO_TEETH = {"_53": "#53=TWIST_DRILL(#54,0,.RIGHT.,.F.,$);"}
+FAULTS = {
+    "no teeth": NO_TEETH,
+    "no depth": NO_DEPTH,
+    "no feed": NO_FEED,
+    "feed 0": {"_61": "#61=MILLING_TECHNOLOGY(0.,.TCP.,$,-16.,$,.F.,.F.,.F.,$);"},
+    "no tool": {"_41": "#41=DRILLING($,$,'OP BAD',10.,$,$,#61,#63,$,$,$,$,$,$);"},
+    "no technology": {"_41": "#41=DRILLING($,$,'OP BAD',10.,$,#51,$,#63,$,$,$,$,$,$);"},
+    "no feature": {"_31": "#31=CARTESIAN_POINT('',(0.,0.,0.));"},
+    "dangling tool": {"_51": "#51=MILLING_CUTTING_TOOL('T2',#999,(),$,$,$);"},
+    "spindle in rpm": {"_61": "#61=MILLING_TECHNOLOGY(0.004,.TCP.,$,-960.,$,.F.,.F.,.F.,$);"},
+}
+
+
+@pytest.fixture
+def part(tmp_path: Path) -> Path:
+    return tmp_path / "part.stpnc"
+
+
+def optimised(part: Path, *options: str) -> object:
+    with pytest.raises(SystemExit) as stopped:
+        optimise_main([str(part), "--machine", "vmc15", *options])
+    return stopped.value.code
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_the_others_are_advised_and_the_bad_one_stays_as_it_is(
+    fault: str, part: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = program(**FAULTS[fault])
+    part.write_bytes(data)
+    assert optimised(part) == BAD_INPUT
+    capsys.readouterr()
+    assert optimised(part, "--keep-going", "--json") == BAD_INPUT
+    out, told = capsys.readouterr()
+    found = json.loads(out)
+    assert [each["id"] for each in found["workingsteps"]] == ["GOOD", "AFTER"]
+    (refused,) = found["refused"]
+    assert (refused["id"], refused["is_infeasible"]) == ("BAD", False)
+    assert refused["reason"] in told
+    written = Part21File.from_bytes(part.with_suffix(".optimised.stpnc").read_bytes())
+    before = Part21File.from_bytes(data)
+    for number in (4, 31, 41, 51, 53, 61):
+        old, new = before.span(number), written.span(number)
+        assert data[slice(*old)] == written.data[slice(*new)]
+
+
+def test_a_program_without_faults_is_advised_alike(part: Path) -> None:
+    part.write_bytes(program())
+    assert optimised(part) == 0
+    plain = part.with_suffix(".optimised.stpnc").read_bytes()
+    assert optimised(part, "--keep-going") == 0
+    assert part.with_suffix(".optimised.stpnc").read_bytes() == plain
+
+
+class TestNcCode:
+    def test_only_what_depends_by_geometry_is_left_out(self, part: Path) -> None:
+        part.write_bytes(program(**NO_FEED))
+        paths = post(PostRequest(file=part, control="linuxcnc", keep_going=True))
+        assert [path.id for path in paths.paths] == ["GOOD", "AFTER"]
+
+    def test_a_hole_in_the_same_place_is_left_out_too(self, part: Path) -> None:
+        """Another feature, but in the material that the first hole would have removed."""
+        data = program(**NO_FEED).replace(b"(50.,30.,30.)", b"(82.,30.,30.)")
+        part.write_bytes(data)
+        told: list[str] = []
+        paths = post(
+            PostRequest(file=part, control="linuxcnc", keep_going=True), tell=told.append
+        )
+        assert [path.id for path in paths.paths] == ["GOOD"]
+        assert any("'BAD' was left out" in text for text in told)
+
+    def test_numbers_that_cannot_be_meant_leave_out_their_workingstep(self, part: Path) -> None:
+        part.write_bytes(program(**FAULTS["spindle in rpm"]))
+        paths = post(PostRequest(file=part, control="linuxcnc", keep_going=True))
+        assert [path.id for path in paths.paths] == ["GOOD", "AFTER"]
+
+
+class TestGivenData:
+    @pytest.mark.parametrize(
+        ("fault", "option"),
+        [
+            (NO_TEETH, ("--teeth", "T2=2")),
+            (NO_DEPTH, ("--set", "#31.depth=12")),
+            (NO_FEED, ("--feed", "240")),
+            (NO_FEED, ("--set", "#61.feedrate=0.004")),
+            (FAULTS["no tool"], ("--set", "#41.its_tool=#51")),
+        ],
+    )
+    def test_what_is_missing_can_be_given(
+        self, fault: dict[str, str], option: tuple[str, ...], part: Path
+    ) -> None:
+        part.write_bytes(program(**fault))
+        assert optimised(part, *option) == 0
+
+    def test_it_is_kept_out_of_the_file(self, part: Path) -> None:
+        part.write_bytes(program(**NO_DEPTH))
+        assert optimised(part, "--set", "#31.depth=12") == 0
+        text = part.with_suffix(".optimised.stpnc").read_text()
+        assert NO_DEPTH["_31"] in text
+        assert text.count("=PLANE(") == 1
+        assert "OPTIMISATION" in text
+
+    def test_in_place_it_is_written(self, part: Path) -> None:
+        part.write_bytes(program(**NO_TEETH))
+        assert optimised(part, "--teeth", "T2=2", "--in-place") == 0
+        assert "#53=TWIST_DRILL(#54,2," in part.read_text()
+
+    def test_withdrawn_data_leave_every_byte_as_it_was(self) -> None:
+        data = program(**NO_DEPTH)
+        whole = completed(
+            Program(Part21File.from_bytes(data)), GivenData(values=("#31.depth=12",))
+        )
+        assert whole.program.file.data != data
+        assert without_given(whole.program, whole.given) == data
+
+    def test_a_feed_is_given_to_those_that_have_none(self) -> None:
+        whole = completed(
+            Program(Part21File.from_bytes(program(**NO_FEED))), GivenData(feed=5.0)
+        )
+        feeds = [
+            programmed(whole.program, step.technology_ref).feed.value
+            for step in whole.program.workingsteps
+        ]
+        assert feeds == pytest.approx([4.0, 5.0, 4.0])
+
+    @pytest.mark.parametrize(
+        ("text", "message"),
+        [
+            ("#31.depth", "expected #INSTANCE.attribute=value"),
+            ("#31.deep=1", "has no attribute 'deep'"),
+            ("#999.depth=1", "does not exist"),
+            ("#31.depth=(", "is not a value of Part 21"),
+            ("#31.depth=1);#5=X(1", "is not a value of Part 21"),
+            ("#31.depth=#93", "is referenced where"),
+            ("#61.feedrate='x'", "where a number is required"),
+        ],
+    )
+    def test_bad_values_are_refused(self, text: str, message: str) -> None:
+        with pytest.raises(SchemaError, match=message.replace("(", r"\(")):
+            completed(Program(Part21File.from_bytes(program())), GivenData(values=(text,)))
+
+    @pytest.mark.parametrize("text", ["T2", "T2=two", "T9=2", "=2"])
+    def test_bad_teeth_are_refused(self, text: str) -> None:
+        with pytest.raises(SchemaError, match=r"expected TOOL=NUMBER|no tool 'T9'"):
+            completed(Program(Part21File.from_bytes(program())), GivenData(teeth=(text,)))
+
+
+def test_post_keeps_its_exit_code(part: Path) -> None:
+    part.write_bytes(program(**NO_FEED))
+    with pytest.raises(SystemExit) as stopped:
+        main(["post", str(part), "--control", "linuxcnc", "--keep-going"])
+    assert stopped.value.code == BAD_INPUT
