@@ -1,4 +1,4 @@
-"""Advice brought into AP238 files: numbers in place, records as properties, the rest untouched."""
+"""Advice in AP238 files: numbers in place, records as properties, the rest untouched."""
 
 import difflib
 import re
