@@ -10,7 +10,7 @@ Every plan carries a lower bound of its time: no motion within the same caps tak
 Units: mm, mm/s, s.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -143,25 +143,28 @@ class FeedPlanner:
         rows = stretch.is_free[places.segment] & (lengths > 0.0)
         return float((lengths[rows] / caps.feed[rows]).sum())
 
-    def plan(self) -> FeedPlan:
-        """Plan of all stretches that were added."""
-        pieces: list[FeedPieces] = []
-        parts: list[PartPlan] = []
-        numbers: list[Ints] = []
-        for name, found in self._pieces.items():
-            free = joined(found)
-            if not len(free):
-                continue
-            free = replace(free, rate=_in_every_run(free))
-            chosen = replace(free, rate=_levelled(free, self.task.levels))
-            if self._is_as_good(name, chosen):
-                chosen = replace(chosen, rate=chosen.programmed)
-            pieces.append(chosen)
-            numbers.append(np.full(len(chosen), len(parts)))
-            parts.append(self._part(name, free, chosen))
-        if not pieces:
+    def plan(self, *, kept: Set[str] = frozenset()) -> FeedPlan:
+        """Plan of all stretches that were added.
+
+        Parameters
+        ----------
+        kept : set of str
+            Parts of the program that keep their feeds.
+        """
+        free = {name: joined(found) for name, found in self._pieces.items()}
+        free = {name: pieces for name, pieces in free.items() if len(pieces)}
+        if not free:
             return FeedPlan(pieces=joined([]), part=np.zeros(0, dtype=np.int64), parts=())
-        return FeedPlan(pieces=joined(pieces), part=np.concatenate(numbers), parts=tuple(parts))
+        free = in_every_run(free)
+        chosen: dict[str, FeedPieces] = {}
+        for name, pieces in free.items():
+            planned = replace(pieces, rate=_levelled(pieces, self.task.levels))
+            is_kept = name in kept or self._is_as_good(name, planned)
+            chosen[name] = replace(planned, rate=planned.programmed) if is_kept else planned
+        chosen = in_every_run(chosen)
+        parts = tuple(self._part(name, free[name], chosen[name]) for name in chosen)
+        numbers = np.repeat(np.arange(len(parts)), [len(each) for each in chosen.values()])
+        return FeedPlan(pieces=joined(chosen.values()), part=numbers, parts=parts)
 
     def _is_as_good(self, name: str, pieces: FeedPieces) -> bool:
         """Whether a part is permitted as programmed and takes hardly more time.
@@ -231,13 +234,23 @@ def joined(parts: Iterable[FeedPieces]) -> FeedPieces:
     })
 
 
-def _in_every_run(pieces: FeedPieces) -> Floats:
-    """Feeds of blocks that run more than once: the least that any run needs."""
-    block, row = np.unique(pieces.block, return_inverse=True)
-    runs = np.bincount(row, weights=pieces.begin == 0.0)
+def in_every_run(parts: Mapping[str, FeedPieces]) -> dict[str, FeedPieces]:
+    """Pieces at feeds that every execution of their blocks permits.
+
+    A block that runs more than once, also in several parts of a program as a subprogram may,
+    has the least feed that any execution needs.
+    """
+    whole = joined(parts.values())
+    block, row = np.unique(whole.block, return_inverse=True)
+    runs = np.bincount(row, weights=whole.begin == 0.0)
     least = np.full(len(block), np.inf)
-    np.minimum.at(least, row, pieces.rate)
-    return np.where(runs[row] > 1, least[row], pieces.rate)
+    np.minimum.at(least, row, whole.rate)
+    rate = np.where(runs[row] > 1, least[row], whole.rate)
+    ends = np.cumsum([len(each) for each in parts.values()])[:-1]
+    return {
+        name: replace(pieces, rate=own)
+        for (name, pieces), own in zip(parts.items(), np.split(rate, ends), strict=True)
+    }
 
 
 def _levelled(pieces: FeedPieces, levels: int | None) -> Floats:

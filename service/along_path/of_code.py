@@ -118,7 +118,9 @@ def optimise_code(
         bounds=lambda part: bounds.get(part.name),
         numbered=lambda run: CodeBlocks(run.blocks, code),
     )
-    task = replace(task_of(request, machine), keeps_traces=files.report is not None)
+    task = replace(
+        task_of(request, machine), keeps_traces=files.report is not None, keeps_idle=True
+    )
     along = along_path(source, task, tell=tell)
     advice = (_advice(code, line, parts) for line, parts in along.feeds.items())
     rewritten = rewrite(program, advice, mark=request.is_marked)
@@ -134,6 +136,7 @@ def optimise_code(
             *program.findings,
             *library.findings,
             *code.findings,
+            *_idle(code, along),
             *_unchanged(rewritten),
             *along.findings,
         ),
@@ -194,6 +197,21 @@ def _advice(code: CodePaths, line: int, parts: tuple[BlockPart, ...]) -> BlockAd
         feeds=tuple(part.rate * fastest for part in parts),
         reason=", ".join(reasons),
     )
+
+
+def _idle(code: CodePaths, along: AlongPath) -> Iterator[Finding]:
+    """Findings on tools that meet no stock, and on a program of which nothing can change."""
+    for part in code.parts:
+        if part.name in along.idle:
+            text = (
+                f"{part.name} meets no stock: its feeds stay as programmed; do the stock and "
+                f"{code.frame} have the same zero?"
+            )
+            yield Finding(severity=Severity.WARNING, message=text, line=code.line(part))
+    if not code.can_change.any():
+        yield Finding(
+            severity=Severity.WARNING, message="no feed of this program may be chosen"
+        )
 
 
 def _unchanged(rewritten: RewrittenCode) -> Iterator[Finding]:

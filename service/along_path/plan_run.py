@@ -7,19 +7,22 @@ import numpy as np
 
 from optimiser.along_path.plan import BlockFeeds
 from optimiser.along_path.stretch import PathStretch, excess
-from service.along_path.course import BlockLog, NumberedBlocks, PathSource, stretches_of
+from service.along_path.course import NumberedBlocks, PathSource, stretches_of
 from service.along_path.trace import PathTrace, PathTraceKeeper
 from service.progress import Ticker, bar
 from simulator.machine.samples import Episode
 from simulator.machine.totals import Total, added
 from simulator.machine.virtual import VirtualMachine
-from simulator.motion.segments import ControlModel
+from simulator.motion.segments import Bools, ControlModel, Ints
 from stepnc_model.errors import Finding
 from stepnc_model.post.block_feeds import with_feeds
 from stepnc_model.post.blocks import Block
 
 EXCESS = 1.002
 """Feed over the permitted feed above which a part is lowered."""
+
+BRIDGE = 0
+"""Line of moves that stand for those that are left out: what they meet is no fault."""
 
 LEAST_GAP = 1e-6
 """Length below which two parts of the path follow each other, mm."""
@@ -129,7 +132,7 @@ def run_plan(
         None,
         control=control,
         bounds=source.bounds,
-        log=BlockLog(emitted),
+        log=emitted,
         watch=totals.add,
     ):
         strip.add(stretch)
@@ -138,11 +141,21 @@ def run_plan(
             origin = emitted.origin[int(stretch.segments.block[row])]
             if origin[0] in feeds:
                 ratios[origin] = max(float(found[row]), ratios.get(origin, 1.0))
+    totals.findings = [
+        replace(finding, line=line)
+        for finding in totals.findings
+        for line in (emitted.line(finding.line),)
+        if line != BRIDGE or finding.line == 0
+    ]
     return PlanRun(totals=totals, excess=ratios, limits=tuple(strip.rows))
 
 
 class _EmittedBlocks:
-    """Blocks at their new feeds, with the block and part that each comes from."""
+    """Blocks at their new feeds, numbered by the block and part that they come from.
+
+    Running state: it grows as the program is read. The moves of a cycle share a number, as they
+    do before their feeds change, so that both runs stop at the same places.
+    """
 
     def __init__(self, blocks: NumberedBlocks, feeds: BlockFeeds) -> None:
         self._blocks = blocks
@@ -150,9 +163,29 @@ class _EmittedBlocks:
         self.origin: list[tuple[int, int]] = [(0, 0)]
 
     def __iter__(self) -> Iterator[tuple[int, Block]]:
+        """Yield the blocks with their numbers."""
         for fed in with_feeds(self._blocks, self._feeds):
-            self.origin.append((fed.number, fed.part))
-            yield self._blocks.line(fed.number), fed.block
+            if (fed.number, fed.part) != self.origin[-1]:
+                self.origin.append((fed.number, fed.part))
+            yield len(self.origin) - 1, fed.block
+
+    def can_change(self, numbers: Ints) -> Bools:
+        """Whether the blocks that some come from may have another feed."""
+        return self._blocks.can_change(self._origins(numbers))
+
+    def can_split(self, numbers: Ints) -> Bools:
+        """Whether the blocks that some come from may be split."""
+        return self._blocks.can_split(self._origins(numbers))
+
+    def line(self, number: int) -> int:
+        """Line of the program; 0 without one."""
+        origin = self.origin[number][0]
+        return self._blocks.line(origin) if origin else 0
+
+    def _origins(self, numbers: Ints) -> Ints:
+        """Blocks of the program that some blocks come from."""
+        known, row = np.unique(numbers, return_inverse=True)
+        return np.array([self.origin[number][0] for number in known.tolist()])[row]
 
 
 class _LimitStrip:

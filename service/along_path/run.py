@@ -45,6 +45,8 @@ class AlongPathTask:
     """Rounding of corners by the control that is always permitted, mm."""
     greatest: float | None = None
     """Greatest feed that the user permits, mm/s; None: that of the machine."""
+    keeps_idle: bool = False
+    """Whether parts of the program that meet no stock keep their feeds."""
     has_jerk: bool = False
     """Whether the free profile with limited jerk is computed too."""
     keeps_traces: bool = False
@@ -78,6 +80,8 @@ class FeedsAlongPath:
 
     feeds: BlockFeeds
     steps: tuple[AlongPathStep, ...]
+    idle: tuple[str, ...] = ()
+    """Parts of the program that kept their feeds because they meet no stock."""
     findings: tuple[Finding, ...] = ()
     """Findings of the run at the planned feeds."""
     before_trace: PathTrace | None = None
@@ -153,7 +157,8 @@ def along_path(
         watch=before.add,
     ):
         planner.add(stretch)
-    plan = planner.plan()
+    idle = _idle(before) if task.keeps_idle else frozenset[str]()
+    plan = planner.plan(kept=idle)
     feeds: BlockFeeds = dict(block_feeds(plan))
     whole = max(sum(total.duration for _, total in before.rows()), 1.0)
     for _ in range(MOST_ROUNDS):
@@ -174,11 +179,17 @@ def along_path(
             AlongPathStep(name=name, before=one, after=other, plan=parts.get(name))
             for (name, one), (_, other) in zip(before.rows(), after.rows(), strict=True)
         ),
+        idle=tuple(sorted(idle)),
         findings=tuple(after.findings),
         before_trace=before.trace(),
         after_trace=after.trace(),
         limits=run.limits,
     )
+
+
+def _idle(totals: PartTotals) -> frozenset[str]:
+    """Names of the parts of a program that remove nothing."""
+    return frozenset(name for name, total in totals.rows() if total.volume <= 0.0)
 
 
 def _feed_task(machine: Machine, task: AlongPathTask) -> FeedTask:

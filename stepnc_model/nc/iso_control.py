@@ -105,6 +105,7 @@ class IsoControl:
             return following
         if words.is_empty:
             return block + 1
+        is_last = self._follow_contour(words)
         self._flag(words)
         self.settle(words)
         self.modes.turn(words)
@@ -116,7 +117,25 @@ class IsoControl:
             self.remarks.lost(block, self.modes.lost)
             self.recorder.unknown()
         self.steering.watch()
+        if is_last:
+            self.modes.stand(MoveFlag.CONDITIONAL, is_on=False)
+            self.recorder.unknown()
         return self.steering.ended(words, block)
+
+    def _follow_contour(self, words: BlockWords) -> bool:
+        """Enter the contour of a cycle that is not expanded; return whether it ends here.
+
+        How often and with which allowance its blocks are executed is not known.
+        """
+        if self.modes.contour is None or words.number is None:
+            return False
+        first, last = self.modes.contour
+        if words.number == first:
+            self.modes.stand(MoveFlag.CONDITIONAL, is_on=True)
+        is_last = words.number == last and bool(self.recorder.standing & MoveFlag.CONDITIONAL)
+        if is_last:
+            self.modes.contour = None
+        return is_last
 
     def has_plain_moves(self) -> bool:
         """Whether axis words alone say where a move ends, as in most long programs."""
@@ -192,8 +211,7 @@ class IsoControl:
         elif self.modes.shot in {Shot.HOME, Shot.MACHINE}:
             self._in_machine(words)
         elif self.modes.shot is Shot.OFFSETS:
-            self.recorder.at = [nan, nan, nan]
-            self.recorder.flags |= MoveFlag.OFFSET.value
+            self._set_offsets(words)
         elif self.modes.shot is Shot.DWELL:
             self.recorder.dwell(self.seconds(words))
             if self.dialect is Dialect.LINUXCNC and has_axes and not self.modes.lost:
@@ -206,6 +224,15 @@ class IsoControl:
         elif has_axes or self._is_circle(words):
             self._rotary(words)
             self._interpolate(words)
+
+    def _set_offsets(self, words: BlockWords) -> None:
+        """Take values for frames (G10 L2, L20), or for tools and other tables."""
+        table = words.values.get("L", 2.0 if set("XYZ") & set(words.values) else 1.0)
+        if table in {2.0, 20.0}:
+            self.modes.set_frame(self.recorder.block)
+        else:
+            self.recorder.at = [nan, nan, nan]
+            self.recorder.flags |= MoveFlag.OFFSET.value
 
     def seconds(self, words: BlockWords) -> float:
         """Time of a dwell, s; 0 where it is not known."""

@@ -83,6 +83,8 @@ class IsoModes:
         self.returns_to_start = True
         self.shift = [0.0, 0.0, 0.0]
         self.base = "G54"
+        self.edition = ""
+        """Words for the last block that gave values to frames."""
         self.rotary: dict[str, float] = {}
         self.spindle = 0.0
         """Spindle word: rpm, or m/min at constant surface speed."""
@@ -93,6 +95,8 @@ class IsoModes:
         self.tool_name = ""
         self._straight: ModalMotion | None = None
         self.cycle: dict[str, float] = {}
+        self.contour: tuple[float, float] | None = None
+        """Numbers of the first and last block of the contour of a cycle (G71 P Q)."""
         self.shot: Shot | None = None
         self.pause = 0.0
         """Time of a dwell that stands in its F word, s."""
@@ -284,9 +288,11 @@ class IsoModes:
     def _take_shift(self, value: float, _: BlockWords) -> None:
         self.shift_to([value] * 3)
 
-    def _not_expanded(self, code: int, _: BlockWords) -> None:
+    def _not_expanded(self, code: int, words: BlockWords) -> None:
         self.lose(f"the cycle G{code / 10:g} is not expanded")
         self.motion = None
+        if self.is_lathe and "P" in words.values and "Q" in words.values:
+            self.contour = words.values["P"], words.values["Q"]
 
     def _cancel(self, _: BlockWords) -> None:
         if isinstance(self.motion, CycleKind):
@@ -347,13 +353,21 @@ class IsoModes:
         self.recorder.flags |= MoveFlag.OFFSET.value
         self._name_frame()
 
+    def set_frame(self, block: int) -> None:
+        """Take new values for frames by G10: what follows stands in a frame of its own."""
+        self.recorder.flags |= MoveFlag.OFFSET.value
+        self.recorder.at = [nan, nan, nan]
+        self.edition = f" as set in block {block + 1}"
+        self._name_frame()
+
     def _name_frame(self) -> None:
         shifted = ", ".join(
             f"{axis} {value:g}"
             for axis, value in zip("XYZ", self.shift, strict=True)
             if value != 0.0
         )
-        name = f"{self.base} shifted by {shifted}" if shifted else self.base
+        base = f"{self.base}{self.edition}"
+        name = f"{base} shifted by {shifted}" if shifted else base
         setting = self.recorder.setting
         self.recorder.setting = replace(setting, frame=self.recorder.frame(name))
 
@@ -417,13 +431,16 @@ class IsoModes:
     def take_tool(self, words: BlockWords) -> None:
         """Take T and M6; on the lathes of Fanuc and Haas T alone turns the turret."""
         number = words.values.pop("T", None)
-        if "T" in words.macros:
+        is_macro = "T" in words.macros
+        if is_macro:
             self.tool, self.tool_name = None, ""
         elif number is not None:
             self.tool, self.tool_name = int(number), ""
         if self.is_lathe and self.dialect in {Dialect.FANUC, Dialect.HAAS}:
-            if number is not None and self.tool is not None:
+            if self.tool is not None and number is not None:
                 self.to_tool(self.tool // 100 if self.tool >= 100 else self.tool)
+            elif is_macro:
+                self.to_tool(None)
         elif 60 in words.functions:
             self.to_tool(self.tool)
 

@@ -9,7 +9,7 @@ NaN. Rows name their block, so that advice finds its way back into the file.
 from dataclasses import dataclass, replace
 from enum import IntEnum, IntFlag, StrEnum
 from functools import cached_property
-from math import nan, pi
+from math import inf, nan, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -367,6 +367,24 @@ class NcMoves:
     def is_splittable(self) -> NDArray[np.bool_]:
         """(N,) array: whether the block of the move may be split."""
         return self.is_advisable & ((self.flags & int(UNSPLIT)) == 0)
+
+    def fastest(self, rows: NDArray[np.int64]) -> float:
+        """Greatest spindle speed in some rows, rev/s; 0 if not known.
+
+        At constant surface speed it is that of the least distance from the axis; infinite at
+        the axis without a limit.
+        """
+        fastest = 0.0
+        for row in rows.tolist():
+            setting = self.settings[int(self.rows["setting"][row])]
+            if setting.surface is None:
+                fastest = max(fastest, abs(setting.spindle or 0.0))
+                continue
+            one, other = float(self.start[row][0]), float(self.end[row][0])
+            radius = 0.0 if one * other <= 0.0 else min(abs(one), abs(other))
+            speed = setting.surface / (2.0 * pi * radius) if radius else inf
+            fastest = max(fastest, min(speed, setting.limit or inf))
+        return fastest
 
     def part(self, begin: int, end: int) -> "NcMoves":
         """Return some consecutive rows, whose derived columns need little memory."""

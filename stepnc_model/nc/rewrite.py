@@ -7,7 +7,7 @@ would need another feed for each call refuses the advice before it.
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from math import inf, pi
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -177,7 +177,7 @@ class _Rewriting:
         modes = {self.moves.move(int(row)).setting.mode for row in rows}
         if len(modes) > 1:
             return "its executions have feeds in different modes"
-        if FeedMode.PER_REVOLUTION in modes and not 0.0 < self._fastest(rows) < inf:
+        if FeedMode.PER_REVOLUTION in modes and not 0.0 < self.moves.fastest(rows) < inf:
             return "the spindle speed is not known or not limited"
         if self.program.dialect is Dialect.HEIDENHAIN and flags & MoveFlag.CYCLE:
             return "the feed of a cycle stands in its definition"
@@ -229,24 +229,7 @@ class _Rewriting:
         if mode is FeedMode.INVERSE_TIME:
             value = mm_min_from_speed(piece.feed) / piece.length if piece.length else inf
             return self.style.feed(min(value, 1e6), mode)
-        return self.style.feed(piece.feed / self._fastest(rows) / setting.unit, mode)
-
-    def _fastest(self, rows: NDArray[np.int64]) -> float:
-        """Greatest spindle speed in the executions of a block, rev/s; 0 if not known.
-
-        At constant surface speed it is that of the least distance from the axis.
-        """
-        fastest = 0.0
-        for row in rows:
-            setting = self.moves.settings[int(self.moves.rows["setting"][row])]
-            if setting.surface is None:
-                fastest = max(fastest, abs(setting.spindle or 0.0))
-                continue
-            one, other = self.moves.start[row][0], self.moves.end[row][0]
-            radius = 0.0 if one * other <= 0.0 else min(abs(one), abs(other))
-            speed = setting.surface / (2.0 * pi * radius) if radius else inf
-            fastest = max(fastest, min(speed, setting.limit or inf))
-        return fastest
+        return self.style.feed(piece.feed / self.moves.fastest(rows) / setting.unit, mode)
 
     # The feed in force.
 
