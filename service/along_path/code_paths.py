@@ -152,9 +152,7 @@ class CodePaths:
             part.row: Comment(text=part.name, workingstep=part.name) for part in self.parts
         }
         blocks = CountedIterator(
-            neutral_blocks(
-                replace(self.program, moves=moves), name=self.name, before=beginning
-            )
+            neutral_blocks(replace(self.program, moves=moves), name=self.name, before=beginning)
         )
         tools = {
             number: table_tool(tool, self.material.material)

@@ -199,7 +199,7 @@ def _advice(code: CodePaths, line: int, parts: tuple[BlockPart, ...]) -> BlockAd
     )
 
 
-def _idle(code: CodePaths, along: AlongPath) -> Iterator[Finding]:
+def _idle(code: CodePaths, along: FeedsAlongPath) -> Iterator[Finding]:
     """Findings on tools that meet no stock, and on a program of which nothing can change."""
     for part in code.parts:
         if part.name in along.idle:
