@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from service.along_path.course import PathSource
-from service.along_path.run import AlongPath, along_path
+from service.along_path.run import FeedsAlongPath, along_path
 from service.along_path.task import task_of
 from service.files import beside
 from service.paths.toolpaths import PostRequest, post
@@ -49,7 +49,7 @@ def planned(sample: Path, profile: FileProfile, folder: Path) -> OptimiseResult:
 
 
 @cache
-def run_again(sample: Path, profile: FileProfile, folder: Path) -> AlongPath:
+def run_again(sample: Path, profile: FileProfile, folder: Path) -> FeedsAlongPath:
     """Run the written file at its own feeds."""
     result = planned(sample, profile, folder)
     plan, program = result.plan, read_program(written(result), units="iso")
@@ -68,7 +68,7 @@ def written(result: OptimiseResult) -> Path:
     return result.written
 
 
-def along_of(result: OptimiseResult) -> AlongPath:
+def along_of(result: OptimiseResult) -> FeedsAlongPath:
     assert result.along is not None
     return result.along
 
