@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from optimiser.bar_grip import BarGrip
 from simulator.spec import CuttingMaterial, Machine, ToolGrade, WorkMaterial
 from simulator.work_holding import Holding
+from stepnc_model.record_limits import NO_LIMITS, RecordLimits
 
 GREATEST_DEFLECTION = 0.1
 """Greatest permitted deflection at the tip of any end mill, mm (customary).
@@ -44,6 +45,8 @@ class CuttingConditions:
     """k_c at the planned quantile, relative to the nominal k_c."""
     holding: Holding | None = None
     """Chuck, vice or clamps that hold the workpiece; None: no holding limit applies."""
+    bounds: RecordLimits = NO_LIMITS
+    """Limits that the record in the file sets."""
     grip: BarGrip | None = None
     """Where the bar is gripped; None when not turned or not stated."""
     bar_deflection: PermittedDeflection | None = None

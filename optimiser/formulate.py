@@ -71,6 +71,8 @@ class OptimisationTask:
     """Ids of the tools whose inserts have a wiper."""
     source: Source = along_paths
     """Factory of the source of cuts."""
+    ignores_records: bool = False
+    """Whether the limits of optimisation records in the file are ignored."""
     keep_going: bool = False
     """Whether a workingstep that cannot be advised is left as it is, and the rest advised."""
 

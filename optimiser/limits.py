@@ -79,6 +79,7 @@ def limits_of(cut: Cut, at: CuttingConditions) -> tuple[Limit, ...]:
     return (
         *_load_limits(cut, at),
         *_depth_limits(cut, at),
+        *_record_limits(cut, at),
         *surface_limits(cut, at),
         *(surface_limits(cut.floor, at) if cut.floor is not None else ()),
         *speed_limits(cut, at),
@@ -295,10 +296,32 @@ def is_bent(cut: Cut) -> bool:
     return cut.kind is CutKind.MILLING and cut.tool_kind is ToolKind.ENDMILL
 
 
+def _record_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
+    """Limits on feed per tooth and motor power that the record in the file sets."""
+    if at.bounds.feed_per_tooth is not None:
+        yield Limit(
+            name=LimitName.FEED_PER_TOOTH,
+            load=Monomial(coefficient=1.0, feed_exponent=1.0),
+            bound=at.bounds.feed_per_tooth,
+            unit="mm",
+            step=0.01,
+            origin="the maximum of the record in the file",
+        )
+    if at.bounds.motor_power is not None:
+        yield Limit(
+            name=LimitName.MOTOR_POWER,
+            load=power_load(cut, at),
+            bound=at.bounds.motor_power,
+            unit="kW",
+            scale=KW,
+            origin="the power of the record in the file",
+        )
+
+
 def _depth_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
     """Limit on the depth of one pass from machine, tool and grade."""
     grade = at.grade
-    bounds = [at.machine.max_axial_depth, cut.depth_bound]
+    bounds = [at.machine.max_axial_depth, cut.depth_bound, at.bounds.axial_depth]
     if grade is not None:
         ratio = grade.max_depth_ratio
         bounds += [grade.max_depth, ratio * cut.diameter if ratio is not None else None]

@@ -46,6 +46,7 @@ from simulator.spec import CuttingMaterial, Machine, MachineKind, MaterialMatch,
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError
 from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.record_limits import NO_LIMITS, RecordLimits, record_limits
 from stepnc_model.technology import programmed
 from stepnc_model.tool import Tool, tool_of
 
@@ -181,7 +182,10 @@ def advise(
         cuts.leave_out(step)
         return replace(untouched, status=AdviceStatus.INFEASIBLE, reason=elsewhere), []
     cut, findings = cuts.cut(step)
+    bounds, found = _bounds(program, step, task)
+    findings += found
     at, found = _conditions(program, step, cut, machine=machine, material=material, task=task)
+    at = replace(at, bounds=bounds)
     at, held = with_holding(at, program, step)
     findings += found + held
     problem = problem_of(cut, at, task)
@@ -226,6 +230,20 @@ def advise(
     fault = plunge_fault(used, at, is_allowed=may)
     advice = replace(advice, plunge_fault=fault, holding_load=load)
     return advice, findings + passed_limits(program, advice)
+
+
+def _bounds(
+    program: Program, step: ResolvedWorkingstep, task: OptimisationTask
+) -> tuple[RecordLimits, list[Finding]]:
+    """Limits that the record in the file sets, with a note that says so."""
+    bounds = record_limits(program, step)
+    if not bounds:
+        return bounds, []
+    if task.ignores_records:
+        text = f"ignored as requested: the record in the file allows {bounds.words}"
+        return NO_LIMITS, [program.finding(Severity.NOTE, text, step.operation_ref)]
+    text = f"kept: the record in the file allows {bounds.words} (--ignore-record)"
+    return bounds, [program.finding(Severity.NOTE, text, step.operation_ref)]
 
 
 def _thread_diameter(program: Program, step: ResolvedWorkingstep, tool: Tool) -> float:

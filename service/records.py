@@ -5,9 +5,12 @@ from math import isclose, pi
 
 from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, Plan
 from optimiser.cut import Cut, CutKind
+from optimiser.modes import Mode
+from optimiser.problem import BoundSide, LimitName
 from simulator.physics.engagement import Engagement
 from stepnc_model.edit_conditions import rounded
 from stepnc_model.record import GENERATOR, AdviceRecord
+from stepnc_model.record_limits import NO_LIMITS, RecordLimits
 from stepnc_model.technology import ProgrammedQuantity
 from stepnc_model.units import deg_from_rad, kw_from_watts, um_from_mm
 from stepnc_model.writeback import WorkingstepUpdate
@@ -67,6 +70,11 @@ def _record(plan: Plan, advised: _Advised) -> AdviceRecord:
     is_feed = feed.quantity is ProgrammedQuantity.FEED
     is_spindle = speed.quantity is ProgrammedQuantity.SPINDLE_SPEED
     engagement = cut.engagement
+    bounds = _bounds(advice)
+    if bounds.motor_power is not None:
+        available = min(available, bounds.motor_power)
+    is_time_critical = plan.mode is Mode.TC
+    power_bound = bounds.motor_power
     return AdviceRecord(
         mode=plan.mode.value,
         id=advice.workingstep.operation.its_id,
@@ -95,7 +103,45 @@ def _record(plan: Plan, advised: _Advised) -> AdviceRecord:
         programmed_spindle=raw_speed if is_spindle else None,
         programmed_axial_depth=float(before.setting.depth),
         plunge_feed_per_tooth=None if best.plunge_feed is None else rounded(best.plunge_feed),
+        feed_per_tooth_max=rounded(_greatest_feed(advised)) if is_time_critical else None,
+        axial_depth_max=rounded(_greatest_depth(advised)) if is_time_critical else None,
+        machine_power_bound=None
+        if power_bound is None
+        else rounded(kw_from_watts(power_bound)),
+        feed_per_tooth_bound=bounds.feed_per_tooth,
+        axial_depth_bound=bounds.axial_depth,
     )
+
+
+def _bounds(advice: Advice) -> RecordLimits:
+    """Return the limits of the record in the file that an advice keeps."""
+    return NO_LIMITS if advice.conditions is None else advice.conditions.bounds
+
+
+def _greatest_feed(advised: _Advised) -> float:
+    """Return the greatest feed per tooth that the record or the tool allows, mm."""
+    best, bound = advised.after.setting.feed, _bounds(advised.advice).feed_per_tooth
+    if bound is not None:
+        return max(best, bound)
+    return max(best, best * _room(advised.after, LimitName.FEED_PER_TOOTH))
+
+
+def _greatest_depth(advised: _Advised) -> float:
+    """Return the greatest depth of a pass that the record or the tool allows, mm."""
+    best, bound = advised.after.setting.depth, _bounds(advised.advice).axial_depth
+    if bound is not None:
+        return max(best, bound)
+    return max(best, best * _room(advised.after, LimitName.AXIAL_DEPTH))
+
+
+def _room(state: EvaluatedSetting, name: LimitName) -> float:
+    """Return the least bound of a limit over its load; 1 where there is no such limit."""
+    ratios = [
+        load.bound / (load.limit.safety_factor * load.value)
+        for load in state.loads
+        if load.limit.name is name and load.limit.sense is BoundSide.AT_MOST and load.value > 0
+    ]
+    return min(ratios, default=1.0)
 
 
 def _removal_rate(cut: Cut, after: EvaluatedSetting) -> float:

@@ -29,7 +29,7 @@ from service.requests.fields import require_bounds
 from simulator.spec import Certainty, Machine, MaterialMatch
 from stepnc_model import writeback
 from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
-from stepnc_model.file_profile import FileProfile
+from stepnc_model.file_profile import FileProfile, RecordChoice
 from stepnc_model.given import Completed, completed, without_given
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.post.dialect import Dialect
@@ -96,7 +96,7 @@ def optimise(
     """
     _require_sense(request, files)
     task = _task(request, _table(files.tools))
-    profile = request.profile
+    profile = None if request.records is RecordChoice.NONE else request.profile
     output = _output(files)
     nc_place = _nc_place(request, files, output)
     require_apart(named_place(files.knowledge), output, files.report, files.feeds, nc_place)
@@ -239,12 +239,17 @@ def _remarks(program: Program, tell: Tell) -> tuple[Finding, ...]:
 
 
 def _with_tool_paths(
-    plan: Plan, program: Program, along: "FeedsAlongPath", profile: FileProfile, tell: Tell
+    plan: Plan,
+    program: Program,
+    along: "FeedsAlongPath",
+    profile: FileProfile | None,
+    tell: Tell,
 ) -> tuple[Plan, bytes]:
     """Write feeds along the paths into the program; the plan gets what could not be written."""
     from service.along_path.path_file import with_tool_paths  # noqa: PLC0415 (numpy, shapely)
 
-    file = with_tool_paths(program, along, profile)
+    # Without records a file is for readers that know the standard only.
+    file = with_tool_paths(program, along, profile or FileProfile.STANDARD)
     tell(f"tool paths written into the program: {file.count}")
     return replace(plan, findings=(*plan.findings, *file.findings)), file.data
 
@@ -344,6 +349,7 @@ def _task(request: AdviceRequest, tools: "tuple[TableTool, ...]") -> Optimisatio
         allow_plunge=request.allow_plunge,
         source=partial(along_paths, is_run=request.is_confirmed),
         keep_going=request.keep_going,
+        ignores_records=request.ignore_record,
     )
 
 

@@ -8,3 +8,10 @@ class FileProfile(StrEnum):
 
     OPTIMISATION = "optimisation"
     STANDARD = "standard"
+
+
+class RecordChoice(StrEnum):
+    """Choice whether optimisation records are written at all."""
+
+    ALL = "all"
+    NONE = "none"

@@ -2,7 +2,7 @@
 
 Outcomes and corrections become the entities ``outcome`` and ``correction`` of
 ``schemas/optimisation.exp``, appended to the file; all other bytes stay unchanged. There is no
-other form: profile ``standard`` promises a file that every ISO 14649 reader accepts, so with it
+other form: profile ``standard`` promises a file of standard entities only, so with it
 they are rejected.
 
 An outcome is a measurement: later outcomes are appended, existing ones never change, and an

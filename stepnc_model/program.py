@@ -26,6 +26,7 @@ from stepnc_model.entities.executables import (
     WhileStatement,
     Workplan,
 )
+from stepnc_model.entities.measures import PropertyParameter
 from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.entities.operations import MachiningOperation
 from stepnc_model.entities.profiles import MachinedSurface, SurfaceTextureParameter
@@ -142,6 +143,7 @@ class Program:
             dict[int, list[tuple[SurfaceTextureParameter, MachinedSurface]]] | None
         ) = None
         self._by_feature: dict[int, list[ResolvedWorkingstep]] = {}
+        self._named: dict[str, list[Ref[Entity]]] | None = None
         self._drilling, self._other = _technologies(self.workingsteps)
         for step in self.workingsteps:
             for feature in step.features:
@@ -159,6 +161,14 @@ class Program:
     def get(self, ref: Ref[T]) -> T:
         """Entity behind a reference."""
         return self.model.get(ref)
+
+    def parameters_named(self, prefix: str) -> dict[str, list[Ref[Entity]]]:
+        """Numeric and descriptive parameters of the file by name, those with a prefix."""
+        if self._named is None:
+            self._named = {}
+            for ref, parameter in self.model.of_type(PropertyParameter):
+                self._named.setdefault(parameter.parameter_name, []).append(ref)
+        return {name: refs for name, refs in self._named.items() if name.startswith(prefix)}
 
     def units_of(self, technology: Ref[Entity]) -> UnitProfile:
         """Units of the feeds and speeds of a technology.

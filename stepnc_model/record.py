@@ -1,9 +1,9 @@
 """Optimisation record as one flat data class, and its two forms in a file.
 
 Profile ``optimisation`` writes entities of ``schemas/optimisation.exp``; profile ``standard``
-writes prefixed parameters that every ISO 14649 reader accepts. Both hold exactly the same
-numbers, so a record can be converted without loss. Numbers have the units of the file: mm, m/s,
-rev/s, s, kW, N, J, µm.
+writes parameters of ISO 14649 with a prefix and the workingstep in their names, to which no
+instance refers. Both hold exactly the same numbers, so a record can be converted without loss.
+Numbers have the units of the file: mm, m/s, rev/s, s, kW, N, J, µm.
 """
 
 from collections.abc import Iterator, Mapping
@@ -80,6 +80,21 @@ class AdviceRecord:
     programmed_axial_depth: float | None = field(default=None, metadata={"unit": "mm"})
     plunge_feed_per_tooth: float | None = field(default=None, metadata={"unit": "mm"})
     """Feed per tooth on the way down into the material, mm; None for the feed of the cut."""
+    feed_per_tooth_max: float | None = field(default=None, metadata={"unit": "mm"})
+    """Greatest feed per tooth that is allowed, mm; None where it is not told apart."""
+    axial_depth_max: float | None = field(default=None, metadata={"unit": "mm"})
+    """Greatest depth of a pass that is allowed, mm."""
+    machine_power_bound: float | None = field(default=None, metadata={"unit": "kW"})
+    """Power that an earlier record of the file allows, kW; None: it sets no bound."""
+    feed_per_tooth_bound: float | None = field(default=None, metadata={"unit": "mm"})
+    """Feed per tooth that an earlier record of the file allows, mm."""
+    axial_depth_bound: float | None = field(default=None, metadata={"unit": "mm"})
+    """Depth of a pass that an earlier record of the file allows, mm."""
+
+    def __post_init__(self) -> None:
+        maxima = (self.feed_per_tooth_max, self.axial_depth_max)
+        if (maxima != (None, None) and self.mode != "TC") or maxima.count(None) == 1:
+            raise ValueError("maxima belong to a time critical record, and come together")
 
 
 MODES: dict[str, type[Entity]] = {
@@ -140,16 +155,26 @@ def write_entities(record: AdviceRecord, edits: Edits) -> Ref[Entity]:
             material=record.material,
             generator=record.generator,
             plunge_feed_per_tooth=record.plunge_feed_per_tooth,
+            optimum_feed_per_tooth=_optimum(record, record.feed_per_tooth),
+            optimum_axial_depth=_optimum(record, record.axial_depth),
+            machine_power_bound=record.machine_power_bound,
+            feed_per_tooth_bound=record.feed_per_tooth_bound,
+            axial_depth_bound=record.axial_depth_bound,
         )
     )
     return add(_optimisation(record, available, details))
+
+
+def _optimum(record: AdviceRecord, value: float) -> float | None:
+    """Optimum beside the maxima of a time critical record; absent in all others."""
+    return value if record.feed_per_tooth_max is not None else None
 
 
 def read_entities(model: Model, ref: Ref[Entity]) -> AdviceRecord | None:
     """Read the record of an operation's optimisation; None if it is incomplete."""
     try:
         return _checked(_from_entities(model, ref))
-    except (AttributeError, TypeError, SchemaError):
+    except (AttributeError, TypeError, ValueError, SchemaError):
         # A record of another program: some reference is dangling or leads to something else.
         return None
 
@@ -163,6 +188,8 @@ def _from_entities(model: Model, ref: Ref[Entity]) -> AdviceRecord | None:
     details = model.get(named.its_record)
     mode = next(name for name, cls in MODES.items() if isinstance(optimum, cls))
     suffix = "_max" if mode == "TC" else ""
+    optimum, depth = details.optimum_feed_per_tooth, details.optimum_axial_depth
+    is_old = optimum is None or depth is None or mode != "TC"
     cutting = model.get(details.its_cutting_power)
     force = model.get(cutting.its_cutting_force)
     face = force.its_face_milling_type
@@ -178,8 +205,13 @@ def _from_entities(model: Model, ref: Ref[Entity]) -> AdviceRecord | None:
         generator=details.generator,
         active_limit=details.active_limit,
         number_of_passes=details.number_of_passes,
-        feed_per_tooth=getattr(named, f"feed_per_tooth{suffix}"),
-        axial_depth=getattr(named, f"axial_cutting_depth{suffix}"),
+        feed_per_tooth=getattr(named, f"feed_per_tooth{suffix}") if is_old else optimum,
+        axial_depth=getattr(named, f"axial_cutting_depth{suffix}") if is_old else depth,
+        feed_per_tooth_max=None if is_old else named.feed_per_tooth_max,
+        axial_depth_max=None if is_old else named.axial_cutting_depth_max,
+        machine_power_bound=details.machine_power_bound,
+        feed_per_tooth_bound=details.feed_per_tooth_bound,
+        axial_depth_bound=details.axial_depth_bound,
         machine_power=available.its_parameter_value,
         cutting_power=model.get(cutting.its_power_property).its_parameter_value,
         spindle_speed=force.spindle_speed,
@@ -200,13 +232,20 @@ def _from_entities(model: Model, ref: Ref[Entity]) -> AdviceRecord | None:
     )
 
 
-def parameters_of(record: AdviceRecord) -> Iterator[PropertyParameter]:
-    """Parameters with a prefix that hold a record, one for each number or text."""
+def parameters_of(record: AdviceRecord, key: str = "") -> Iterator[PropertyParameter]:
+    """Parameters with a prefix that hold a record, one for each number or text.
+
+    Parameters
+    ----------
+    record : AdviceRecord
+    key : str
+        Workingstep of the record, ``1:ROUGH THE FACE``, which ends the names; empty: none.
+    """
     for each in fields(record):
         value = getattr(record, each.name)
         if value is None:
             continue
-        name = PREFIX + each.name
+        name = PREFIX + each.name + (f":{key}" if key else "")
         if isinstance(value, str):
             yield DescriptiveParameter(parameter_name=name, descriptive_string=value)
         else:
@@ -226,7 +265,7 @@ def read_parameters(values: Mapping[str, float | str]) -> AdviceRecord | None:
         found["number_of_passes"] = int(count)
     try:
         return _checked(AdviceRecord(**found))
-    except TypeError:
+    except (TypeError, ValueError):
         return None
 
 
@@ -280,6 +319,17 @@ def _optimisation(
         "process_description": record.description,
         f"feed_per_tooth{suffix}": record.feed_per_tooth,
         f"axial_cutting_depth{suffix}": record.axial_depth,
+        **_maxima(record),
         "its_record": details,
     }
     return MODES[record.mode](**values)
+
+
+def _maxima(record: AdviceRecord) -> dict[str, object]:
+    """Maxima of a time critical optimisation, where the record tells them from the optimum."""
+    if record.mode != "TC" or record.feed_per_tooth_max is None:
+        return {}
+    return {
+        "feed_per_tooth_max": record.feed_per_tooth_max,
+        "axial_cutting_depth_max": record.axial_depth_max,
+    }

@@ -1,16 +1,18 @@
 """Insertion and removal of optimisation records in a draft, and search for records.
 
 In profile ``optimisation``, the record is entities behind one surplus parameter of the
-operation. In profile ``standard``, it is prefixed parameters of a copy of the operation's
-machine functions, which names the original that it was copied from.
+operation. In profile ``standard``, it is prefixed parameters to which no instance refers:
+interpreters of programs never meet them. Their names end with the workingstep, as
+``optimisation:mode:1:ROUGH THE FACE``: the first workingstep of that id. Earlier versions wrote
+them into a copy of the operation's machine functions; such records are read and replaced.
 """
 
 from typing import Any
 
 from stepnc_model.draft import Draft, references
 from stepnc_model.entities.entity import Entity
-from stepnc_model.entities.measures import DescriptiveParameter, NumericParameter
-from stepnc_model.entities.technology import MachineFunctions, ProcessModel, ProcessModelList
+from stepnc_model.entities.measures import NumericParameter
+from stepnc_model.entities.technology import MachineFunctions, ProcessModelList
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.record import (
@@ -62,6 +64,9 @@ def take_out(draft: Draft, step: ResolvedWorkingstep) -> None:
     if reference is not None:
         draft.drop_surplus(step.operation_ref)
         draft.remove(_record_instances(program, reference))
+    draft.remove([
+        int(ref) for refs in _named_parameters(program, step).values() for ref in refs
+    ])
     original = _original_functions(program, step)
     if original is None or step.functions_ref is None:
         return
@@ -81,31 +86,44 @@ def put_entities(draft: Draft, step: ResolvedWorkingstep, record: AdviceRecord) 
 
 
 def put_parameters(draft: Draft, step: ResolvedWorkingstep, record: AdviceRecord) -> None:
-    """Add a record in profile ``standard``; SchemaError without machine functions."""
-    program = draft.program
-    original = _original_functions(program, step) or step.functions_ref
-    if original is None:
-        raise program.error(
-            "the operation has no machine functions, which profile 'standard' requires",
-            step.operation_ref,
-            "its_machine_functions",
-        )
-    functions: Any = program.get(original)
-    named = DescriptiveParameter(
-        parameter_name=PREFIX + ORIGINAL, descriptive_string=repr(original)
-    )
-    entities: list[Entity] = [*parameters_of(record), named]
-    added = [draft.add(entity) for entity in entities]
-    copy = draft.add_like(original, program.file.parameters(int(original)))
-    others = (*(functions.other_functions or ()), *added)
-    draft.put(original, "other_functions", others, at=copy)
-    if functions.its_process_model is None:
-        draft.put(original, "its_process_model", _process_model(draft, record), at=copy)
-    draft.put(step.operation_ref, "its_machine_functions", copy)
+    """Add a record in profile ``standard``: parameters to which no instance refers."""
+    for entity in parameters_of(record, _key(draft.program, step)):
+        draft.add(entity)
+
+
+def _key(program: Program, step: ResolvedWorkingstep) -> str:
+    """Ordinal of a workingstep among those of the same id, and its id."""
+    alike = [other for other in program.workingsteps if other.id == step.id]
+    place = next(count for count, other in enumerate(alike, 1) if other.ref == step.ref)
+    return f"{place}:{step.id}"
+
+
+def _named_parameters(
+    program: Program, step: ResolvedWorkingstep
+) -> dict[str, list[Ref[Entity]]]:
+    """Parameters of the record of an operation, by the name of their attribute."""
+    ours = program.parameters_named(PREFIX)
+    if not ours:
+        return {}
+    found: dict[str, list[Ref[Entity]]] = {}
+    for other in program.workingsteps:
+        if other.operation_ref != step.operation_ref:
+            continue
+        ending = f":{_key(program, other)}"
+        for name, refs in ours.items():
+            attribute = name.removeprefix(PREFIX).removesuffix(ending)
+            if name.endswith(ending) and ":" not in attribute:
+                found.setdefault(attribute, []).extend(refs)
+    return found
 
 
 def _parameter_record(program: Program, step: ResolvedWorkingstep) -> AdviceRecord | None:
-    """Read a record written as parameters of the machine functions."""
+    """Read a record written as parameters, or as parameters of the machine functions."""
+    named = _named_parameters(program, step)
+    if named:
+        return read_parameters({
+            name: _value_of(program.get(refs[-1])) for name, refs in named.items()
+        })
     if _original_functions(program, step) is None or step.functions_ref is None:
         return None
     functions: Any = program.get(step.functions_ref)
@@ -131,12 +149,6 @@ def _original_functions(program: Program, step: ResolvedWorkingstep) -> Ref[Any]
         is_functions = isinstance(program.model.entity(int(number)), MachineFunctions)
         return Ref(int(number)) if is_functions else None
     return None
-
-
-def _process_model(draft: Draft, record: AdviceRecord) -> Ref[Any]:
-    """Process model that names the generator and the machine of the record."""
-    model = draft.add(ProcessModel(ini_data_file=record.machine, its_type=GENERATOR))
-    return draft.add(ProcessModelList(its_list=(model,)))
 
 
 def _record_instances(program: Program, ref: Ref[Any]) -> list[int]:

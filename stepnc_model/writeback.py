@@ -3,8 +3,8 @@
 ``optimisation`` (default)
     The record as entities, referred to by one surplus parameter at the end of the operation.
 ``standard``
-    The record as prefixed parameters of a copy of the operation's machine functions, which a
-    strict ISO 14649 reader accepts.
+    The record as prefixed parameters to which no instance refers: standard entities only, in
+    places where no interpreter looks. A system that saves the file again may drop them.
 
 An AP238 file takes profile ``standard`` only: the parameters become representation items of an
 action property of the machine functions (:mod:`stepnc_model.ap238.writing`).
@@ -58,7 +58,7 @@ class WorkingstepUpdate:
 
 
 def write(
-    program: Program, changes: Sequence[WorkingstepUpdate], profile: FileProfile
+    program: Program, changes: Sequence[WorkingstepUpdate], profile: FileProfile | None
 ) -> bytes:
     """Write optimisation advice into a program; return the bytes of the new file.
 
@@ -70,7 +70,8 @@ def write(
     program : Program
         Program as it was read.
     changes : sequence of WorkingstepUpdate
-    profile : FileProfile
+    profile : FileProfile or None
+        None: no records are written, and those of this project are removed.
 
     Returns
     -------
@@ -89,10 +90,12 @@ def write(
         chosen[operation] = _slower(change, chosen.get(operation, change))
     draft = Draft(program)
     for change in chosen.values():
-        take_out(draft, change.workingstep)
+        # Without records of its own, a file keeps those of others, whose limits may bind.
+        if profile is not None or find_record(program, change.workingstep) is not None:
+            take_out(draft, change.workingstep)
     for change in chosen.values():
         _edit_conditions(draft, change)
-    for change in chosen.values():
+    for change in chosen.values() if profile is not None else ():
         old = find_record(program, change.workingstep)
         record = _with_first_programmed(change.record, old)
         _put_in(draft, change.workingstep, record, profile)
@@ -117,7 +120,7 @@ def convert(program: Program, profile: FileProfile) -> bytes:
     SchemaError
         If the profile cannot represent what the program holds.
     """
-    profile = profile_for(program, profile)
+    profile = profile_for(program, profile) or profile
     _require_form(program, profile)
     draft = Draft(program)
     found = {
@@ -140,12 +143,14 @@ def records(program: Program) -> dict[int, AdviceRecord]:
     return {number: record for number, record in found.items() if record is not None}
 
 
-def profile_for(program: Program, profile: FileProfile) -> FileProfile:
-    """Profile in which a program is written: for an AP238 file always ``standard``."""
-    return FileProfile.STANDARD if isinstance(program.file, AimView) else profile
+def profile_for(program: Program, profile: FileProfile | None) -> FileProfile | None:
+    """Profile in which records are written: for an AP238 file always ``standard``, or none."""
+    if profile is not None and isinstance(program.file, AimView):
+        return FileProfile.STANDARD
+    return profile
 
 
-def _require_form(program: Program, profile: FileProfile) -> None:
+def _require_form(program: Program, profile: FileProfile | None) -> None:
     """Raise an error if profile ``standard`` cannot represent part of the program."""
     if profile is not FileProfile.STANDARD:
         return
@@ -155,7 +160,7 @@ def _require_form(program: Program, profile: FileProfile) -> None:
 
 
 def _put_in(
-    draft: Draft, step: ResolvedWorkingstep, record: AdviceRecord, profile: FileProfile
+    draft: Draft, step: ResolvedWorkingstep, record: AdviceRecord, profile: FileProfile | None
 ) -> None:
     """Add a record in the given profile."""
     if profile is FileProfile.OPTIMISATION:

@@ -35,8 +35,9 @@ INTRODUCTION = """Entities that this project adds to ISO 14649, schema `optimisa
 4.2.1: mm, s, m/s, rev/s with a sign (negative for right-hand tools), degrees; besides them N,
 kW, J, µm and N/mm². A machining operation refers to its optimum by one attribute after its own,
 for the reason told in [decision 0002](../decisions/0002-where-a-record-hangs.md). The profile
-`standard` writes the same numbers as parameters that every ISO 14649 reader takes;
-`stepnc convert` goes both ways."""
+`standard` writes the same numbers as parameters of ISO 14649 to which no instance refers, named
+after their workingstep: NIST's interpreter stops at what machine functions refer to. A system
+that saves such a file again may drop them. `stepnc convert` goes both ways."""
 
 
 def entity_page(root: Path) -> str:

@@ -3,7 +3,6 @@
 from service.along_path.run import AlongPathTask
 from service.requests.advice import AdviceRequest
 from simulator.motion.control import control_model
-from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import axis_limits
 from simulator.spec import Machine
 from stepnc_model.errors import StepNcError
@@ -19,9 +18,11 @@ def task_of(request: AdviceRequest, machine: Machine) -> AlongPathTask:
         When no control model follows from the machine's axes.
     """
     try:
-        control = control_model(ControlModelName.FIR, axis_limits(machine))
+        control = control_model(request.motion, axis_limits(machine))
     except ValueError as error:
-        raise StepNcError(f"machine '{machine.name}', control fir: {error}") from error
+        raise StepNcError(
+            f"machine '{machine.name}', control {request.motion.value}: {error}"
+        ) from error
     greatest = request.max_feed_mm_min
     return AlongPathTask(
         control=control,

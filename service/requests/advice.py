@@ -10,7 +10,8 @@ from annotated_types import Interval, Len, MaxLen
 from optimiser.modes import Free, Mode
 from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE
 from service.requests.fields import LONGEST_NAME, About, Request
-from stepnc_model.file_profile import FileProfile
+from simulator.motion.model_name import ControlModelName
+from stepnc_model.file_profile import FileProfile, RecordChoice
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.units import AUTO, PROFILES
 
@@ -84,6 +85,14 @@ class AdviceRequest(Request):
         FileProfile,
         About("how advice is recorded: optimisation or standard", flag="--profile"),
     ] = FileProfile.OPTIMISATION
+    records: Annotated[
+        RecordChoice,
+        About(
+            "all, or none: advice is written into the technologies only, without a plunge feed "
+            "of its own",
+            flag="--records",
+        ),
+    ] = RecordChoice.ALL
     nc_control: Annotated[
         Dialect | None,
         About(
@@ -161,6 +170,14 @@ class AdviceRequest(Request):
             name="feed", flag="--feed", metavar="MM_MIN",
         ),
     ] = None  # fmt: skip
+    ignore_record: Annotated[
+        bool,
+        About(
+            "ignore the limits of optimisation records in the file: motor power, greatest feed "
+            "per tooth, greatest depth",
+            flag="--ignore-record",
+        ),
+    ] = False
     keep_going: Annotated[
         bool,
         About(
@@ -193,6 +210,14 @@ class AdviceRequest(Request):
             flag="--levels", metavar="K",
         ),
     ] = None  # fmt: skip
+    motion: Annotated[
+        ControlModelName,
+        About(
+            "motion control along the path, which decides how early a feed is commanded: fir, "
+            "junction or exact-stop",
+            flag="--motion",
+        ),
+    ] = ControlModelName.FIR
     is_jerk_limited: Annotated[
         bool,
         About(

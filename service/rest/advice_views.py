@@ -177,6 +177,18 @@ class AlongPathPartView(View):
     active_limits: dict[str, LimitShareView]
 
 
+class FreeProfileView(View):
+    """Feeds of a cut without the steps of a control, within the accelerations of the axes."""
+
+    time_s: float
+    bound_s: float = Field(description="least time of any feeds")
+    jerk_limited_time_s: float | None = Field(
+        description="time with limited jerk; null: not requested"
+    )
+    greatest_excess: float | None = Field(description="greatest excess over a limit, share")
+    greatest_excess_limit: str | None
+
+
 class AlongPathView(View):
     """Feeds along the paths: both runs on the virtual machine."""
 
@@ -186,6 +198,7 @@ class AlongPathView(View):
     splits: int = Field(description="number of parts added by splitting blocks")
     active_limits: dict[str, float] = Field(description="share of the path by active limit")
     parts: list[AlongPathPartView]
+    free_profile: FreeProfileView
 
 
 class AdviceView(View):

@@ -57,6 +57,9 @@ ROUTES = APIRouter(prefix="/v1/programs", tags=["programs"])
 OF_CODE = ("tools_id", "stock", "material")
 """Fields that advice on NC code needs."""
 
+OF_PATHS = ("levels", "writes_toolpaths")
+"""Fields that need feeds along the paths."""
+
 EXAMPLES = FilePath(__file__).parents[2] / "examples" / "parts"
 """Folder of the sample programs; an installed wheel has none."""
 
@@ -210,8 +213,9 @@ def advisable(data_folder: DataFolder, asked: JobRequest) -> None:
         # Numbers only: names of files are never read.
         stock_in(words["stock"])
     if programs.get(data_folder, asked.program).kind is ProgramKind.STEP_NC:
-        if words["levels"] is not None and not words["is_along_path"]:
-            raise StepNcError("levels has no effect without is_along_path")
+        for name in OF_PATHS:
+            if words[name] and not words["is_along_path"]:
+                raise StepNcError(f"{name} has no effect without is_along_path")
         runnable(data_folder, asked)
         return
     programs.require_file(data_folder, asked.program)

@@ -141,11 +141,7 @@ class Builder:
 
     def _begin(self, number: int, node: int, rule: Rule) -> None:
         """Give an instance what its rule asks of it; the rows follow later."""
-        for name, text in rule.base.settings:
-            path, _, type_ = name.partition(":")
-            texts = (text,) if text else ()
-            condition = Condition(attributes=tuple(path.split(".")), type=type_, texts=texts)
-            self._fulfil(node, condition)
+        self._set_all(node, node, rule.base.settings)
         for condition in rule.base.conditions:
             self._fulfil(node, condition)
         self._complete(node)
@@ -310,17 +306,24 @@ class Builder:
 
     def _describe(self, made: int, owner: int, step: Step) -> None:
         """Set what a step says about the instance that it makes."""
-        for name, text in step.settings:
-            if text == "*":
-                described = self._draft.get(owner, "description")
-                self._draft.set(made, name, described if isinstance(described, str) else "")
-            elif name == "ranking":
-                self._draft.set(made, name, int(text))
-            else:
-                self._draft.set(made, name, text)
+        self._set_all(made, owner, step.settings)
         for condition in step.conditions:
             self._fulfil(made, condition)
         self._complete(made)
+
+    def _set_all(self, node: int, owner: int, settings: tuple[tuple[str, str], ...]) -> None:
+        """Set attributes of an instance, some of them as its owner has them."""
+        for name, text in settings:
+            path, _, type_ = name.partition(":")
+            names = tuple(path.split("."))
+            if text == "*":
+                described = self._draft.get(owner, "description")
+                self._draft.set(node, name, described if isinstance(described, str) else "")
+            elif name == "ranking":
+                self._draft.set(node, name, int(text))
+            else:
+                texts = (text,) if text else ()
+                self._fulfil(node, Condition(attributes=names, type=type_, texts=texts))
 
     def _complete(self, node: int) -> None:
         """Give a new instance the context that its entity requires."""
@@ -416,6 +419,12 @@ class Builder:
             self._chain(node, path, condition.type)
             return
         if not condition.texts or path == ["items"]:
+            return
+        if path[0] == "formation":
+            for attribute in path:
+                present = self._draft.get(node, attribute)
+                node = int(present) if isinstance(present, Ref) else node
+            self._draft.set(node, last, condition.texts[0])
             return
         type_ = {"kind": "ACTION_RESOURCE_TYPE"}[path[0]]
         made = self._draft.shared((type_,), {last: condition.texts[0]})

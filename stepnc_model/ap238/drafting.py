@@ -78,17 +78,39 @@ class AimDraft:
         return id
 
     def shared(self, names: tuple[str, ...], values: Mapping[str, Value]) -> int:
-        """Instance with such values, made once for all who need it."""
+        """Instance with such values: one of the file, or one made for all who need it."""
         key = names, tuple(values.items())
         if key not in self._shared:
-            self._shared[key] = self.make(names, values)
+            present = self._alike(names, values)
+            self._shared[key] = self.make(names, values) if present is None else present
         return self._shared[key]
+
+    def _alike(self, names: tuple[str, ...], values: Mapping[str, Value]) -> int | None:
+        """Instance of the file with exactly such values, if there is one."""
+        wanted = {owner for name in names for owner in lineage(name)}
+        for id in self._instances.of_entity(names[0]):
+            keywords = {keyword for keyword, _ in self._instances.parts(id)}
+            entities = {owner for keyword in keywords for owner in lineage(keyword)}
+            if id in self._removed or entities != wanted:
+                continue
+            if all(_is_value(self._instances.values(id, k), v) for k, v in values.items()):
+                return id
+        return None
 
     def is_a(self, id: int, name: str) -> bool:
         """Whether an instance of the file or a new one is of an entity."""
         if id in self._made:
             return any(is_a(each, name) for each in self._made[id][0])
         return self._instances.is_a(id, name)
+
+    def made(self) -> tuple[int, ...]:
+        """New instances, in the order in which they were added."""
+        return tuple(self._made)
+
+    def drop_entity(self, id: int, name: str) -> None:
+        """Let a new complex instance no longer be of an entity."""
+        names, values = self._made[id]
+        self._made[id] = tuple(each for each in names if each != name), values
 
     def is_new(self, id: int) -> bool:
         """Whether an instance was added by this draft."""
@@ -319,6 +341,11 @@ class AimDraft:
             (part, tuple(_given(values, part, name) for name in own_attributes(part)))
             for part in parts
         ])
+
+
+def _is_value(found: tuple[Value, ...], value: Value) -> bool:
+    """Whether an attribute has a value, in every entity that has the attribute."""
+    return bool(found) and all(each == value for each in found)
 
 
 def _given(values: _Made, owner: str, name: str) -> Value:

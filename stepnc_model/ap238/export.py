@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from stepnc_model.ap238.building import SCHEMA, Builder, Unsayable
+from stepnc_model.ap238.completing import complete
 from stepnc_model.ap238.drafting import AimDraft
 from stepnc_model.ap238.instances import Instances
 from stepnc_model.errors import Finding, FindingList, SchemaError, Severity
@@ -53,6 +54,7 @@ def to_ap238(file: Part21File) -> Exported:
         raise SchemaError("no PROJECT and no WORKPLAN: there is no program to convert")
     for number in roots:
         builder.build(number)
+    complete(draft)
     findings = FindingList()
     findings.extend(_findings(file, builder))
     return Exported(data=draft.apply(), findings=findings.all())

@@ -248,7 +248,7 @@ class Reader:
         if condition.texts:
             wanted = {text.casefold() for text in condition.texts}
             return any(isinstance(v, str) and v.strip().casefold() in wanted for v in values)
-        return any(value not in (None, ()) for value in values)
+        return any(value not in (None, (), "") for value in values)
 
     def _number(self, place: Place, rule: Rule) -> Ref[object]:
         """Number of the instance that a place stands for; it is converted once."""

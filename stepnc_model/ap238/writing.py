@@ -65,18 +65,15 @@ class _Splice:
     def apply(self) -> bytes:
         """Bytes of the AP238 file with all changes."""
         self._remove()
+        # First what is new, in the order in which it was added: records come last, so that
+        # their numbers are the same when they are written again.
+        for number in sorted(set(self._new.ids()) - self._kept.keys()):
+            self._builder.build(number)
         for number in self._kept:
             self._change(self._view.origins[number])
-        for number in self._new.ids():
-            if number not in self._kept:
-                self._require_known(number)
         for each in self._builder.unsayable:
             raise self._refusal(each.number, each.attribute)
         return self._draft.apply()
-
-    def _require_known(self, number: int) -> None:
-        """Build a new instance that nothing built has referred to, unless it has no rule."""
-        self._builder.build(number)
 
     def _remove(self) -> None:
         """Remove the instances that are gone, with what only they use."""

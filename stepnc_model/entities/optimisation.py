@@ -38,7 +38,10 @@ class Optimisation(Entity, abstract=True):
 
 
 class TimeCriticalOptimisation(Optimisation):
-    """EXPRESS ``time_critical_optimisation``: optimum for machining time, mm per tooth, mm."""
+    """EXPRESS ``time_critical_optimisation``: limits for the least machining time.
+
+    The greatest feed per tooth and depth that are allowed, mm; the optimum is in the record.
+    """
 
     feed_per_tooth_max: float
     axial_cutting_depth_max: float
@@ -113,6 +116,16 @@ class OptimisationRecord(Entity):
     generator: str
     plunge_feed_per_tooth: float | None = None
     """mm, on the way down into the material; absent: the feed of the cut"""
+    optimum_feed_per_tooth: float | None = None
+    """mm; absent in old records, whose optimum is the maximum"""
+    optimum_axial_depth: float | None = None
+    """mm"""
+    machine_power_bound: float | None = None
+    """kW, set by an earlier record of the file"""
+    feed_per_tooth_bound: float | None = None
+    """mm, likewise"""
+    axial_depth_bound: float | None = None
+    """mm, likewise"""
 
 
 class PredictedValues(Entity):

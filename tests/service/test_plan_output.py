@@ -73,7 +73,7 @@ def test_contents_show_the_tree_and_whether_it_is_usable(
     shown = capsys.readouterr().out
     assert "workplan" in shown
     assert "REAM HOLE 2" in shown
-    assert shown.endswith("usable\n")
+    assert shown.endswith("  advice: yes\n")
 
 
 def test_nobody_sees_colours_in_a_file(capsys: pytest.CaptureFixture[str]) -> None:

@@ -34,7 +34,7 @@ class TestTurning:
             program, [change_of(program, step, depth=1.25)], FileProfile.STANDARD
         )
         edits = changed(part("shaft"), data)
-        assert edits.keys() == {202, 352}
+        assert edits.keys() == {352}
         assert edits[352] == (
             b"#352=UNIDIRECTIONAL_TURNING(1.,.T.,(1.25),$,#504,#501,#502,#506,1.,$,$);"
         )

@@ -140,12 +140,6 @@ def added(before: bytes, after: bytes) -> dict[int, bytes]:
     return {id: text for id, text in instances(after).items() if id not in old}
 
 
-def without_functions(text: bytes) -> bytes:
-    """An operation with its eighth parameter, the machine functions, left out."""
-    parameters = text.split(b",")
-    return b",".join([*parameters[:7], *parameters[8:]])
-
-
 def untouched_lines(before: bytes, after: bytes) -> list[bytes]:
     """Lines of the input that belong to no edited instance."""
     file = Part21File.from_bytes(before)

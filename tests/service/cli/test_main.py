@@ -101,7 +101,7 @@ def test_check_tells_whether_a_program_is_usable(
     part: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert stepnc("check", part) == OK
-    assert capsys.readouterr().out.endswith("usable\n")
+    assert capsys.readouterr().out.endswith("  advice: yes\n")
     text = part.read_text(encoding="ascii").replace(
         "#1=PROJECT('PAPER 002',#2", "#1=PROJECT('',$"
     )

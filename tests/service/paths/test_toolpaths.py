@@ -213,6 +213,7 @@ def test_a_workingstep_without_a_feed_cannot_be_posted_and_others_can(tmp_path: 
         post(PostRequest(file=part, control="fanuc"))
     told: list[str] = []
     paths = post(PostRequest(file=part, control="fanuc", keep_going=True), tell=told.append)
+    told = [text for text in told if text.startswith("left out: ")]
     # Nobody reams a hole that is not drilled.
     assert [item.id for item in paths.items if isinstance(item, Function)] == [
         "LOOK AT THE CLAMPING", "DRILL HOLE 1", "DRILL HOLE 2", "REAM HOLE 1", "REAM HOLE 2",

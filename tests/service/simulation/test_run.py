@@ -16,7 +16,7 @@ from service.simulation.setup import CodeRequest
 from simulator.errors import SimulationError
 from simulator.machine.totals import Total
 from simulator.motion.segments import Floats
-from stepnc_model.errors import StepNcError
+from stepnc_model.errors import SchemaError, StepNcError
 from stepnc_model.post.dialect import Dialect
 from tests.asking import asked_advice, asked_simulation
 
@@ -223,9 +223,9 @@ def test_teeth_swing_about_the_mean(part: Path, milled: Simulation) -> None:
     assert teeth.force.value > 1.2 * milled.totals[1][1].force.value
 
 
-def test_units_of_the_file_are_believed(part: Path, milled: Simulation) -> None:
-    slow = simulate(*asked_simulation(file=part, machine="vmc15", units="rpm-mmin"))
-    assert slow.whole.cutting_time > 1e4 * milled.whole.cutting_time
+def test_units_that_cannot_be_meant_are_refused_as_by_optimise(part: Path) -> None:
+    with pytest.raises(SchemaError, match=r"is below 0\.0005 mm; plausible with --units iso"):
+        simulate(*asked_simulation(file=part, machine="vmc15", units="rpm-mmin"))
 
 
 def test_a_trace_is_kept_for_the_report_alone(part: Path, milled: Simulation) -> None:
