@@ -230,7 +230,7 @@ class CodePaths:
             return {}
         starts = np.array([each.start() for each in found])
         blocks = np.searchsorted(text.starts, starts, side="right") - 1
-        moving = np.unique(moves.block)
+        moving = np.unique(moves.block).astype(np.int64)
         at: dict[int, bool] = {}
         last: dict[int, int] = {}
         for row, (block, call) in enumerate(

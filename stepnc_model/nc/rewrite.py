@@ -98,12 +98,13 @@ class _Rewriting:
         self.style = style_of(program.text, program.dialect, unit=program.unit)
         self.unchanged: list[UnchangedBlock] = []
         self._order = np.zeros(0, np.int64)
-        self._sorted = np.zeros(0, np.int32)
+        self._sorted = np.zeros(0, np.int64)
         if advice:
             kinds = (MoveKind.LINE, MoveKind.ARC, MoveKind.UNKNOWN)
             fed = np.flatnonzero(np.isin(self.moves.kind, kinds))
             self._order = fed[np.argsort(self.moves.block[fed], kind="stable")]
-            self._sorted = self.moves.block[self._order]
+            # As wide as what is looked up: a search would copy the array otherwise.
+            self._sorted = self.moves.block[self._order].astype(np.int64)
         self._feed_words: dict[int, str | None] = {}
         self.plans: dict[int, _Plan] = {}
         for block in sorted(advice):
