@@ -29,6 +29,7 @@ from stepnc_model.ap238.table import (
     Row,
     Rule,
     Step,
+    loose_rule,
     rules,
     rules_for,
 )
@@ -124,11 +125,24 @@ class Reader:
                     for id in self.instances.of_entity(name):
                         if self.matches(id, rule):
                             self._number(Place(id=id), rule)
+        for place in self.loose():
+            self._visited.update(place.way)
+            self._reference(place, AttributeSlot(references=(loose_rule().entity,)), "items")
         while self._waiting:
             number, origin = self._waiting.popleft()
             self._convert(number, origin)
         self._note_unread()
         return self._reading
+
+    def loose(self) -> list[Place]:
+        """Items that nothing refers to in ISO 14649."""
+        rule = loose_rule()
+        return [
+            place
+            for id in self.instances.of_entity(rule.base.types[0])
+            if self.matches(id, rule)
+            for place in self.follow(Place(id=id, way=(id,)), rule.proof)
+        ]
 
     def _note_unread(self) -> None:
         """Note the properties of converted instances that no path has led to."""

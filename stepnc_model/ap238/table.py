@@ -146,13 +146,27 @@ class Rule:
     rows: tuple[Row, ...] = ()
     is_root: bool = False
     """Whether every such instance is read, even if nothing refers to it."""
+    is_loose: bool = False
+    """Whether the proof leads to instances that nothing refers to in ISO 14649."""
+
+
+@cache
+def _all_rules() -> tuple[Rule, ...]:
+    """All rules, in the order of the table."""
+    text = files("stepnc_model.ap238").joinpath("paths.txt").read_text("ascii")
+    return tuple(_Parser(text).rules())
 
 
 @cache
 def rules() -> tuple[Rule, ...]:
-    """All rules, in the order of the table."""
-    text = files("stepnc_model.ap238").joinpath("paths.txt").read_text("ascii")
-    return tuple(_Parser(text).rules())
+    """Rules of instances that stand for entities, in the order of the table."""
+    return tuple(rule for rule in _all_rules() if not rule.is_loose)
+
+
+@cache
+def loose_rule() -> Rule:
+    """Rule of the parameters to which nothing refers in ISO 14649."""
+    return next(rule for rule in _all_rules() if rule.is_loose)
 
 
 @cache
@@ -166,7 +180,7 @@ _STEP = re.compile(
     r"|:(?P<type>[A-Z0-9_]+)|\[(?P<condition>[^\]]*)\]|\{(?P<made>[^}]*)\}|\^(?P<order>[a-z_]+))"
 )
 _CALL = re.compile(r"\b([a-z_]+)\(([^()]*)\)")
-_RULE = re.compile(r"(root )?([A-Z0-9_]+) = ([A-Z0-9_&]+)(.*)")
+_RULE = re.compile(r"(root |loose )?([A-Z0-9_]+) = ([A-Z0-9_&]+)(.*)")
 _ROW = re.compile(r"  ([a-z0-9_]+) (~?=) ?(.*)")
 _MACRO = re.compile(r"macro ([a-z_]+)\(([^()]*)\) = (.*)")
 
@@ -179,6 +193,7 @@ class _Draft:
     base: Step
     proof: tuple[Step, ...]
     is_root: bool
+    is_loose: bool
     rows: dict[str, Row] = field(default_factory=dict)
 
     def finished(self) -> Rule:
@@ -190,6 +205,7 @@ class _Draft:
             proof=self.proof,
             rows=rows,
             is_root=self.is_root,
+            is_loose=self.is_loose,
         )
 
 
@@ -256,7 +272,8 @@ class _Parser:
                 settings=base.settings,
             ),
             proof=tuple(proof),
-            is_root=bool(match[1]),
+            is_root=match[1] == "root ",
+            is_loose=match[1] == "loose ",
             rows=rows,
         )
 

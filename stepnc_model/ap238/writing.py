@@ -10,6 +10,7 @@ from itertools import pairwise
 
 from stepnc_model.ap238.building import Builder, aim_number
 from stepnc_model.ap238.drafting import LISTS, AimDraft
+from stepnc_model.ap238.loose import hang, loose_numbers, without
 from stepnc_model.ap238.quantity import MEASURES, conversion
 from stepnc_model.ap238.reading import RULE, Converted, Place, Reader, measure_kind
 from stepnc_model.ap238.table import Ending, Kind, Move, Path, Row
@@ -67,8 +68,12 @@ class _Splice:
         self._remove()
         # First what is new, in the order in which it was added: records come last, so that
         # their numbers are the same when they are written again.
-        for number in sorted(set(self._new.ids()) - self._kept.keys()):
-            self._builder.build(number)
+        added = sorted(set(self._new.ids()) - self._kept.keys())
+        built = {number: self._builder.build(number) for number in added}
+        loose = loose_numbers(self._new, added)
+        items = {number: node for number in loose if (node := built[number]) is not None}
+        if items:
+            hang(self._draft, self._new, items, self._kept[self._new.ids_of("WORKPLAN")[0]])
         for number in self._kept:
             self._change(self._view.origins[number])
         for each in self._builder.unsayable:
@@ -92,6 +97,7 @@ class _Splice:
                         gone += _own_part(place, path)
             if each.origin not in kept:
                 gone.append(each.origin)
+        gone += without(self._reader, self._draft, set(gone))
         self._draft.remove_with(gone, kept)
         self._draft.forget_removed()
 
