@@ -10,11 +10,12 @@ References
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from stepnc_model.ap238.building import SCHEMA, Builder, Unsayable
+from stepnc_model.ap238.building import Builder, Unsayable
 from stepnc_model.ap238.completing import complete
 from stepnc_model.ap238.drafting import AimDraft
 from stepnc_model.ap238.instances import Instances
 from stepnc_model.ap238.loose import hang, loose_numbers
+from stepnc_model.ap238.requirements import SCHEMA
 from stepnc_model.errors import Finding, FindingList, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.writer import format_value

@@ -7,7 +7,7 @@ AIM every item needs a representation: those of one workingstep get one, by thei
 from collections.abc import Iterable, Mapping
 
 from stepnc_model.ap238.drafting import AimDraft
-from stepnc_model.ap238.reading import Reader
+from stepnc_model.ap238.reading import AimReader
 from stepnc_model.ap238.table import loose_rule
 from stepnc_model.entities.catalogue import classes
 from stepnc_model.part21.reader import Part21File
@@ -78,12 +78,12 @@ def hang(draft: AimDraft, file: Part21File, items: Mapping[int, int], owner: int
         )
 
 
-def without(reader: Reader, draft: AimDraft, gone: set[int]) -> list[int]:
+def without(reader: AimReader, draft: AimDraft, gone: set[int]) -> list[int]:
     """Take items out of their properties; return the instances of those left empty.
 
     Parameters
     ----------
-    reader : Reader
+    reader : AimReader
     draft : AimDraft
     gone : set of int
         Items to be removed.

@@ -21,7 +21,7 @@ from stepnc_model.entities.conversion import slots_of
 from stepnc_model.entities.entity import Entity
 
 
-class Move(StrEnum):
+class PathMove(StrEnum):
     """Direction of one step of a reference path."""
 
     FORWARD = "."
@@ -35,7 +35,7 @@ class Move(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Condition:
+class PathCondition:
     """Condition that an attribute holds one of some texts, or anything."""
 
     attributes: tuple[str, ...]
@@ -47,14 +47,14 @@ class Condition:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Step:
+class PathStep:
     """Step of a reference path with its conditions."""
 
-    move: Move
+    move: PathMove
     entity: str = ""
     """Entity of the step; empty for any."""
     attribute: str = ""
-    conditions: tuple[Condition, ...] = ()
+    conditions: tuple[PathCondition, ...] = ()
     types: tuple[str, ...] = ()
     """Entities that the instance must be."""
     order: str = ""
@@ -118,7 +118,7 @@ class Ending:
 class Path:
     """Reference path with the value at its end."""
 
-    steps: tuple[Step, ...]
+    steps: tuple[PathStep, ...]
     ending: Ending
 
 
@@ -139,9 +139,9 @@ class Rule:
     """AIM instance that stands for an entity, and the paths of its attributes."""
 
     entity: type[Entity]
-    base: Step
+    base: PathStep
     """Entity and conditions of the instance."""
-    proof: tuple[Step, ...] = ()
+    proof: tuple[PathStep, ...] = ()
     """Path that must lead somewhere."""
     rows: tuple[Row, ...] = ()
     is_root: bool = False
@@ -154,7 +154,7 @@ class Rule:
 def _all_rules() -> tuple[Rule, ...]:
     """All rules, in the order of the table."""
     text = files("stepnc_model.ap238").joinpath("paths.txt").read_text("ascii")
-    return tuple(_Parser(text).rules())
+    return tuple(_TableParser(text).rules())
 
 
 @cache
@@ -190,8 +190,8 @@ class _Draft:
     """Rule while its rows are collected."""
 
     entity: type[Entity]
-    base: Step
-    proof: tuple[Step, ...]
+    base: PathStep
+    proof: tuple[PathStep, ...]
     is_root: bool
     is_loose: bool
     rows: dict[str, Row] = field(default_factory=dict)
@@ -209,7 +209,7 @@ class _Draft:
         )
 
 
-class _Parser:
+class _TableParser:
     """Parser of the table; a mistake in it is a ``ValueError`` with the line."""
 
     def __init__(self, text: str) -> None:
@@ -264,8 +264,8 @@ class _Parser:
             rows.update(self._groups[name])
         return _Draft(
             entity=classes()[match[2]],
-            base=Step(
-                move=Move.STAY,
+            base=PathStep(
+                move=PathMove.STAY,
                 types=made,
                 conditions=base.conditions,
                 made=base.made or made,
@@ -316,7 +316,7 @@ class _Parser:
             ending=_ending(ending.strip()) if arrow else Ending(kind=Kind.REFERENCE),
         )
 
-    def _steps(self, text: str) -> tuple[Step, ...]:
+    def _steps(self, text: str) -> tuple[PathStep, ...]:
         """Steps of a path; types, conditions and settings belong to the step before them."""
         expanded, place, steps = self._expanded(text).strip(), 0, list[_StepDraft]()
         while place < len(expanded):
@@ -332,18 +332,18 @@ class _Parser:
 class _StepDraft:
     """Step while its modifiers are collected."""
 
-    move: Move
+    move: PathMove
     entity: str = ""
     attribute: str = ""
-    conditions: list[Condition] = field(default_factory=list)
+    conditions: list[PathCondition] = field(default_factory=list)
     types: list[str] = field(default_factory=list)
     order: str = ""
     made: tuple[str, ...] = ()
     settings: list[tuple[str, str]] = field(default_factory=list)
 
-    def finished(self) -> Step:
+    def finished(self) -> PathStep:
         """Step with all its modifiers."""
-        return Step(
+        return PathStep(
             move=self.move,
             entity=self.entity,
             attribute=self.attribute,
@@ -360,14 +360,14 @@ def _add_step(steps: list[_StepDraft], match: re.Match[str]) -> None:
     kind = match.lastgroup
     if kind == "back":
         steps.append(
-            _StepDraft(Move(match["move"]), entity=match["entity"], attribute=match["back"])
+            _StepDraft(PathMove(match["move"]), entity=match["entity"], attribute=match["back"])
         )
         return
     if kind == "forward":
-        steps.append(_StepDraft(Move.FORWARD, attribute=match["forward"]))
+        steps.append(_StepDraft(PathMove.FORWARD, attribute=match["forward"]))
         return
     if not steps:
-        steps.append(_StepDraft(Move.STAY))
+        steps.append(_StepDraft(PathMove.STAY))
     step = steps[-1]
     if kind == "type":
         step.types.append(match["type"])
@@ -379,11 +379,11 @@ def _add_step(steps: list[_StepDraft], match: re.Match[str]) -> None:
         _add_settings(step, match["made"])
 
 
-def _condition(text: str) -> Condition:
+def _condition(text: str) -> PathCondition:
     """Condition from ``a.b=text|text``, ``a.b:ENTITY`` or ``a``."""
     path, equals, texts = text.partition("=")
     names, _, type_ = path.partition(":")
-    return Condition(
+    return PathCondition(
         attributes=tuple(names.split(".")),
         type=type_,
         texts=tuple(texts.split("|")) if equals else (),
@@ -436,9 +436,9 @@ def _same(words: list[str]) -> Rule:
             kind = Kind.COORDINATES
         elif inner.references and not inner.plain:
             kind = Kind.REFERENCE
-        step = Step(move=Move.FORWARD, attribute=attribute)
+        step = PathStep(move=PathMove.FORWARD, attribute=attribute)
         rows.append(
             Row(attribute=attribute, paths=(Path(steps=(step,), ending=Ending(kind=kind)),))
         )
-    base = Step(move=Move.STAY, types=(name,), made=(name,))
+    base = PathStep(move=PathMove.STAY, types=(name,), made=(name,))
     return Rule(entity=entity, base=base, rows=tuple(rows))
