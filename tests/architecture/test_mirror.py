@@ -13,6 +13,14 @@ NOUNS = {
 """folders whose modules are tested together"""
 
 TOGETHER = {
+    "stepnc_model/ap238/building.py": "builds whole programs in tests/.../test_export.py",
+    "stepnc_model/ap238/completing.py": "held against the long form in test_export.py",
+    "stepnc_model/ap238/dictionary.py": "held against the long form in test_table.py",
+    "stepnc_model/ap238/drafting.py": "changes files in test_writing.py and test_export.py",
+    "stepnc_model/ap238/following.py": "follows all paths in test_reading.py",
+    "stepnc_model/ap238/loose.py": "carries the records of test_writing.py",
+    "stepnc_model/ap238/requirements.py": "held against the long form in test_export.py",
+    "stepnc_model/ap238/view.py": "read by every command in test_reading.py",
     "optimiser/along_path/pieces.py": "its parts are checked in along_path/test_runs.py",
     "optimiser/along_path/tool_bounds.py": "kept by tests/service/along_path/test_of_code.py",
     "service/along_path/course.py": "run in tests/service/along_path/test_run.py",
