@@ -239,12 +239,17 @@ def _remarks(program: Program, tell: Tell) -> tuple[Finding, ...]:
 
 
 def _with_tool_paths(
-    plan: Plan, program: Program, along: "FeedsAlongPath", profile: FileProfile, tell: Tell
+    plan: Plan,
+    program: Program,
+    along: "FeedsAlongPath",
+    profile: FileProfile | None,
+    tell: Tell,
 ) -> tuple[Plan, bytes]:
     """Write feeds along the paths into the program; the plan gets what could not be written."""
     from service.along_path.path_file import with_tool_paths  # noqa: PLC0415 (numpy, shapely)
 
-    file = with_tool_paths(program, along, profile)
+    # Without records a file is for readers that know the standard only.
+    file = with_tool_paths(program, along, profile or FileProfile.STANDARD)
     tell(f"tool paths written into the program: {file.count}")
     return replace(plan, findings=(*plan.findings, *file.findings)), file.data
 

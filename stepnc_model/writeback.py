@@ -120,7 +120,7 @@ def convert(program: Program, profile: FileProfile) -> bytes:
     SchemaError
         If the profile cannot represent what the program holds.
     """
-    profile = profile_for(program, profile)
+    profile = profile_for(program, profile) or profile
     _require_form(program, profile)
     draft = Draft(program)
     found = {

@@ -9,7 +9,6 @@ from stepnc_model.ap238.drafting import AimDraft
 from stepnc_model.ap238.instances import references
 from stepnc_model.part21.values import Real, Ref, Typed
 
-
 _QUALIFIED = "QUALIFIED_REPRESENTATION_ITEM"
 
 

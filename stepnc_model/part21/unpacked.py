@@ -9,9 +9,10 @@ References
 .. [2] RFC 1952 (gzip).
 """
 
+import struct
 import zlib
 from io import BytesIO
-from zipfile import BadZipFile, ZipFile, ZipInfo
+from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
 from stepnc_model.errors import Part21Error
 
@@ -22,8 +23,21 @@ MAX_MEMBERS = 1000
 ROOT = "iso-10303.p21"
 """Name of the root file of an archive, in lower case."""
 
-_ZIP = b"PK\x03\x04"
+_ZIP = (b"PK\x03\x04", b"PK\x05\x06")
+"""First bytes of an archive, and of one without files."""
 _GZIP = b"\x1f\x8b"
+_DAMAGES = (
+    BadZipFile,
+    EOFError,
+    NotImplementedError,
+    OSError,
+    RuntimeError,
+    ValueError,
+    struct.error,
+    zlib.error,
+)
+"""What the standard library raises for a damaged archive, depending on where it is damaged."""
+_METHODS = (ZIP_STORED, ZIP_DEFLATED)
 _GZIP_WINDOW = 16 + zlib.MAX_WBITS
 _OPENING = b"ISO-10303-21"
 _PEEKED = 4096
@@ -79,7 +93,7 @@ def _from_zip(data: bytes) -> bytes:
     try:
         with ZipFile(BytesIO(data)) as archive:
             return _read(archive, _member(archive))
-    except (BadZipFile, zlib.error, EOFError, NotImplementedError, OSError) as error:
+    except _DAMAGES as error:
         raise Part21Error(f"the ZIP archive cannot be read: {error}") from error
 
 
@@ -92,6 +106,9 @@ def _member(archive: ZipFile) -> ZipInfo:
     for each in members:
         if each.flag_bits & 1:
             raise Part21Error(f"'{each.filename}' in the ZIP archive is encrypted")
+        if each.compress_type not in _METHODS:
+            message = f"'{each.filename}' in the ZIP archive is neither stored nor deflated"
+            raise Part21Error(message)
     roots = [each for each in members if each.filename.lower() == ROOT]
     found = roots or [each for each in members if _OPENING in _read(archive, each, _PEEKED)]
     if len(found) != 1:

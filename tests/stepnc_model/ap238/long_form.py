@@ -56,7 +56,9 @@ def schema(path: Path) -> Schema:
         head, _, body = match[2].partition(";")
         supers = re.search(r"SUBTYPE OF \((.*?)\)\s*$", head.strip(), re.DOTALL)
         name = match[1].lower()
-        found.supertypes[name] = [each.strip() for each in supers[1].split(",")] if supers else []
+        found.supertypes[name] = (
+            [each.strip() for each in supers[1].split(",")] if supers else []
+        )
         found.attributes[name] = [
             (attribute.strip(), " ".join(attributes[2].split()))
             for part in _PARTS.split(body)[0].split(";")
@@ -90,31 +92,36 @@ def deviations(file: Part21File, long_form: Schema) -> Iterator[str]:
 
 def _faults(file: Part21File, long_form: Schema, kind: str, value: Value) -> Iterator[str]:
     """Faults of one value."""
+    needed = kind.removeprefix("OPTIONAL ").strip()
+    aggregate = _AGGREGATE.match(needed)
     if value is None:
-        if not kind.startswith("OPTIONAL"):
+        if needed == kind:
             yield "$ where a value is required"
+    elif isinstance(value, Derived):
         return
-    kind = kind.removeprefix("OPTIONAL ").strip()
-    if isinstance(value, Derived):
-        return
-    aggregate = _AGGREGATE.match(kind)
-    if aggregate is not None:
+    elif aggregate is not None:
         if not isinstance(value, tuple):
             yield "no list"
             return
         for item in value:
-            yield from _faults(file, long_form, kind[aggregate.end() :], item)
-        return
-    if isinstance(value, Typed) and isinstance(value.value, tuple):
-        for item in value.value:
-            if isinstance(item, Ref) and int(item) not in file:
-                yield f"{item} does not exist"
-        return
-    if isinstance(value, Ref):
-        yield from _reference_faults(file, long_form, kind, value)
-    elif kind in ("label", "text", "identifier") and not isinstance(value, str):
-        yield f"{value!r} where a text is required"
-    elif kind in ("label", "text") and isinstance(value, Enumeration):
+            yield from _faults(file, long_form, needed[aggregate.end() :], item)
+    elif isinstance(value, Typed):
+        inner = value.value if isinstance(value.value, tuple) else ()
+        yield from (
+            f"{item} does not exist"
+            for item in inner
+            if isinstance(item, Ref) and int(item) not in file
+        )
+    elif isinstance(value, Ref):
+        yield from _reference_faults(file, long_form, needed, value)
+    else:
+        yield from _plain_faults(long_form, needed, value)
+
+
+def _plain_faults(long_form: Schema, kind: str, value: Value) -> Iterator[str]:
+    """Faults of a text or a number."""
+    is_text = isinstance(value, str) and not isinstance(value, Enumeration)
+    if kind in ("label", "text", "identifier") and not is_text:
         yield f"{value!r} where a text is required"
     elif kind in long_form.supertypes:
         yield f"{value!r} where a reference to {kind} is required"

@@ -1,13 +1,15 @@
 """Programs of ISO 14649 written as AP238, and read back."""
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stepnc_model.ap238.export import to_ap238
 from stepnc_model.ap238.view import AimView
 from stepnc_model.errors import SchemaError
 from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.values import Real
+from stepnc_model.part21.writer import Edits
 from stepnc_model.program import Program
 from tests.stepnc_model.ap238.long_form import deviations, schema
 from tests.stepnc_model.ap238.samples import (
@@ -67,13 +69,13 @@ def test_a_file_without_program_is_refused() -> None:
         to_ap238(file)
 
 
+@settings(max_examples=20)
 @given(
-    number=st.floats(min_value=1e-6, max_value=1e6).filter(lambda value: f"{value!r}" != "inf"),
+    number=st.floats(min_value=1e-6, max_value=1e6),
     depth=st.floats(min_value=1e-6, max_value=1e3),
 )
 def test_any_number_comes_back_as_it_was(number: float, depth: float) -> None:
-    text = own("paper002").data.replace(b"MILLING_TECHNOLOGY(", b"MILLING_TECHNOLOGY(", 1)
-    file = Part21File.from_bytes(text)
+    file = own("paper002")
     program = Program(file)
     step = program.workingsteps[0]
     changed = _with(file, int(step.technology_ref), 0, number)
@@ -84,9 +86,6 @@ def test_any_number_comes_back_as_it_was(number: float, depth: float) -> None:
 
 def _with(file: Part21File, id: int, position: int, value: float) -> Part21File:
     """File with another number in one instance."""
-    from stepnc_model.part21.values import Real
-    from stepnc_model.part21.writer import Edits
-
     edits = Edits(file)
     edits.replace_parameter(id, position, Real(value))
     return Part21File.from_bytes(edits.apply())

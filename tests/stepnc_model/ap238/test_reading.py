@@ -116,7 +116,9 @@ class TestTwin:
         for mine, its in zip(one, other, strict=True):
             assert shape(mine) == shape(its)
 
-    def test_without_a_raw_part_that_contradicts_the_features_there_would_be_paths(self) -> None:
+    def test_without_a_raw_part_that_contradicts_the_features_there_would_be_paths(
+        self,
+    ) -> None:
         errors: list[str] = []
         list(generate(Program(read(public(MILLING))), lambda _, e: errors.append(str(e))))
         assert "breaks through the workpiece" in errors[0]
@@ -247,7 +249,9 @@ class TestBrokenFiles:
         broken = broken.replace(b"'finishing',#%d,#" % number, b"'finishing',#%d,#9" % number)
         assert broken != data
         (finding,) = [
-            each for each in Program(read(broken)).findings() if "does not exist" in each.message
+            each
+            for each in Program(read(broken)).findings()
+            if "does not exist" in each.message
         ]
         assert finding.severity is Severity.ERROR
         assert finding.entity.endswith("ACTION_PROPERTY_REPRESENTATION")

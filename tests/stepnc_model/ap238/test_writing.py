@@ -1,4 +1,4 @@
-"""Advice brought into AP238 files: numbers in place, records as properties, the rest untouched."""
+"""Advice in AP238 files: numbers in place, records as properties, the rest untouched."""
 
 import difflib
 import re
@@ -23,7 +23,9 @@ from tests.stepnc_model.written import RECORD
 SAMPLES = ("bracket", "paper002", "shaft")
 
 
-def advised(data: bytes, *, feed: float, profile: FileProfile = FileProfile.OPTIMISATION) -> bytes:
+def advised(
+    data: bytes, *, feed: float, profile: FileProfile = FileProfile.OPTIMISATION
+) -> bytes:
     """File with another feed and a record in every workingstep that has a technology."""
     program = Program(read(data))
     changes = [
@@ -75,13 +77,16 @@ class TestNumbers:
             feed=0.0125,
         )
         data = writeback.write(program, [change], FileProfile.OPTIMISATION)
-        assert b"#824=MEASURE_REPRESENTATION_ITEM('feed speed',NUMERIC_MEASURE(12.5),#833);" in data
+        assert (
+            b"#824=MEASURE_REPRESENTATION_ITEM('feed speed',NUMERIC_MEASURE(12.5),#833);"
+            in data
+        )
 
     def test_a_depth_within_a_complex_instance_keeps_its_other_parts(self) -> None:
         program = Program(read(public(MILLING)))
         draft = Draft(program)
         assert edit_depth(draft, program.workingsteps[3], 1.25)
-        written = writeback._finished(draft)  # noqa: SLF001 (what write() ends with)
+        written = writeback._finished(draft)
         gone, new = lines_of(public(MILLING), written)
         assert gone == ["MEASURE_WITH_UNIT(LENGTH_MEASURE(2.5),#1601)"]
         assert new == ["MEASURE_WITH_UNIT(LENGTH_MEASURE(1.25),#1601)"]
@@ -99,7 +104,9 @@ class TestNumbers:
             feed=0.0125,
         )
         written = Program(read(writeback.write(program, [change], FileProfile.OPTIMISATION)))
-        feeds = [programmed(written, s.technology_ref).feed.value for s in written.workingsteps[:2]]
+        feeds = [
+            programmed(written, s.technology_ref).feed.value for s in written.workingsteps[:2]
+        ]
         assert feeds == [pytest.approx(12.5), pytest.approx(0.04)]
         assert drilling.id == "WS DRILL HOLE1"
 
@@ -131,7 +138,9 @@ class TestRecords:
 
     def test_every_profile_is_the_one_of_ap238(self) -> None:
         data = exported("paper002")
-        written = {profile: advised(data, feed=0.0125, profile=profile) for profile in FileProfile}
+        written = {
+            profile: advised(data, feed=0.0125, profile=profile) for profile in FileProfile
+        }
         assert len(set(written.values())) == 1
 
     def test_without_changes_the_bytes_are_those_of_the_file(self) -> None:
@@ -165,11 +174,13 @@ class TestLongForm:
 class TestRefusals:
     def test_a_change_that_ap238_has_no_path_for_is_refused(self) -> None:
         program = Program(read(exported("paper002")))
-        (ref, _) = next(program.model.of_type(type(program.get(program.workingsteps[0].tool_ref))))
+        (ref, _) = next(
+            program.model.of_type(type(program.get(program.workingsteps[0].tool_ref)))
+        )
         draft = Draft(program)
         draft.put(ref, "tool_holder_diameter_for_spindle_orientation", Real(12.0))
         with pytest.raises(SchemaError, match="cannot be written into an AP238 file"):
-            writeback._finished(draft)  # noqa: SLF001 (what write() ends with)
+            writeback._finished(draft)
 
     def test_no_outcome_is_lost_silently(self) -> None:
         program = Program(read(exported("paper002")))
