@@ -66,6 +66,8 @@ SCHEMA = (
         id TEXT PRIMARY KEY, pid INTEGER NOT NULL, seen REAL NOT NULL
     ) STRICT
     """,
+    # The share of the queue belongs to a key; several keys may have one name.
+    "ALTER TABLE jobs ADD COLUMN key TEXT NOT NULL DEFAULT ''",
 )
 """Migration script of each version; the file's version is the number of scripts applied."""
 

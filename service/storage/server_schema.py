@@ -78,5 +78,6 @@ SCHEMA: tuple[tuple[str, ...], ...] = (
         # Identity of the folder of files, which all hosts must share.
         "CREATE TABLE folder (id TEXT NOT NULL)",
     ),
+    ("ALTER TABLE jobs ADD COLUMN key TEXT NOT NULL DEFAULT ''",),
 )
 """Migration statements of each version; the version is the number of entries applied."""
