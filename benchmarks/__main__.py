@@ -3,11 +3,13 @@
 from benchmarks import (
     advice,
     agent,
+    along_path,
     breakage,
     closed_loop,
     cluster,
     control_step,
     factory,
+    feed_profile,
     jobs_on_postgres,
     knowledge,
     learning,
@@ -31,6 +33,8 @@ from benchmarks import (
 for title, bench in (
     ("Part 21", part21),
     ("Workingsteps", workingsteps),
+    ("Feed along the path", feed_profile),
+    ("Feeds of the samples", along_path),
     ("Whole process", process),
     ("Plan beside run", promised),
     ("Pockets", pockets),

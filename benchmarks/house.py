@@ -25,6 +25,8 @@ ROOT = Path(__file__).parents[1]
 PRODUCT = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service")
 
 ALLOWED = {
+    "optimiser.profile.smooth_limit": "problems of paths without jumps, made by hand",
+    "optimiser.profile.tangential_limit": "problems made by hand",
     "kbe.migrations.versions.0001_outcomes.upgrade": "Alembic calls it by this name",
     "service.rest.app.application": "the application by itself, for tests and other servers",
     "service.rest.app.openapi": "the document by itself, for the pages",
@@ -36,9 +38,7 @@ ALLOWED = {
 """public names that nothing reaches, with the reason why they stay; 20 at most"""
 
 AHEAD = {
-    "optimiser.levels": "feeds along the path",
-    "optimiser.profile": "feeds along the path",
-    "optimiser.sweep": "feeds along the path",
+    "optimiser.profile_program": "the judge of feeds along the path, and the smoothest profile",
 }
 """modules that no command asks for yet, with what will; their public names may be unreached"""
 

@@ -35,8 +35,10 @@ class SolverFailed(OptimisationError):
     ----------
     status : str
         Status reported by the solver.
+    program : str
+        Program that was solved.
     """
 
-    def __init__(self, status: str) -> None:
-        super().__init__(f"the geometric program has no solution: {status}")
+    def __init__(self, status: str, *, program: str = "geometric program") -> None:
+        super().__init__(f"the {program} has no solution: {status}")
         self.status = status

@@ -120,6 +120,38 @@ class ProfileProblem:
             raise ValueError(f"{message}: put a station between them")
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class NamedCaps:
+    """Caps on the squared feed at N stations, each with the name of its limit.
+
+    Raises
+    ------
+    ValueError
+        If names and caps differ in number, or there is none.
+    """
+
+    names: tuple[str, ...]
+    squares: Floats
+    """Caps on b, (K, N) for K names, mm²/s²; infinite where a limit does not apply."""
+
+    def __post_init__(self) -> None:
+        if self.squares.ndim != 2 or not 0 < len(self.names) == len(self.squares):
+            message = f"{len(self.names)} names and caps of shape {self.squares.shape}"
+            raise ValueError(f"each name needs a row of caps: {message}")
+
+    @property
+    def least(self) -> Floats:
+        """Least cap at each station, (N,), mm²/s²."""
+        least: Floats = self.squares.min(axis=0)
+        return least
+
+    @property
+    def which(self) -> Ints:
+        """Index of the name of the least cap at each station, (N,)."""
+        which: Ints = self.squares.argmin(axis=0)
+        return which
+
+
 def too_fast_at_start(start: float, greatest: float, *, limit: str) -> Infeasible:
     """Error of a path that is entered faster than a limit permits; both are b, mm²/s²."""
     entry, most = start**0.5, greatest**0.5
@@ -237,6 +269,11 @@ def interval_times(lengths: Floats, squares: Floats) -> Floats:
     feeds = np.sqrt(squares)
     times: Floats = 2.0 * lengths / (feeds[:-1] + feeds[1:])
     return times
+
+
+def profile_of(lengths: Floats, squares: Floats) -> PathProfile:
+    """Profile of squared feeds, (N,), mm²/s², with its time."""
+    return PathProfile(squares=squares, time=float(interval_times(lengths, squares).sum()))
 
 
 def _require_positive(values: Floats, message: str) -> None:

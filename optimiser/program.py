@@ -7,7 +7,8 @@ of the limits: the relative rise of the cost for a relative fall of the bound. T
 compiled once with parameters; a solve only sets them.
 
 S. Boyd, S.-J. Kim, L. Vandenberghe, A. Hassibi, "A tutorial on geometric programming", Optim.
-Eng. 8 (2007) 67–127, §§ 2 and 3.3. The only module that uses cvxpy.
+Eng. 8 (2007) 67–127, §§ 2 and 3.3. Only the programs of the optimiser use cvxpy: this one,
+:mod:`optimiser.profile_program` and :mod:`optimiser.jerk_program`.
 """
 
 import warnings

@@ -13,10 +13,12 @@ limits are symmetric, rest is always possible, and what can be travelled is all 
 sweep from the start then takes the greatest acceleration that stays within K. An interval
 keeps the limits of the axes at both of its ends with its one acceleration, as the
 interpolation scheme of [1]_ does. On lines and where the curvature is smooth this is the
-optimum of the discrete problem; where the curvature jumps it may lie above it by about 1e-4
-at stations 0.1 mm apart, which :mod:`optimiser.profile_program` measures.
+optimum of the discrete problem; where the curvature jumps its time may lie above that of the
+optimum, on the paths of the tests and benchmarks by at most 3e-5, which
+:mod:`optimiser.profile_program` measures.
 
-Both need O(N) time and, besides the result, no memory.
+Both need O(N) time and, besides the result, no memory. Other limits than these, such as one of
+the jerk, are those of :mod:`optimiser.jerk_program`.
 
 References
 ----------
@@ -25,7 +27,7 @@ References
    doi:10.1109/TRO.2018.2819195.
 """
 
-from math import sqrt
+from math import inf, sqrt
 
 import numpy as np
 
@@ -65,12 +67,17 @@ def sweep(problem: ProfileProblem, limit: TangentialLimit) -> PathProfile:
         size = getattr(limit, name).shape
         if size not in {(1,), problem.lengths.shape}:
             raise ValueError(f"{name} must have shape (1,) or {problem.lengths.shape}: {size}")
-    squares = problem.bounds()
-    sweep_back(problem.lengths, np.ascontiguousarray(limit.braking), squares)
+    squares, total = problem.bounds(), np.zeros(1)
+    sweep_along(
+        problem.lengths,
+        np.ascontiguousarray(limit.accelerating),
+        np.ascontiguousarray(limit.braking),
+        squares,
+        total,
+    )
     if squares[0] < problem.start:
         raise too_fast_at_start(problem.start, float(squares[0]), limit="braking")
-    sweep_on(problem.lengths, np.ascontiguousarray(limit.accelerating), squares)
-    return profile_of(problem.lengths, squares)
+    return PathProfile(squares=squares, time=float(total[0]))
 
 
 def sweep_axes(problem: ProfileProblem, limit: AxisLimit) -> PathProfile:
@@ -97,58 +104,124 @@ def sweep_axes(problem: ProfileProblem, limit: AxisLimit) -> PathProfile:
     if len(limit.start_tangent) != len(problem.lengths):
         message = f"{len(limit.start_tangent)} intervals of the axes"
         raise ValueError(f"{message} do not fit {len(problem.lengths)} intervals of the path")
-    squares = problem.bounds()
+    squares, total = problem.bounds(), np.zeros(1)
     geometry = (
         np.ascontiguousarray(limit.start_tangent),
         np.ascontiguousarray(limit.start_curvature),
         np.ascontiguousarray(limit.end_tangent),
         np.ascontiguousarray(limit.end_curvature),
     )
-    reach_back(problem.lengths, limit.acceleration, geometry, squares)
+    reach_along(problem.lengths, limit.acceleration, geometry, squares, total)
     if squares[0] < problem.start:
         limits = "acceleration of the axes"
         raise too_fast_at_start(problem.start, float(squares[0]), limit=limits)
-    reach_on(problem.lengths, limit.acceleration, geometry, squares)
-    return profile_of(problem.lengths, squares)
-
-
-def profile_of(lengths: Floats, squares: Floats) -> PathProfile:
-    """PathProfile of squared feeds, with its time.
-
-    Parameters
-    ----------
-    lengths : (N−1,) array, mm
-    squares : (N,) array, mm²/s²
-    """
-    total = np.zeros(1)
-    add_times(np.ascontiguousarray(lengths), squares, total)
     return PathProfile(squares=squares, time=float(total[0]))
 
 
 @entry
-def sweep_back(lengths: Floats, braking: Floats, squares: Floats) -> None:
-    """Lower squared feeds, from the end, to those from which braking suffices."""
-    stride = 1 if len(braking) > 1 else 0
-    after = squares[len(lengths)]
-    for row in range(len(lengths) - 1, -1, -1):
-        after = min(squares[row], after + 2.0 * braking[row * stride] * lengths[row])
-        squares[row] = after
+def sweep_along(
+    lengths: Floats, accelerating: Floats, braking: Floats, squares: Floats, total: Floats
+) -> None:
+    """Lower squared feeds to what can be reached, and add up the time.
+
+    Parameters
+    ----------
+    lengths : (N−1,) array, mm
+    accelerating, braking : (1,) or (N−1,) array, mm/s²
+    squares : (N,) array, mm²/s²
+        Caps, lowered in place; from the end alone if the first of them falls.
+    total : (1,) array, s
+        Time.
+    """
+    start = squares[0]
+    _sweep_back(lengths, braking, squares)
+    if squares[0] >= start:
+        _sweep_on(lengths, accelerating, squares)
+        total[0] = _time(lengths, squares)
 
 
-@entry
-def sweep_on(lengths: Floats, accelerating: Floats, squares: Floats) -> None:
-    """Lower squared feeds, from the start, to those that can be reached."""
-    stride = 1 if len(accelerating) > 1 else 0
-    before = squares[0]
-    for row in range(len(lengths)):
-        before = min(squares[row + 1], before + 2.0 * accelerating[row * stride] * lengths[row])
-        squares[row + 1] = before
+@kernel
+def _sweep_back(lengths: Floats, braking: Floats, squares: Floats) -> None:
+    """Lower squared feeds, from the end, to those from which braking suffices.
+
+    Each station waits for the next one, so that four quarters of the path, side by side, take
+    half the time. A quarter takes the cap at its end for the squared feed there; where that is
+    lower, the stations before are lowered again until one does not change.
+    """
+    stride, quarter = (1 if len(braking) > 1 else 0), len(lengths) // 4
+    for row in range(len(lengths) - 1, 4 * quarter - 1, -1):
+        squares[row] = _braked(lengths, braking, stride, squares, row, squares[row + 1])
+    one, two = squares[quarter], squares[2 * quarter]
+    three, four = squares[3 * quarter], squares[4 * quarter]
+    for row in range(quarter - 1, -1, -1):
+        one = _braked(lengths, braking, stride, squares, row, one)
+        squares[row] = one
+        two = _braked(lengths, braking, stride, squares, row + quarter, two)
+        squares[row + quarter] = two
+        three = _braked(lengths, braking, stride, squares, row + 2 * quarter, three)
+        squares[row + 2 * quarter] = three
+        four = _braked(lengths, braking, stride, squares, row + 3 * quarter, four)
+        squares[row + 3 * quarter] = four
+    for part in range(3, 0, -1):
+        row = part * quarter - 1
+        while row >= 0:
+            lower = _braked(lengths, braking, stride, squares, row, squares[row + 1])
+            if lower == squares[row]:
+                break
+            squares[row] = lower
+            row -= 1
 
 
-@entry
-def add_times(lengths: Floats, squares: Floats, total: Floats) -> None:
-    """Add up the times of all intervals, in blocks to keep digits."""
-    row = 0
+@kernel
+def _braked(
+    lengths: Floats, braking: Floats, stride: int, squares: Floats, row: int, after: float
+) -> float:
+    """Greatest squared feed at the start of an interval from which braking suffices."""
+    square: float = min(squares[row], after + 2.0 * braking[row * stride] * lengths[row])
+    return square
+
+
+@kernel
+def _sweep_on(lengths: Floats, accelerating: Floats, squares: Floats) -> None:
+    """Lower squared feeds, from the start, to those that can be reached, by quarters too."""
+    stride, quarter = (1 if len(accelerating) > 1 else 0), len(lengths) // 4
+    one, two = squares[0], squares[quarter]
+    three, four = squares[2 * quarter], squares[3 * quarter]
+    for row in range(quarter):
+        one = _reached(lengths, accelerating, stride, squares, row, one)
+        squares[row + 1] = one
+        two = _reached(lengths, accelerating, stride, squares, row + quarter, two)
+        squares[row + quarter + 1] = two
+        three = _reached(lengths, accelerating, stride, squares, row + 2 * quarter, three)
+        squares[row + 2 * quarter + 1] = three
+        four = _reached(lengths, accelerating, stride, squares, row + 3 * quarter, four)
+        squares[row + 3 * quarter + 1] = four
+    for part in range(1, 4):
+        row = part * quarter
+        while row < 4 * quarter:
+            lower = _reached(lengths, accelerating, stride, squares, row, squares[row])
+            if lower == squares[row + 1]:
+                break
+            squares[row + 1] = lower
+            row += 1
+    for row in range(4 * quarter, len(lengths)):
+        squares[row + 1] = _reached(lengths, accelerating, stride, squares, row, squares[row])
+
+
+@kernel
+def _reached(
+    lengths: Floats, accelerating: Floats, stride: int, squares: Floats, row: int, before: float
+) -> float:
+    """Greatest squared feed at the end of an interval that accelerating reaches."""
+    faster = before + 2.0 * accelerating[row * stride] * lengths[row]
+    square: float = min(squares[row + 1], faster)
+    return square
+
+
+@kernel
+def _time(lengths: Floats, squares: Floats) -> float:
+    """Time of all intervals, added up in blocks to keep digits."""
+    total, row = 0.0, 0
     while row < len(lengths):
         last = min(row + 1024, len(lengths))
         feed, block = sqrt(squares[row]), 0.0
@@ -156,8 +229,9 @@ def add_times(lengths: Floats, squares: Floats, total: Floats) -> None:
             after = sqrt(squares[each + 1])
             block += lengths[each] / (feed + after)
             feed = after
-        total[0] += 2.0 * block
+        total += 2.0 * block
         row = last
+    return total
 
 
 Geometry = tuple[Floats, Floats, Floats, Floats]
@@ -168,30 +242,96 @@ Room = tuple[float, float, float, float, float, float, float, float]
 
 
 @entry
-def reach_back(
+def reach_along(
+    lengths: Floats, acceleration: Floats, geometry: Geometry, squares: Floats, total: Floats
+) -> None:
+    """Lower squared feeds to what the axes can follow, and add up the time.
+
+    Parameters
+    ----------
+    lengths : (N−1,) array, mm
+    acceleration : (3,) array, mm/s²
+    geometry : tuple of (N−1, 3) arrays
+    squares : (N,) array, mm²/s²
+        Caps, lowered in place; from the end alone if the first of them falls.
+    total : (1,) array, s
+        Time.
+    """
+    start = squares[0]
+    _reach_back(lengths, acceleration, geometry, squares)
+    if squares[0] >= start:
+        _reach_on(lengths, acceleration, geometry, squares)
+        total[0] = _time(lengths, squares)
+
+
+@kernel
+def _reach_back(
     lengths: Floats, acceleration: Floats, geometry: Geometry, squares: Floats
 ) -> None:
     """Lower squared feeds, from the end, to those from which the rest can be travelled."""
+    along = 0.0
     for row in range(len(lengths) - 1, -1, -1):
-        squares[row] = _controllable(
-            acceleration, geometry, row, lengths[row], squares[row], squares[row + 1]
-        )
+        length, cap, after = lengths[row], squares[row], squares[row + 1]
+        if _is_straight(geometry, row):
+            if along == 0.0 or not _is_parallel(geometry[0], row, row + 1):
+                along = _along_line(acceleration, geometry[0], row)
+            squares[row] = min(cap, after + 2.0 * length * along)
+        else:
+            along = 0.0
+            squares[row] = _controllable(acceleration, geometry, row, length, cap, after)
 
 
-@entry
-def reach_on(
+@kernel
+def _reach_on(
     lengths: Floats, acceleration: Floats, geometry: Geometry, squares: Floats
 ) -> None:
     """Raise the feed as fast as the axes can, from the start, within what is controllable."""
+    along = 0.0
     for row in range(len(lengths)):
-        square, greatest = squares[row], squares[row + 1]
+        length, square, greatest = lengths[row], squares[row], squares[row + 1]
+        if _is_straight(geometry, row):
+            if along == 0.0 or not _is_parallel(geometry[0], row, row - 1):
+                along = _along_line(acceleration, geometry[0], row)
+            squares[row + 1] = min(square + 2.0 * length * along, greatest)
+            continue
+        along = 0.0
         high, high_a, _, _, low, low_a, _, _ = _room(
-            acceleration, geometry, row, lengths[row], square, greatest
+            acceleration, geometry, row, length, square, greatest
         )
-        # At a vertex rounding may leave no room; the steeper line decides, the other is then
-        # exceeded by rounding only.
-        along = low if high < low and low_a > high_a else high
-        squares[row + 1] = min(max(square + 2.0 * lengths[row] * along, 0.0), greatest)
+        # At a vertex rounding may leave no room. The line with the greater share in a decides:
+        # what this misses of the other one is rounding in units of its limit.
+        chosen = low if high < low and low_a > high_a else high
+        squares[row + 1] = min(max(square + 2.0 * length * chosen, 0.0), greatest)
+
+
+@kernel
+def _is_straight(geometry: Geometry, row: int) -> bool:
+    """Whether an interval lies on a line."""
+    start_tangent, start_curvature, end_tangent, end_curvature = geometry
+    bend = 0.0
+    for axis in range(3):
+        bend += abs(start_curvature[row, axis]) + abs(end_curvature[row, axis])
+        bend += abs(end_tangent[row, axis] - start_tangent[row, axis])
+    return bend == 0.0
+
+
+@kernel
+def _is_parallel(tangent: Floats, row: int, other: int) -> bool:
+    """Whether two intervals begin in the same direction."""
+    turn = 0.0
+    for axis in range(3):
+        turn += abs(tangent[row, axis] - tangent[other, axis])
+    return turn == 0.0
+
+
+@kernel
+def _along_line(acceleration: Floats, tangent: Floats, row: int) -> float:
+    """Acceleration along a line at which the first axis reaches its limit."""
+    along = inf
+    for axis in range(3):
+        if tangent[row, axis] != 0.0:
+            along = min(along, acceleration[axis] / abs(tangent[row, axis]))
+    return along
 
 
 @kernel
@@ -265,9 +405,9 @@ def _room(
         if share < 0.0:
             share, bend = -share, -bend
         if share > 0.0:
-            most = acceleration[axis]
-            upper = (most - bend * square) / share
-            lower = (-most - bend * square) / share
+            most, inverse, pull = acceleration[axis], 1.0 / share, bend * square
+            upper = (most - pull) * inverse
+            lower = (-most - pull) * inverse
             if upper < high:
                 high, high_a, high_b, high_s = upper, share, bend, most
             if lower > low:

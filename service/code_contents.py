@@ -65,8 +65,16 @@ def is_code(path: Path) -> bool:
     return path.suffix.lower() in NC_SUFFIXES
 
 
-def check_code(path: Path, *, control: str = "") -> CodeContents:
+def check_code(path: Path, *, control: str = "", name: str = "") -> CodeContents:
     """Read NC code and execute it; return what it says.
+
+    Parameters
+    ----------
+    path : Path
+    control : str
+        Name of its control; empty: recognised by what the code says.
+    name : str
+        Name of the program; empty: the name of its file.
 
     Raises
     ------
@@ -77,7 +85,7 @@ def check_code(path: Path, *, control: str = "") -> CodeContents:
     dialect = one_of(Dialect, control, "control") if control else None
     program = read_program(read_bytes(path), dialect=dialect)
     return CodeContents(
-        name=path.name,
+        name=name or path.name,
         control=program.dialect.value,
         hints=program.hints,
         machine=program.machine.value,

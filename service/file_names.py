@@ -6,7 +6,17 @@ from pathlib import Path
 
 from stepnc_model.errors import StepNcError
 
-PROGRAMS = frozenset({".stpnc", ".stp", ".step", ".p21", ".238"})
+PROGRAMS = frozenset({
+    ".stpnc",
+    ".stp",
+    ".step",
+    ".p21",
+    ".238",
+    ".stpncz",
+    ".stpz",
+    ".238z",
+    ".p21z",
+})
 """Suffixes of STEP-NC programs; other files are NC code."""
 
 Names = Mapping[Path, str]

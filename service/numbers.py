@@ -1,4 +1,4 @@
-"""Parsing of comma-separated numbers and raw part dimensions entered by the user."""
+"""Parsing of numbers, raw part dimensions and tool numbers entered by the user."""
 
 from math import isfinite
 
@@ -70,3 +70,18 @@ def require_size(stock: Stock) -> None:
         if not high - low >= LEAST_SIZE or max(abs(low), abs(high)) > FARTHEST:
             bound = f"must span at least {LEAST_SIZE:g} mm, within {FARTHEST:g} mm of zero"
             raise StepNcError(f"stock: {axis} from {low:g} to {high:g} mm: {bound}")
+
+
+def tool_numbers_in(words: tuple[str, ...]) -> frozenset[int]:
+    """Numbers of tools given as ``T3`` or ``3``.
+
+    Raises
+    ------
+    StepNcError
+        When a word is no tool number.
+    """
+    numbers = [word.upper().removeprefix("T") for word in words]
+    for word, number in zip(words, numbers, strict=True):
+        if not number.isdecimal():
+            raise StepNcError(f"tool '{word}': expected a number, such as T3")
+    return frozenset(map(int, numbers))

@@ -25,7 +25,7 @@ from stepnc_model.units import (
 
 if TYPE_CHECKING:
     from optimiser.advice import ParetoPoint
-    from service.along_path.run import AlongPath
+    from service.along_path.run import FeedsAlongPath
     from service.confirmation import Confirmation, ConfirmedStep
 
 
@@ -153,7 +153,7 @@ LOAD: tuple[Column[LimitLoad], ...] = (
 def print_plan(
     plan: Plan,
     confirmation: "Confirmation | None" = None,
-    along: "AlongPath | None" = None,
+    along: "FeedsAlongPath | None" = None,
     told: Sequence[Finding] = (),
 ) -> None:
     """Print the advice for a program: a row per workingstep, then totals and findings."""
@@ -261,7 +261,7 @@ def _stability_words(advice: Advice, state: EvaluatedSetting) -> str:
 def plan_json(
     plan: Plan,
     confirmation: "Confirmation | None" = None,
-    along: "AlongPath | None" = None,
+    along: "FeedsAlongPath | None" = None,
 ) -> str:
     """Return a plan as JSON, with its simulated run and feeds along paths if requested."""
     found = {} if confirmation is None else {"confirmation": _confirmation(confirmation)}
@@ -402,7 +402,7 @@ def _sensitivity(advice: Advice) -> dict[str, Any] | None:
     }
 
 
-def report_page(plan: Plan, along: "AlongPath | None" = None) -> str:
+def report_page(plan: Plan, along: "FeedsAlongPath | None" = None) -> str:
     """Return the HTML report of a plan."""
     from service.figures import plan_figures  # noqa: PLC0415 (plotly)
     from service.rendering.pages import plot, rendered  # noqa: PLC0415 (Jinja)

@@ -4,7 +4,7 @@ One place for every command: :func:`raw_stock_of` reads it, :func:`stock_map` ma
 tools cut.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from service.files import read_bytes
@@ -13,6 +13,7 @@ from service.stl import read_stl
 from simulator.machine.virtual import StockMap
 from simulator.motion.segments import Floats
 from simulator.removal.engage import MillingStock
+from simulator.removal.grown import grown_milling_stock, grown_turning_stock
 from simulator.removal.lathe import TurningStock
 from simulator.removal.stock_file import kept_stock
 from simulator.spec import Machine, MachineKind
@@ -109,6 +110,24 @@ def stock_map(machine: Machine, raw: GivenStock) -> StockMap:
             raise StepNcError(f"{raw.name}: {error}") from error
     _require_on_axis(raw.bounds, machine)
     return TurningStock(raw.bounds)
+
+
+def larger_stock_map(machine: Machine, raw: GivenStock, margin: float) -> StockMap:
+    """Build the map of a raw part that is larger all around by a margin, mm.
+
+    Raises
+    ------
+    StepNcError
+        When :func:`stock_map` would raise it.
+    """
+    if raw.triangles is None and raw.kept is None:
+        return stock_map(machine, replace(raw, bounds=raw.bounds.grown(margin)))
+    drawn = stock_map(machine, raw)
+    if isinstance(drawn, TurningStock):
+        return grown_turning_stock(drawn, margin)
+    if isinstance(drawn, MillingStock):
+        return grown_milling_stock(drawn, margin)
+    return drawn
 
 
 def _require_size(raw: GivenStock) -> None:

@@ -38,7 +38,7 @@ from stepnc_model.toolpath.task import stock_of
 from stepnc_model.units import mm_from_um
 
 if TYPE_CHECKING:
-    from service.along_path.run import AlongPath
+    from service.along_path.run import FeedsAlongPath
     from service.confirmation import Confirmation
     from service.knowledge.verbs import AcceptedFactor
     from simulator.tool_table import TableTool
@@ -78,7 +78,7 @@ class OptimiseResult:
     """The STEP-NC file, or None when nothing was written."""
     confirmation: "Confirmation | None" = None
     """Comparison with the simulated run; None if it was not requested."""
-    along: "AlongPath | None" = None
+    along: "FeedsAlongPath | None" = None
     """Feeds along the paths; None if they were not requested."""
     told: tuple[Finding, ...] = ()
     """Warnings about the program that were told already."""
@@ -102,6 +102,7 @@ def optimise(
     require_apart(named_place(files.knowledge), output, files.report, files.feeds, nc_place)
     whole = _whole_program(request, files, tell)
     program = whole.program
+    profile = writeback.profile_for(program, profile)
     chosen = selected(program, request.workingsteps)
     findings = program.file.findings + program.model.findings()
     possible = advisable(program, chosen, keep_going=request.keep_going)
@@ -132,30 +133,18 @@ def optimise(
     told = _remarks(program, tell)
     plan = _with_file_findings(plan, (*findings, *notes, *told), match)
     changes = apart_from(program, changes_of(plan), plan.refused)
-    data = writeback.write(program, changes, profile) if changes else program.file.data
+    data = writeback.write(program, changes, profile) if changes else program.source.data
     if changes and factors and profile is FileProfile.OPTIMISATION:
         data = with_corrections(_read_again(program, data), factors)
-    confirmation = None
-    if request.is_confirmed:
-        from service.confirm import confirm  # noqa: PLC0415 (numba takes a second)
-
-        confirmation = confirm(plan, _read_again(program, data), tell=tell)
-    along = None
-    if request.is_along_path:
-        from service.along_path.of_program import along_program  # noqa: PLC0415 (numba)
-
-        along = along_program(
-            _read_again(program, data),
-            plan,
-            request,
-            keeps_traces=files.report is not None,
-            tell=tell,
-        )
+    confirmation = _confirmed(request, program, plan, data, tell)
+    along = _along(request, files, program, plan, data, tell)
     if request.nc_control is not None and nc_place is not None:
         # NC code first: where it cannot be made, nothing is written.
         code = _nc_code(_read_again(program, data), request.nc_control, along, tell)
         if not files.dry_run:
             tell(f"NC code: {nc_place} ({write_lines(nc_place, code)} lines)")
+    if along is not None and request.writes_toolpaths:
+        plan, data = _with_tool_paths(plan, _read_again(program, data), along, profile, tell)
     written = None
     if not files.dry_run:
         kept = data if files.in_place else _without_given(whole, data)
@@ -166,6 +155,39 @@ def optimise(
     _tell_conflicts(plan, tell)
     return OptimiseResult(
         plan=plan, written=written, confirmation=confirmation, along=along, told=told
+    )
+
+
+def _confirmed(
+    request: AdviceRequest, program: Program, plan: Plan, data: bytes, tell: Tell
+) -> "Confirmation | None":
+    """Comparison of a plan with its simulated run, if it was requested."""
+    if not request.is_confirmed:
+        return None
+    from service.confirm import confirm  # noqa: PLC0415 (numba takes a second)
+
+    return confirm(plan, _read_again(program, data), tell=tell)
+
+
+def _along(
+    request: AdviceRequest,
+    files: AdviceFiles,
+    program: Program,
+    plan: Plan,
+    data: bytes,
+    tell: Tell,
+) -> "FeedsAlongPath | None":
+    """Feeds along the paths of an advised program, if they were requested."""
+    if not request.is_along_path:
+        return None
+    from service.along_path.of_program import along_program  # noqa: PLC0415 (numba)
+
+    return along_program(
+        _read_again(program, data),
+        plan,
+        request,
+        keeps_traces=files.report is not None,
+        tell=tell,
     )
 
 
@@ -216,6 +238,22 @@ def _remarks(program: Program, tell: Tell) -> tuple[Finding, ...]:
     return found
 
 
+def _with_tool_paths(
+    plan: Plan,
+    program: Program,
+    along: "FeedsAlongPath",
+    profile: FileProfile | None,
+    tell: Tell,
+) -> tuple[Plan, bytes]:
+    """Write feeds along the paths into the program; the plan gets what could not be written."""
+    from service.along_path.path_file import with_tool_paths  # noqa: PLC0415 (numpy, shapely)
+
+    # Without records a file is for readers that know the standard only.
+    file = with_tool_paths(program, along, profile or FileProfile.STANDARD)
+    tell(f"tool paths written into the program: {file.count}")
+    return replace(plan, findings=(*plan.findings, *file.findings)), file.data
+
+
 def _write(output: Path, data: bytes, tell: Tell) -> Path:
     """Write the optimised program."""
     write_atomically(output, data)
@@ -223,7 +261,9 @@ def _write(output: Path, data: bytes, tell: Tell) -> Path:
     return output
 
 
-def _write_views(files: AdviceFiles, plan: Plan, along: "AlongPath | None", tell: Tell) -> None:
+def _write_views(
+    files: AdviceFiles, plan: Plan, along: "FeedsAlongPath | None", tell: Tell
+) -> None:
     """Write the report and the table of feeds, where they were asked for."""
     if files.report is not None:
         from service.plan_output import report_page  # noqa: PLC0415 (plotly takes a second)
@@ -241,6 +281,8 @@ def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
     require_bounds(request)
     if not request.is_along_path and (request.levels is not None or files.feeds is not None):
         raise StepNcError("--levels and --feeds-csv need --along-path")
+    if request.writes_toolpaths and not request.is_along_path:
+        raise StepNcError("--write-toolpaths needs --along-path")
 
 
 def _require_run(
@@ -338,7 +380,7 @@ def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path 
 
 
 def _nc_code(
-    program: Program, control: Dialect, along: "AlongPath | None", tell: Tell
+    program: Program, control: Dialect, along: "FeedsAlongPath | None", tell: Tell
 ) -> Iterator[str]:
     """Generate NC code of the optimised program."""
     from service.paths.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (numpy, shapely)

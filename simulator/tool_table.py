@@ -232,14 +232,3 @@ def read_tool_rows(path: Path) -> tuple[ToolRow, ...]:
     if not rows:
         raise LibraryError("has no [[tool]]", path=str(path))
     return rows
-
-
-def read_tool_table(path: Path) -> tuple[TableTool, ...]:
-    """Tools of a TOML file.
-
-    Raises
-    ------
-    LibraryError
-        As :func:`read_tool_rows`.
-    """
-    return tuple(tool_of_row(row) for row in read_tool_rows(path))

@@ -83,6 +83,36 @@ class Draft:
                 self.edits.remove(number)
                 self.removed.add(number)
 
+    def only_under(self, reference: Ref[Any], keywords: frozenset[str]) -> list[int]:
+        """Instances that only one instance refers to, and those that only they refer to.
+
+        Parameters
+        ----------
+        reference : Ref
+            Instance to which one other instance may refer.
+        keywords : frozenset of str
+            Keywords of the instances to be found.
+
+        Returns
+        -------
+        list of int
+            The instance first; empty if several others refer to it.
+        """
+        file, uses = self.program.file, self._use_counts()
+        found: list[int] = []
+        met: Counter[int] = Counter([int(reference)])
+        waiting = [int(reference)]
+        while waiting:
+            number = waiting.pop()
+            is_ours = number in file and file.keyword(number) in keywords
+            if not is_ours or met[number] < uses[number]:
+                continue
+            found.append(number)
+            inner = [int(each) for each in references(file.parameters(number))]
+            met.update(inner)
+            waiting += [each for each in dict.fromkeys(inner) if met[each] == uses[each]]
+        return found
+
     def own(self, owner: Ref[Any], attribute: str, *, at: Ref[Any] | None = None) -> Ref[Any]:
         """Instance that an attribute refers to; it is copied first if others use it too."""
         holder = at if at is not None else owner

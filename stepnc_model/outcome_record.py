@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from math import exp, inf, isfinite
 
+from stepnc_model.ap238.view import AimView
 from stepnc_model.binding import to_parameters
 from stepnc_model.edit_conditions import rounded
 from stepnc_model.entities import optimisation as entities
@@ -268,7 +269,11 @@ def write_outcomes(
     learned = [correction_entity(each) for each in corrections]
     edits = Edits(program.file)
     if not measured and not learned:
-        return edits.apply()
+        return program.source.data
+    if isinstance(program.file, AimView):
+        raise SchemaError(
+            "an AP238 file cannot hold outcomes and corrections: convert it to ISO 14649 first"
+        )
     if has_parameters(program):
         raise program.error(
             "the optimisation record is in profile 'standard', which cannot hold outcomes and "

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
+from stepnc_model.ap238.view import AimView, is_aim
 from stepnc_model.binding import Model
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import (
@@ -60,9 +61,6 @@ T = TypeVar("T")
 
 MAX_EXECUTABLES = 100_000
 """Greatest number of executables; mutually nested workplans could grow without bound."""
-
-AIM_KEYWORDS = ("PRODUCT_DEFINITION", "MACHINING_WORKPLAN", "MACHINING_PROJECT")
-"""Keywords that occur in AP238 files but not in ISO 14649 files."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -129,8 +127,15 @@ class Program:
         self.stock = stock
         """Raw part given by the user, for a file that does not describe one."""
         self.units = units
-        self.file = file
-        self.model = Model(file)
+        self.source = file
+        """File as it was read: of ISO 14649, or of AP238."""
+        self.file = _nouns_of(file)
+        """Instances of ISO 14649: the file itself, or what an AP238 file describes."""
+        if self.file is not file and units is not ISO:
+            raise SchemaError(
+                f"an AP238 file names its units: units '{units.name}' do not apply"
+            )
+        self.model = Model(self.file)
         self._faults: dict[int, SchemaError] = {}
         self.executables = tuple(self._walk())
         self.workingsteps = tuple(self._workingsteps())
@@ -321,10 +326,6 @@ class Program:
         plans = dict(self.model.of_type(Workplan))
         inner = {int(element) for plan in plans.values() for element in plan.its_elements}
         outer = [ref for ref in plans if int(ref) not in inner]
-        if len(outer) != 1 and any(self.file.ids_of(keyword) for keyword in AIM_KEYWORDS):
-            raise SchemaError(
-                "AP238 (AIM) programs are not supported: convert the file to ISO 14649"
-            )
         if len(outer) != 1:
             raise SchemaError(
                 f"no PROJECT, and {len(outer)} workplans that are not nested in another: "
@@ -433,6 +434,13 @@ class Program:
             index=0,
             is_last_on_feature=False,
         )
+
+
+def _nouns_of(file: Part21File) -> Part21File:
+    """File whose instances are those of ISO 14649."""
+    if isinstance(file, AimView) or not is_aim(file):
+        return file
+    return AimView.of(file)
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,9 @@
     The record as prefixed parameters to which no instance refers: standard entities only, in
     places where no interpreter looks. A system that saves the file again may drop them.
 
+An AP238 file takes profile ``standard`` only: the parameters become representation items of an
+action property of the machine functions (:mod:`stepnc_model.ap238.writing`).
+
 In both profiles the operation's own technology holds the feed. A technology shared by several
 operations is copied before it is edited. Existing records are removed first, so that writing
 the same advice twice gives the same bytes. Only changed parameters and added or removed lines
@@ -16,6 +19,8 @@ stay; a file that holds some cannot be written in profile ``standard``.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from stepnc_model.ap238.view import AimView
+from stepnc_model.ap238.writing import spliced_into
 from stepnc_model.draft import Draft
 from stepnc_model.edit_conditions import edit_depth, edit_number
 from stepnc_model.file_profile import FileProfile
@@ -77,6 +82,7 @@ def write(
     SchemaError
         If the profile cannot represent what the program holds.
     """
+    profile = profile_for(program, profile)
     _require_form(program, profile)
     chosen: dict[int, WorkingstepUpdate] = {}
     for change in changes:
@@ -114,6 +120,7 @@ def convert(program: Program, profile: FileProfile) -> bytes:
     SchemaError
         If the profile cannot represent what the program holds.
     """
+    profile = profile_for(program, profile) or profile
     _require_form(program, profile)
     draft = Draft(program)
     found = {
@@ -136,13 +143,20 @@ def records(program: Program) -> dict[int, AdviceRecord]:
     return {number: record for number, record in found.items() if record is not None}
 
 
+def profile_for(program: Program, profile: FileProfile | None) -> FileProfile | None:
+    """Profile in which records are written: for an AP238 file always ``standard``, or none."""
+    if profile is not None and isinstance(program.file, AimView):
+        return FileProfile.STANDARD
+    return profile
+
+
 def _require_form(program: Program, profile: FileProfile | None) -> None:
     """Raise an error if profile ``standard`` cannot represent part of the program."""
     if profile is not FileProfile.STANDARD:
         return
     for keyword in ANSWERS:
         for number in program.file.ids_of(keyword):
-            raise program.error("cannot be written in profile 'standard'", Ref(number))
+            raise program.error(f"cannot be written in profile '{profile.value}'", Ref(number))
 
 
 def _put_in(
@@ -169,7 +183,10 @@ def _finished(draft: Draft) -> bytes:
     is_without = draft.removed.issuperset(optima) and not draft.has_surplus
     if optima and is_without and not has_answers:
         draft.edits.remove_schema(SCHEMA)
-    return draft.edits.apply()
+    changed = draft.edits.apply()
+    if isinstance(file, AimView):
+        return spliced_into(file, changed, draft.removed)
+    return changed
 
 
 def _edit_conditions(draft: Draft, change: WorkingstepUpdate) -> None:

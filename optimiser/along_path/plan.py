@@ -10,15 +10,21 @@ Every plan carries a lower bound of its time: no motion within the same caps tak
 Units: mm, mm/s, s.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from optimiser.along_path.caps import NAMES, CapName
-from optimiser.along_path.pieces import FeedPieces, PieceRules, pieces_of
+from optimiser.along_path.free import FreeProfile, free_profile
+from optimiser.along_path.pieces import (
+    FeedPieces,
+    PieceRules,
+    pieces_of,
+    without_small_changes,
+)
 from optimiser.along_path.runs import MachineFeeds, commands_of, own_caps
-from optimiser.along_path.stretch import PathStretch, PlaceCaps, place_caps
+from optimiser.along_path.stretch import PathStretch, PlaceCaps, excess, place_caps
 from optimiser.levels import best_levels
 from simulator.motion.segments import Bools, Floats, Ints
 from simulator.motion.smoothing import smoothing_of
@@ -26,6 +32,9 @@ from stepnc_model.post.block_feeds import BlockPart
 
 BlockFeeds = Mapping[int, tuple[BlockPart, ...]]
 """Parts of the blocks that change, by the number of the block."""
+
+PERMITTED = 1.01
+"""Programmed feed over the permitted one up to which a part may stay as it is."""
 
 PER_MINUTE_STEP = 1.0 / 60.0
 """Step of a written feed per time, mm/s: 1 mm/min."""
@@ -45,6 +54,8 @@ class FeedTask:
     rules: PieceRules
     levels: int | None = None
     """Largest number of feeds in each part of the program; None: any."""
+    has_jerk: bool = False
+    """Whether the free profile with limited jerk is computed too."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,6 +75,8 @@ class PartPlan:
     """Lower bound of their time within the same caps, s."""
     window_change: float
     """Change of the time in which the control's filter settles, s."""
+    free: FreeProfile
+    """Profile without a control: what blocks and filter cost."""
     feeds: int
     """Number of different feeds."""
     shares: Mapping[CapName, tuple[float, float]]
@@ -97,7 +110,10 @@ class FeedPlanner:
         self.task = task
         self._pieces: dict[str, list[FeedPieces]] = {}
         self._bounds: dict[str, float] = {}
+        self._free: dict[str, FreeProfile] = {}
         self._given_windows: dict[str, float] = {}
+        self._excess: dict[str, float] = {}
+        """Greatest programmed feed over what the process permits, by part."""
         self._locked: list[float] = []
         """Greatest feed of each run that may not be chosen, mm/s."""
 
@@ -117,6 +133,11 @@ class FeedPlanner:
         self._pieces.setdefault(name, []).append(pieces)
         self._locked += commands.greatest_locked.tolist()
         self._bounds[name] = self._bounds.get(name, 0.0) + self._least_time(stretch, places)
+        machine, has_jerk = self.task.machine, self.task.has_jerk
+        free = free_profile(stretch, places, machine, has_jerk=has_jerk)
+        self._free[name] = self._free.get(name, FreeProfile()).plus(free)
+        most = float(excess(stretch).max(initial=0.0))
+        self._excess[name] = max(most, self._excess.get(name, 0.0))
         given = self._given_windows.get(name, 0.0)
         self._given_windows[name] = given + commands.given_window
 
@@ -127,23 +148,42 @@ class FeedPlanner:
         rows = stretch.is_free[places.segment] & (lengths > 0.0)
         return float((lengths[rows] / caps.feed[rows]).sum())
 
-    def plan(self) -> FeedPlan:
-        """Plan of all stretches that were added."""
-        pieces: list[FeedPieces] = []
-        parts: list[PartPlan] = []
-        numbers: list[Ints] = []
-        for name, found in self._pieces.items():
-            free = joined(found)
-            if not len(free):
-                continue
-            free = replace(free, rate=_in_every_run(free))
-            chosen = replace(free, rate=_levelled(free, self.task.levels))
-            pieces.append(chosen)
-            numbers.append(np.full(len(chosen), len(parts)))
-            parts.append(self._part(name, free, chosen))
-        if not pieces:
+    def plan(self, *, kept: Set[str] = frozenset()) -> FeedPlan:
+        """Plan of all stretches that were added.
+
+        Parameters
+        ----------
+        kept : set of str
+            Parts of the program that keep their feeds.
+        """
+        free = {name: joined(found) for name, found in self._pieces.items()}
+        free = {name: pieces for name, pieces in free.items() if len(pieces)}
+        if not free:
             return FeedPlan(pieces=joined([]), part=np.zeros(0, dtype=np.int64), parts=())
-        return FeedPlan(pieces=joined(pieces), part=np.concatenate(numbers), parts=tuple(parts))
+        free = in_every_run(free)
+        chosen: dict[str, FeedPieces] = {}
+        for name, pieces in free.items():
+            planned = replace(pieces, rate=_levelled(pieces, self.task.levels))
+            change = self.task.rules.least_change
+            planned = replace(planned, rate=without_small_changes(planned, change))
+            is_kept = name in kept or self._is_as_good(name, planned)
+            chosen[name] = replace(planned, rate=planned.programmed) if is_kept else planned
+        chosen = in_every_run(chosen)
+        parts = tuple(self._part(name, free[name], chosen[name]) for name in chosen)
+        numbers = np.repeat(np.arange(len(parts)), [len(each) for each in chosen.values()])
+        return FeedPlan(pieces=joined(chosen.values()), part=numbers, parts=parts)
+
+    def _is_as_good(self, name: str, pieces: FeedPieces) -> bool:
+        """Whether a part is permitted as programmed and takes hardly more time.
+
+        The engagement is known for stretches that depend on how the path is cut into blocks. A
+        plan that changes little would change it again when its result is planned.
+        """
+        if self._excess[name] > PERMITTED:
+            return False
+        given = float((pieces.weight / pieces.programmed).sum()) + self._given_windows[name]
+        planned = float((pieces.weight / pieces.rate).sum()) + self._window(pieces)
+        return given <= (1.0 + self.task.rules.kept_loss) * planned
 
     def _window(self, pieces: FeedPieces) -> float:
         """Time in which the control's filter settles after the runs of some pieces, s."""
@@ -173,6 +213,7 @@ class FeedPlanner:
             unlimited_time=float((free.weight / free.rate).sum()),
             bound=self._bounds[name],
             window_change=self._window(chosen) - self._given_windows[name],
+            free=self._free[name],
             feeds=len(np.unique(chosen.rate)),
             shares=shares,
         )
@@ -200,13 +241,23 @@ def joined(parts: Iterable[FeedPieces]) -> FeedPieces:
     })
 
 
-def _in_every_run(pieces: FeedPieces) -> Floats:
-    """Feeds of blocks that run more than once: the least that any run needs."""
-    block, row = np.unique(pieces.block, return_inverse=True)
-    runs = np.bincount(row, weights=pieces.begin == 0.0)
+def in_every_run(parts: Mapping[str, FeedPieces]) -> dict[str, FeedPieces]:
+    """Pieces at feeds that every execution of their blocks permits.
+
+    A block that runs more than once, also in several parts of a program as a subprogram may,
+    has the least feed that any execution needs.
+    """
+    whole = joined(parts.values())
+    block, row = np.unique(whole.block, return_inverse=True)
+    runs = np.bincount(row, weights=whole.begin == 0.0)
     least = np.full(len(block), np.inf)
-    np.minimum.at(least, row, pieces.rate)
-    return np.where(runs[row] > 1, least[row], pieces.rate)
+    np.minimum.at(least, row, whole.rate)
+    rate = np.where(runs[row] > 1, least[row], whole.rate)
+    ends = np.cumsum([len(each) for each in parts.values()])[:-1]
+    return {
+        name: replace(pieces, rate=own)
+        for (name, pieces), own in zip(parts.items(), np.split(rate, ends), strict=True)
+    }
 
 
 def _levelled(pieces: FeedPieces, levels: int | None) -> Floats:

@@ -124,34 +124,70 @@ def place_caps(stretch: PathStretch) -> PlaceCaps:
     ValueError
         When an engagement is not a number; with its place.
     """
-    segments = stretch.segments
-    offsets = np.concatenate(([0.0], np.cumsum(segments.length)))
-    met_ends = _ends(stretch.met, offsets)
-    near_ends = met_ends if stretch.near is None else _ends(stretch.near, offsets)
-    ends = np.unique(np.concatenate((offsets[1:], met_ends, near_ends)))
+    offsets = np.concatenate(([0.0], np.cumsum(stretch.segments.length)))
+    met = _Along(stretch.met, offsets)
+    near = met if stretch.near is None else _Along(stretch.near, offsets)
+    ends = np.unique(np.concatenate((offsets[1:], met.ends, near.ends)))
     ends = ends[ends > 0.0]
-    middle = ends - 0.5 * np.diff(ends, prepend=0.0)
-    segment = np.searchsorted(offsets[1:], middle)
-    if stretch.bounds is None:
+    bounds = stretch.bounds
+    if bounds is None:
         nothing = np.zeros(len(ends), dtype=np.bool_)
-        return PlaceCaps(ends=ends, segment=segment, caps=unbounded(len(ends)), is_cut=nothing)
-    row = np.minimum(np.searchsorted(met_ends, middle), len(stretch.met) - 1)
-    found = _caps_of(stretch, stretch.met, stretch.bounds)
-    is_cut = (stretch.met.peak_section > 0.0)[row]
+        caps = unbounded(len(ends))
+        return PlaceCaps(ends=ends, segment=_segments(ends, offsets), caps=caps, is_cut=nothing)
+    begins = _entries(ends, met.is_cut(ends))
+    way_in = ENTRY_LENGTH * bounds.cut.diameter if bounds.cut.kind is CutKind.MILLING else 0.0
+    ends = np.union1d(ends, np.minimum(begins + way_in, offsets[-1]))
+    row, is_cut = met.rows(ends), met.is_cut(ends)
+    found = _caps_of(stretch, stretch.met, bounds)
     caps, chip = found.caps.at(row), found.chip[row]
     if stretch.near is not None:
-        near_row = np.minimum(np.searchsorted(near_ends, middle), len(stretch.near) - 1)
-        near = _caps_of(stretch, stretch.near, stretch.bounds).caps.at(near_row)
+        around = _caps_of(stretch, stretch.near, bounds).caps.at(near.rows(ends))
         caps = Caps(
-            feed=np.where(is_cut, caps.feed, near.feed),
-            name=np.where(is_cut, caps.name, near.name),
+            feed=np.where(is_cut, caps.feed, around.feed),
+            name=np.where(is_cut, caps.name, around.name),
         )
+    middle = _middles(ends)
+    since = middle - np.append(-np.inf, begins)[np.searchsorted(begins, middle)]
     is_drilled = (stretch.met.kind == StationKind.DRILLING)[row]
-    if stretch.bounds.cut.kind is CutKind.MILLING:
-        length = ENTRY_LENGTH * stretch.bounds.cut.diameter
-        is_entry = _entries(ends, is_cut, length) & ~is_drilled
-        caps = caps.least(capped(np.where(is_entry, ENTRY_SHARE * chip, np.inf), CapName.ENTRY))
-    return PlaceCaps(ends=ends, segment=segment, caps=caps, is_cut=is_cut)
+    is_entry = is_cut & (since < way_in) & ~is_drilled
+    caps = caps.least(capped(np.where(is_entry, ENTRY_SHARE * chip, np.inf), CapName.ENTRY))
+    return PlaceCaps(ends=ends, segment=_segments(ends, offsets), caps=caps, is_cut=is_cut)
+
+
+class _Along:
+    """Stations of a stretch by their distance from its start."""
+
+    def __init__(self, stations: Stations, offsets: Floats) -> None:
+        ends = offsets[stations.segment] + stations.station
+        self.ends: Floats = np.maximum.accumulate(ends)
+        self._cuts = stations.peak_section > 0.0
+
+    def rows(self, ends: Floats) -> Ints:
+        """Stations of the places with given ends."""
+        rows: Ints = np.searchsorted(self.ends, _middles(ends))
+        return np.minimum(rows, len(self.ends) - 1)
+
+    def is_cut(self, ends: Floats) -> Bools:
+        """Whether material is removed at the places with given ends."""
+        cuts: Bools = self._cuts[self.rows(ends)]
+        return cuts
+
+
+def _middles(ends: Floats) -> Floats:
+    middles: Floats = ends - 0.5 * np.diff(ends, prepend=0.0)
+    return middles
+
+
+def _segments(ends: Floats, offsets: Floats) -> Ints:
+    """Segments of the places with given ends."""
+    segments: Ints = np.searchsorted(offsets[1:], _middles(ends))
+    return segments
+
+
+def _entries(ends: Floats, is_cut: Bools) -> Floats:
+    """Distances at which cuts begin, mm."""
+    begins = is_cut & ~np.concatenate(([False], is_cut[:-1]))
+    return np.concatenate(([0.0], ends[:-1]))[begins]
 
 
 def excess(stretch: PathStretch) -> Floats:
@@ -181,18 +217,3 @@ def _caps_of(stretch: PathStretch, stations: Stations, bounds: CutBounds) -> Sta
     return station_caps(
         stations, bounds, spindle=stretch.spindle[segment], descent=-direction[:, 2]
     )
-
-
-def _ends(stations: Stations, offsets: Floats) -> Floats:
-    """Ends of stations from the start of the stretch, (M,), mm; ascending."""
-    ends: Floats = np.maximum.accumulate(offsets[stations.segment] + stations.station)
-    return ends
-
-
-def _entries(ends: Floats, is_cut: Bools, length: float) -> Bools:
-    """Places within a distance after the beginning of a cut, (K,)."""
-    begins = is_cut & ~np.concatenate(([False], is_cut[:-1]))
-    starts = np.concatenate(([0.0], ends[:-1]))
-    last = np.maximum.accumulate(np.where(begins, starts, -np.inf))
-    entries: Bools = is_cut & (starts < last + length)
-    return entries

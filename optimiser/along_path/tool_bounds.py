@@ -16,10 +16,10 @@ from optimiser.problem import BoundSide, Setting
 from optimiser.roughness import surface_limits
 from optimiser.safety import safety_factor
 from optimiser.tolerance import GREATEST_AT_WALL
-from simulator.library import grade_for
 from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.tool_shape import ENDS, THREADS
 from simulator.spec import Machine, ToolGrade, ToolKind, WorkMaterial
+from simulator.table_grade import grade_of_table_tool
 from simulator.tool_table import TableTool
 from stepnc_model.tool import Tool
 
@@ -59,7 +59,7 @@ def bounds_of_tool(
         return None
     spread = material.spread
     is_margin = not machine.only_stated_limits and spread is not None
-    grade = _grade(tool, material)
+    grade = grade_of_table_tool(tool, material)
     cut = _cut(tool, grade, is_finishing=is_finishing)
     at = CuttingConditions(
         machine=machine,
@@ -79,20 +79,6 @@ def bounds_of_tool(
         at=at,
         fixed=() if surface is None else ((CapName.ROUGHNESS, surface),),
         plunge=permitted_plunge(cut, at),
-    )
-
-
-def _grade(tool: TableTool, material: WorkMaterial) -> ToolGrade | None:
-    """Grade of the library, with the feeds of the vendor where the table states them."""
-    grade = grade_for(tool.kind, tool.cutting_material, material)
-    if grade is None or tool.max_feed is None:
-        return grade
-    return replace(
-        grade,
-        min_feed=tool.min_feed,
-        max_feed=tool.max_feed,
-        min_feed_ratio=None,
-        max_feed_ratio=None,
     )
 
 

@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from simulator.machine.acts import MoveStretch, ProgramAct
 from simulator.machine.interpreter import Numbered, interpret
 from simulator.machine.samples import Episode
 from simulator.machine.virtual import MachineSetup, VirtualMachine
-from simulator.motion.segments import ControlModel, Floats
+from simulator.motion.segments import Bools, ControlModel, Floats, Ints
 from stepnc_model.post.blocks import Circular, DrillingCycle, Linear
 
 
@@ -26,28 +27,73 @@ class Part:
     """Number of the tool."""
 
 
+class NumberedBlocks(Protocol):
+    """Blocks of a program with numbers, by which their feeds are planned."""
+
+    def __iter__(self) -> Iterator[Numbered]:
+        """Yield the blocks in the order of execution, each with its number."""
+        ...
+
+    def can_change(self, numbers: Ints) -> Bools:
+        """Whether blocks that were yielded may have another feed."""
+        ...
+
+    def can_split(self, numbers: Ints) -> Bools:
+        """Whether blocks that were yielded may be split."""
+        ...
+
+    def line(self, number: int) -> int:
+        """Line of the program, counted from 1."""
+        ...
+
+
 class BlockLog:
-    """Numbers of the blocks of a program, and which of them may have another feed.
+    """Blocks numbered in the order of execution, each move with a feed of its own.
 
     Running state: it grows as the program is read.
     """
 
     def __init__(self, blocks: Iterable[Numbered]) -> None:
         self._blocks = blocks
-        self.can_change: list[bool] = [False]
-        self.can_split: list[bool] = [False]
-        self.lines: list[int] = [0]
+        self._can_change: list[bool] = [False]
+        self._can_split: list[bool] = [False]
+        self._lines: list[int] = [0]
 
     def __iter__(self) -> Iterator[Numbered]:
+        """Yield the blocks with their numbers, from 1."""
         for line, block in self._blocks:
             is_move = isinstance(block, (Linear, Circular))
-            self.can_change.append(is_move or isinstance(block, DrillingCycle))
-            self.can_split.append(is_move)
-            self.lines.append(line)
-            yield len(self.lines) - 1, block
+            self._can_change.append(is_move or isinstance(block, DrillingCycle))
+            self._can_split.append(is_move)
+            self._lines.append(line)
+            yield len(self._lines) - 1, block
+
+    def can_change(self, numbers: Ints) -> Bools:
+        """Whether blocks are moves or cycles."""
+        return np.array(self._can_change)[numbers]
+
+    def can_split(self, numbers: Ints) -> Bools:
+        """Whether blocks are moves."""
+        return np.array(self._can_split)[numbers]
+
+    def line(self, number: int) -> int:
+        """Line of the program, counted from 1."""
+        return self._lines[number]
 
 
 Choose = Callable[[Part], CutBounds | None]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PathSource:
+    """Program whose paths are planned."""
+
+    prepare: Callable[[float], PreparedRun]
+    """Function that prepares the program anew, in a stock that is larger by some mm."""
+    bounds: Choose
+    """Bounds of a part of the program; None if its feed may not be chosen."""
+    numbered: Callable[[PreparedRun], NumberedBlocks] = lambda run: BlockLog(run.blocks)
+    """Function that numbers the blocks of a prepared program."""
 
 
 def stretches_of(
@@ -56,7 +102,7 @@ def stretches_of(
     *,
     control: ControlModel,
     bounds: Choose,
-    log: BlockLog,
+    log: NumberedBlocks,
     watch: Callable[[Episode, VirtualMachine], None],
 ) -> Iterator[PathStretch]:
     """Run a program on the virtual machine, and yield what its tools meet.
@@ -69,7 +115,7 @@ def stretches_of(
     control : ControlModel
     bounds : callable
         Bounds of a part of the program; None if its feed may not be chosen.
-    log : BlockLog
+    log : NumberedBlocks
         Blocks of ``prepared``.
     watch : callable
         Receives all episodes of ``prepared``.
@@ -79,10 +125,10 @@ def stretches_of(
     SimulationError
         When the machine cannot run the program.
     """
-    run = _Run(prepared, control, log, watch)
+    run = _CourseRun(prepared, control, log, watch)
     others = None
     if larger is not None:
-        others = _Run(larger, control, BlockLog(larger.blocks), _ignore).stretches()
+        others = _CourseRun(larger, control, BlockLog(larger.blocks), _ignore).stretches()
     for episode, stretch in run.stretches():
         near = None if others is None else next(others)[0]
         course = episode.course
@@ -93,13 +139,13 @@ def stretches_of(
         part = Part(name=name, tool=state.tool)
         chosen = bounds(part) if _meets_stock(prepared, part) else None
         blocks, spindle = course.segments.block, _spindle(episode)
-        can_change = np.array(log.can_change)[blocks] & (chosen is not None) & (spindle > 0.0)
+        can_change = log.can_change(blocks) & (chosen is not None) & (spindle > 0.0)
         yield PathStretch(
             segments=course.segments,
             spindle=spindle,
             per_revolution=stretch.per_revolution,
             is_free=can_change & ~course.segments.is_rapid,
-            can_split=np.array(log.can_split)[blocks],
+            can_split=log.can_split(blocks),
             met=course.stations,
             near=None if near is None or near.course is None else near.course.stations,
             bounds=chosen,
@@ -118,14 +164,14 @@ def _ignore(_episode: Episode, _machine: VirtualMachine) -> None:
     """Ignore an episode."""
 
 
-class _Run:
+class _CourseRun:
     """Run of a program whose stretches are paired with the acts that request them."""
 
     def __init__(
         self,
         prepared: PreparedRun,
         control: ControlModel,
-        log: BlockLog,
+        log: NumberedBlocks,
         watch: Callable[[Episode, VirtualMachine], None],
     ) -> None:
         self.machine = VirtualMachine(

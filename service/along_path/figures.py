@@ -6,7 +6,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from service.along_path.plan_run import LimitStretch
-from service.along_path.run import AlongPath
+from service.along_path.run import FeedsAlongPath
 from service.along_path.trace import PathSignal, PathTrace
 from service.buckets import BucketedRun
 from service.panels import BLUE, CLEAR, FAINT, GREEN, GREY, ORANGE, PINK, RED, SKY, key
@@ -28,7 +28,7 @@ SPEED_SCALE = "Viridis"
 """Colour scale of the feed, which the colour-blind can read."""
 
 
-def along_path_figures(along: AlongPath) -> list[go.Figure]:
+def along_path_figures(along: FeedsAlongPath) -> list[go.Figure]:
     """Figures by path length and over time, and the path; none without traces."""
     if along.before_trace is None or along.after_trace is None:
         return []

@@ -1,40 +1,221 @@
-"""Feeds along the paths of NC code: read, plan within the tools' limits, and rewrite.
+"""Feeds along the paths of NC code: read, plan within the limits of its tools, and rewrite.
 
-Only F words change, and blocks are split. Moves that are not understood, that are cut with
-cutter compensation, in another frame or with a tool that the table lacks stay as they are, and
-remove nothing from the stock: later moves then count as meeting more material, never less.
+Only F words change, and blocks are split.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-
-import numpy as np
 
 from optimiser.along_path.caps import CutBounds
 from optimiser.along_path.tool_bounds import bounds_of_tool
 from optimiser.modes import Mode
-from service.along_path.course import BlockLog, Part
-from service.along_path.run import AlongPath, along_path
+from service.along_path.code_paths import CodeBlocks, CodePaths
+from service.along_path.course import PathSource
+from service.along_path.run import FeedsAlongPath, along_path
 from service.along_path.task import task_of
-from service.chosen import load_material_named, require_axes
-from service.files import read_bytes
-from service.raw_stock import GivenStock, raw_stock_of, stock_map
+from service.chosen import (
+    DEFAULT_LATHE,
+    DEFAULT_MILL,
+    load_material_named,
+    require_axes,
+)
+from service.files import (
+    beside,
+    is_same,
+    read_bytes,
+    require_place,
+    write_atomically,
+)
+from service.numbers import tool_numbers_in
 from service.reading import Tell, silent
 from service.requests.advice import AdviceRequest
-from service.simulation.setup import PreparedRun
+from service.requests.fields import require_bounds
 from simulator.library import load_machine
-from simulator.machine.interpreter import Numbered
-from simulator.machine.tooling import table_tool
 from simulator.spec import Machine, MaterialMatch
+from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.read import read_tools
-from simulator.tool_table import TableTool
-from stepnc_model.errors import Finding, Severity, StepNcError
+from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
 from stepnc_model.nc.advice import BlockAdvice, RewrittenCode
-from stepnc_model.nc.moves import MoveFlag, NcMoves
-from stepnc_model.nc.neutral_blocks import neutral_blocks
-from stepnc_model.nc.program import NcProgram, read_program
+from stepnc_model.nc.program import read_program
 from stepnc_model.nc.rewrite import rewrite
-from stepnc_model.post.blocks import Block, Circular, Comment, Linear, ToolChange
-from stepnc_model.post.dialect import Dialect
-from stepnc_model.units import mm_from_um, speed_from_mm_min
+from stepnc_model.post.block_feeds import BlockPart
+from stepnc_model.post.blocks import MachineType
+from stepnc_model.units import mm_from_um
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CodeFiles:
+    """Files that ``optimise`` reads and writes for NC code."""
+
+    file: Path
+    name: str = ""
+    """Name of the program; empty: the name of its file."""
+    tools: Path | None = None
+    """Tool table or library."""
+    tools_unit: FileUnit | None = None
+    """Unit of a tool file that states none."""
+    output: Path | None = None
+    in_place: bool = False
+    dry_run: bool = False
+    report: Path | None = None
+    feeds: Path | None = None
+    """CSV table of the feeds along the paths, to be written."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CodeAdvice:
+    """Feeds along the paths of NC code, and the rewritten code."""
+
+    program: str
+    machine: Machine
+    material: MaterialMatch
+    control: str
+    frame: str
+    """Frame in which the stock stands."""
+    along: FeedsAlongPath
+    rewritten: RewrittenCode
+    findings: tuple[Finding, ...]
+    written: Path | None
+    """File of the rewritten code; None when nothing was written."""
+
+
+def optimise_code(
+    request: AdviceRequest, files: CodeFiles, *, tell: Tell = silent
+) -> CodeAdvice:
+    """Plan the feeds along the paths of NC code and write them into a copy of it.
+
+    Raises
+    ------
+    StepNcError
+        When a file, a name or a number is invalid, or the machine cannot run the program.
+    """
+    require_bounds(request)
+    output = _output(files)
+    name = files.name or files.file.name
+    if files.tools is None or not request.stock:
+        raise StepNcError("NC code names no tools and no stock: add --tools and --stock")
+    if not request.material:
+        raise StepNcError("NC code names no material: add --material (`stepnc materials`)")
+    program = read_program(read_bytes(files.file), dialect=request.dialect)
+    is_lathe = program.machine is MachineType.LATHE
+    machine = load_machine(request.machine or (DEFAULT_LATHE if is_lathe else DEFAULT_MILL))
+    require_axes(machine)
+    material = load_material_named(request.material)
+    tell(f"material: {material.reason}")
+    library = read_tools(files.tools, unit=files.tools_unit)
+    code = CodePaths(
+        program,
+        machine,
+        material,
+        name=name,
+        tools=library.by_number,
+        stock=request.stock,
+    )
+    bounds = _bounds(code, request)
+    source = PathSource(
+        prepare=code.prepared,
+        bounds=lambda part: bounds.get(part.name),
+        numbered=lambda run: CodeBlocks(run.blocks, code),
+    )
+    task = replace(
+        task_of(request, machine), keeps_traces=files.report is not None, keeps_idle=True
+    )
+    along = along_path(source, task, tell=tell)
+    advice = (_advice(code, line, parts) for line, parts in along.feeds.items())
+    rewritten = rewrite(program, advice, mark=request.is_marked)
+    found = CodeAdvice(
+        program=name,
+        machine=machine,
+        material=material,
+        control=program.dialect.value,
+        frame=code.frame,
+        along=along,
+        rewritten=rewritten,
+        findings=(
+            *program.findings,
+            *library.findings,
+            *code.findings,
+            *_idle(code, along),
+            *_unchanged(rewritten),
+            *along.findings,
+        ),
+        written=None if files.dry_run else output,
+    )
+    if not files.dry_run:
+        write_atomically(output, rewritten.data)
+        tell(f"written: {output}")
+    return found
+
+
+def _output(files: CodeFiles) -> Path:
+    """Path of the rewritten code; the input file only if asked for."""
+    if files.in_place:
+        if files.output is not None:
+            raise StepNcError("--in-place and --output exclude each other")
+        return files.file
+    output = files.output or beside(files.file, f".optimised{files.file.suffix}")
+    if is_same(files.file, output):
+        raise WriteError("is the input file; use --in-place to overwrite it", path=str(output))
+    for place in (output, files.report, files.feeds):
+        if place is not None and not files.dry_run:
+            require_place(place, apart_from=files.file)
+    return output
+
+
+def _bounds(code: CodePaths, request: AdviceRequest) -> dict[str, CutBounds]:
+    """Bounds of the parts of a program by their names; parts that stay have none."""
+    kept = tool_numbers_in(request.keep)
+    finishing = tool_numbers_in(request.finish)
+    roughness = None if request.roughness_um is None else mm_from_um(request.roughness_um)
+    found: dict[str, CutBounds] = {}
+    for part in code.parts:
+        if part.tool in kept or part.tool not in code.tools:
+            continue
+        is_finishing = part.is_finishing or part.tool in finishing or request.mode is Mode.QC
+        bounds = bounds_of_tool(
+            code.tools[part.tool],
+            code.machine,
+            code.material.material,
+            quantile=request.safety,
+            is_finishing=is_finishing,
+            roughness=roughness,
+        )
+        if bounds is not None:
+            found[part.name] = bounds
+    return found
+
+
+def _advice(code: CodePaths, line: int, parts: tuple[BlockPart, ...]) -> BlockAdvice:
+    """Advice for a block of the file; feeds per revolution at its greatest speed."""
+    block = code.block_at(line)
+    fastest = code.fastest(block) if parts[0].is_per_revolution else 1.0
+    reasons = dict.fromkeys(part.reason for part in parts)
+    return BlockAdvice(
+        block=block,
+        ends=tuple(part.end for part in parts),
+        feeds=tuple(part.rate * fastest for part in parts),
+        reason=", ".join(reasons),
+    )
+
+
+def _idle(code: CodePaths, along: FeedsAlongPath) -> Iterator[Finding]:
+    """Findings on tools that meet no stock, and on a program of which nothing can change."""
+    for part in code.parts:
+        if part.name in along.idle:
+            text = (
+                f"{part.name} meets no stock: its feeds stay as programmed; do the stock and "
+                f"{code.frame} have the same zero?"
+            )
+            yield Finding(severity=Severity.WARNING, message=text, line=code.line(part))
+    if not code.can_change.any():
+        yield Finding(
+            severity=Severity.WARNING, message="no feed of this program may be chosen"
+        )
+
+
+def _unchanged(rewritten: RewrittenCode) -> Iterator[Finding]:
+    """Findings on blocks that did not get what was advised."""
+    for each in rewritten.unchanged:
+        what = "got one feed" if each.is_unsplit else "stays as it is"
+        yield Finding(severity=Severity.NOTE, message=f"{what}: {each.reason}", line=each.line)

@@ -7,18 +7,14 @@ from pathlib import Path
 from optimiser.advice import AdviceStatus, Plan
 from optimiser.along_path.bounds import bounds_of
 from optimiser.along_path.caps import CutBounds
-from service.along_path.course import BlockLog, Part
-from service.along_path.run import AlongPath, AlongPathTask, along_path
+from service.along_path.course import BlockLog, Part, PathSource
+from service.along_path.run import FeedsAlongPath, along_path
+from service.along_path.task import task_of
 from service.chosen import require_axes
 from service.paths.toolpaths import paths_of, with_feeds
 from service.reading import Tell, silent
 from service.requests.advice import AdviceRequest
 from service.simulation.setup import PreparedRun, prepared_program
-from simulator.motion.control import control_model
-from simulator.motion.model_name import ControlModelName
-from simulator.motion.segments import axis_limits
-from simulator.spec import Machine
-from stepnc_model.errors import StepNcError
 from stepnc_model.post import block_feeds
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.dialects import write
@@ -33,7 +29,7 @@ def along_program(
     *,
     keeps_traces: bool = False,
     tell: Tell = silent,
-) -> AlongPath:
+) -> FeedsAlongPath:
     """Plan the feeds along the paths of a program that contains the advice of its plan.
 
     Parameters
@@ -67,41 +63,21 @@ def along_program(
         return bounds.get(part.name)
 
     task = replace(task_of(request, plan.machine), keeps_traces=keeps_traces)
-    return along_path(prepare, bounds_at, task, tell=tell)
+    return along_path(PathSource(prepare=prepare, bounds=bounds_at), task, tell=tell)
 
 
-def task_of(request: AdviceRequest, machine: Machine) -> AlongPathTask:
-    """Task of planning feeds along paths, as requested.
-
-    Raises
-    ------
-    StepNcError
-        When no control model follows from the machine's axes.
-    """
-    try:
-        control = control_model(ControlModelName.FIR, axis_limits(machine))
-    except ValueError as error:
-        raise StepNcError(f"machine '{machine.name}', control fir: {error}") from error
-    return AlongPathTask(
-        control=control,
-        levels=request.levels,
-        margin=request.stock_margin_mm,
-        tolerance=request.corner_tolerance_mm,
-    )
-
-
-def nc_lines_along(program: Program, along: AlongPath, control: Dialect) -> Iterator[str]:
+def nc_lines_along(program: Program, along: FeedsAlongPath, control: Dialect) -> Iterator[str]:
     """Generate NC code of a program at the planned feeds, line by line.
 
     Parameters
     ----------
     program : Program
         The program that was planned.
-    along : AlongPath
+    along : FeedsAlongPath
     control : Dialect
     """
     paths = with_feeds(paths_of(program), keep_going=False)
     blocks = blocks_of(program, paths.items, name=Path(program.name).stem)
     numbered = BlockLog((0, block) for block in blocks)
     fed = block_feeds.with_feeds(numbered, along.feeds)
-    return write((block for _, block in fed), control)
+    return write((each.block for each in fed), control)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from service.along_path.run import AlongPath, AlongPathStep
+from service.along_path.run import AlongPathStep, FeedsAlongPath
 from service.rendering.columns import Change, Column
 from service.rendering.text import print_line, print_table
 from stepnc_model.units import kw_from_watts, mm_min_from_speed, um_from_mm
@@ -61,7 +61,7 @@ STEP: tuple[Column[AlongPathStep], ...] = (
 """Columns of the comparison of one feed per part with feeds along its path."""
 
 
-def print_along_path(along: AlongPath) -> None:
+def print_along_path(along: FeedsAlongPath) -> None:
     """Print the comparison of both runs, and what limits the feed along the path."""
     print_line("one feed per part -> along the path, both run on the virtual machine")
     total = f"{along.time_before:.1f} -> {along.time_after:.1f}"
@@ -71,11 +71,27 @@ def print_along_path(along: AlongPath) -> None:
         f"time × {ratio:.3f}; {len(along.feeds)} blocks changed, {along.parts} splits; "
         f"run/plan {along.time_after / along.planned_time:.4f}"
     )
+    print_line(free_words(along))
     shares = ", ".join(f"{words} {share:.0%}" for words, share in active_shares(along))
     print_line(f"share of the path by active limit: {shares}")
 
 
-def active_shares(along: AlongPath) -> list[tuple[str, float]]:
+def free_words(along: FeedsAlongPath) -> str:
+    """State what the cut takes without a control, and how far limits are exceeded."""
+    free = along.free
+    chosen = sum(step.plan.time for step in along.steps if step.plan is not None)
+    text = (
+        f"moves with a chosen feed: {chosen:.1f} s in blocks, {free.time:.1f} s as a free "
+        f"profile within the accelerations of the axes (at least {free.bound:.1f} s"
+    )
+    if free.worst is not None:
+        text += f"; greatest excess {free.worst.excess:.1e}, {free.worst.limit}"
+    if free.jerk_time is not None:
+        text += f"; {free.jerk_time:.1f} s with limited jerk"
+    return text + ")"
+
+
+def active_shares(along: FeedsAlongPath) -> list[tuple[str, float]]:
     """Share of the chosen path length at each active limit, the greatest first."""
     lengths: dict[str, float] = {}
     for step in along.steps:
@@ -86,15 +102,28 @@ def active_shares(along: AlongPath) -> list[tuple[str, float]]:
     return [(words, length / whole) for words, length in ordered] if whole > 0.0 else []
 
 
-def along_path_record(along: AlongPath) -> dict[str, Any]:
+def along_path_record(along: FeedsAlongPath) -> dict[str, Any]:
     """Return the feeds along the paths as a JSON object."""
     return {
         "time_s": {"before": along.time_before, "after": along.time_after},
         "planned_time_s": along.planned_time,
         "blocks": len(along.feeds),
         "splits": along.parts,
+        "free_profile": _free(along),
         "active_limits": dict(active_shares(along)),
         "parts": [_step(step) for step in along.shown],
+    }
+
+
+def _free(along: FeedsAlongPath) -> dict[str, Any]:
+    free = along.free
+    worst = free.worst
+    return {
+        "time_s": free.time,
+        "bound_s": free.bound,
+        "jerk_limited_time_s": free.jerk_time,
+        "greatest_excess": None if worst is None else worst.excess,
+        "greatest_excess_limit": None if worst is None else worst.limit,
     }
 
 
@@ -140,7 +169,7 @@ PROFILE = "block,part,end_of_block,feed,unit,limit\n"
 """Header of the profile as CSV."""
 
 
-def profile_lines(along: AlongPath) -> Iterator[str]:
+def profile_lines(along: FeedsAlongPath) -> Iterator[str]:
     """Yield the feeds of the changed blocks as lines of a CSV table."""
     yield PROFILE.rstrip()
     for block, parts in along.feeds.items():

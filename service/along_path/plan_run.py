@@ -1,26 +1,28 @@
 """Run of planned feeds on the virtual machine, and what it shows of the plan."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from optimiser.along_path.plan import BlockFeeds
 from optimiser.along_path.stretch import PathStretch, excess
-from service.along_path.course import BlockLog, Choose, stretches_of
+from service.along_path.course import NumberedBlocks, PathSource, stretches_of
 from service.along_path.trace import PathTrace, PathTraceKeeper
-from service.progress import Ticker
-from service.simulation.setup import PreparedRun
+from service.progress import Ticker, bar
 from simulator.machine.samples import Episode
 from simulator.machine.totals import Total, added
 from simulator.machine.virtual import VirtualMachine
-from simulator.motion.segments import ControlModel
+from simulator.motion.segments import Bools, ControlModel, Ints
 from stepnc_model.errors import Finding
 from stepnc_model.post.block_feeds import with_feeds
 from stepnc_model.post.blocks import Block
 
 EXCESS = 1.002
 """Feed over the permitted feed above which a part is lowered."""
+
+BRIDGE = 0
+"""Line of moves that stand for those that are left out: what they meet is no fault."""
 
 LEAST_GAP = 1e-6
 """Length below which two parts of the path follow each other, mm."""
@@ -39,12 +41,30 @@ class LimitStretch:
 
 
 class PartTotals:
-    """Totals of a run by parts of the program, with its signals if asked. Running state."""
+    """Totals of a run by parts of the program, with its signals if asked. Running state.
 
-    def __init__(self, ticker: Ticker, what: str, *, keeps_trace: bool) -> None:
+    Parameters
+    ----------
+    ticker : Ticker
+    what : str
+        Name of the run in messages.
+    share : callable
+        Share of the run that is done, 0 to 1, at a time of the machine in s.
+    keeps_trace : bool
+        Whether the signals are kept.
+    """
+
+    def __init__(
+        self,
+        ticker: Ticker,
+        what: str,
+        *,
+        share: Callable[[float], float],
+        keeps_trace: bool,
+    ) -> None:
         self._totals: list[Total] = []
         self._names: list[str] = [""]
-        self._ticker, self._what = ticker, what
+        self._ticker, self._what, self._share = ticker, what, share
         self._keeper = PathTraceKeeper() if keeps_trace else None
         self.findings: list[Finding] = []
         """Findings of the machine, which grow during the run."""
@@ -58,7 +78,8 @@ class PartTotals:
         self.findings = machine.findings
         if self._keeper is not None:
             self._keeper.add(episode, machine.machine)
-        self._ticker(lambda: f"{self._what}: {machine.now:.0f} s of machining")
+        now = machine.now
+        self._ticker(lambda: f"{bar(self._share(now))}  {self._what}: {now:.0f} s of machining")
 
     def trace(self) -> PathTrace | None:
         """Signals of the run; None unless they were kept."""
@@ -81,9 +102,8 @@ class PlanRun:
 
 
 def run_plan(
-    prepared: PreparedRun,
+    source: PathSource,
     feeds: BlockFeeds,
-    bounds: Choose,
     *,
     control: ControlModel,
     totals: PartTotals,
@@ -92,11 +112,8 @@ def run_plan(
 
     Parameters
     ----------
-    prepared : PreparedRun
-        The program, prepared anew.
+    source : PathSource
     feeds : BlockFeeds
-    bounds : callable
-        Bounds of a part of the program.
     control : ControlModel
     totals : PartTotals
         Receives the run.
@@ -106,15 +123,16 @@ def run_plan(
     SimulationError
         When the machine cannot run the program.
     """
-    emitted = _EmittedBlocks(prepared, feeds)
+    prepared = source.prepare(0.0)
+    emitted = _EmittedBlocks(source.numbered(prepared), feeds)
     strip = _LimitStrip(emitted, feeds)
     ratios: dict[tuple[int, int], float] = {}
     for stretch in stretches_of(
         prepared,
         None,
         control=control,
-        bounds=bounds,
-        log=BlockLog(emitted),
+        bounds=source.bounds,
+        log=emitted,
         watch=totals.add,
     ):
         strip.add(stretch)
@@ -123,22 +141,51 @@ def run_plan(
             origin = emitted.origin[int(stretch.segments.block[row])]
             if origin[0] in feeds:
                 ratios[origin] = max(float(found[row]), ratios.get(origin, 1.0))
+    totals.findings = [
+        replace(finding, line=line)
+        for finding in totals.findings
+        for line in (emitted.line(finding.line),)
+        if line != BRIDGE or finding.line == 0
+    ]
     return PlanRun(totals=totals, excess=ratios, limits=tuple(strip.rows))
 
 
 class _EmittedBlocks:
-    """Blocks at their new feeds, with the block and part that each comes from."""
+    """Blocks at their new feeds, numbered by the block and part that they come from.
 
-    def __init__(self, prepared: PreparedRun, feeds: BlockFeeds) -> None:
-        self._log = BlockLog(prepared.blocks)
+    Running state: it grows as the program is read. The moves of a cycle share a number, as they
+    do before their feeds change, so that both runs stop at the same places.
+    """
+
+    def __init__(self, blocks: NumberedBlocks, feeds: BlockFeeds) -> None:
+        self._blocks = blocks
         self._feeds = feeds
         self.origin: list[tuple[int, int]] = [(0, 0)]
 
     def __iter__(self) -> Iterator[tuple[int, Block]]:
-        for number, block in with_feeds(self._log, self._feeds):
-            last, part = self.origin[-1]
-            self.origin.append((number, part + 1 if number == last else 0))
-            yield self._log.lines[number], block
+        """Yield the blocks with their numbers."""
+        for fed in with_feeds(self._blocks, self._feeds):
+            if (fed.number, fed.part) != self.origin[-1]:
+                self.origin.append((fed.number, fed.part))
+            yield len(self.origin) - 1, fed.block
+
+    def can_change(self, numbers: Ints) -> Bools:
+        """Whether the blocks that some come from may have another feed."""
+        return self._blocks.can_change(self._origins(numbers))
+
+    def can_split(self, numbers: Ints) -> Bools:
+        """Whether the blocks that some come from may be split."""
+        return self._blocks.can_split(self._origins(numbers))
+
+    def line(self, number: int) -> int:
+        """Line of the program; 0 without one."""
+        origin = self.origin[number][0]
+        return self._blocks.line(origin) if origin else 0
+
+    def _origins(self, numbers: Ints) -> Ints:
+        """Blocks of the program that some blocks come from."""
+        known, row = np.unique(numbers, return_inverse=True)
+        return np.array([self.origin[number][0] for number in known.tolist()])[row]
 
 
 class _LimitStrip:

@@ -5,9 +5,9 @@ one that is larger by a margin. Then the plan runs; where a block that was split
 more than the whole block did, its feed is lowered, and the plan runs once more.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
+from optimiser.along_path.free import FreeProfile
 from optimiser.along_path.pieces import PieceRules
 from optimiser.along_path.plan import (
     BlockFeeds,
@@ -18,12 +18,11 @@ from optimiser.along_path.plan import (
     lowered,
 )
 from optimiser.along_path.runs import MachineFeeds
-from service.along_path.course import BlockLog, Choose, stretches_of
+from service.along_path.course import PathSource, stretches_of
 from service.along_path.plan_run import LimitStretch, PartTotals, run_plan
 from service.along_path.trace import PathTrace
 from service.progress import Ticker
 from service.reading import Tell, silent
-from service.simulation.setup import PreparedRun
 from simulator.machine.totals import Total
 from simulator.motion.segments import ControlModel, axis_limits
 from simulator.spec import Machine
@@ -44,6 +43,12 @@ class AlongPathTask:
     """Distance from the stock within which nothing counts as air, mm."""
     tolerance: float = 0.05
     """Rounding of corners by the control that is always permitted, mm."""
+    greatest: float | None = None
+    """Greatest feed that the user permits, mm/s; None: that of the machine."""
+    keeps_idle: bool = False
+    """Whether parts of the program that meet no stock keep their feeds."""
+    has_jerk: bool = False
+    """Whether the free profile with limited jerk is computed too."""
     keeps_traces: bool = False
     """Whether feed, force and power of both runs are kept for plots."""
 
@@ -70,11 +75,13 @@ class AlongPathStep:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AlongPath:
+class FeedsAlongPath:
     """Feeds along the paths of a program."""
 
     feeds: BlockFeeds
     steps: tuple[AlongPathStep, ...]
+    idle: tuple[str, ...] = ()
+    """Parts of the program that kept their feeds because they meet no stock."""
     findings: tuple[Finding, ...] = ()
     """Findings of the run at the planned feeds."""
     before_trace: PathTrace | None = None
@@ -105,26 +112,27 @@ class AlongPath:
         return sum(step.planned_time for step in self.steps)
 
     @property
+    def free(self) -> FreeProfile:
+        """Free profile of all parts together."""
+        whole = FreeProfile()
+        for step in self.steps:
+            whole = whole if step.plan is None else whole.plus(step.plan.free)
+        return whole
+
+    @property
     def parts(self) -> int:
         """Number of parts into which blocks were split beyond their number."""
         return sum(len(parts) - 1 for parts in self.feeds.values())
 
 
 def along_path(
-    prepare: Callable[[float], PreparedRun],
-    bounds: Choose,
-    task: AlongPathTask,
-    *,
-    tell: Tell = silent,
-) -> AlongPath:
+    source: PathSource, task: AlongPathTask, *, tell: Tell = silent
+) -> FeedsAlongPath:
     """Plan the feeds along the paths of a program, and run the plan.
 
     Parameters
     ----------
-    prepare : callable
-        Prepares the program anew, in a stock that is larger by a distance in mm.
-    bounds : callable
-        Bounds of a part of the program; None if its feed may not be chosen.
+    source : PathSource
     task : AlongPathTask
     tell : callable
         Receives progress.
@@ -135,37 +143,63 @@ def along_path(
         When the machine cannot run the program.
     """
     ticker = Ticker(tell)
-    given = prepare(0.0)
+    given = source.prepare(0.0)
     planner = FeedPlanner(_feed_task(given.machine, task))
-    before = PartTotals(ticker, "planning", keeps_trace=task.keeps_traces)
+    before = PartTotals(
+        ticker, "planning", share=lambda _: given.done(), keeps_trace=task.keeps_traces
+    )
     for stretch in stretches_of(
         given,
-        prepare(task.margin) if task.margin > 0.0 else None,
+        source.prepare(task.margin) if task.margin > 0.0 else None,
         control=task.control,
-        bounds=bounds,
-        log=BlockLog(given.blocks),
+        bounds=source.bounds,
+        log=source.numbered(given),
         watch=before.add,
     ):
         planner.add(stretch)
-    plan = planner.plan()
+    idle = _idle(before) if task.keeps_idle else frozenset[str]()
+    plan = planner.plan(kept=idle)
     feeds: BlockFeeds = dict(block_feeds(plan))
+    whole = max(sum(total.duration for _, total in before.rows()), 1.0)
     for _ in range(MOST_ROUNDS):
-        after = PartTotals(ticker, "running the plan", keeps_trace=task.keeps_traces)
-        run = run_plan(prepare(0.0), feeds, bounds, control=task.control, totals=after)
+        after = PartTotals(
+            ticker,
+            "running the plan",
+            share=lambda now: min(now / whole, 1.0),
+            keeps_trace=task.keeps_traces,
+        )
+        run = run_plan(source, feeds, control=task.control, totals=after)
         if not run.excess:
             break
         feeds = lowered(feeds, run.excess, keeps_levels=task.levels is not None)
     parts = {part.name: part for part in plan.parts}
-    return AlongPath(
+    return FeedsAlongPath(
         feeds=feeds,
         steps=tuple(
             AlongPathStep(name=name, before=one, after=other, plan=parts.get(name))
             for (name, one), (_, other) in zip(before.rows(), after.rows(), strict=True)
         ),
+        idle=tuple(sorted(idle)),
         findings=tuple(after.findings),
         before_trace=before.trace(),
         after_trace=after.trace(),
         limits=run.limits,
+    )
+
+
+def _idle(totals: PartTotals) -> frozenset[str]:
+    """Names of the parts of a program that remove nothing."""
+    return frozenset(name for name, total in totals.rows() if total.volume <= 0.0)
+
+
+def _rules(machine: Machine, block_time: float) -> PieceRules:
+    """How finely blocks may be split, as the machine's file says."""
+    usual = PieceRules()
+    length, change = machine.least_block, machine.least_feed_change
+    return PieceRules(
+        least_length=usual.least_length if length is None else length,
+        least_change=usual.least_change if change is None else change,
+        block_time=block_time,
     )
 
 
@@ -176,9 +210,13 @@ def _feed_task(machine: Machine, task: AlongPathTask) -> FeedTask:
         machine=MachineFeeds(
             control=task.control,
             limits=limits,
-            greatest=machine.max_feed,
+            greatest=min(
+                (each for each in (machine.max_feed, task.greatest) if each is not None),
+                default=None,
+            ),
             tolerance=task.tolerance,
         ),
-        rules=PieceRules(block_time=limits.block_time),
+        rules=_rules(machine, limits.block_time),
         levels=task.levels,
+        has_jerk=task.has_jerk,
     )

@@ -183,7 +183,7 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
             code=options.nc,
             dialect=options.dialect,
             tools=options.tools,
-            tools_unit=_length_unit(options.tools_unit),
+            tools_unit=length_unit(options.tools_unit),
             stock=options.stock,
         )
     return RunFiles(
@@ -195,7 +195,7 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
     )
 
 
-def _length_unit(name: str) -> "FileUnit | None":
+def length_unit(name: str) -> "FileUnit | None":
     """Return the unit of a tool table that names none; None if none is given."""
     from service.reading import one_of
     from simulator.tool_files.file_unit import FileUnit

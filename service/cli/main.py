@@ -136,7 +136,7 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         "file",
         type=Path,
         metavar="FILE",
-        help="a STEP-NC program (Part 21), or a folder of them",
+        help="a STEP-NC program (Part 21), a folder of them, or NC code",
     )
     add_options(parser, AdviceRequest)
     add(
@@ -157,8 +157,10 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         "--tools",
         type=Path,
         metavar="TABLE",
-        help="tool table that says which of the program's tools cut over centre or have wipers",
+        help="tool table: the tools of NC code; of a program, which cut over centre or have "
+        "wipers",
     )
+    add("--tools-unit", default="", metavar="UNIT", help="unit of a tool.tbl: mm or inch")
     add_knowledge(parser, "supplies accepted corrections of k_c")
     add(
         "--feeds-csv",
@@ -195,10 +197,19 @@ def _add_check(commands: Commands) -> None:
 def _add_convert(commands: Commands) -> None:
     """Add the command ``stepnc convert``."""
     parser = commands.add_parser(
-        "convert", help="convert optimisation records to the other profile without loss"
+        "convert",
+        help="convert a program to AP238 or ISO 14649, or its records to the other profile",
     )
     parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
-    parser.add_argument("--profile", required=True, help="optimisation or standard")
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument(
+        "--to",
+        metavar="STANDARD",
+        help="write the program by another standard: ap238 or iso14649",
+    )
+    what.add_argument(
+        "--profile", help="write the optimisation records in profile optimisation or standard"
+    )
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
     parser.set_defaults(run=_convert)
 
@@ -238,6 +249,8 @@ def _exit_code(error: Exception) -> int:
 def _optimise(options: argparse.Namespace) -> int:
     """Run the command ``optimise``."""
     from service import usecases
+    from service.cli.code import optimise_code
+    from service.code_contents import is_code
     from service.requests.advice import AdviceRequest
     from service.requests.fields import from_options
     from service.terminal import tell, write_out
@@ -247,6 +260,8 @@ def _optimise(options: argparse.Namespace) -> int:
         return _optimise_folder(options)
     if options.cluster:
         raise StepNcError("--cluster runs the programs of a folder: name a folder")
+    if is_code(options.file):
+        return optimise_code(options)
     outcome = usecases.optimise(
         from_options(AdviceRequest, options),
         usecases.AdviceFiles(
@@ -371,9 +386,17 @@ def _check_program(options: argparse.Namespace) -> int:
 def _convert(options: argparse.Namespace) -> int:
     """Run the command ``stepnc convert``."""
     from service import usecases
+    from service.conversion import Standard, convert_to
     from service.requests.fields import member_of
     from service.terminal import tell
     from stepnc_model.file_profile import FileProfile
+
+    if options.to is not None:
+        standard = member_of(Standard, options.to, "standard")
+        for finding in convert_to(options.file, standard=standard, output=options.output):
+            tell(str(finding))
+        tell(f"{options.output}: written by standard '{standard.value}'")
+        return OK
 
     profile = member_of(FileProfile, options.profile, "profile")
     usecases.convert(options.file, profile=profile, output=options.output)

@@ -190,6 +190,7 @@ async function shape() {
 async function programsAndAdvices() {
   const [programs, jobs] = await Promise.all([api("/v1/programs?limit=200"),
     api("/v1/jobs?kind=advice&state=succeeded&limit=100")]);
+  programs.items = programs.items.filter((each) => each.kind === "step-nc");
   const names = new Map(programs.items.map((each) => [each.id, each.name]));
   const advices = jobs.items.filter((job) => names.has(job.program_id)).map((job) => ({ id: job.id,
     title: [names.get(job.program_id), job.request.mode, job.request.machine, moment(job.created_at)]

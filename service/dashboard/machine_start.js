@@ -9,6 +9,7 @@ export async function startForm(place, programs, wanted, started) {
   const [machines, materials, advice] = await Promise.all([
     api("/v1/machines"), api("/v1/materials"), api("/v1/jobs?kind=advice&state=succeeded&limit=50"),
   ]);
+  programs = new Map([...programs].filter(([, program]) => program.kind === "step-nc"));
   if (!programs.size) {
     fill(place, el("p", { class: "empty", id: "no-programs" }, "No programs yet. ",
       el("a", { href: "/dashboard/plan.html" }, "Upload one on the page Plan"), ", or use an example there."));

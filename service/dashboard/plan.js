@@ -1,8 +1,9 @@
 // The plan page: choose a program, set options, see the advice and its reasons.
 
 import { AWAY_WORDS, Problem, announce, api, byId, duration, el, fill, followed, patiently, tell } from "/dashboard/app.js";
-import { programChoice } from "/dashboard/plan_program.js";
-import { showResult } from "/dashboard/plan_result.js";
+import { codeOptions } from "/dashboard/plan_code.js";
+import { isCode, programChoice } from "/dashboard/plan_program.js";
+import { isOnCode, showResult, timesOf } from "/dashboard/plan_result.js";
 import { beginRuns, endRuns } from "/dashboard/plan_runs.js";
 
 const form = byId("advice-form"), button = byId("optimise"), hint = byId("optimise-hint");
@@ -11,21 +12,44 @@ let program = null, working = null;
 // -- the program ------------------------------------------------------------------------------
 
 const choice = programChoice((chosen, contents) => {
-  program = chosen && contents.is_usable ? chosen : null;
+  program = chosen && (isCode(chosen) || contents.is_usable) ? chosen : null;
+  if (chosen) suit(isCode(chosen));
   ready();
-  const steps = chosen ? contents.workingsteps : [];
+  const steps = chosen && !isCode(chosen) ? contents.workingsteps : [];
   const place = byId("only-steps");
   place.hidden = steps.length < 2;
   fill(place, el("legend", {}, "Workingsteps"), steps.map((step) =>
     el("label", { class: "inline" }, el("input", { type: "checkbox", name: "only",
       value: step.instance, checked: true }), step.id)));
-});
+}, { takesCode: true });
+const code = codeOptions(ready);
+code.ready.catch((error) => tell(byId("advice-problem"), error));
+
+/** Show the options that suit the kind of the program. */
+function suit(isOfCode) {
+  for (const each of form.querySelectorAll(".of-program")) each.hidden = isOfCode;
+  for (const each of form.querySelectorAll(".of-code")) each.hidden = !isOfCode;
+  byId("material").options[0].textContent = isOfCode ? "choose …" : "as in the program";
+  showAlongFields();
+}
+
+/** Show the options of feeds along the path where they are chosen. */
+function showAlongFields() {
+  const isAlong = byId("along").checked || !byId("code-options").hidden;
+  byId("along-fields").hidden = !isAlong;
+  byId("write-toolpaths").disabled = !isAlong;
+  for (const each of byId("along-fields").querySelectorAll("input")) each.disabled = !isAlong;
+}
+
+byId("along").addEventListener("change", showAlongFields);
+showAlongFields();
 
 byId("units").addEventListener("change", () => choice.again(program?.id));
 
 function ready() {
-  button.disabled = !program || working !== null;
-  hint.textContent = working ? "" : program ? "" : "Choose a program first.";
+  const missing = !program ? "Choose a program first." : isCode(program) ? code.missing : "";
+  button.disabled = Boolean(missing) || working !== null;
+  hint.textContent = working ? "" : missing;
 }
 
 // -- options ---------------------------------------------------------------------------------
@@ -40,8 +64,23 @@ const checked = (name) =>
   [...form.querySelectorAll(`input[name="${name}"]:checked`)].map((each) => each.value);
 const numeric = (id) => (byId(id).value === "" ? null : byId(id).valueAsNumber);
 
+/** Return the options of feeds along the path. */
+function alongWish() {
+  return { levels: numeric("levels"), max_feed_mm_min: numeric("max-feed"),
+    stock_margin_mm: numeric("stock-margin"), corner_tolerance_mm: numeric("corner-tolerance") };
+}
+
+/** Return the request body for NC code. */
+function codeWish() {
+  const safety = numeric("safety");
+  return { mode: form.elements.mode.value, machine: byId("machine").value, material: byId("material").value,
+    roughness_um: numeric("roughness"), ...code.fields, ...alongWish(),
+    ...(safety === null ? {} : { safety: safety / 100 }) };
+}
+
 /** Return the request body. Throws a problem if an input is missing. */
 function wish() {
+  if (isCode(program)) return codeWish();
   const free = checked("free"), only = checked("only");
   const all = form.querySelectorAll('input[name="only"]').length;
   if (!free.length) throw new Problem({ detail: "Select at least one quantity that may change: feed, depth or speed." }, 0);
@@ -55,6 +94,7 @@ function wish() {
     tool_change_s: numeric("tool-change") ?? 0, has_corrections: byId("corrections").checked,
     is_confirmed: byId("confirm").checked, stock: byId("stock").value.trim(),
     ...(safety === null ? {} : { safety: safety / 100 }),
+    ...(byId("along").checked ? { is_along_path: true, writes_toolpaths: byId("write-toolpaths").checked, ...alongWish() } : {}),
   };
 }
 
@@ -65,7 +105,12 @@ function recall(request) {
   for (const each of form.querySelectorAll('input[name="free"]')) each.checked = request.free.includes(each.value);
   for (const [id, name] of [["machine", "machine"], ["material", "material"], ["units", "units"],
     ["roughness", "roughness_um"], ["profile", "profile"], ["nc-control", "nc_control"],
-    ["tool-change", "tool_change_s"], ["stock", "stock"]]) put(id, request[name]);
+    ["tool-change", "tool_change_s"], ["stock", "stock"], ["levels", "levels"], ["max-feed", "max_feed_mm_min"]]) put(id, request[name]);
+  put("stock-margin", request.stock_margin_mm ?? 1);
+  put("corner-tolerance", request.corner_tolerance_mm ?? 0.05);
+  byId("along").checked = request.is_along_path ?? false;
+  byId("write-toolpaths").checked = request.writes_toolpaths ?? false;
+  showAlongFields();
   byId("pareto").checked = request.has_pareto;
   byId("confirm").checked = request.is_confirmed ?? false;
   byId("corrections").checked = request.has_corrections;
@@ -121,7 +166,7 @@ async function follow(asked) {
     const result = await patiently(`/v1/advice/${job.id}`, line);
     byId("result").hidden = false;
     showResult(job, result);
-    const { before, after } = result.total_time_s, longer = Math.max(before, after);
+    const { before, after } = timesOf(result), longer = Math.max(before, after);
     announce(`Optimised: ${duration(before, longer)} becomes ${duration(after, longer)}`);
     performance.measure("optimise to table", { start: begun });
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches && begun)
@@ -129,6 +174,7 @@ async function follow(asked) {
       place.hidden = true;  // before the scroll distance is measured
       byId("result").scrollIntoView({ behavior: "smooth", block: "start" });
     }
+    if (isOnCode(result)) return;
     beginRuns(job, result, { rate: byId("rate").valueAsNumber || 20,
       isWanted: byId("simulate-after").checked });
   } finally {
@@ -143,6 +189,7 @@ async function follow(asked) {
 async function reopen(id) {
   const job = await api(`/v1/jobs/${id}`);
   recall(job.request);
+  await code.recall(job.request);
   if (job.program_id) await choice.use(job.program_id);
   await follow(job);
 }

@@ -1,6 +1,6 @@
 // The program of the plan page: upload, example or earlier upload, and its findings.
 
-import { announce, api, byId, el, fill, tell } from "/dashboard/app.js";
+import { Problem, announce, api, byId, el, fill, number, tell } from "/dashboard/app.js";
 import { programTitle } from "/dashboard/records.js";
 
 const RANK = ["error", "warning", "note"];
@@ -38,8 +38,13 @@ async function sample(name) {
   }
 }
 
-/** Set up the choice of a program; calls `chosen(program, contents)`, or `chosen(null)` for none. */
-export function programChoice(chosen) {
+export const isCode = (program) => program.kind === "nc-code";
+
+/**
+ * Set up the choice of a program; calls `chosen(program, contents)`, or `chosen(null)` for none.
+ * `takesCode`: whether NC code may be chosen too.
+ */
+export function programChoice(chosen, { takesCode = false } = {}) {
   const drop = byId("drop"), problem = byId("program-problem");
   const examples = byId("program-example"), known = byId("program-known");
   let wanted = 0;
@@ -51,12 +56,15 @@ export function programChoice(chosen) {
     chosen(null);
     try {
       const program = await getting;
+      if (isCode(program) && !takesCode)
+        throw new Problem({ detail: `${program.name} is NC code: this page needs a STEP-NC program.` }, 0);
       const units = byId("units").value;
       const contents = await api(`/v1/programs/${program.id}/findings?units=${units}`);
       if (mine !== wanted) return;
       shown(program, contents);
       chosen(program, contents);
-      announce(`${program.name}: ${contents.workingsteps.length} workingsteps`);
+      announce(isCode(program) ? `${program.name}: NC code, ${contents.blocks} blocks`
+        : `${program.name}: ${contents.workingsteps.length} workingsteps`);
       await list(program.id);
     } catch (error) {
       if (mine !== wanted) return;
@@ -98,7 +106,8 @@ export function programChoice(chosen) {
   });
 
   async function list(selected = "") {
-    const { items } = await api("/v1/programs?limit=200");
+    const page = await api("/v1/programs?limit=200");
+    const items = page.items.filter((each) => takesCode || !isCode(each));
     fill(known, el("option", { value: "" }, items.length ? "choose …" : "none yet"),
       items.map((each) => el("option", { value: each.id }, programTitle(each))));
     known.value = selected;
@@ -117,12 +126,35 @@ export function programChoice(chosen) {
   };
 }
 
-function shown(program, contents) {
-  const count = contents.workingsteps.length, size = program.size_bytes;
-  const large = size >= 1e6 ? `${(size / 1e6).toFixed(1)} MB` : `${(size / 1e3).toFixed(1)} kB`;
+/** Return the size of a program in words. */
+const sizeWords = ({ size_bytes: size }) =>
+  (size >= 1e6 ? `${(size / 1e6).toFixed(1)} MB` : `${(size / 1e3).toFixed(1)} kB`);
+
+/** Show what NC code says: its control, and its moves by tool. */
+function shownCode(program, contents) {
+  const guessed = contents.hints.length ? `, recognised by ${contents.hints.slice(0, 4).join(", ")}` : "";
+  const heads = ["Tool", "Moves", "Number", "Length, mm", "Feed, mm/min", "May change"];
+  const feeds = ({ least_feed_mm_min: least, greatest_feed_mm_min: greatest }) =>
+    (least === null ? "–" : least === greatest ? number(least) : `${number(least)} to ${number(greatest)}`);
   fill(byId("program-shown"),
     el("p", {}, el("b", { id: "program-name" }, program.name), " ", el("span", { class: "soft" },
-      `${count} workingstep${count === 1 ? "" : "s"}, ${contents.instances} instances, ${large}`)),
+      `NC code for ${contents.control} (${contents.machine}${guessed}), ${contents.units}, ${contents.blocks} blocks, `
+      + `${contents.executed_moves} moves, ${sizeWords(program)}`)),
+    el("div", { class: "scroll moves", tabindex: "0", role: "region", "aria-label": "Moves by tool" },
+      el("table", { class: "small", id: "moves" },
+        el("thead", {}, el("tr", {}, heads.map((title, at) => el("th", { scope: "col", class: at > 1 ? "n" : undefined }, title)))),
+        el("tbody", {}, contents.moves.map((row) => el("tr", {},
+          el("th", { scope: "row" }, row.tool === null ? "–" : `T${row.tool}`), el("td", {}, row.kind),
+          [row.count, number(row.length_mm), feeds(row), row.advisable].map((text) => el("td", { class: "n" }, String(text)))))))),
+    findingsList(contents.findings, "in the code"));
+}
+
+function shown(program, contents) {
+  if (isCode(program)) { shownCode(program, contents); return; }
+  const count = contents.workingsteps.length;
+  fill(byId("program-shown"),
+    el("p", {}, el("b", { id: "program-name" }, program.name), " ", el("span", { class: "soft" },
+      `${count} workingstep${count === 1 ? "" : "s"}, ${contents.instances} instances, ${sizeWords(program)}`)),
     contents.is_usable ? null
       : el("div", { class: "banner bad", role: "alert" }, "This program cannot be optimised: see its errors."),
     findingsList(contents.findings, "in the file"));

@@ -1,6 +1,7 @@
 // An advice: its figures, downloads, times as bars; the table is in plan_table.js.
 
 import { api, byId, duration, el, fill, fixed, number, save, show, tell } from "/dashboard/app.js";
+import { showAlong } from "/dashboard/plan_along.js";
 import { findingsList } from "/dashboard/plan_program.js";
 import { showConfirmation } from "/dashboard/plan_confirm.js";
 import { stepsCsv, stepsTable } from "/dashboard/plan_table.js";
@@ -31,10 +32,40 @@ function saving(name, before, after, isPart) {
       el("span", { class: "unit" }, word)));
 }
 
+/** Whether an advice is on NC code. */
+export const isOnCode = (found) => "control" in found;
+
+/** Return the time before and after of an advice, in s. */
+export const timesOf = (found) => (isOnCode(found) ? found.along_path.time_s : found.total_time_s);
+
 /** Show an advice. */
 export function showResult(asked, found) {
   job = asked;
   result = found;
+  const isCode = isOnCode(found);
+  for (const card of document.querySelectorAll(".of-advised")) card.hidden = isCode;
+  for (const name of ["download-program", "download-csv"]) byId(name).hidden = isCode;
+  byId("download-feeds").hidden = !found.along_path;
+  byId("download-nc").disabled = !found.nc_control;
+  byId("download-nc").title = found.nc_control ? `for ${found.nc_control}` : "choose a control and optimise again";
+  byId("download-nc").textContent = found.nc_control ? `NC code, ${found.nc_control}` : "NC code";
+  showAlong(job, found.along_path);
+  if (isCode) showCode(found); else showSteps(found);
+}
+
+/** Show the advice on NC code. */
+function showCode(found) {
+  const { before, after } = found.along_path.time_s, { changed, added, restored, unchanged } = found.blocks;
+  byId("result-of").textContent = [found.program, found.machine, found.material, `stock in ${found.frame}`].join(" · ");
+  fill(byId("figures"), times("Machining time, simulated", before, after, "big"), saving("Time", before, after, false));
+  fill(byId("result-findings"), el("p", { class: "soft small" },
+    `${changed} blocks changed, ${added} added by splitting, ${restored} got the programmed feed back, ${unchanged.length} not as advised.`),
+  findingsList(found.findings, "of the plan"));
+  showConfirmation(null);
+}
+
+/** Show the advice on the workingsteps of a STEP-NC program. */
+function showSteps(found) {
   const { before, after } = found.total_time_s, steps = found.workingsteps;
   const count = (status) => steps.filter((step) => step.status === status).length;
   byId("result-of").textContent = [found.program, found.machine, found.material,
@@ -57,9 +88,6 @@ export function showResult(asked, found) {
   found.is_written ? null : el("div", { class: "banner warn" }, "No optimised program was written, because nothing would change."),
   findingsList(found.findings, "of the plan"));
   byId("download-program").disabled = !found.is_written;
-  byId("download-nc").disabled = !found.nc_control;
-  byId("download-nc").title = found.nc_control ? `for ${found.nc_control}` : "choose a control and optimise again";
-  byId("download-nc").textContent = found.nc_control ? `NC code, ${found.nc_control}` : "NC code";
   stepsTable(byId("steps"), steps);
   showConfirmation(found.confirmation);
   bars(steps);
@@ -103,6 +131,7 @@ const DOWNLOADS = {
   "open-report": () => show(`/v1/advice/${job.id}/report`),
   "download-json": async () => keep(JSON.stringify(await api(`/v1/advice/${job.id}`), null, 2),
     `${stem()}.advice.json`, "application/json"),
+  "download-feeds": () => save(`/v1/advice/${job.id}/feeds`),
   "download-csv": () => keep(stepsCsv(result.workingsteps), `${stem()}.advice.csv`, "text/csv"),
 };
 for (const [id, action] of Object.entries(DOWNLOADS))

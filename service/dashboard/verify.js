@@ -3,7 +3,7 @@
 import { AWAY_WORDS, announce, api, byId, el, fill, followed, patiently, tell } from "/dashboard/app.js";
 import { programChoice } from "/dashboard/plan_program.js";
 import { showCycle } from "/dashboard/verify_cycle.js";
-import { FileField } from "/dashboard/verify_files.js";
+import { FileField, TOOL_FILES } from "/dashboard/verify_files.js";
 import { logChoice } from "/dashboard/verify_log.js";
 import { showResult } from "/dashboard/verify_result.js";
 
@@ -12,8 +12,8 @@ let program = null, working = false, tools = null, required = null;
 
 const log = logChoice(ready);
 const choice = programChoice((chosen, contents) => { program = chosen && contents.is_usable ? chosen : null; ready(); });
-tools = new FileField(byId("tools-place"), { id: "tools-file", kind: "tools", accept: ".toml",
-  title: "Measured tools", hint: "tool table, .toml", changed: ready });
+tools = new FileField(byId("tools-place"), { id: "tools-file", kind: "tools", accept: TOOL_FILES,
+  title: "Measured tools", hint: "tool table: TOML, CSV or of CAM", changed: ready });
 required = new FileField(byId("required-place"), { id: "required-file", kind: "required-part", accept: ".stl",
   title: "Required part", hint: ".stl, mm; else the features", changed: ready });
 for (const name of ["stock", "machine"]) byId(name).addEventListener("input", ready);

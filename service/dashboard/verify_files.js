@@ -2,6 +2,9 @@
 
 import { announce, api, el, fill, tell } from "/dashboard/app.js";
 
+/** File name extensions of tool tables. */
+export const TOOL_FILES = ".toml,.csv,.tbl,.json,.tools,.hsmlib,.gz";
+
 /** Upload a file of a kind; one that ends in .gz is unpacked by the service. */
 export function upload(file, kind) {
   const name = file.name.replace(/\.gz$/, "");

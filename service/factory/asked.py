@@ -17,6 +17,7 @@ from service.errors import NotFound, TooLarge, Unreadable
 from service.factory.source import Changes, ShopSource, chosen_shop
 from service.factory.sweep import combinations, swept_keys
 from service.ids import PATTERN
+from service.program_kind import ProgramKind
 from service.requests.factory import FactoryOrder
 from service.storage import programs
 from service.storage.folder import DataFolder
@@ -200,7 +201,7 @@ def _program(data_folder: DataFolder, word: str) -> tuple[Path, str]:
         When there is no such program.
     """
     if _ID.fullmatch(word):
-        stored = programs.get(data_folder, word)
+        stored = programs.require_kind(data_folder, word, ProgramKind.STEP_NC)
         programs.require_file(data_folder, word)
         return data_folder.program_file(word), stored.name
     name = PurePosixPath(word.replace("\\", "/")).name

@@ -30,6 +30,8 @@ OPTIMISED = "optimised.stpnc"
 REPORT = "report.html"
 SAMPLES = "samples.parquet"
 NC_CODE = "program.nc"
+FEEDS = "feeds.csv"
+CURVES = "curves.json"
 PLACES = "places"
 """Name of the files of places, without their suffixes."""
 SURFACE = "surface.parquet"
@@ -89,10 +91,10 @@ class RunningJob:
             with suppress(Unavailable):
                 jobs.tell(self.data_folder, self.job, share=min(share, 1.0), message=message)
 
-    def keep(self, result: Any) -> None:
-        """Write the result; NumPy arrays become lists, NaN becomes null."""
+    def keep(self, result: Any, name: str = RESULT) -> None:
+        """Write the result, or another JSON file; arrays become lists, NaN becomes null."""
         option = orjson.OPT_SERIALIZE_NUMPY | orjson.OPT_NON_STR_KEYS
-        write_atomically(self.folder / RESULT, orjson.dumps(result, option=option))
+        write_atomically(self.folder / name, orjson.dumps(result, option=option))
 
     def make_folder(self) -> bool:
         """Create the result folder and remove unfinished files of an earlier attempt.
@@ -157,6 +159,6 @@ def program_file(data_folder: DataFolder, *, program: str, source: str) -> tuple
     return file, optimised_name(name)
 
 
-def optimised_name(name: str) -> str:
+def optimised_name(name: str, suffix: str = ".stpnc") -> str:
     """Return the file name of the optimised version of a program."""
-    return f"{Path(name).stem}.optimised.stpnc"
+    return f"{Path(name).stem}.optimised{suffix}"

@@ -10,6 +10,7 @@ from annotated_types import Interval, Len, MaxLen
 from optimiser.modes import Free, Mode
 from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE
 from service.requests.fields import LONGEST_NAME, About, Request
+from simulator.motion.model_name import ControlModelName
 from stepnc_model.file_profile import FileProfile, RecordChoice
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.units import AUTO, PROFILES
@@ -209,6 +210,28 @@ class AdviceRequest(Request):
             flag="--levels", metavar="K",
         ),
     ] = None  # fmt: skip
+    motion: Annotated[
+        ControlModelName,
+        About(
+            "motion control along the path, which decides how early a feed is commanded: fir, "
+            "junction or exact-stop",
+            flag="--motion",
+        ),
+    ] = ControlModelName.FIR
+    is_jerk_limited: Annotated[
+        bool,
+        About(
+            "also compute the profile along the path with the jerk of the axes limited",
+            flag="--jerk",
+        ),
+    ] = False
+    writes_toolpaths: Annotated[
+        bool,
+        About(
+            "with --along-path: write each path into the program, with its feeds along it",
+            flag="--write-toolpaths",
+        ),
+    ] = False
     stock_margin_mm: Annotated[
         float,
         Interval(ge=0.0, le=100.0),
@@ -225,3 +248,39 @@ class AdviceRequest(Request):
             unit="mm", name="corner tolerance", flag="--corner-tolerance", metavar="MM",
         ),
     ] = 0.05  # fmt: skip
+    max_feed_mm_min: Annotated[
+        float | None,
+        Interval(gt=0.0, le=1e6),
+        About(
+            "greatest feed along the path, in mm/min (default: that of the machine)",
+            unit="mm/min", name="greatest feed", flag="--max-feed", metavar="MM_MIN",
+        ),
+    ] = None  # fmt: skip
+    finish: Annotated[
+        tuple[Name, ...],
+        MaxLen(1000),
+        About(
+            "of NC code: a tool that leaves final surfaces, such as T3; repeatable; what "
+            "follows a comment with the word FINISH does too",
+            flag="--finish", metavar="TOOL",
+        ),
+    ] = ()  # fmt: skip
+    keep: Annotated[
+        tuple[Name, ...],
+        MaxLen(1000),
+        About(
+            "of NC code: a tool whose feeds stay as programmed; repeatable",
+            flag="--keep", metavar="TOOL",
+        ),
+    ] = ()  # fmt: skip
+    dialect: Annotated[
+        Dialect | None,
+        About(
+            "of NC code: its control (default: recognised by what it says)",
+            flag="--dialect", metavar="CONTROL",
+        ),
+    ] = None  # fmt: skip
+    is_marked: Annotated[
+        bool,
+        About("of NC code: add the reason of each changed feed as a comment", flag="--mark"),
+    ] = False

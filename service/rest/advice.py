@@ -18,7 +18,16 @@ from starlette.routing import Match, Route
 from starlette.types import Scope
 
 from service.errors import Conflict, NotFound
-from service.jobs.task import NC_CODE, OPTIMISED, REPORT, RESULT, optimised_name
+from service.jobs.task import (
+    CURVES,
+    FEEDS,
+    NC_CODE,
+    OPTIMISED,
+    REPORT,
+    RESULT,
+    optimised_name,
+)
+from service.rest.advice_views import AdviceView, AdvisedView, CodeAdviceView, CurvesView
 from service.rest.bodies import Id
 from service.rest.context import InDataFolder, OnPage, data_folder_of, fetched, page_reply
 from service.rest.replies import (
@@ -28,14 +37,17 @@ from service.rest.replies import (
     matches,
     report_reply,
     tag_of,
+    tagged,
 )
-from service.rest.views import AdviceView, AdvisedView, JobView, PageView, job_view
+from service.rest.views import JobView, PageView, job_view
 from service.storage import jobs, programs
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobKind, JobState
 from stepnc_model.post.dialect import SUFFIXES, Dialect
 
 ROUTES = APIRouter(prefix="/v1/advice", tags=["advice"])
+
+CSV = "text/csv; charset=utf-8"
 
 KEPT = 5.0
 """Time for which a result of a store of files is answered from the cache, in s."""
@@ -124,7 +136,7 @@ def _ready(file: str, stamp: int) -> CachedAdvice:
     whole = Path(file).read_bytes()
     result = orjson.loads(whole)
     parts: dict[str, CachedAnswer] = {}
-    for step in result["workingsteps"]:
+    for step in result.get("workingsteps", ()):
         part = _part(orjson.dumps(step))
         for name in (step["instance"], step["id"]):
             parts.setdefault(name, part)
@@ -200,9 +212,12 @@ async def list_advice(request: Request, data_folder: InDataFolder, cursor: OnPag
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
-@ROUTES.get("/{id}", response_model=AdviceView, summary="Show advice")
+@ROUTES.get("/{id}", response_model=AdviceView | CodeAdviceView, summary="Show advice")
 async def advice(request: Request, id: Id) -> Response:
-    """Show all workingsteps with programmed and advised feed, limits and reason."""
+    """Show all workingsteps with programmed and advised feed, limits and reason.
+
+    Advice on NC code has the parts of the program by tool, with feeds along their paths.
+    """
     return _cache(request).get(data_folder_of(request), id).whole.reply(request)
 
 
@@ -213,8 +228,14 @@ async def advice(request: Request, id: Id) -> Response:
     responses={200: {"content": {"application/step": {}}}},
 )
 async def optimised(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """Download the uploaded program with the advised feeds; nothing else is changed."""
-    name = await run_in_threadpool(_name, request, data_folder, id)
+    """Download the uploaded program with the advised feeds; nothing else is changed.
+
+    NC code that was rewritten is at ``nc``.
+    """
+    result = await run_in_threadpool(_result, request, data_folder, id)
+    if _is_code(result):
+        raise NotFound("optimised STEP-NC program (the advice is on NC code)", id)
+    name = _name(result, ".stpnc")
     file = await fetched(data_folder, data_folder.job_folder(id) / OPTIMISED)
     return file_reply(
         request, file, name=name, kind="application/step", thing="optimised program"
@@ -228,16 +249,48 @@ async def optimised(request: Request, data_folder: InDataFolder, id: Id) -> Resp
     responses={200: {"content": {"text/plain": {}}}},
 )
 async def nc_code(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """Download NC code for the control that was named in the request."""
-    name = await run_in_threadpool(_name, request, data_folder, id)
-    control = _cache(request).get(data_folder, id).result["nc_control"]
+    """Download NC code for the control that was named in the request, or the rewritten code."""
+    result = await run_in_threadpool(_result, request, data_folder, id)
+    control = result["nc_control"]
     if control is None:
         raise NotFound("NC code (ask for advice with nc_control)", id)
-    name = f"{Path(name).stem}{SUFFIXES[Dialect(control)]}"
+    own = Path(programs.shown_name(result["program"])).suffix
+    name = _name(result, own if _is_code(result) else SUFFIXES[Dialect(control)])
     file = await fetched(data_folder, data_folder.job_folder(id) / NC_CODE)
     return file_reply(
         request, file, name=name, kind="text/plain; charset=utf-8", thing="NC code"
     )
+
+
+@ROUTES.get(
+    "/{id}/feeds",
+    summary="Download the feeds along the paths",
+    response_class=Response,
+    responses={200: {"content": {CSV: {}}}},
+)
+async def feeds(request: Request, data_folder: InDataFolder, id: Id) -> Response:
+    """Download the feeds of the changed blocks and their parts, with the active limits."""
+    result = await run_in_threadpool(_result, request, data_folder, id)
+    _require_along(result, id)
+    name = f"{Path(programs.shown_name(result['program'])).stem}.feeds.csv"
+    file = await fetched(data_folder, data_folder.job_folder(id) / FEEDS)
+    return file_reply(request, file, name=name, kind=CSV, thing="feeds along the paths")
+
+
+@ROUTES.get("/{id}/curves", response_model=CurvesView, summary="Show curves before and after")
+async def curves(request: Request, data_folder: InDataFolder, id: Id) -> Response:
+    """Show feed, force and power of both runs along the path and over time.
+
+    Each stretch of a curve has the minimum and the maximum within it.
+    """
+    result = await run_in_threadpool(_result, request, data_folder, id)
+    _require_along(result, id)
+    file = await fetched(data_folder, data_folder.job_folder(id) / CURVES)
+    try:
+        body = await run_in_threadpool(file.read_bytes)
+    except FileNotFoundError:
+        raise NotFound("curves of advice", id) from None
+    return tagged(request, body, tag_of(body))
 
 
 @ROUTES.get("/{id}/report", summary="Show the report as a page", response_class=Response,
@@ -249,7 +302,22 @@ async def report(request: Request, data_folder: InDataFolder, id: Id) -> Respons
     return report_reply(request, file, id=id)
 
 
-def _name(request: Request, data_folder: DataFolder, id: str) -> str:
-    """Return the file name of the optimised program, also after the program was deleted."""
-    program = str(_cache(request).get(data_folder, id).result["program"])
-    return optimised_name(programs.shown_name(program))
+def _result(request: Request, data_folder: DataFolder, id: str) -> dict[str, Any]:
+    """Return the result of an advice job."""
+    return _cache(request).get(data_folder, id).result
+
+
+def _is_code(result: dict[str, Any]) -> bool:
+    """Whether the advice is on NC code."""
+    return "control" in result
+
+
+def _require_along(result: dict[str, Any], id: str) -> None:
+    """Refuse advice without feeds along the paths."""
+    if result.get("along_path") is None:
+        raise NotFound("feeds along the paths (ask for advice with is_along_path)", id)
+
+
+def _name(result: dict[str, Any], suffix: str) -> str:
+    """Return the file name of an optimised program, also after the program was deleted."""
+    return optimised_name(programs.shown_name(str(result["program"])), suffix)

@@ -13,6 +13,7 @@ from starlette.concurrency import run_in_threadpool
 from optimiser.source import why_elsewhere
 from service.errors import Unreadable
 from service.monitor.monitor import MonitorSet
+from service.program_kind import ProgramKind
 from service.reading import read_program, selected
 from service.rest.replies import json_reply
 from service.rest.settings import Settings
@@ -146,15 +147,18 @@ def nothing(_data_folder: DataFolder, _asked: JobRequest) -> None:
 
 
 def runnable(data_folder: DataFolder, asked: JobRequest) -> None:
-    """Check that program, machine and material exist.
+    """Check that program, machine and material exist, and that the program is STEP-NC.
 
     Raises
     ------
     NotFound
         When the program or its file was deleted.
+    StepNcError
+        When the program is NC code.
     UnknownMachine, UnknownMaterial, Unreadable, LibraryError
         When the job would raise the same error.
     """
+    programs.require_kind(data_folder, asked.program, ProgramKind.STEP_NC)
     if not asked.source:
         programs.require_file(data_folder, asked.program)
     words = asked.request

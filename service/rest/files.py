@@ -26,10 +26,12 @@ from service.rest.verification_views import FileView, file_view
 from service.rest.views import PageView
 from service.storage import files
 from service.storage.files import FileKind, FileUpload
-from service.storage.library import LARGEST
 from service.verification.inputs import require_content
 
 ROUTES = APIRouter(prefix="/v1/files", tags=["verifications"])
+
+LARGEST_TOOLS = 1 << 20
+"""Largest tool table, in bytes."""
 
 BYTES = "application/octet-stream"
 
@@ -60,8 +62,12 @@ async def upload(
     kind: Annotated[FileKind, Query(description="what the file is")] = FileKind.LOG,
     key: IdempotencyHeader = None,
 ) -> Response:
-    """Store a log (.parquet, .csv, .xml, .shdr), tool table (.toml) or required part (.stl)."""
-    bound = LARGEST if kind is FileKind.TOOLS else settings_of(request).upload_bytes
+    """Store a log, a tool table or a required part.
+
+    Logs: .parquet, .csv, .xml, .shdr. Tool tables: .toml, .csv, LinuxCNC's .tbl, libraries of
+    Fusion (.json, .tools) and HSMWorks (.hsmlib). Required parts: .stl.
+    """
+    bound = LARGEST_TOOLS if kind is FileKind.TOOLS else settings_of(request).upload_bytes
     with FileUpload(data_folder, kind, name) as taken:
         async for part in pieces(request, what=f"the {kind.words}", bound=bound):
             await run_in_threadpool(taken.write, part)

@@ -7,12 +7,18 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
+from service.code_contents import check_code
+from service.code_contents_output import code_json
 from service.contents import check
 from service.contents_output import contents_json
 from service.errors import Unreadable
 from service.files import read_bytes
-from service.requests.advice import ISO, AdviceRequest, Name, Units
+from service.numbers import stock_in, tool_numbers_in
+from service.program_kind import ProgramKind, kind_of
+from service.requests.advice import ISO, Name, Units
 from service.requests.fields import dumped
+from service.requests.stored_advice import StoredAdviceRequest
+from service.rest.advice_views import CodeContentsView
 from service.rest.bodies import Id
 from service.rest.checks import CheckCache, in_turn
 from service.rest.context import (
@@ -36,20 +42,32 @@ from service.rest.views import (
     job_view,
     program_view,
 )
-from service.storage import jobs, programs
+from service.storage import files, jobs, library, programs
+from service.storage.files import FileKind
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobKind, JobRequest
 from service.storage.pages import Page
 from service.storage.programs import StoredProgram
 from stepnc_model.errors import StepNcError
 from stepnc_model.part21.reader import Part21File
+from stepnc_model.post.dialect import Dialect
 
 ROUTES = APIRouter(prefix="/v1/programs", tags=["programs"])
+
+OF_CODE = ("tools_id", "stock", "material")
+"""Fields that advice on NC code needs."""
+
+OF_PATHS = ("levels", "writes_toolpaths")
+"""Fields that need feeds along the paths."""
 
 EXAMPLES = FilePath(__file__).parents[2] / "examples" / "parts"
 """Folder of the sample programs; an installed wheel has none."""
 
-STEP = "application/step"
+MEDIA_TYPES = {
+    ProgramKind.STEP_NC: "application/step",
+    ProgramKind.NC_CODE: "text/plain; charset=utf-8",
+}
+"""Media types of programs."""
 
 
 @ROUTES.post(
@@ -60,7 +78,7 @@ STEP = "application/step"
     openapi_extra={
         "requestBody": {
             "required": False,
-            "description": "the bytes of a Part 21 file; may be packed with gzip",
+            "description": "the bytes of a Part 21 file or of NC code; may be packed with gzip",
             "content": {
                 "application/octet-stream": {"schema": {"type": "string", "format": "binary"}}
             },
@@ -77,7 +95,10 @@ async def upload(
     ] = "",
     key: IdempotencyHeader = None,
 ) -> Response:
-    """Store the bytes unchanged. They must be a Part 21 file; findings have their own route."""
+    """Store the bytes unchanged: a Part 21 file or NC code, told apart by the content.
+
+    Findings have their own route.
+    """
     if example:
         data = await run_in_threadpool(_sample, example)
         name = name or f"{example}.stpnc"
@@ -85,13 +106,14 @@ async def upload(
         data = await _body(request)
         if not data:
             raise Unreadable("the body is empty: send the bytes of the file")
-    await in_turn(partial(_require_part21, data, programs.shown_name(name)))
+    kind = await in_turn(partial(_kind, data, programs.shown_name(name)))
     stored = await run_in_threadpool(
         programs.add,
         data_folder,
         data,
         name=name,
         owner=owner,
+        kind=kind,
         idempotency=idempotency_of(request, key, data),
     )
     headers = {"location": f"/v1/programs/{stored.id}"}
@@ -117,7 +139,7 @@ async def program(request: Request, data_folder: InDataFolder, id: Id) -> Respon
     "/{id}/file",
     summary="Download a program as it was uploaded",
     response_class=Response,
-    responses={200: {"content": {STEP: {}}}},
+    responses={200: {"content": {kind: {} for kind in MEDIA_TYPES.values()}}},
 )
 async def program_bytes(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download a program, byte for byte as it was uploaded."""
@@ -127,17 +149,19 @@ async def program_bytes(request: Request, data_folder: InDataFolder, id: Id) -> 
         request,
         data_folder.program_file(id),
         name=stored.name,
-        kind=STEP,
+        kind=MEDIA_TYPES[stored.kind],
         thing=programs.FILE,
         tag=f'"{stored.sha256}"',
     )
 
 
-@ROUTES.get("/{id}/findings", response_model=ContentsView, summary="Check a program")
+@ROUTES.get(
+    "/{id}/findings", response_model=ContentsView | CodeContentsView, summary="Check a program"
+)
 async def findings(
     request: Request, data_folder: InDataFolder, id: Id, units: Units = ISO
 ) -> Response:
-    """List workingsteps and findings, as ``stepnc check`` reports them."""
+    """List workingsteps, or moves of NC code, and findings, as ``stepnc check`` does."""
     stored = programs.get(data_folder, id)
     await run_in_threadpool(programs.require_file, data_folder, id)
     tag = f'"{stored.sha256[:24]}-{units.value}"'
@@ -159,11 +183,51 @@ async def delete(data_folder: InDataFolder, id: Id) -> Response:
 
 @ROUTES.post("/{id}/advice", status_code=202, response_model=JobView, summary="Request advice")
 async def ask_advice(
-    request: Request, id: Id, body: AdviceRequest, owner: ByOwner, key: IdempotencyHeader = None
+    request: Request,
+    id: Id,
+    body: StoredAdviceRequest,
+    owner: ByOwner,
+    key: IdempotencyHeader = None,
 ) -> Response:
-    """Queue a job that optimises the feeds; its result will be at ``/v1/advice/{job}``."""
+    """Queue a job that optimises the feeds; its result will be at ``/v1/advice/{job}``.
+
+    For NC code the request names ``tools_id``, ``stock`` and ``material``; the feeds are chosen
+    along its paths.
+    """
     asked = JobRequest(kind=JobKind.ADVICE, request=dumped(body), program=id, owner=owner)
-    return await queued(request, asked, key, require=runnable)
+    return await queued(request, asked, key, require=advisable)
+
+
+def advisable(data_folder: DataFolder, asked: JobRequest) -> None:
+    """Check that all that advice needs exists and is valid.
+
+    Raises
+    ------
+    StepNcError
+        When the job would raise the same error.
+    """
+    words = asked.request
+    if words["tools_id"] is not None:
+        files.require_file(data_folder, words["tools_id"], FileKind.TOOLS)
+    if words["stock"]:
+        # Numbers only: names of files are never read.
+        stock_in(words["stock"])
+    if programs.get(data_folder, asked.program).kind is ProgramKind.STEP_NC:
+        for name in OF_PATHS:
+            if words[name] and not words["is_along_path"]:
+                raise StepNcError(f"{name} has no effect without is_along_path")
+        runnable(data_folder, asked)
+        return
+    programs.require_file(data_folder, asked.program)
+    missing = [name for name in OF_CODE if not words[name]]
+    if missing:
+        raise StepNcError(f"advice on NC code needs {', '.join(OF_CODE)}; missing: "
+                          f"{', '.join(missing)}")  # fmt: skip
+    library.require(data_folder, machine=words["machine"], material=words["material"])
+    if words["dialect"] == Dialect.CANONICAL:
+        raise StepNcError("dialect canonical: canonical commands are no NC code")
+    tool_numbers_in(tuple(words["finish"]))
+    tool_numbers_in(tuple(words["keep"]))
 
 
 @ROUTES.get(
@@ -189,9 +253,12 @@ def _sample(name: Name) -> bytes:
     return read_bytes(EXAMPLES / f"{name}.stpnc")
 
 
-def _require_part21(data: bytes, name: str) -> None:
-    """Refuse bytes that are not a Part 21 file, whatever the file contains."""
-    Part21File.from_bytes(data, name=name)
+def _kind(data: bytes, name: str) -> ProgramKind:
+    """Tell the kind of a program; refuse bytes that are neither NC code nor a Part 21 file."""
+    kind = kind_of(data)
+    if kind is ProgramKind.STEP_NC:
+        Part21File.from_bytes(data, name=name)
+    return kind
 
 
 def _answers(request: Request) -> CheckCache:
@@ -211,12 +278,14 @@ def _contents(data_folder: DataFolder, stored: StoredProgram, units: str) -> byt
     NotFound
         When the program was deleted meanwhile.
     """
+    file = data_folder.program_file(stored.id)
     try:
-        found = check(data_folder.program_file(stored.id), units=units, name=stored.name)
+        if stored.kind is ProgramKind.NC_CODE:
+            return code_json(check_code(file, name=stored.name)).encode()
+        return contents_json(check(file, units=units, name=stored.name)).encode()
     except StepNcError:
         programs.require_file(data_folder, stored.id)
         raise
-    return contents_json(found).encode()
 
 
 async def _body(request: Request) -> bytes:

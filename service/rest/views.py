@@ -7,6 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from service.monitor.comparison import StepState
 from service.monitor.freshness import Freshness
 from service.monitor.monitor import ConnectionState
+from service.program_kind import ProgramKind
 from service.rest.replies import moment
 from service.storage.jobs import Job, JobKind, JobState
 from service.storage.programs import StoredProgram
@@ -49,6 +50,7 @@ class ProgramView(View):
     sha256: str
     owner: str
     created_at: str
+    kind: ProgramKind = Field(description="step-nc or nc-code, told by the content")
 
 
 class FindingView(View):
@@ -125,142 +127,6 @@ class JobView(View):
     problem: ProblemDetails | None = Field(description="why the job failed")
     request: dict[str, Any]
     result: str = Field(description="path of the result, once the job has succeeded")
-
-
-class LimitView(View):
-    """Load and bound of a limit."""
-
-    name: str
-    value: float | None
-    bound: float | None
-    unit: str
-    sense: str
-    margin: float | None = Field(description="unused share of the bound")
-
-
-class SettingView(View):
-    """Feed, spindle speed and depth of cut."""
-
-    feed_mm_min: float
-    spindle_rpm: float
-    feed_per_tooth_mm: float
-    axial_depth_mm: float
-    passes: int | None = None
-    plunge_feed_mm_min: float | None = Field(
-        default=None, description="feed into the material; null: same as the feed of the cut"
-    )
-    plunge_feed_per_tooth_mm: float | None = None
-
-
-class PlungeView(View):
-    """Limits of the plunge feed, and its active limit."""
-
-    reason: str
-    fault: str | None = Field(description="why the tool must not plunge; null: it may")
-    limits: list[LimitView]
-
-
-class BeforeAfterView(View):
-    """Value as programmed and as advised."""
-
-    before: float | None
-    after: float | None
-
-
-class StabilityView(View):
-    """Chatter stability of a cut; its bound is one of the limits."""
-
-    basis: str = Field(description="measured, estimated (sets no bound) or not_used")
-    reason: str
-    stable_at_any_speed_mm: float | None
-    band_mm: list[float] | None = Field(description="lower and upper value of an estimate")
-
-
-class HoldingLoadView(View):
-    """Loads of a cut on the work-holding; their bounds are among the limits."""
-
-    torque_nm: float = Field(description="about the axis of a bar, axial force included")
-    moment_nm: float = Field(description="tilting moment about the jaws; 0: unknown or none")
-    force_n: float = Field(description="largest force across the axis of a mill")
-    lift_n: float = Field(description="largest axial force that lifts the workpiece")
-
-
-class AdvisedView(View):
-    """Advised feed of one workingstep, with the reasons."""
-
-    model_config = ConfigDict(extra="allow", frozen=True)
-
-    id: str
-    instance: str
-    operation: str
-    tool: str
-    status: str
-    reason: str = Field(description="what limits the feed, in a sentence")
-    programmed: SettingView | None
-    advised: SettingView | None
-    active_limit: str | None
-    limits: list[LimitView]
-    motor_power_kw: float | None
-    cutting_force_n: float | None
-    roughness_ra_um: float | None
-    energy_j: float | None
-    time_s: BeforeAfterView
-    stability: StabilityView | None = Field(
-        default=None, description="null: chatter does not depend on the depth of this cut"
-    )
-    plunge: PlungeView | None = Field(
-        default=None, description="null: the cut has no separate plunge feed"
-    )
-    holding_load: HoldingLoadView | None = Field(
-        default=None, description="null: no cut, or no work-holding applies"
-    )
-
-
-class FigureView(View):
-    """Predicted value and the value found in the simulated run."""
-
-    promised: float
-    found: float
-    ratio: float | None = Field(description="found over predicted")
-    bound: float | None = Field(description="bound that the value must keep")
-
-
-class ConfirmedView(View):
-    """Predicted and found figures of one workingstep."""
-
-    id: str
-    time_s: FigureView
-    cutting_force_n: FigureView
-    thrust_n: FigureView
-    deflection_um: FigureView
-    cutting_power_w: FigureView
-    drive_power_w: FigureView
-
-
-class ConfirmationView(View):
-    """Comparison of a plan with its simulated run."""
-
-    workingsteps: list[ConfirmedView]
-    passed: list[str] = Field(description="a sentence for each bound that the run exceeded")
-
-
-class AdviceView(View):
-    """Advice for a program: feeds of its workingsteps."""
-
-    model_config = ConfigDict(extra="allow", frozen=True)
-
-    program: str
-    mode: str
-    machine: str
-    material: str
-    workingsteps: list[AdvisedView]
-    total_time_s: BeforeAfterView
-    findings: list[FindingView]
-    is_written: bool = Field(description="whether an optimised program was written")
-    nc_control: str | None
-    confirmation: ConfirmationView | None = Field(
-        None, description="comparison with a simulated run; null if not requested"
-    )
 
 
 class RunTotalView(View):
@@ -428,6 +294,7 @@ def program_view(program: StoredProgram) -> dict[str, Any]:
         "sha256": program.sha256,
         "owner": program.owner,
         "created_at": moment(program.created),
+        "kind": program.kind.value,
     }
 
 

@@ -66,6 +66,8 @@ SCHEMA = (
         id TEXT PRIMARY KEY, pid INTEGER NOT NULL, seen REAL NOT NULL
     ) STRICT
     """,
+    # Programs of earlier versions are STEP-NC programs.
+    "ALTER TABLE programs ADD COLUMN kind TEXT NOT NULL DEFAULT 'step-nc'",
     # The share of the queue belongs to a key; several keys may have one name.
     "ALTER TABLE jobs ADD COLUMN key TEXT NOT NULL DEFAULT ''",
 )

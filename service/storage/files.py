@@ -26,13 +26,17 @@ LOGS = frozenset({".parquet", ".csv", ".xml", ".shdr", ".log"})
 """Suffixes of logs, which say how they are read."""
 
 
+TOOL_TABLES = frozenset({".toml", ".csv", ".tbl", ".json", ".tools", ".hsmlib"})
+"""Suffixes of tool tables; the content tells the format."""
+
+
 class FileKind(StrEnum):
     """Kind of an uploaded file."""
 
     LOG = "log"
     """Positions of a run, as a machine logged them."""
     TOOLS = "tools"
-    """Tool table with measured tools (TOML)."""
+    """Tool table: TOML, CSV, LinuxCNC's, or a library of Fusion or HSMWorks."""
     REQUIRED_PART = "required-part"
     """Required part (STL)."""
 
@@ -41,7 +45,7 @@ class FileKind(StrEnum):
         """Suffixes of file names, which tell how the content is read."""
         if self is FileKind.LOG:
             return LOGS
-        return frozenset({".toml" if self is FileKind.TOOLS else ".stl"})
+        return TOOL_TABLES if self is FileKind.TOOLS else frozenset({".stl"})
 
     @property
     def words(self) -> str:

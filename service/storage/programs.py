@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from service.errors import Conflict, NotFound
 from service.files import write_atomically
 from service.ids import new_id
+from service.program_kind import ProgramKind
 from service.storage.connection import StoredRow
 from service.storage.folder import DataFolder
 from service.storage.idempotency import IdempotencyKey, made_before, remember
 from service.storage.pages import Page, PageCursor, page_of
+from stepnc_model.errors import StepNcError
 
 LONGEST_NAME = 120
 
@@ -31,6 +33,7 @@ class StoredProgram:
     owner: str
     created: float
     """Time of upload, in s since 1970."""
+    kind: ProgramKind = ProgramKind.STEP_NC
 
 
 def add(
@@ -39,6 +42,7 @@ def add(
     *,
     name: str,
     owner: str,
+    kind: ProgramKind = ProgramKind.STEP_NC,
     idempotency: IdempotencyKey | None = None,
 ) -> StoredProgram:
     """Store a program; its bytes are written before it appears in lists."""
@@ -49,6 +53,7 @@ def add(
         sha256=hashlib.sha256(data).hexdigest(),
         owner=owner,
         created=time.time(),
+        kind=kind,
     )
     place = data_folder.program_file(program.id)
     write_atomically(place, data)
@@ -59,10 +64,11 @@ def add(
             known = made_before(connection, idempotency)
             if known is None:
                 connection.execute(
-                    "INSERT INTO programs VALUES (?, ?, ?, ?, ?, ?)",
+                    "INSERT INTO programs (id, name, size, sha256, owner, created, kind) "
+                    "VALUES (?, ?, ?, ?, ?, ?, ?)",
                     (
                         program.id, program.name, program.size, program.sha256,
-                        program.owner, program.created,
+                        program.owner, program.created, program.kind.value,
                     ),
                 )  # fmt: skip
                 remember(connection, idempotency, program.id)
@@ -86,6 +92,22 @@ def get(data_folder: DataFolder, id: str) -> StoredProgram:
     if row is None:
         raise NotFound("program", id)
     return _program(row)
+
+
+def require_kind(data_folder: DataFolder, id: str, kind: ProgramKind) -> StoredProgram:
+    """Return a program of a kind.
+
+    Raises
+    ------
+    NotFound, StepNcError
+        When the program does not exist, or is of another kind.
+    """
+    program = get(data_folder, id)
+    if program.kind is not kind:
+        raise StepNcError(
+            f"program '{program.name}' is {program.kind.words}; this needs {kind.words}"
+        )
+    return program
 
 
 def require_file(data_folder: DataFolder, id: str) -> None:
@@ -143,4 +165,5 @@ def shown_name(name: str) -> str:
 
 
 def _program(row: StoredRow) -> StoredProgram:
-    return StoredProgram(**dict(row))
+    values = dict(row)
+    return StoredProgram(**{**values, "kind": ProgramKind(values["kind"])})

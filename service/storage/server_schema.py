@@ -78,6 +78,8 @@ SCHEMA: tuple[tuple[str, ...], ...] = (
         # Identity of the folder of files, which all hosts must share.
         "CREATE TABLE folder (id TEXT NOT NULL)",
     ),
+    # Programs of earlier versions are STEP-NC programs.
+    ("ALTER TABLE programs ADD COLUMN kind TEXT NOT NULL DEFAULT 'step-nc'",),
     ("ALTER TABLE jobs ADD COLUMN key TEXT NOT NULL DEFAULT ''",),
 )
 """Migration statements of each version; the version is the number of entries applied."""

@@ -13,7 +13,7 @@ from service.recording.table import TABLES, headings
 from service.stl import read_stl
 from service.storage.files import FileKind
 from simulator.client.columns import TIME
-from simulator.tool_table import read_tool_table
+from simulator.tool_files.read import ToolFormat, read_tools
 from stepnc_model.errors import StepNcError
 
 NEEDED = (TIME, POSITIONS[0], POSITIONS[2])
@@ -111,7 +111,9 @@ def _is_time(text: str) -> bool:
 
 
 def _require_tools(path: Path) -> None:
-    read_tool_table(path)
+    if read_tools(path).format is ToolFormat.FREECAD:
+        text = "a FreeCAD library consists of several files; send the tools as CSV or TOML"
+        raise StepNcError(f"{path}: {text}")
 
 
 def _require_part(path: Path) -> None:

@@ -139,6 +139,7 @@ def split_block(
     for index, (piece, feed) in enumerate(zip(pieces, feeds, strict=True)):
         is_last = index == len(pieces) - 1
         words = _PieceWords(form, piece, total=total, spent=spent, is_last=is_last)
+        words.is_first = index == 0
         if index == 0:
             line = _first(text, found, words, form)
         else:
@@ -173,6 +174,8 @@ class _PieceWords:
         is_last: bool,
     ) -> None:
         self.form, self.piece, self.is_last = form, piece, is_last
+        self.is_first = False
+        """Whether the piece starts where the block starts."""
         self._total, self._spent = total, spent
         self.moved: dict[int, Decimal] = {}
         """Distance that relative words have moved each axis."""
@@ -185,13 +188,14 @@ class _PieceWords:
             value = left if self.is_last else self.piece.end[axis] - self.piece.start[axis]
             self.moved[axis] = value
             return _exact(value, style)
-        if self.is_last and written:
+        if written and (self.is_last or axis not in self.form.axes):
             return written
         return style.coordinate(self.piece.end[axis])
 
     def centre(self, axis: int, written: str) -> str:
         """Number of a word I, J or K of the piece."""
-        if self.form.is_centre_absolute:
+        is_kept = self.form.is_centre_absolute or axis not in self.form.arc
+        if written and (is_kept or self.is_first):
             return written
         return self.form.style.coordinate(self.piece.offset[axis])
 
@@ -217,7 +221,7 @@ def _exact(value: Decimal, style: NumberStyle) -> str:
 def _first(text: str, found: Sequence[Token], words: _PieceWords, form: BlockForm) -> str:
     """First piece: the whole block with other coordinates, without late functions."""
     parts: list[str] = []
-    place = 0
+    axes_end = centres_start = centres_end = 0
     for token in found:
         if token.kind is TokenKind.LINE_END:
             continue
@@ -225,20 +229,24 @@ def _first(text: str, found: Sequence[Token], words: _PieceWords, form: BlockFor
             if parts and not parts[-1].strip():
                 parts.pop()
             continue
+        if _is_motion(token, form) or (_is_geometry(token, form) and token.name in AXES):
+            axes_end = len(parts) + 1
+        elif _is_geometry(token, form):
+            centres_start = centres_start or len(parts)
+            centres_end = len(parts) + 1
         parts.append(_replaced(text, token, words, form))
-        if _is_geometry(token, form):
-            place = len(parts)
-    missing = _missing(found, words, form)
-    if not place:
-        place = _head_end(found, parts)
-    parts[place:place] = missing
-    return "".join(parts).rstrip(" \t") if parts and not parts[-1].strip() else "".join(parts)
-
-
-def _head_end(found: Sequence[Token], parts: Sequence[str]) -> int:
-    """Place behind the motion word, where coordinates belong."""
-    behind = [i + 1 for i, token in enumerate(found) if token.name in {"G", *KLARTEXT_HEADS}]
-    return min(behind[-1] if behind else len(parts), len(parts))
+    gap = form.style.gap
+    parts[centres_end:centres_end] = [
+        gap + word for word in _missing_centres(found, words, form)
+    ]
+    axes = _missing_axes(found, words, form)
+    if centres_start and axes_end < centres_start:
+        parts[centres_start:centres_start] = [word + gap for word in axes]
+    else:
+        parts[axes_end:axes_end] = [gap + word for word in axes]
+    if parts and not parts[-1].strip():
+        parts.pop()
+    return "".join(parts)
 
 
 def _further(
@@ -258,20 +266,21 @@ def _further(
         elif _is_late(token, form.dialect) and is_last:
             late.append(piece)
     gap = form.style.gap
-    geometry = [*_missing_words(found, words, form), *geometry]
+    missing = (*_missing_axes(found, words, form), *_missing_centres(found, words, form))
+    geometry = [*missing, *geometry]
     body = gap.join([*heads, *_ordered(geometry), *tails, *late])
     return (f"{skip}{gap}" if skip else "") + body
 
 
 def _ordered(words: Sequence[str]) -> list[str]:
     """Words with the axes before centres and radius, each in the order X, Y, Z."""
-    order = "XUYZWIJKR"
-    return sorted(
-        words,
-        key=lambda word: order.find(
-            word[1] if word[:2].upper() in {"IX", "IY", "IZ"} else word[0].upper()
-        ),
-    )
+    order = ("X", "U", "IX", "Y", "IY", "Z", "W", "IZ", "I", "J", "K", "R", "CR")
+
+    def place(word: str) -> int:
+        letters = word[:2].upper() if word[:2].upper() in order else word[:1].upper()
+        return order.index(letters)
+
+    return sorted(words, key=place)
 
 
 def _is_motion(token: Token, form: BlockForm) -> bool:
@@ -309,24 +318,21 @@ def _replaced(text: str, token: Token, words: _PieceWords, form: BlockForm) -> s
     return head + words.radius(token.value)
 
 
-def _missing_words(found: Sequence[Token], words: _PieceWords, form: BlockForm) -> list[str]:
-    """Words of axes and centres that the pieces need and the block does not have."""
+def _missing_axes(found: Sequence[Token], words: _PieceWords, form: BlockForm) -> list[str]:
+    """Words of axes that the pieces need and the block does not have."""
     given = {AXES[t.name] for t in found if t.kind is TokenKind.WORD and t.name in AXES}
-    letters = (
-        ("IX", "IY", "IZ") if form.is_relative and form.style.is_signed else ("X", "Y", "Z")
-    )
-    parts = [
+    is_klartext = form.dialect is Dialect.HEIDENHAIN
+    letters = ("IX", "IY", "IZ") if form.is_relative and is_klartext else ("X", "Y", "Z")
+    return [
         letters[axis] + words.axis(axis, is_relative=form.is_relative, written="")
         for axis in form.axes
         if axis not in given
     ]
-    centres = {CENTRES[t.name] for t in found if t.kind is TokenKind.WORD and t.name in CENTRES}
-    if centres and not form.is_centre_absolute:
-        parts += [
-            "IJK"[axis] + words.centre(axis, "") for axis in form.arc if axis not in centres
-        ]
-    return parts
 
 
-def _missing(found: Sequence[Token], words: _PieceWords, form: BlockForm) -> list[str]:
-    return [form.style.gap + word for word in _missing_words(found, words, form)]
+def _missing_centres(found: Sequence[Token], words: _PieceWords, form: BlockForm) -> list[str]:
+    """Words I, J and K that the pieces need and the block does not have."""
+    given = {CENTRES[t.name] for t in found if t.kind is TokenKind.WORD and t.name in CENTRES}
+    if not given or form.is_centre_absolute:
+        return []
+    return ["IJK"[axis] + words.centre(axis, "") for axis in form.arc if axis not in given]

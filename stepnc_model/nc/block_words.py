@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from stepnc_model.nc.token import TokenKind, tokens
 from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.words import LARGEST
 
 
 @dataclass(slots=True, kw_only=True)
@@ -92,12 +93,15 @@ def words_of(text: str, dialect: Dialect) -> BlockWords:
 def _take(words: BlockWords, name: str, value: str) -> None:
     """Sort in one word with a number."""
     number = float(value)
+    if not abs(number) <= LARGEST:
+        words.strange.append(f"{name}{value[:20]}")
+        return
     if name == "G":
-        words.codes.append(round(10.0 * min(number, 1e6)))
+        words.codes.append(round(10.0 * number))
     elif name == "M":
-        words.functions.append(round(10.0 * min(number, 1e6)))
+        words.functions.append(round(10.0 * number))
     elif name == "N" and words.number is None:
-        words.number = round(min(number, 1e15))
+        words.number = round(number)
     else:
         if name in words.values:
             words.strange.append(f"{name}{value}")

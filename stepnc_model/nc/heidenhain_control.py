@@ -239,13 +239,13 @@ class HeidenhainControl:
         self._feed(words)
         if words.numbers:
             tool = int(words.numbers[0])
-            self.recorder.setting = replace(self.recorder.setting, tool=tool)
+            self.recorder.setting = replace(self.recorder.setting, tool=tool, tool_name="")
             self.recorder.at[2] = nan
         elif words.texts:
-            self.recorder.setting = replace(self.recorder.setting, tool=None)
-            self.remarks.note(
-                self.recorder.block, "a tool called by its name has no number: name its data"
+            self.recorder.setting = replace(
+                self.recorder.setting, tool=None, tool_name=words.texts[0].strip('"')
             )
+            self.remarks.note(self.recorder.block, "the tool has a name and no number")
             self.recorder.at[2] = nan
 
     def _transform(self, is_on: bool) -> None:

@@ -4,6 +4,7 @@ It executes a program block by block and records its moves. What it does not und
 reports, and from there it treats coordinates as unknown until the program states them anew.
 """
 
+import re
 from collections.abc import Sequence
 from math import isnan, nan
 
@@ -13,8 +14,8 @@ from stepnc_model.nc.block_words import BlockWords, words_of
 from stepnc_model.nc.drilling import cycle_moves, drilling
 from stepnc_model.nc.flow import ProgramFlow
 from stepnc_model.nc.iso_flow import IsoFlow
-from stepnc_model.nc.iso_modes import IsoModes, Motion, Shot
-from stepnc_model.nc.moves import MoveFlag, MoveKind
+from stepnc_model.nc.iso_modes import IsoModes, ModalMotion, Shot
+from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind
 from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.nc.remarks import Remarks
 from stepnc_model.nc.text import NcText
@@ -28,13 +29,24 @@ MOST_HOLES = 10_000
 """Greatest number of repeats of a drilling cycle by its word L."""
 
 
+PLAIN = re.compile(
+    r"(?:N[0-9]{1,9} ?)?(?:G0?([01])(?![0-9.]) ?)?"
+    r"(?:X([-+]?[0-9]{1,9}\.[0-9]{0,9}) ?)?(?:Y([-+]?[0-9]{1,9}\.[0-9]{0,9}) ?)?"
+    r"(?:Z([-+]?[0-9]{1,9}\.[0-9]{0,9}) ?)?(?:F([0-9]{1,9}(?:\.[0-9]{0,9})?) ?)?\r?\n?",
+    re.IGNORECASE,
+)
+"""Block that moves on a straight line, and does nothing else."""
+
+PLAIN_MOTIONS = {ModalMotion.RAPID, ModalMotion.LINE}
+
+
 class IsoControl:
     """Control that executes one program. Running state."""
 
     def __init__(self, text: NcText, dialect: Dialect, machine: MachineType) -> None:
         self.text, self.dialect = text, dialect
         self.is_lathe = machine is MachineType.LATHE
-        self.recorder = MoveRecorder()
+        self.recorder = MoveRecorder(has_y=not self.is_lathe)
         self.remarks = Remarks(text)
         self.flow = ProgramFlow(text, self.recorder)
         self.modes = self.start_modes(machine)
@@ -82,14 +94,18 @@ class IsoControl:
 
     def _execute(self, block: int) -> int:
         """Execute a block; return the one to execute next."""
-        words = words_of(self.text.block(block), self.dialect)
+        text = self.text.block(block)
         self.recorder.block, self.recorder.flags = block, 0
+        if self.has_plain_moves() and self._plain_move(text):
+            return block + 1
+        words = words_of(text, self.dialect)
         self.modes.shot, self.modes.lost = None, ""
         following = self.steering.follow(words, block)
         if following is not None:
             return following
         if words.is_empty:
             return block + 1
+        is_last = self._follow_contour(words)
         self._flag(words)
         self.settle(words)
         self.modes.turn(words)
@@ -101,7 +117,64 @@ class IsoControl:
             self.remarks.lost(block, self.modes.lost)
             self.recorder.unknown()
         self.steering.watch()
+        if is_last:
+            self.modes.stand(MoveFlag.CONDITIONAL, is_on=False)
+            self.recorder.unknown()
         return self.steering.ended(words, block)
+
+    def _follow_contour(self, words: BlockWords) -> bool:
+        """Enter the contour of a cycle that is not expanded; return whether it ends here.
+
+        How often and with which allowance its blocks are executed is not known.
+        """
+        if self.modes.contour is None or words.number is None:
+            return False
+        first, last = self.modes.contour
+        if words.number == first:
+            self.modes.stand(MoveFlag.CONDITIONAL, is_on=True)
+        is_last = words.number == last and bool(self.recorder.standing & MoveFlag.CONDITIONAL)
+        if is_last:
+            self.modes.contour = None
+        return is_last
+
+    def has_plain_moves(self) -> bool:
+        """Whether axis words alone say where a move ends, as in most long programs."""
+        modes, recorder = self.modes, self.recorder
+        return (
+            modes.motion in PLAIN_MOTIONS
+            and modes.is_absolute is True
+            and not self.is_lathe
+            and recorder.standing == 0
+            and self.steering.is_plain
+            and recorder.setting.mode is not FeedMode.INVERSE_TIME
+        )
+
+    def _plain_move(self, text: str) -> bool:
+        """Execute a block of axis words, G0 or G1, and F alone; return whether it is one.
+
+        The result is that of the words taken one by one, in a fraction of the time.
+        """
+        found = PLAIN.fullmatch(text)
+        if found is None:
+            return False
+        code, *coordinates, feed = found.groups()
+        if coordinates == [None, None, None]:
+            return False
+        modes, recorder = self.modes, self.recorder
+        if code is not None:
+            modes.to_motion(ModalMotion.LINE if code == "1" else ModalMotion.RAPID)
+        if feed is not None:
+            recorder.flags = MoveFlag.OWN_FEED.value
+            modes.set_feed(float(feed), modes.scale)
+        modes.set_units()
+        scale = modes.scale
+        end = [
+            old if new is None else scale * float(new)
+            for old, new in zip(recorder.at, coordinates, strict=True)
+        ]
+        is_rapid = modes.motion is ModalMotion.RAPID
+        recorder.move(MoveKind.RAPID if is_rapid else MoveKind.LINE, end)
+        return True
 
     def _flag(self, words: BlockWords) -> None:
         """Set the flags that concern the whole block."""
@@ -126,7 +199,7 @@ class IsoControl:
 
     def rounding(self, words: BlockWords) -> Sequence[str]:
         """Addresses of chamfers and roundings at the end of a line."""
-        is_line = self.modes.motion is Motion.LINE and not {20, 30} & set(words.codes)
+        is_line = self.modes.motion is ModalMotion.LINE and not {20, 30} & set(words.codes)
         return (",C", ",R", "C", "R") if self.is_lathe and is_line else (",C", ",R")
 
     def _move(self, words: BlockWords) -> None:
@@ -138,8 +211,7 @@ class IsoControl:
         elif self.modes.shot in {Shot.HOME, Shot.MACHINE}:
             self._in_machine(words)
         elif self.modes.shot is Shot.OFFSETS:
-            self.recorder.at = [nan, nan, nan]
-            self.recorder.flags |= MoveFlag.OFFSET.value
+            self._set_offsets(words)
         elif self.modes.shot is Shot.DWELL:
             self.recorder.dwell(self.seconds(words))
             if self.dialect is Dialect.LINUXCNC and has_axes and not self.modes.lost:
@@ -152,6 +224,15 @@ class IsoControl:
         elif has_axes or self._is_circle(words):
             self._rotary(words)
             self._interpolate(words)
+
+    def _set_offsets(self, words: BlockWords) -> None:
+        """Take values for frames (G10 L2, L20), or for tools and other tables."""
+        table = words.values.get("L", 2.0 if set("XYZ") & set(words.values) else 1.0)
+        if table in {2.0, 20.0}:
+            self.modes.set_frame(self.recorder.block)
+        else:
+            self.recorder.at = [nan, nan, nan]
+            self.recorder.flags |= MoveFlag.OFFSET.value
 
     def seconds(self, words: BlockWords) -> float:
         """Time of a dwell, s; 0 where it is not known."""
@@ -171,7 +252,7 @@ class IsoControl:
 
     def _is_circle(self, words: BlockWords) -> bool:
         """Whether the block is a full circle, which names its centre alone."""
-        is_arc = self.modes.motion in {Motion.CLOCKWISE, Motion.COUNTERCLOCKWISE}
+        is_arc = self.modes.motion in {ModalMotion.CLOCKWISE, ModalMotion.COUNTERCLOCKWISE}
         return is_arc and any(letter in words.values for letter in "IJK")
 
     def _rotary(self, words: BlockWords) -> None:
@@ -212,11 +293,11 @@ class IsoControl:
 
     def _interpolate(self, words: BlockWords) -> None:
         motion, end = self.modes.motion, self.end(words)
-        if motion is Motion.RAPID:
+        if motion is ModalMotion.RAPID:
             self.recorder.move(MoveKind.RAPID, end)
-        elif motion is Motion.LINE:
+        elif motion is ModalMotion.LINE:
             self.recorder.move(MoveKind.LINE, end)
-        elif motion is Motion.THREAD:
+        elif motion is ModalMotion.THREAD:
             self.recorder.move(MoveKind.THREAD, end)
         elif motion is None:
             self.remarks.lost(
@@ -225,7 +306,7 @@ class IsoControl:
             self.recorder.unknown()
             self.recorder.at = end
         else:
-            self._arc(words, end, 1.0 if motion is Motion.COUNTERCLOCKWISE else -1.0)
+            self._arc(words, end, 1.0 if motion is ModalMotion.COUNTERCLOCKWISE else -1.0)
 
     def _arc(self, words: BlockWords, end: list[float], sense: float) -> None:
         start, plane = self.recorder.at, self.modes.plane
@@ -308,7 +389,7 @@ class IsoControl:
         if is_home and not axes:
             axes = {0, 1, 2}
         end = [nan if axis in axes else value for axis, value in enumerate(self.recorder.at)]
-        is_rapid = is_home or self.modes.motion is not Motion.LINE
+        is_rapid = is_home or self.modes.motion is not ModalMotion.LINE
         self.recorder.move(MoveKind.RAPID if is_rapid else MoveKind.LINE, end)
 
     def _drill(self, words: BlockWords, kind: CycleKind) -> None:

@@ -98,6 +98,11 @@ class IsoFlow:
             return len(self._text)
         return block + 1
 
+    @property
+    def is_plain(self) -> bool:
+        """Whether the program has begun and no condition is open."""
+        return self._is_begun and self._before is None
+
     def watch(self) -> None:
         """Remember what a condition changes."""
         if self._before is not None:

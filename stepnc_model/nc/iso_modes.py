@@ -23,7 +23,7 @@ CodeTable = dict[int, Callable[[BlockWords], None]]
 """Action of each G code, in tenths."""
 
 
-class Motion(Enum):
+class ModalMotion(Enum):
     """Modal motion that axis words execute."""
 
     RAPID = auto()
@@ -45,11 +45,11 @@ class Shot(Enum):
 
 
 MOTIONS = {
-    0: Motion.RAPID,
-    10: Motion.LINE,
-    20: Motion.CLOCKWISE,
-    30: Motion.COUNTERCLOCKWISE,
-    330: Motion.THREAD,
+    0: ModalMotion.RAPID,
+    10: ModalMotion.LINE,
+    20: ModalMotion.CLOCKWISE,
+    30: ModalMotion.COUNTERCLOCKWISE,
+    330: ModalMotion.THREAD,
 }
 MODES = {
     930: FeedMode.INVERSE_TIME,
@@ -73,7 +73,7 @@ class IsoModes:
     def __init__(self, recorder: MoveRecorder, dialect: Dialect, machine: MachineType) -> None:
         self.recorder, self.dialect = recorder, dialect
         self.is_lathe = machine is MachineType.LATHE
-        self.motion: Motion | CycleKind | None = None
+        self.motion: ModalMotion | CycleKind | None = None
         self.plane: ArcPlane | None = ArcPlane.ZX if self.is_lathe else ArcPlane.XY
         self.is_absolute: bool | None = True
         self.is_centre_absolute: bool | None = False
@@ -83,6 +83,8 @@ class IsoModes:
         self.returns_to_start = True
         self.shift = [0.0, 0.0, 0.0]
         self.base = "G54"
+        self.edition = ""
+        """Words for the last block that gave values to frames."""
         self.rotary: dict[str, float] = {}
         self.spindle = 0.0
         """Spindle word: rpm, or m/min at constant surface speed."""
@@ -90,7 +92,11 @@ class IsoModes:
         self.is_surface = False
         self.limit: float | None = None
         self.tool: int | None = None
+        self.tool_name = ""
+        self._straight: ModalMotion | None = None
         self.cycle: dict[str, float] = {}
+        self.contour: tuple[float, float] | None = None
+        """Numbers of the first and last block of the contour of a cycle (G71 P Q)."""
         self.shot: Shot | None = None
         self.pause = 0.0
         """Time of a dwell that stands in its F word, s."""
@@ -107,7 +113,7 @@ class IsoModes:
     def forget(self) -> None:
         """Forget position and modal state, as after a program that is not here."""
         self.recorder.at = [nan, nan, nan]
-        self.motion, self.plane, self.is_absolute = None, None, None
+        self.motion, self.plane, self.is_absolute, self._straight = None, None, None, None
         self.forget_feed()
 
     def forget_feed(self) -> None:
@@ -166,13 +172,17 @@ class IsoModes:
             self.forget_feed()
             self.recorder.fed_by = self.recorder.block
         elif value is not None:
-            per_minute = self.recorder.setting.mode is FeedMode.PER_MINUTE
-            is_inverse = self.recorder.setting.mode is FeedMode.INVERSE_TIME
-            scale = 1.0 if is_inverse else unit
-            self.recorder.word = value * scale / (MINUTE if per_minute or is_inverse else 1.0)
-            self.recorder.fed_by = self.recorder.block
-            self.recorder.is_fresh = True
-            self.recorder.standing &= ~MoveFlag.MACRO_FEED.value
+            self.set_feed(value, unit)
+
+    def set_feed(self, value: float, unit: float) -> None:
+        """Put the number of an F word in force, in units of a length in mm."""
+        recorder = self.recorder
+        per_minute = recorder.setting.mode is FeedMode.PER_MINUTE
+        is_inverse = recorder.setting.mode is FeedMode.INVERSE_TIME
+        scale = 1.0 if is_inverse else unit
+        recorder.word = value * scale / (MINUTE if per_minute or is_inverse else 1.0)
+        recorder.fed_by, recorder.is_fresh = recorder.block, True
+        recorder.standing &= ~MoveFlag.MACRO_FEED.value
 
     def _code_table(self) -> CodeTable:
         """Actions of the G codes of this control."""
@@ -217,7 +227,7 @@ class IsoModes:
             table |= {
                 980: partial(self._take_mode, FeedMode.PER_MINUTE),
                 990: partial(self._take_mode, FeedMode.PER_REVOLUTION),
-                320: partial(self._take_motion, Motion.THREAD),
+                320: partial(self._take_motion, ModalMotion.THREAD),
                 500: self._lathe_shift,
             }
             for code in iso_codes.LATHE_CYCLES:
@@ -240,7 +250,7 @@ class IsoModes:
         return {
             70: partial(self._take, "is_diameter", True),
             80: partial(self._take, "is_diameter", False),
-            331: partial(self._take_motion, Motion.THREAD),
+            331: partial(self._take_motion, ModalMotion.THREAD),
             901: partial(self._take, "is_centre_absolute", True),
             911: partial(self._take, "is_centre_absolute", False),
             921: partial(self._take_shift, 0.0),
@@ -252,9 +262,15 @@ class IsoModes:
         """Set one part of the modal state."""
         setattr(self, name, value)
 
-    def _take_motion(self, motion: Motion | CycleKind, _: BlockWords) -> None:
+    def _take_motion(self, motion: ModalMotion | CycleKind, _: BlockWords) -> None:
+        self.to_motion(motion)
+
+    def to_motion(self, motion: ModalMotion | CycleKind) -> None:
+        """Change the motion that axis words execute."""
         if motion is not self.motion:
             self.cycle = {}
+        if isinstance(motion, ModalMotion):
+            self._straight = motion
         self.motion = motion
 
     def _take_frame(self, name: str, _: BlockWords) -> None:
@@ -272,13 +288,16 @@ class IsoModes:
     def _take_shift(self, value: float, _: BlockWords) -> None:
         self.shift_to([value] * 3)
 
-    def _not_expanded(self, code: int, _: BlockWords) -> None:
+    def _not_expanded(self, code: int, words: BlockWords) -> None:
         self.lose(f"the cycle G{code / 10:g} is not expanded")
         self.motion = None
+        if self.is_lathe and "P" in words.values and "Q" in words.values:
+            self.contour = words.values["P"], words.values["Q"]
 
     def _cancel(self, _: BlockWords) -> None:
         if isinstance(self.motion, CycleKind):
-            self.motion = None
+            # Elsewhere cycles are a group of their own: the motion before them is in force.
+            self.motion = None if self.dialect is Dialect.LINUXCNC else self._straight
 
     def to_mode(self, mode: FeedMode) -> None:
         """Change the reference of F words, after which no feed is in force."""
@@ -334,13 +353,21 @@ class IsoModes:
         self.recorder.flags |= MoveFlag.OFFSET.value
         self._name_frame()
 
+    def set_frame(self, block: int) -> None:
+        """Take new values for frames by G10: what follows stands in a frame of its own."""
+        self.recorder.flags |= MoveFlag.OFFSET.value
+        self.recorder.at = [nan, nan, nan]
+        self.edition = f" as set in block {block + 1}"
+        self._name_frame()
+
     def _name_frame(self) -> None:
         shifted = ", ".join(
             f"{axis} {value:g}"
             for axis, value in zip("XYZ", self.shift, strict=True)
             if value != 0.0
         )
-        name = f"{self.base} shifted by {shifted}" if shifted else self.base
+        base = f"{self.base}{self.edition}"
+        name = f"{base} shifted by {shifted}" if shifted else base
         setting = self.recorder.setting
         self.recorder.setting = replace(setting, frame=self.recorder.frame(name))
 
@@ -404,19 +431,23 @@ class IsoModes:
     def take_tool(self, words: BlockWords) -> None:
         """Take T and M6; on the lathes of Fanuc and Haas T alone turns the turret."""
         number = words.values.pop("T", None)
-        if "T" in words.macros:
-            self.tool = None
+        is_macro = "T" in words.macros
+        if is_macro:
+            self.tool, self.tool_name = None, ""
         elif number is not None:
-            self.tool = int(number)
+            self.tool, self.tool_name = int(number), ""
         if self.is_lathe and self.dialect in {Dialect.FANUC, Dialect.HAAS}:
-            if number is not None and self.tool is not None:
+            if self.tool is not None and number is not None:
                 self.to_tool(self.tool // 100 if self.tool >= 100 else self.tool)
+            elif is_macro:
+                self.to_tool(None)
         elif 60 in words.functions:
             self.to_tool(self.tool)
 
     def to_tool(self, number: int | None) -> None:
         """Change the tool, after which its height is not known."""
-        self.recorder.setting = replace(self.recorder.setting, tool=number)
+        setting = self.recorder.setting
+        self.recorder.setting = replace(setting, tool=number, tool_name=self.tool_name)
         self.recorder.at = [nan] * 3 if self.is_lathe else [*self.recorder.at[:2], nan]
 
     # Moves.

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from stepnc_model.nc.token import NUMBER, TokenKind, tokens
 from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.words import LARGEST
 
 PLAIN = re.compile(NUMBER)
 
@@ -64,7 +65,7 @@ def klartext_words(text: str) -> KlartextWords:
             if not is_first:
                 _number(words, value)
         elif kind is TokenKind.WORD:
-            _word(words, name, float(value))
+            _word(words, name, value)
         elif kind is TokenKind.MACRO:
             words.macros[name] = value
         elif kind is TokenKind.NAME:
@@ -81,10 +82,14 @@ def klartext_words(text: str) -> KlartextWords:
     return words
 
 
-def _word(words: KlartextWords, name: str, value: float) -> None:
+def _word(words: KlartextWords, name: str, text: str) -> None:
     """Take an address with a number."""
-    if name == "M":
-        words.functions.append(round(10.0 * min(value, 1e6)))
+    value = float(text)
+    if not abs(value) <= LARGEST:
+        words.strange.append(f"{name}{text[:20]}")
+        words.macros[name] = text
+    elif name == "M":
+        words.functions.append(round(10.0 * value))
     else:
         words.values[name] = value
 
@@ -92,14 +97,15 @@ def _word(words: KlartextWords, name: str, value: float) -> None:
 def _number(words: KlartextWords, value: str) -> None:
     """Take a number without an address: of a cycle, a label, or another."""
     last = words.names[-1:]
+    number = min(float(value), LARGEST)
     if last == ["DEF"] and words.names[:1] == ["CYCL"] and not words.cycle:
         words.cycle = value
     elif last == ["LBL"] and not words.label:
         words.label = value
     elif last == ["REP"] or (words.names[:1] == ["CALL"] and "REP" in words.names):
-        words.values.setdefault("REP", float(value))
+        words.values.setdefault("REP", number)
     else:
-        words.numbers.append(float(value))
+        words.numbers.append(number)
 
 
 def _text(words: KlartextWords, value: str) -> None:

@@ -6,10 +6,10 @@ the program in mm, in the frame of the row; on a lathe x is a radius. Unknown co
 NaN. Rows name their block, so that advice finds its way back into the file.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum, IntFlag, StrEnum
 from functools import cached_property
-from math import nan, pi
+from math import inf, nan, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -139,7 +139,9 @@ class ModalSetting:
     """Modal state that consecutive moves share."""
 
     tool: int | None = None
-    """Number of the tool in the spindle; None if none was called."""
+    """Number of the tool in the spindle; None if none was called, or one by its name."""
+    tool_name: str = ""
+    """Name of a tool that is called by its name."""
     spindle: float | None = None
     """Spindle speed, rev/s, negative counter-clockwise (M4); None if not known."""
     surface: float | None = None
@@ -265,6 +267,12 @@ class NcMoves:
         return np.array(numbers or [-1], np.int32)[self.rows["setting"]]
 
     @cached_property
+    def has_tool(self) -> NDArray[np.bool_]:
+        """(N,) array: whether a tool was called, by its number or its name."""
+        called = [each.tool is not None or each.tool_name != "" for each in self.settings]
+        return np.array(called or [False])[self.rows["setting"]]
+
+    @cached_property
     def frame(self) -> NDArray[np.int32]:
         """(N,) array: index of the frame in :attr:`frames`."""
         numbers = [each.frame for each in self.settings]
@@ -332,10 +340,12 @@ class NcMoves:
         """(N,) array: feed, mm/s; NaN for rapids, threads and where it is not known."""
         per_minute, per_revolution, inverse = range(3)
         mode, word = self.mode, self.word
+        has_inverse = any(each.mode is FeedMode.INVERSE_TIME for each in self.settings)
+        length = self.length if has_inverse else word
         with np.errstate(invalid="ignore"):
             feed = np.select(
                 [mode == per_minute, mode == per_revolution, mode == inverse],
-                [word, word * np.abs(self.spindle), word * self.length],
+                [word, word * np.abs(self.spindle), word * length],
                 nan,
             )
         is_fed = np.isin(self.kind, (MoveKind.LINE, MoveKind.ARC))
@@ -357,6 +367,28 @@ class NcMoves:
     def is_splittable(self) -> NDArray[np.bool_]:
         """(N,) array: whether the block of the move may be split."""
         return self.is_advisable & ((self.flags & int(UNSPLIT)) == 0)
+
+    def fastest(self, rows: NDArray[np.int64]) -> float:
+        """Greatest spindle speed in some rows, rev/s; 0 if not known.
+
+        At constant surface speed it is that of the least distance from the axis; infinite at
+        the axis without a limit.
+        """
+        fastest = 0.0
+        for row in rows.tolist():
+            setting = self.settings[int(self.rows["setting"][row])]
+            if setting.surface is None:
+                fastest = max(fastest, abs(setting.spindle or 0.0))
+                continue
+            one, other = float(self.start[row][0]), float(self.end[row][0])
+            radius = 0.0 if one * other <= 0.0 else min(abs(one), abs(other))
+            speed = setting.surface / (2.0 * pi * radius) if radius else inf
+            fastest = max(fastest, min(speed, setting.limit or inf))
+        return fastest
+
+    def part(self, begin: int, end: int) -> "NcMoves":
+        """Return some consecutive rows, whose derived columns need little memory."""
+        return replace(self, rows=self.rows[begin:end])
 
     def move(self, index: int) -> NcMove:
         """Return one row as a value."""

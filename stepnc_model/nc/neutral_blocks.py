@@ -1,11 +1,11 @@
 """Neutral blocks of a foreign NC program, as the virtual machine runs them.
 
-Moves whose start or end is not known are left out; a rapid bridges the gap to the next known
-move. Coolant, messages and stops have no effect on the cut and are left out as well. All frames
-are laid over each other.
+Moves whose start or end is not known are left out; a rapid with ``is_way`` bridges the gap to
+the next known move. Coolant, messages and stops have no effect on the cut and are left out as
+well. All frames are laid over each other.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import isnan, nan
 
@@ -37,13 +37,20 @@ APART = 1e-6
 """Distance above which a move does not start where the last one ended, mm."""
 
 
-def neutral_blocks(program: NcProgram, *, name: str = "") -> Iterator[NumberedBlock]:
+NOTHING: Mapping[int, Block] = {}
+
+
+def neutral_blocks(
+    program: NcProgram, *, name: str = "", before: Mapping[int, Block] = NOTHING
+) -> Iterator[NumberedBlock]:
     """Convert the executed moves of a program to neutral blocks, with the lines of the file.
 
     Parameters
     ----------
     program : NcProgram
     name : str
+    before : mapping of int to Block
+        Blocks to be put before moves, by the row of the move.
     """
     yield 1, ProgramStart(name=name, machine=program.machine)
     moves, text = program.moves, program.text
@@ -52,6 +59,8 @@ def neutral_blocks(program: NcProgram, *, name: str = "") -> Iterator[NumberedBl
     for index in range(len(moves)):
         move = moves.move(index)
         line = text.line(move.block)
+        if index in before:
+            yield line, before[index]
         for block in _set(state.setting, move.setting):
             yield line, block
         state.setting = move.setting
@@ -95,12 +104,11 @@ def _moved(state: _State, move: NcMove) -> Iterator[Block]:
             yield Retract(z=move.end[2])
         return
     is_fed = move.kind in {MoveKind.LINE, MoveKind.ARC, MoveKind.THREAD} and move.feed > 0.0
-    is_bridged = isnan(sum(move.start)) or _is_apart(state.at, move.start)
-    if is_fed and is_bridged and not isnan(sum(move.start)):
+    is_begun = isnan(sum(move.start))
+    if not is_begun and _is_apart(state.at, move.start) and (is_fed or not isnan(state.at[0])):
         yield Rapid(end=move.start, is_way=True)
-        is_bridged = False
-    if not is_fed or is_bridged or isnan(move.turn):
-        yield Rapid(end=move.end)
+    if not is_fed or is_begun or isnan(move.turn):
+        yield Rapid(end=move.end, is_way=is_begun and not isnan(state.at[0]))
     elif move.centre is not None:
         yield Circular(
             end=move.end,

@@ -20,6 +20,9 @@ from stepnc_model.nc.text import NcText, text_of
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
 
+CHUNK = 1 << 16
+"""Rows that are looked at together."""
+
 Control = IsoControl | HeidenhainControl
 
 
@@ -61,7 +64,7 @@ def read_program(
 
     Examples
     --------
-    >>> program = read_program(b"G21 G90\\nG0 X0 Y0 Z5\\nG1 Z-1 F60\\nX10\\n")
+    >>> program = read_program(b"G21 G90\nG0 X0 Y0 Z5\nG1 Z-1 F60\nX10\n")
     >>> program.moves.feed
     array([nan,  1.,  1.])
     """
@@ -74,7 +77,8 @@ def read_program(
     control = _control(text, chosen, kind)
     control.run()
     moves = control.recorder.moves()
-    _remark(control.remarks, moves)
+    for begin in range(0, len(moves), CHUNK):
+        _remark(control.remarks, moves.part(begin, begin + CHUNK))
     return NcProgram(
         text=text,
         dialect=chosen,
@@ -107,7 +111,7 @@ def _remark(remarks: Remarks, moves: NcMoves) -> None:
             is_fed & per_revolution & (moves.word > 0.0) & (moves.spindle == 0.0),
             "a feed per revolution while the spindle is stopped",
         ),
-        (is_fed & (moves.tool < 0), "no tool was called before this cut"),
+        (is_fed & ~moves.has_tool, "no tool was called before this cut"),
         (
             is_fed & ((moves.flags & int(MoveFlag.UNPOINTED)) != 0),
             "a coordinate without decimal point is read in whole units, "

@@ -60,9 +60,10 @@ _IN_COMMENTS = (
     (Dialect.LINUXCNC, 4, re.compile(rb"\b(?:linuxcnc|emc2?|grbl|freecad)\b", re.I)),
 )
 
+Y_WORDS = re.compile(rb"\bY[ \t]*=?[-+]?[0-9.]|[0-9.]Y[-+]?[0-9.]", re.I)
 LATHE_HINTS = re.compile(
     rb"\bT(?!0000)[0-9]{4}\b|\bG50[ \t]*S[0-9]|\bG96\b|\bLIMS[ \t]*=|\bDIAMON\b"
-    rb"|\bG7\b(?![ \t]*[0-9.])|\bG0?[0123][ \t]*U-?[0-9.]",
+    rb"|\bG[78]\b(?![ \t]*[0-9.])|\bG0?[0123][ \t]*U-?[0-9.]",
     re.I,
 )
 MILL_HINTS = re.compile(
@@ -85,7 +86,7 @@ def recognise(data: bytes) -> RecognisedControl:
 
     Examples
     --------
-    >>> recognise(b"%\\nO1234 (PART)\\nG21 G54\\nT1 M6\\n").dialect.value
+    >>> recognise(b"%\nO1234 (PART)\nG21 G54\nT1 M6\n").dialect.value
     'fanuc'
     """
     head = data[:LOOKED_AT]
@@ -99,14 +100,20 @@ def recognise(data: bytes) -> RecognisedControl:
                 points[dialect] += worth
                 hints[dialect].append(found[0].decode("latin-1").strip())
     best = max(points, key=lambda dialect: points[dialect])
-    is_lathe = best is not Dialect.HEIDENHAIN and _count(LATHE_HINTS, code) > _count(
-        MILL_HINTS, code
-    )
+    is_lathe = best is not Dialect.HEIDENHAIN and _is_for_lathe(code)
     return RecognisedControl(
         dialect=best,
         machine=MachineType.LATHE if is_lathe else MachineType.MILL,
         hints=tuple(hints[best]),
     )
+
+
+def _is_for_lathe(code: bytes) -> bool:
+    """Whether code without Y words has words of lathes, or more of them than of mills."""
+    turned = _count(LATHE_HINTS, code)
+    if turned and not Y_WORDS.search(code):
+        return True
+    return turned > _count(MILL_HINTS, code)
 
 
 def _count(pattern: re.Pattern[bytes], code: bytes) -> int:

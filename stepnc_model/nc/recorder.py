@@ -30,9 +30,9 @@ class MoveRecorder:
     Running state: a control moves it from block to block.
     """
 
-    def __init__(self) -> None:
-        self.at: list[float] = [nan, nan, nan]
-        """Position of the tool, mm; NaN where unknown."""
+    def __init__(self, *, has_y: bool = True) -> None:
+        self._has_y = has_y
+        self._at: list[float] = [nan, nan if has_y else 0.0, nan]
         self.word = nan
         """Feed in force, mm/s, mm per revolution or 1/s."""
         self.fed_by = -1
@@ -53,6 +53,17 @@ class MoveRecorder:
         self._index = 0
         self._rows = bytearray()
         self._arcs = array("d")
+
+    @property
+    def at(self) -> list[float]:
+        """Position of the tool, mm; NaN where unknown. On a lathe y is 0."""
+        return self._at
+
+    @at.setter
+    def at(self, at: list[float]) -> None:
+        self._at = at
+        if not self._has_y:
+            at[1] = 0.0
 
     @property
     def setting(self) -> ModalSetting:
@@ -112,11 +123,14 @@ class MoveRecorder:
         if self.is_fresh:
             flags |= MoveFlag.FRESH_FEED.value
             self.is_fresh = False
-        if not self.word > 0.0 and kind in {MoveKind.LINE, MoveKind.ARC}:
+        is_unfed = not self.word > 0.0 and not flags & MoveFlag.MACRO_FEED
+        if is_unfed and kind in {MoveKind.LINE, MoveKind.ARC}:
             flags |= MoveFlag.NO_FEED.value
+        here, there = self._at, list(end)
+        self.at = there
         self._rows += _PACKED.pack(
-            *self.at,
-            *end,
+            *here,
+            *there,
             self.word,
             self.block,
             self.fed_by,
@@ -126,7 +140,6 @@ class MoveRecorder:
             flags,
             kind,
         )
-        self.at = list(end)
 
     def moves(self) -> NcMoves:
         """All moves recorded so far."""

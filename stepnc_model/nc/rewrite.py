@@ -97,8 +97,11 @@ class _Rewriting:
         self.program, self.moves, self.mark = program, program.moves, mark
         self.style = style_of(program.text, program.dialect, unit=program.unit)
         self.unchanged: list[UnchangedBlock] = []
-        self._order = np.argsort(self.moves.block, kind="stable")
-        self._sorted = self.moves.block[self._order]
+        self._order = np.zeros(0, np.int64)
+        self._sorted = np.zeros(0, np.int32)
+        if advice:
+            self._order = np.argsort(self.moves.block, kind="stable")
+            self._sorted = self.moves.block[self._order]
         self._feed_words: dict[int, str | None] = {}
         self.plans: dict[int, _Plan] = {}
         for block in sorted(advice):
@@ -169,6 +172,13 @@ class _Rewriting:
         flags = MoveFlag(int(np.bitwise_or.reduce(self.moves.flags[rows])))
         if flags & UNADVISED:
             return _named(flags & UNADVISED)
+        if not self.moves.is_advisable[rows].all():
+            return "its start or end is not known"
+        modes = {self.moves.move(int(row)).setting.mode for row in rows}
+        if len(modes) > 1:
+            return "its executions have feeds in different modes"
+        if FeedMode.PER_REVOLUTION in modes and not 0.0 < self.moves.fastest(rows) < inf:
+            return "the spindle speed is not known or not limited"
         if self.program.dialect is Dialect.HEIDENHAIN and flags & MoveFlag.CYCLE:
             return "the feed of a cycle stands in its definition"
         if self.program.dialect is Dialect.SINUMERIK and flags & MoveFlag.CYCLE:
@@ -184,6 +194,10 @@ class _Rewriting:
             return "its start is not known"
         start, end = self.moves.start[rows], self.moves.end[rows]
         centre, turn = self.moves.centre[rows], self.moves.turn[rows]
+        settings = {self.moves.settings[index] for index in self.moves.rows["setting"][rows]}
+        if all(each.is_relative and not each.is_centre_absolute for each in settings):
+            # Distances mean the same wherever they begin.
+            start, end, centre = start - start, end - start, centre - start
         same = (
             (np.abs(start - start[0]).max() < SAME)
             and (np.abs(end - end[0]).max() < SAME)
@@ -215,9 +229,7 @@ class _Rewriting:
         if mode is FeedMode.INVERSE_TIME:
             value = mm_min_from_speed(piece.feed) / piece.length if piece.length else inf
             return self.style.feed(min(value, 1e6), mode)
-        speeds = np.abs(self.moves.spindle[rows])
-        fastest = float(np.nanmax(speeds)) if len(speeds) else 0.0
-        return self.style.feed(piece.feed / fastest / setting.unit, mode) if fastest else "0"
+        return self.style.feed(piece.feed / self.moves.fastest(rows) / setting.unit, mode)
 
     # The feed in force.
 

@@ -14,12 +14,13 @@ from stepnc_model.nc.drilling import cycle_moves, drilling
 from stepnc_model.nc.flow import places
 from stepnc_model.nc.iso_control import IsoControl
 from stepnc_model.nc.iso_flow import IsoFlow, Steered
-from stepnc_model.nc.iso_modes import INCH, CodeTable, IsoModes, Motion, Shot
+from stepnc_model.nc.iso_modes import INCH, CodeTable, IsoModes, ModalMotion, Shot
 from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind
 from stepnc_model.nc.text import NcText
 from stepnc_model.nc.token import NUMBER
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.words import LARGEST
 from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 from stepnc_model.units import rev_s_from_rpm
 
@@ -40,8 +41,8 @@ CYCLES = {
     "CYCLE88": CycleKind.BORE_STOP,
     "CYCLE89": CycleKind.BORE,
 }
-DEPTH_OF_PECK, BREAKS = 6, 11
-"""Indices of the arguments FDPR or DAM, and VARI, of CYCLE83."""
+FIRST_DEPTH, DEPTH_OF_PECK, BREAKS = 5, 6, 11
+"""Indices of the arguments FDEP, FDPR and VARI of CYCLE83."""
 
 ROUNDING = ("CHF", "CHR", "RND", "RNDM")
 STRANGE_ENDS = ("ANG", "AP", "RP", "I1", "J1", "K1")
@@ -76,7 +77,7 @@ class SinumerikModes(IsoModes):
 
     def own_codes(self) -> CodeTable:
         """Actions of the G codes in which Sinumerik differs."""
-        thread = partial(self._take_motion, Motion.THREAD)
+        thread = partial(self._take_motion, ModalMotion.THREAD)
         table: CodeTable = {
             **dict.fromkeys(iso_codes.SINUMERIK_INCHES, partial(self._take, "scale", INCH)),
             **dict.fromkeys(iso_codes.SINUMERIK_METRIC, partial(self._take, "scale", 1.0)),
@@ -114,6 +115,10 @@ class SinumerikControl(IsoControl):
         if 960 in words.codes or 970 in words.codes:
             self.modes.to_mode(FeedMode.PER_REVOLUTION)
         self._dwell_words(words)
+
+    def has_plain_moves(self) -> bool:
+        """Whether axis words alone say where a move ends; not while a cycle follows each."""
+        return self._modal_call is None and super().has_plain_moves()
 
     def rounding(self, words: BlockWords) -> Sequence[str]:
         """Addresses of chamfers and roundings at the end of a line."""
@@ -182,11 +187,10 @@ class SinumerikControl(IsoControl):
             words.values["S"] = words.values.pop("S1")
         if "M1" in words.values:
             words.functions.append(round(10.0 * min(words.values.pop("M1"), 1e6)))
-        if words.macros.pop("T", None) is not None:
-            self.modes.tool = None
-            self.remarks.note(
-                self.recorder.block, "a tool called by its name has no number: name its data"
-            )
+        name = words.macros.pop("T", None)
+        if name is not None:
+            self.modes.tool, self.modes.tool_name = None, name.strip('"')
+            self.remarks.note(self.recorder.block, "the tool has a name and no number")
             if self.is_lathe:
                 self.modes.to_tool(None)
         for name in STRANGE_ENDS:
@@ -224,7 +228,8 @@ class SinumerikControl(IsoControl):
         bottom = surface - abs(_given(depth, 0.0)) if bottom == inf else bottom
         kind, step, above = CYCLES[name], 0.0, nan
         if name == "CYCLE83":
-            step = _given(numbers[DEPTH_OF_PECK], 0.0)
+            first = _given(numbers[FIRST_DEPTH], surface)
+            step = _given(numbers[DEPTH_OF_PECK], surface - first)
             kind = (
                 CycleKind.PECK if _given(numbers[BREAKS], 0.0) == 1.0 else CycleKind.CHIP_BREAK
             )
@@ -290,7 +295,8 @@ def _number(text: str) -> float:
     text = text.strip()
     if not text:
         return inf
-    return float(text) if re.fullmatch(NUMBER, text) else nan
+    value = float(text) if re.fullmatch(NUMBER, text) else nan
+    return value if abs(value) <= LARGEST else nan
 
 
 def _given(value: float, default: float) -> float:

@@ -60,9 +60,9 @@ def text_of(data: bytes, dialect: Dialect) -> NcText:
 
     Examples
     --------
-    >>> text = text_of(b"G0 X1\\r\\nG1 X2 F100", Dialect.LINUXCNC)
+    >>> text = text_of(b"G0 X1\r\nG1 X2 F100", Dialect.LINUXCNC)
     >>> list(text.blocks())
-    ['G0 X1\\r\\n', 'G1 X2 F100']
+    ['G0 X1\r\n', 'G1 X2 F100']
     """
     ends = _line_ends(data)
     starts = np.concatenate((np.zeros(1, np.int64), ends))

@@ -62,11 +62,11 @@ NUMBER = r"[-+]?(?:[0-9]++\.?+[0-9]*+|\.[0-9]++)"
 _BLANK = r"[ \t\x0b\x0c\x00]"
 _BRACKET = r"\[[^\[\]\r\n]*+\]"
 for _ in range(3):
-    _BRACKET = rf"\[(?:[^\[\]\r\n]|{_BRACKET})*+\]"
-_VARIABLE = rf"\#{_BLANK}*+(?:[0-9]++|<[^>\r\n]*+>|\#++[0-9]++|{_BRACKET})"
-_TERM = rf"[-+]?(?:{_BRACKET}|{_VARIABLE}|[A-Za-z]{{2,6}}{_BRACKET}(?:/{_BRACKET})?+)"
-_ARGUMENTS = r"\((?:[^()\"\r\n]|\"[^\"\r\n]*+\"|\((?:[^()\r\n]|\([^()\r\n]*+\))*+\))*+\)"
-_VALUE = rf"(?:{_ARGUMENTS}|\"[^\"\r\n]*+\"|\[[^\]\r\n]*+\]|[^\s;()\[\]\"])++"
+    _BRACKET = rf"\[(?>(?:[^\[\]\r\n]|{_BRACKET})*)\]"
+_VARIABLE = rf"\#{_BLANK}*+(?:[0-9]++|<[^<>\r\n]*+>|\#++[0-9]++|{_BRACKET})"
+_TERM = rf"[-+]?(?:{_BRACKET}|{_VARIABLE}|[A-Za-z]{{2,6}}{_BRACKET}(?:/{_BRACKET})?)"
+_ARGUMENTS = r"\((?>(?:[^()\"\r\n]|\"[^\"\r\n]*+\"|\((?>(?:[^()\r\n]|\([^()\r\n]*+\))*)\))*)\)"
+_VALUE = rf"(?>(?:{_ARGUMENTS}|\"[^\"\r\n]*+\"|\[[^\[\]\r\n]*+\]|[^\s;()\[\]\"])+)"
 _ADDRESS = r"IPA|IPR|I[XYZABCUVW]|PA|PR|DR|DL|CCA|FU|FZ|FT|REP|[XYZABCUVWFSRMT]"
 
 # The last group of an alternative names the kind and holds the value; a group of_KIND holds
@@ -74,18 +74,18 @@ _ADDRESS = r"IPA|IPR|I[XYZABCUVW]|PA|PR|DR|DL|CCA|FU|FZ|FT|REP|[XYZABCUVWFSRMT]"
 _COMMON = (rf"(?P<SPACE>{_BLANK}++)", r"(?P<LINE_END>\r\n|\n|\r)")
 _LAST = (r"(?P<SKIP>/[0-9]?)", r"(?P<PERCENT>%)", r"(?P<OTHER>.)")
 _ISO = (
-    rf"(?P<ASSIGNMENT>{_VARIABLE}{_BLANK}*+={_BLANK}*+(?:{_BRACKET}|[^\s;(\[\]])*+)",
+    rf"(?P<ASSIGNMENT>{_VARIABLE}{_BLANK}*+={_BLANK}*+(?>(?:{_BRACKET}|[^\s;(\[\]])*))",
     rf"(?P<of_WORD>(?:,{_BLANK}*+)?[A-Za-z:$]){_BLANK}*+(?P<WORD>{NUMBER})",
     rf"(?P<of_MACRO>(?:,{_BLANK}*+)?[A-Za-z]){_BLANK}*+(?P<MACRO>{_TERM})",
 )
 _ROUND_COMMENT = r"(?P<COMMENT>\([^)\r\n]*+\)?+|;[^\r\n]*+)"
 _LINUXCNC_FLOW = (
-    rf"(?P<FLOW>o{_BLANK}*+(?:[0-9]++|<[^>\r\n]*+>|{_TERM}){_BLANK}*+[a-z]"
-    rf"(?:{_BRACKET}|[^\r\n;(\[])*+)"
+    rf"(?P<FLOW>o{_BLANK}*+(?:[0-9]++|<[^<>\r\n]*+>|{_TERM}){_BLANK}*+[a-z]"
+    rf"(?>(?:{_BRACKET}|[^\r\n;(\[])*))"
 )
 _FANUC_FLOW = (
     r"(?P<FLOW>(?:IF|WHILE|GOTO|DO|END|THEN|DPRNT|BPRNT|POPEN|PCLOS|SETVN)(?![a-z])"
-    rf"(?:{_BRACKET}|[^\r\n;(\[])*+)"
+    rf"(?>(?:{_BRACKET}|[^\r\n;(\[])*))"
 )
 _QUOTED = r'(?P<TEXT>"[^"\r\n]*+"?+)'
 _SINUMERIK = (
@@ -96,7 +96,7 @@ _SINUMERIK = (
     rf"(?P<of_CALL>(?:MCALL{_BLANK}++)?[a-z_]{{2}}[a-z0-9_]*+){_BLANK}*+(?P<CALL>{_ARGUMENTS})",
     rf"(?P<of_WORD>[a-z_$]{{2}}[a-z0-9_]*+|[a-z][0-9]*+){_BLANK}*+={_BLANK}*+"
     rf"(?P<WORD>{NUMBER})(?![^\s;a-z])",
-    rf"(?P<of_MACRO>[a-z_$]{{2}}[a-z0-9_$]*+(?:\[[^\]\r\n]*+\])?+|[a-z][0-9]*+)"
+    rf"(?P<of_MACRO>[a-z_$]{{2}}[a-z0-9_$]*+(?:\[[^\[\]\r\n]*+\])?|[a-z][0-9]*+)"
     rf"{_BLANK}*+={_BLANK}*+(?P<MACRO>{_VALUE})",
     r"(?P<LABEL>[a-z_]{2}[a-z0-9_]*+:)",
     r"(?P<NAME>[a-z_]{2}[a-z0-9_]*+|%_N_[a-z0-9_]*+)",

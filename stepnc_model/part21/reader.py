@@ -18,9 +18,10 @@ from stepnc_model.errors import Finding, FindingList, Severity
 from stepnc_model.part21.grammar import closing, skip_blank
 from stepnc_model.part21.index import Index
 from stepnc_model.part21.places import Lines, SyntaxSlip, error_at
-from stepnc_model.part21.record import InstanceRecord, Part, parse_record
+from stepnc_model.part21.record import InstanceRecord, Part, parse_record, part_spans
 from stepnc_model.part21.structure import FileStructure, Statement, read_structure
 from stepnc_model.part21.tidy import is_tidy, tidy_values
+from stepnc_model.part21.unpacked import unpacked
 from stepnc_model.part21.values import Value
 
 _ARITY = {"FILE_DESCRIPTION": 2, "FILE_NAME": 7, "FILE_SCHEMA": 1}
@@ -109,7 +110,7 @@ class Part21File:
         Parameters
         ----------
         data : bytes
-            Contents of the whole file.
+            Contents of the whole file, also compressed as ZIP archive or with gzip.
         name : str
             File name for messages.
 
@@ -119,7 +120,8 @@ class Part21File:
             If the bytes are not an exchange structure, break off within an instance, string or
             comment, define an id twice, or exceed a limit of the reader.
         """
-        return cls(data=data, name=name, structure=read_structure(data))
+        plain = unpacked(data)
+        return cls(data=plain, name=name, structure=read_structure(plain))
 
     def __contains__(self, id: int) -> bool:
         return id in self._index.positions
@@ -175,6 +177,21 @@ class Part21File:
         """
         origin = self._body(id)
         return tuple((origin + a, origin + b) for a, b in self._simple(id).spans)
+
+    def part_spans(self, id: int) -> tuple[tuple[tuple[int, int], ...], ...]:
+        """Byte spans of the parameters of each part of a complex instance.
+
+        Raises
+        ------
+        Part21Error
+            If the instance is malformed.
+        """
+        self._record(id)
+        origin = self._body(id)
+        text = self._text(id).partition("=")[2]
+        return tuple(
+            tuple((origin + a, origin + b) for a, b in spans) for spans in part_spans(text)
+        )
 
     def closing_bracket(self, id: int) -> int:
         """Offset of the ``)`` that ends the parameters of a simple instance."""

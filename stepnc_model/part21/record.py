@@ -66,6 +66,40 @@ def parse_record(text: str) -> InstanceRecord:
     )
 
 
+def part_spans(text: str) -> tuple[tuple[tuple[int, int], ...], ...]:
+    """Spans of the parameters of each part of a complex instance, in a well-formed text.
+
+    Parameters
+    ----------
+    text : str
+        Text after the ``=`` of an instance, one character per byte of the file.
+    """
+    parts: list[list[tuple[int, int]]] = []
+    depth, start, end = 0, -1, -1
+    for match in TOKEN.finditer(text):
+        kind = match.lastgroup
+        if kind == "blank":
+            continue
+        closes_part = kind == "close" and depth == _PART_DEPTH
+        if depth == _PART_DEPTH and (kind == "comma" or closes_part):
+            if start >= 0:
+                parts[-1].append((start, end))
+            start = -1
+        elif depth >= _PART_DEPTH:
+            start, end = (match.start() if start < 0 else start), match.end()
+        if kind == "open":
+            depth += 1
+            if depth == _PART_DEPTH:
+                parts.append([])
+        elif kind == "close":
+            depth -= 1
+    return tuple(map(tuple, parts))
+
+
+_PART_DEPTH = 2
+"""Number of open brackets within a part of a complex instance."""
+
+
 @dataclass(slots=True, kw_only=True)
 class _Frame:
     """Open bracket on the parser's stack."""

@@ -200,6 +200,7 @@ class Edits:
     def __init__(self, file: Part21File) -> None:
         self.file = file
         self._changed: dict[int, list[Element]] = {}
+        self._in_parts: dict[tuple[int, int, int], bytes] = {}
         self._removed: set[int] = set()
         self._added: dict[int, _Added] = {}
         self._schemas: list[Element] | None = None
@@ -224,6 +225,28 @@ class Edits:
                 f"#{id} has {len(parameters)} parameters, none at position {position}"
             )
         parameters[position] = format_value(value)
+
+    def replace_in_part(self, id: int, part: int, position: int, value: Value) -> None:
+        """Replace a parameter in one part of an instance of the file.
+
+        Parameters
+        ----------
+        id, part, position : int
+            Instance, its part, and the place in the part, counted from 0; a simple instance
+            has one part.
+        value : Value
+
+        Raises
+        ------
+        KeyError, IndexError
+            If there is no such instance or parameter.
+        """
+        if self.file.keyword(id):
+            self.replace_parameter(id, position, value)
+            return
+        if id in self._removed:
+            raise KeyError(id)
+        self._in_parts[id, part, position] = format_value(value)
 
     def append_parameter(self, id: int, value: Value) -> None:
         """Add a parameter to an instance after its last one."""
@@ -259,6 +282,14 @@ class Edits:
         self._largest = id
         return Ref(id)
 
+    def add_complex(self, parts: Sequence[tuple[str, tuple[Value, ...]]]) -> Ref[object]:
+        """Add a complex instance, as :meth:`add` does a simple one; return its reference."""
+        id = self.next_id()
+        texts = (_keyword(keyword) + format_value(values) for keyword, values in parts)
+        self._added[id] = _Added(keyword=b"", parameters=[b"".join(texts)])
+        self._largest = id
+        return Ref(id)
+
     def remove(self, id: int) -> None:
         """Remove an instance, and its line if it contains nothing else.
 
@@ -274,6 +305,8 @@ class Edits:
         else:
             self._removed.add(id)
             self._changed.pop(id, None)
+            for key in [key for key in self._in_parts if key[0] == id]:
+                del self._in_parts[key]
         if id == self._largest:
             self._largest = None
 
@@ -312,6 +345,10 @@ class Edits:
         for id, elements in self._changed.items():
             spans, close = file.parameter_spans(id), file.closing_bracket(id)
             splices += list_splices(file.data, elements, spans=spans, close=close)
+        for (id, part, position), text in self._in_parts.items():
+            start, end = file.part_spans(id)[part][position]
+            if file.data[start:end] != text:
+                splices.append((start, end, text))
         for id in self._removed:
             splices.append((*line_span(file.data, file.span(id)), b""))
         if self._schemas is not None:

@@ -37,9 +37,20 @@ class BlockPart:
     """Name of the limit that gives the feed; empty if unknown."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FedBlock:
+    """Block at its new feed."""
+
+    number: int
+    """Number of the block that it comes from."""
+    part: int
+    """Row of the part in that block; 0 for a whole block."""
+    block: Block
+
+
 def with_feeds(
     blocks: Iterable[Numbered], feeds: Mapping[int, tuple[BlockPart, ...]]
-) -> Iterator[Numbered]:
+) -> Iterator[FedBlock]:
     """Replace the feeds of blocks, and split those with several.
 
     Parameters
@@ -58,10 +69,10 @@ def with_feeds(
     for number, block in blocks:
         parts = feeds.get(number)
         if parts is None:
-            yield number, block
+            yield FedBlock(number=number, part=0, block=block)
         else:
-            for part in _parts(block, parts, at):
-                yield number, part
+            for row, part in enumerate(_parts(block, parts, at)):
+                yield FedBlock(number=number, part=row, block=part)
         at = _end(block, at)
 
 

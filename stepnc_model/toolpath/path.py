@@ -224,6 +224,26 @@ def radius(start: Point, arc: Arc) -> float:
     return hypot(start[first] - arc.centre[first], start[second] - arc.centre[second])
 
 
+def point_at(start: Point, move: Move, part: float) -> Point:
+    """Point at a fraction of a line, an arc or a helix.
+
+    Parameters
+    ----------
+    start : Point
+    move : Move
+    part : float
+        Share of the length of the move, 0 to 1.
+    """
+    point = [a + part * (b - a) for a, b in zip(start, move.end, strict=True)]
+    if move.arc is not None:
+        first, second, _ = move.arc.plane.axes
+        centre, turned = move.arc.centre, part * move.arc.turn
+        u, v = start[first] - centre[first], start[second] - centre[second]
+        point[first] = centre[first] + u * cos(turned) - v * sin(turned)
+        point[second] = centre[second] + u * sin(turned) + v * cos(turned)
+    return point[0], point[1], point[2]
+
+
 def points_along(start: Point, move: Move, *, step: float) -> Iterator[Point]:
     """Points on a move after its start, up to and including its end.
 

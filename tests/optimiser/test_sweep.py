@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
+from benchmarks.toppra_peer import toppra_time
 from optimiser.errors import Infeasible
 from optimiser.profile import (
     AxisLimit,
@@ -18,7 +19,6 @@ from optimiser.profile import (
     tangential_limit,
 )
 from optimiser.sweep import sweep, sweep_axes
-from tests.optimiser.toppra_peer import toppra_time
 
 TOLERANCE = 1e-12
 
@@ -106,6 +106,23 @@ def test_tangential_sweep_is_the_greatest_feasible_profile(
     rise = np.diff(squares)
     assert (rise <= most[0] * (1.0 + TOLERANCE) + TOLERANCE).all()
     assert (-rise <= most[1] * (1.0 + TOLERANCE) + TOLERANCE).all()
+
+
+@pytest.mark.parametrize("count", [3, 4, 5, 6, 7, 8, 9, 50, 403])
+def test_quarters_of_a_path_join_without_a_trace(count: int) -> None:
+    """The same as station after station, to the last bit; low ends reach across quarters."""
+    random = np.random.default_rng(count)
+    lengths, caps = random.uniform(0.1, 1.0, count - 1), random.uniform(50.0, 900.0, count)
+    caps[random.integers(count)] = 1.0
+    squares = caps.copy()
+    squares[[0, -1]] = 0.0
+    for row in range(count - 2, -1, -1):
+        squares[row] = min(squares[row], squares[row + 1] + 2.0 * 2.0 * lengths[row])
+    for row in range(count - 1):
+        squares[row + 1] = min(squares[row + 1], squares[row] + 2.0 * 3.0 * lengths[row])
+    limit = TangentialLimit(accelerating=np.array([3.0]), braking=np.array([2.0]))
+    found = sweep(ProfileProblem(lengths=lengths, caps=caps), limit)
+    assert found.squares.tolist() == squares.tolist()
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -8,7 +8,8 @@ import pytest
 from simulator.errors import LibraryError
 from simulator.removal.cutter import Cutter, Holder, Insert
 from simulator.spec import CuttingMaterial, ToolKind
-from simulator.tool_table import TURNED, TableTool, read_tool_table
+from simulator.tool_files.read import read_tools
+from simulator.tool_table import TURNED, TableTool
 from stepnc_model.entities.enums import HandOfToolType
 from stepnc_model.units import rad_from_deg
 
@@ -22,7 +23,7 @@ def table(tmp_path: Path, *rows: str) -> Path:
 
 
 def only(tmp_path: Path, row: str) -> TableTool:
-    (tool,) = read_tool_table(table(tmp_path, row))
+    (tool,) = read_tools(table(tmp_path, row)).tools
     return tool
 
 
@@ -145,7 +146,7 @@ def test_error_names_file_key_value_and_bound(
 ) -> None:
     file = table(tmp_path, row)
     with pytest.raises(LibraryError) as caught:
-        read_tool_table(file)
+        read_tools(file)
     text = str(caught.value)
     assert text.startswith(str(file))
     assert key in text
@@ -154,7 +155,7 @@ def test_error_names_file_key_value_and_bound(
 
 def test_number_twice_is_told(tmp_path: Path) -> None:
     with pytest.raises(LibraryError, match=r"tool\[1\].number: T3 is there twice"):
-        read_tool_table(table(tmp_path, MILL, MILL))
+        read_tools(table(tmp_path, MILL, MILL))
 
 
 @pytest.mark.parametrize("text", ["", "# nothing\n"])
@@ -162,12 +163,12 @@ def test_table_without_tools(tmp_path: Path, text: str) -> None:
     file = tmp_path / "empty.toml"
     file.write_text(text, encoding="utf-8")
     with pytest.raises(LibraryError, match=r"has no \[\[tool\]\]"):
-        read_tool_table(file)
+        read_tools(file)
 
 
 def test_numbers_stay_apart(tmp_path: Path) -> None:
     rows = [MILL.replace("number = 3", f"number = {number}") for number in (2, 7, 12)]
-    tools = read_tool_table(table(tmp_path, *rows))
+    tools = read_tools(table(tmp_path, *rows)).tools
     assert [tool.number for tool in tools] == [2, 7, 12]
 
 

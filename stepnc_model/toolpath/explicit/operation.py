@@ -17,7 +17,7 @@ from stepnc_model.entities.executables import RapidMovement
 from stepnc_model.entities.operations import Toolpath, ToolpathList
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, ProgramLine
+from stepnc_model.program import Program, ProgramLine, ResolvedWorkingstep
 from stepnc_model.toolpath.explicit.path_builder import ExplicitPathBuilder, PathSurroundings
 from stepnc_model.toolpath.frame import (
     Frame,
@@ -60,7 +60,9 @@ def explicit_path(job: ToolPathTask) -> ToolPath:
     )
     with job.program.using(step.operation_ref, *step.features):
         paths = _paths(job.program, step.operation_ref, step.operation.its_toolpath)
-        walk, start = _walked(around, paths, _frames(job), at=step.operation_ref)
+        walk, start = _walked(
+            around, paths, path_frames(job.program, step), at=step.operation_ref
+        )
         return ToolPath(
             workingstep=step.ref,
             id=step.id,
@@ -74,6 +76,34 @@ def explicit_path(job: ToolPathTask) -> ToolPath:
             safe_z=around.security_z,
             findings=(*job.findings, *walk.findings),
         )
+
+
+def path_frames(program: Program, step: ResolvedWorkingstep) -> tuple[Frame, ...]:
+    """Frames in which an explicit path is followed: one for each copy of a pattern.
+
+    A path for an element of a compound feature is given in the coordinates of the compound, as
+    in example 3 of ISO 14649-11, where it begins on the security plane.
+
+    Parameters
+    ----------
+    program : Program
+    step : ResolvedWorkingstep
+
+    Returns
+    -------
+    tuple of Frame
+        In the coordinates of the setup; that of the workpiece if there is no feature.
+
+    Raises
+    ------
+    PathError
+        If a placement or a pattern is invalid.
+    """
+    if not step.features:
+        return (workpiece_frame(program, step.setup),)
+    feature = step.features[0]
+    feature = compound_of(program, feature) or feature
+    return tuple(each.frame for each in placements(program, step.setup, feature))
 
 
 def rapid_movement_path(program: Program, executable: ProgramLine) -> ToolPath | None:
@@ -141,20 +171,6 @@ def _walked(
     if walk.start is None:
         raise around.program.path_error("the tool path contains no moves", at, "its_toolpath")
     return walk, walk.start
-
-
-def _frames(job: ToolPathTask) -> tuple[Frame, ...]:
-    """Frames in which the path is followed: one for each copy of a pattern.
-
-    A path for an element of a compound feature is given in the coordinates of the compound, as
-    in example 3 of ISO 14649-11, where it begins on the security plane.
-    """
-    if not job.step.features:
-        return (workpiece_frame(job.program, job.step.setup),)
-    feature = job.step.features[0]
-    feature = compound_of(job.program, feature) or feature
-    placed = placements(job.program, job.step.setup, feature)
-    return tuple(each.frame for each in placed)
 
 
 def _paths(

@@ -6,13 +6,15 @@ surface touch, or by the axes of the machine.
 A feed is rapid, a factor, or a curve of factors along the path (``its_speed``). A missing speed
 comes from the technology of the tool path, or else of the operation. A ``toolpath_speed`` is a
 B-spline of one coordinate, the factor on the feedrate; its parameter runs evenly along the
-path.
+path. Moves are split where a curve of degree 1 changes its slope; a change of the factor within
+``STEP`` is a step, and other changes are sampled.
 """
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
-from math import ceil, cos, dist, hypot, inf, sin
+from itertools import accumulate, pairwise
+from math import ceil, dist, hypot, inf
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import SpeedName, ToolpathType
@@ -31,10 +33,19 @@ from stepnc_model.program import Program
 from stepnc_model.tool import Tool
 from stepnc_model.toolpath.curve import Segment, Spline, segments_of, spline_of
 from stepnc_model.toolpath.frame import Frame, point_of
-from stepnc_model.toolpath.path import Feed, Move, MoveType, Point, length
+from stepnc_model.toolpath.path import Feed, Move, MoveType, Point, length, point_at
 
 PIECES = 64
 """Least number of pieces of a path along which a curve of factors is sampled."""
+
+STEP = 0.1
+"""Length within which a linear change of the factor is read as a step, mm."""
+
+SAME = 1e-6
+"""Distance below which a change of the factor lies at the end of a move, mm."""
+
+FLAT = 1e-9
+"""Relative change of the factor below which it is constant."""
 
 TYPES = {
     ToolpathType.APPROACH: MoveType.APPROACH,
@@ -102,7 +113,11 @@ def pace_of(program: Program, ref: Ref[Toolpath], technology: Ref[Entity] | None
 
 
 def paced(start: Point, moves: Sequence[Move], factors: Spline) -> Iterator[Move]:
-    """Split moves into pieces, each with the feed factor at its middle.
+    """Split moves where the feed factor changes.
+
+    A constant factor splits nothing. A change of the factor within ``STEP`` becomes a step: at
+    the end of a move where there is one, else where the slower part begins or ends. All else
+    becomes pieces of at most ``1/PIECES`` of the path, each with the factor at its middle.
 
     Parameters
     ----------
@@ -114,38 +129,132 @@ def paced(start: Point, moves: Sequence[Move], factors: Spline) -> Iterator[Move
     """
     starts = [start, *(move.end for move in moves[:-1])]
     lengths = [length(at, move) for at, move in zip(starts, moves, strict=True)]
-    whole = sum(lengths)
-    low, high = factors.spans[0], factors.spans[-1]
+    ends = list(accumulate(lengths))
+    course = _Course(factors=factors, whole=ends[-1] if ends else 0.0)
+    spans = _spans(course, ends)
+    begin, row = 0.0, 0
+    for at, move, end in zip(starts, moves, ends, strict=True):
+        while row < len(spans) - 1 and spans[row].end <= begin + SAME:
+            row += 1
+        pieces = list(_pieces(course, spans, row, begin=begin, end=end))
+        # A move too short to be split has one factor.
+        pieces = pieces or [_Piece(end=end, factor=course.at(0.5 * (begin + end)))]
+        yield from _cut(at, move, pieces, begin=begin, size=end - begin)
+        begin = end
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Course:
+    """Factors over the length of a path."""
+
+    factors: Spline
+    whole: float
+    """Length of the path, mm."""
+
+    def at(self, station: float) -> float:
+        """Factor at a length from the start, mm."""
+        low, high = self.factors.knots[self.factors.degree], self._last
+        part = station / self.whole if self.whole > 0.0 else 0.0
+        return self.factors.at(low + part * (high - low))[0]
+
+    def station(self, knot: float) -> float:
+        """Length from the start at a parameter of the curve, mm."""
+        low, high = self.factors.knots[self.factors.degree], self._last
+        return self.whole * (knot - low) / (high - low) if high > low else 0.0
+
+    @property
+    def _last(self) -> float:
+        return self.factors.knots[len(self.factors.poles)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Span:
+    """Stretch of a path with one factor, or with a factor to be sampled."""
+
+    begin: float
+    end: float
+    factor: float | None = None
+    """Factor of the stretch; None where it changes along it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Piece:
+    """Piece of a move with its factor."""
+
+    end: float
+    """Length of the path up to the end of the piece, mm."""
+    factor: float
+
+
+def _spans(course: _Course, ends: Sequence[float]) -> list[_Span]:
+    """Stretches of the path between the changes of the factor."""
+    if course.factors.degree > 1:
+        return [_Span(begin=0.0, end=course.whole)]
+    spans = [
+        _span(course, low, high)
+        for low, high in pairwise(map(course.station, course.factors.spans))
+    ]
+    for row in range(1, len(spans) - 1):
+        before, ramp, after = spans[row - 1 : row + 2]
+        is_short = ramp.factor is None and ramp.end - ramp.begin <= STEP
+        if is_short and before.factor is not None and after.factor is not None:
+            place = _place(ends, ramp, is_rising=after.factor > before.factor)
+            spans[row - 1] = replace(before, end=place)
+            spans[row] = replace(ramp, begin=place, end=place)
+            spans[row + 1] = replace(after, begin=place)
+    return spans
+
+
+def _span(course: _Course, low: float, high: float) -> _Span:
+    """Stretch between two knots of a curve of degree 1."""
+    near, far = (course.at(low + share * (high - low)) for share in (0.25, 0.75))
+    is_flat = abs(far - near) <= FLAT * near
+    return _Span(begin=low, end=high, factor=near if is_flat else None)
+
+
+def _place(ends: Sequence[float], ramp: _Span, *, is_rising: bool) -> float:
+    """Place of a step: the end of a move within a ramp, else the slower end of the ramp."""
+    first, last = bisect_left(ends, ramp.begin - SAME), bisect_right(ends, ramp.end + SAME)
+    if first < last:
+        return ends[first if is_rising else last - 1]
+    return ramp.end if is_rising else ramp.begin
+
+
+def _pieces(
+    course: _Course, spans: Sequence[_Span], first: int, *, begin: float, end: float
+) -> Iterator[_Piece]:
+    """Pieces of a move between two lengths of the path."""
+    for row in range(first, len(spans)):
+        span = spans[row]
+        low, high = max(begin, span.begin), min(end, span.end)
+        if span.begin >= end - SAME:
+            return
+        if high - low <= SAME:
+            continue
+        count = 1
+        if span.factor is None:
+            count = max(1, ceil(PIECES * (high - low) / course.whole - FLAT))
+        for index in range(count):
+            middle = course.at(low + (index + 0.5) / count * (high - low))
+            yield _Piece(
+                end=low + (index + 1) / count * (high - low),
+                factor=middle if span.factor is None else span.factor,
+            )
+
+
+def _cut(
+    start: Point, move: Move, pieces: Sequence[_Piece], *, begin: float, size: float
+) -> Iterator[Move]:
+    """Split a move of some size that begins at a length of the path."""
     done = 0.0
-    for at, move, size in zip(starts, moves, lengths, strict=True):
-        count = max(1, ceil(PIECES * size / whole)) if whole > 0.0 else 1
-        for index, piece in enumerate(_pieces(at, move, count)):
-            middle = done + (index + 0.5) / count * size
-            part = middle / whole if whole > 0.0 else 0.0
-            factor = factors.at(low + part * (high - low))[0]
-            feed = piece.feed and replace(piece.feed, ratio=piece.feed.ratio * factor)
-            yield replace(piece, feed=feed)
-        done += size
-
-
-def _pieces(start: Point, move: Move, count: int) -> Iterator[Move]:
-    """Split a move into pieces of equal length."""
-    arc = move.arc and replace(move.arc, turn=move.arc.turn / count)
-    for index in range(1, count):
-        yield replace(move, end=_point_at(start, move, index / count), arc=arc)
-    yield replace(move, arc=arc)
-
-
-def _point_at(start: Point, move: Move, part: float) -> Point:
-    """Point at a fraction of a line, an arc or a helix."""
-    point = [a + part * (b - a) for a, b in zip(start, move.end, strict=True)]
-    if move.arc is not None:
-        first, second, _ = move.arc.plane.axes
-        centre, turned = move.arc.centre, part * move.arc.turn
-        u, v = start[first] - centre[first], start[second] - centre[second]
-        point[first] = centre[first] + u * cos(turned) - v * sin(turned)
-        point[second] = centre[second] + u * sin(turned) + v * cos(turned)
-    return point[0], point[1], point[2]
+    for piece in pieces:
+        is_last = piece is pieces[-1]
+        part = 1.0 if is_last else (piece.end - begin) / size
+        arc = move.arc and replace(move.arc, turn=move.arc.turn * (part - done))
+        end = move.end if is_last else point_at(start, move, part)
+        feed = move.feed and replace(move.feed, ratio=move.feed.ratio * piece.factor)
+        yield replace(move, end=end, arc=arc, feed=feed)
+        done = part
 
 
 def _check(program: Program, ref: Ref[Entity], factor: float) -> None:

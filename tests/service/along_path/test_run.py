@@ -5,12 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from service.along_path.run import AlongPath
+from service.along_path.run import FeedsAlongPath
 from service.requests.advice import AdviceRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, simulate
 from service.simulation.setup import CodeRequest
 from service.usecases import AdviceFiles, OptimiseResult, optimise
+from simulator.motion.model_name import ControlModelName
 from stepnc_model.errors import StepNcError
 from stepnc_model.post.dialect import Dialect
 from tests.service.along_path.samples import BRACKET, SHAFT
@@ -29,7 +30,7 @@ def planned(sample: Path, folder: Path, levels: int | None = None) -> OptimiseRe
     return optimise(request, AdviceFiles(file=sample, output=folder / name))
 
 
-def found(sample: Path, folder: Path, levels: int | None = None) -> AlongPath:
+def found(sample: Path, folder: Path, levels: int | None = None) -> FeedsAlongPath:
     """Feeds along the paths of a sample."""
     along = planned(sample, folder, levels).along
     assert along is not None
@@ -82,6 +83,20 @@ def test_bounds_hold_on_the_virtual_machine(sample: Path, folder: Path) -> None:
 def test_the_same_volume_is_removed(sample: Path, folder: Path) -> None:
     for step in found(sample, folder).steps:
         assert step.after.volume == pytest.approx(step.before.volume, rel=0.015), step.name
+
+
+@pytest.mark.parametrize("motion", [ControlModelName.JUNCTION, ControlModelName.EXACT_STOP])
+def test_controls_without_a_filter_keep_the_bounds(
+    motion: ControlModelName, tmp_path: Path
+) -> None:
+    request = AdviceRequest(is_along_path=True, safety=0.5, motion=motion)
+    result = optimise(request, AdviceFiles(file=SHAFT, output=tmp_path / "s.stpnc"))
+    assert result.along is not None
+    assert result.along.time_after < result.along.time_before
+    bound = result.plan.machine.max_cutting_force
+    assert bound is not None
+    for step in result.along.steps:
+        assert step.after.force.value <= WITHIN * bound
 
 
 def test_few_feeds_cost_little(folder: Path) -> None:

@@ -2,10 +2,14 @@
 
 import json
 
-from service.jobs.task import NC_CODE, OPTIMISED, REPORT, RESULT
+from service.jobs.task import CURVES, FEEDS, NC_CODE, OPTIMISED, REPORT, RESULT
+from service.program_kind import ProgramKind
+from service.storage import programs
+from service.storage.files import FileKind, FileUpload
 from service.storage.jobs import JobKind, JobState
 from stepnc_model.part21.reader import Part21File
 from tests.service.jobs.conftest import Shop
+from tests.service.rest.samples import CODE, CODE_STOCK, CODE_TOOLS
 
 
 def test_advice_leaves_a_result_a_program_nc_code_and_a_report(shop: Shop) -> None:
@@ -21,6 +25,34 @@ def test_advice_leaves_a_result_a_program_nc_code_and_a_report(shop: Shop) -> No
     Part21File.from_bytes((folder / OPTIMISED).read_bytes(), name="x")
     assert str(shop.data_folder.root) not in (folder / RESULT).read_text(encoding="utf-8")
     assert str(shop.data_folder.root) not in (folder / REPORT).read_text(encoding="utf-8")
+
+
+def test_advice_on_code_leaves_code_feeds_and_curves(shop: Shop) -> None:
+    program = programs.add(
+        shop.data_folder, CODE, name="plate.nc", owner="anna", kind=ProgramKind.NC_CODE
+    ).id
+    with FileUpload(shop.data_folder, FileKind.TOOLS, "plate.csv") as upload:
+        upload.write(CODE_TOOLS)
+        upload.close()
+        tools = upload.keep(owner="anna").id
+    id = shop.order(
+        JobKind.ADVICE,
+        program,
+        machine="vmc15",
+        material="c45",
+        stock=CODE_STOCK,
+        tools_id=tools,
+    ).id
+    job = shop.over(id)
+    assert (job.state, job.problem) == (JobState.SUCCEEDED, None)
+    folder = shop.data_folder.job_folder(id)
+    assert {each.name for each in folder.iterdir()} == {RESULT, NC_CODE, REPORT, FEEDS, CURVES}
+    for name in (RESULT, REPORT, NC_CODE):
+        text = (folder / name).read_text(encoding="utf-8")
+        assert str(shop.data_folder.root) not in text
+        assert program not in text
+    result = json.loads((folder / RESULT).read_bytes())
+    assert (result["program"], result["nc_control"]) == ("plate.nc", "fanuc")
 
 
 def test_a_machine_that_is_none_is_a_problem_with_a_name(shop: Shop) -> None:

@@ -53,7 +53,7 @@ def test_a_file_comes_back_byte_for_byte(
         ("log", "run.xml", b"<a/>", (422, "run.xml: root element a")),
         ("log", "run.shdr", LOG, (422, "run.shdr: no line of SHDR")),
         ("tools", "tools.toml", b"[[tool]]\nnumber = 0\n", (422, "tools.toml")),
-        ("tools", "tools.toml", b"#" * (1 << 17), (413, "the tool table is larger than")),
+        ("tools", "tools.toml", b"#" * (1 << 21), (413, "the tool table is larger than")),
         ("required-part", "part.stl", b"no part", (422, "part.stl: no triangles")),
         ("picture", "a.png", b"x", (422, "kind")),
     ],

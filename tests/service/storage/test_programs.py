@@ -8,11 +8,13 @@ from hypothesis import strategies as st
 
 from service.errors import Conflict, NotFound, Unavailable
 from service.ids import new_id
+from service.program_kind import ProgramKind
 from service.storage import jobs, programs
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobKind, JobRequest, JobState
 from service.storage.pages import PageCursor
 from service.storage.programs import LONGEST_NAME, shown_name
+from stepnc_model.errors import StepNcError
 
 
 def test_a_program_is_kept_byte_for_byte(data_folder: DataFolder) -> None:
@@ -22,6 +24,15 @@ def test_a_program_is_kept_byte_for_byte(data_folder: DataFolder) -> None:
     assert made == programs.get(data_folder, made.id)
     assert (made.name, made.size, made.owner) == ("part one.stpnc", 2560, "anna")
     assert made.sha256 == hashlib.sha256(data).hexdigest()
+
+
+def test_a_program_of_the_wrong_kind_is_refused_by_its_name(data_folder: DataFolder) -> None:
+    code, kind = ProgramKind.NC_CODE, ProgramKind.STEP_NC
+    made = programs.add(data_folder, b"G1 X1", name="a.ngc", owner="anna", kind=code)
+    assert programs.get(data_folder, made.id).kind is code
+    assert programs.require_kind(data_folder, made.id, code) == made
+    with pytest.raises(StepNcError, match=r"program 'a\.ngc' is NC code; this needs"):
+        programs.require_kind(data_folder, made.id, kind)
 
 
 def test_pages_go_on_where_they_ended_while_programs_are_added(data_folder: DataFolder) -> None:

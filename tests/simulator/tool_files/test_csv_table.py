@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from simulator.removal.cutter import Cutter, Insert
 from simulator.tool_files.csv_table import read_csv
 from simulator.tool_files.read import ToolFormat, read_tools
-from simulator.tool_table import read_tool_table
 from stepnc_model.units import speed_from_m_min
 from tests.simulator.tool_files.refusal import refusal
 
@@ -25,7 +24,7 @@ def table(folder: Path, *lines: str) -> Path:
 
 def test_the_example_has_the_tools_of_the_toml_file() -> None:
     found = read_tools(EXAMPLES / "bracket.csv")
-    known = read_tool_table(EXAMPLES / "bracket.toml")
+    known = read_tools(EXAMPLES / "bracket.toml").tools
     assert found.format is ToolFormat.CSV
     assert [(each.number, each.id, each.kind, each.teeth, each.shape) for each in known] == [
         (each.number, each.id, each.kind, each.teeth, each.shape) for each in found.tools

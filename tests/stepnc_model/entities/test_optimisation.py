@@ -154,7 +154,8 @@ FILE_SCHEMA(('OPTIMISATION_SCHEMA'));
 ENDSEC;
 DATA;
 #1=TIME_CRITICAL_OPTIMISATION('TC',#5,'ROUGHING',0.117,3.,#2);
-#2=OPTIMISATION_RECORD(1,'spindle power',#3,#4,#7,'paper002','paper002','optimise',$,0.117,3.,$,$,$);
+#2=OPTIMISATION_RECORD(1,'spindle power',#3,#4,#7,'paper002','paper002','optimise',
+  $,0.117,3.,$,$,$);
 #3=PREDICTED_VALUES(62.,0.29,447.4,$,1.8E4);
 #4=PROGRAMMED_VALUES($,0.05,0.583,$,3.);
 #5=MACHINE_POWER(#6);

@@ -20,18 +20,22 @@ class TabulatedPath(AbstractGeometricPath):  # type: ignore[misc]
         self._derivatives = (np.zeros_like(tangent), tangent, curvature)
 
     def __call__(self, _: Floats, order: int = 0) -> Floats:
+        """Position or derivative at all stations."""
         return self._derivatives[order]
 
     @property
     def dof(self) -> int:
+        """Number of axes."""
         return 3
 
     @property
     def path_interval(self) -> Floats:
+        """First and last station."""
         return self._stations[[0, -1]]
 
     @property
     def waypoints(self) -> None:
+        """No waypoints."""
         return None
 
 
@@ -43,9 +47,11 @@ class Caps(constraint.LinearConstraint):  # type: ignore[misc]
         self._bounds = np.stack((np.zeros(len(caps)), caps), axis=1)
 
     def compute_constraint_params(self, *_: object) -> tuple[object, ...]:
+        """Bounds on b alone."""
         return None, None, None, None, None, None, self._bounds
 
     def get_dof(self) -> int:
+        """Number of axes."""
         return 3
 
 

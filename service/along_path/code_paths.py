@@ -1,0 +1,365 @@
+"""Paths of NC code, prepared for runs: moves with a known place and tool, in parts by tool.
+
+Moves that are not understood, that are cut with cutter compensation, in another frame, at an
+unknown feed, with a tool that the table lacks, or that the operator may skip are left out: they
+remove nothing from the stock, so that later moves meet more material, never less. Where moves
+are left out, the tool goes around the stock.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from re import IGNORECASE, compile
+
+import numpy as np
+
+from service.along_path.plan_run import BRIDGE
+from service.raw_stock import larger_stock_map, raw_stock_of, stock_map
+from service.simulation.setup import CountedIterator, PreparedRun
+from simulator.machine.interpreter import Numbered
+from simulator.machine.tooling import table_tool
+from simulator.motion.segments import Bools, Ints
+from simulator.removal.cutter import Insert
+from simulator.spec import Machine, MachineKind, MaterialMatch
+from simulator.tool_table import TableTool
+from stepnc_model.errors import Finding, Severity
+from stepnc_model.nc.moves import REASONS, UNADVISED, MoveFlag, MoveKind, NcMoves
+from stepnc_model.nc.neutral_blocks import neutral_blocks
+from stepnc_model.nc.program import NcProgram
+from stepnc_model.post.blocks import (
+    Circular,
+    Comment,
+    Linear,
+    Rapid,
+    ToolChange,
+)
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.program import Stock
+from stepnc_model.toolpath.path import Point
+
+SURFACE = compile(rb"[(;][^)\r\n]*?(FINISH|ROUGH)", IGNORECASE)
+"""Comment that says whether what follows leaves final surfaces."""
+
+NOT_PLACED = (
+    MoveFlag.COMPENSATED
+    | MoveFlag.TRANSFORMED
+    | MoveFlag.ROTARY
+    | MoveFlag.MACHINE
+    | MoveFlag.CONDITIONAL
+    | MoveFlag.SKIPPABLE
+)
+"""Flags of moves whose place over the stock is not known, or that may not be executed."""
+
+DEFINED_CYCLES = {Dialect.HEIDENHAIN, Dialect.SINUMERIK}
+"""Controls whose drilling cycles have no feed in the block that executes them."""
+
+CLEARANCE = 5.0
+"""Distance from the stock at which the tool goes around moves that are left out, mm."""
+
+MOST_SPANS = 6
+"""Greatest number of ranges of lines that a message lists."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ToolPart:
+    """Part of a program with one tool."""
+
+    name: str
+    tool: int
+    row: int
+    """Row of its first move among those that run."""
+    is_finishing: bool
+    """Whether a comment says that it leaves final surfaces."""
+
+
+class CodePaths:
+    """Moves of an NC program that can be run, with its tools and stock."""
+
+    def __init__(
+        self,
+        program: NcProgram,
+        machine: Machine,
+        material: MaterialMatch,
+        *,
+        name: str,
+        tools: dict[int, TableTool],
+        stock: str,
+    ) -> None:
+        self.program, self.machine, self.material = program, machine, material
+        self.name, self.tools, self.stock = name, tools, stock
+        moves = program.moves
+        is_fed = np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC, MoveKind.THREAD))
+        fed = np.flatnonzero(moves.is_advisable)
+        frame = int(moves.frame[fed[0]]) if len(fed) else 0
+        self.frame = moves.frames[frame]
+        """Frame in which the stock stands: that of the first cut."""
+        is_here, is_known = moves.frame == frame, np.isin(moves.tool, list(tools))
+        is_sure = ~_is_uncertain(moves)
+        is_placed = is_here & ((moves.flags & int(NOT_PLACED)) == 0) & is_sure
+        is_placed &= moves.kind != MoveKind.UNKNOWN
+        has_feed = ~np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC)) | (moves.feed > 0.0)
+        self._is_run = is_placed & is_known & has_feed
+        self.parts = tuple(self._parts())
+        """Parts in the order of execution."""
+        lines = program.text.lines[moves.block]
+        size = int(program.text.lines.max(initial=0)) + 2
+        is_defined = ((moves.flags & int(MoveFlag.CYCLE)) != 0) & (
+            program.dialect in DEFINED_CYCLES
+        )
+        chosen = is_fed & self._is_run & moves.is_advisable & ~is_defined
+        chosen &= ~np.isnan(moves.spindle)
+        self.can_change = np.zeros(size, dtype=np.bool_)
+        """Whether the feed of each line may change, (L,)."""
+        self.can_change[lines[chosen]] = True
+        self.can_change[lines[is_fed & ~chosen]] = False
+        count = np.bincount(lines[is_fed], minlength=size)
+        self.can_split = self.can_change & (count == 1)
+        """Whether each line may be split, (L,)."""
+        self.can_split[lines[~moves.is_splittable]] = False
+        reasons = {
+            "the tool is not in the tool table": ~is_known & (moves.tool >= 0),
+            "no tool is known": moves.tool < 0,
+            f"the stock stands in {self.frame}, not in their frame": ~is_here,
+            "the operator may skip them": (moves.flags & int(MoveFlag.SKIPPABLE)) != 0,
+            "they begin where moves end that the operator may skip": ~is_sure,
+            "the feed of a cycle stands in its definition, or before its call": is_defined,
+            "their feed is the lead of a thread": moves.kind == MoveKind.THREAD,
+            "the spindle speed is not known": np.isnan(moves.spindle),
+            "their start or end is not known": ~moves.is_known,
+        } | {
+            name: (moves.flags & int(flag)) != 0
+            for flag, name in REASONS.items()
+            if flag & (NOT_PLACED | UNADVISED)
+        }
+        self.findings = tuple(self._findings(is_fed & ~chosen, reasons))
+        """Lines whose feeds stay as they are, and why."""
+
+    def prepared(self, margin: float) -> PreparedRun:
+        """Program prepared anew, in a stock that is larger by a margin, mm.
+
+        Raises
+        ------
+        StepNcError
+            When the stock is invalid.
+        """
+        raw = raw_stock_of(self.stock)
+        if margin > 0.0:
+            clamped = larger_stock_map(self.machine, raw, margin)
+        else:
+            clamped = stock_map(self.machine, raw)
+        moves = replace(self.program.moves, rows=self.program.moves.rows[self._is_run])
+        beginning = {
+            part.row: Comment(text=part.name, workingstep=part.name) for part in self.parts
+        }
+        blocks = CountedIterator(
+            neutral_blocks(replace(self.program, moves=moves), name=self.name, before=beginning)
+        )
+        tools = {
+            number: table_tool(tool, self.material.material)
+            for number, tool in self.tools.items()
+        }
+        is_lathe = self.machine.kind is MachineKind.LATHE
+        inserts = {n for n, tool in tools.items() if is_lathe and _is_outside(tool.shape)}
+        detour = _Detour(raw.bounds, inserts)
+        return PreparedRun(
+            name=self.name,
+            machine=self.machine,
+            material=self.material,
+            blocks=detour.led_around(blocks),
+            tools=tools,
+            stock=lambda _: clamped,
+            raw=raw.bounds,
+            done=lambda: blocks.share(len(moves)),
+            read=lambda: blocks.count,
+        )
+
+    def line(self, part: ToolPart) -> int:
+        """Line of the first move of a part."""
+        rows = np.flatnonzero(self._is_run)
+        return self.program.text.line(int(self.program.moves.block[rows[part.row]]))
+
+    def block_at(self, line: int) -> int:
+        """Index of the block on a line."""
+        return int(np.searchsorted(self.program.text.lines, line))
+
+    def fastest(self, block: int) -> float:
+        """Greatest spindle speed at which a block moves at a feed, rev/s; 0 if not known."""
+        order, blocks = self._by_block
+        low, high = np.searchsorted(blocks, (block, block + 1))
+        return self.program.moves.fastest(order[low:high])
+
+    @cached_property
+    def _by_block(self) -> tuple[Ints, Ints]:
+        """Rows that move at a feed, and their blocks, in the order of the file."""
+        moves = self.program.moves
+        rows = np.flatnonzero(np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC)))
+        order = rows[np.argsort(moves.block[rows], kind="stable")]
+        return order, moves.block[order].astype(np.int64)
+
+    def _parts(self) -> Iterator[ToolPart]:
+        """Parts that begin with a tool, or with a comment about roughing or finishing."""
+        moves = self.program.moves
+        rows = np.flatnonzero(self._is_run)
+        tools = moves.tool[rows]
+        begins = dict.fromkeys(np.flatnonzero(np.diff(tools, prepend=-1)).tolist(), False)
+        begins |= self._surfaces(rows)
+        names: dict[int, int] = {}
+        for row in sorted(begins):
+            tool = int(tools[row])
+            names[tool] = names.get(tool, 0) + 1
+            yield ToolPart(
+                name=f"T{tool}" if names[tool] == 1 else f"T{tool} ({names[tool]})",
+                tool=tool,
+                row=row,
+                is_finishing=begins[row],
+            )
+
+    def _surfaces(self, rows: Ints) -> dict[int, bool]:
+        """Rows that follow a comment about surfaces, and whether it says finishing.
+
+        A comment stands between two moves of one execution, or before the first move of a
+        subprogram in the file.
+        """
+        moves, text = self.program.moves, self.program.text
+        found = list(SURFACE.finditer(text.data))
+        if not found:
+            return {}
+        starts = np.array([each.start() for each in found])
+        blocks = np.searchsorted(text.starts, starts, side="right") - 1
+        moving = np.unique(moves.block)
+        at: dict[int, bool] = {}
+        last: dict[int, int] = {}
+        for row, (block, call) in enumerate(
+            zip(moves.block[rows].tolist(), moves.call[rows].tolist(), strict=True)
+        ):
+            before = last.get(call)
+            if before is None or before > block:
+                place = int(np.searchsorted(moving, block)) - 1
+                before = int(moving[place]) if place >= 0 else -1
+            last[call] = block
+            low, high = np.searchsorted(blocks, (before + 1, block))
+            if low < high:
+                at[row] = found[high - 1][1].upper() == b"FINISH"
+        return at
+
+    def _findings(self, is_left: Bools, reasons: dict[str, Bools]) -> Iterator[Finding]:
+        """Lines whose feeds stay as they are, by reason."""
+        moves, text = self.program.moves, self.program.text
+        for reason, is_so in reasons.items():
+            rows = np.flatnonzero(is_left & is_so)
+            if not len(rows):
+                continue
+            lines = np.unique(text.lines[moves.block[rows]])
+            yield Finding(
+                severity=Severity.WARNING,
+                message=f"the feeds of {_spans(lines)} stay as programmed: {reason}",
+                line=int(lines[0]),
+            )
+
+
+def _is_uncertain(moves: NcMoves) -> Bools:
+    """Whether a move begins or ends where moves that the operator may skip have led, (N,)."""
+    uncertain = np.zeros(len(moves), dtype=np.bool_)
+    is_skipped = (moves.flags & int(MoveFlag.SKIPPABLE)) != 0
+    doubtful = np.zeros(3, dtype=np.bool_)
+    known_until = -1
+    for first in np.flatnonzero(is_skipped).tolist():
+        if first <= known_until:
+            continue
+        for row in range(first, len(moves)):
+            known_until = row
+            move = moves.rows[row]
+            is_stated = (move["end"] != move["start"]) & ~np.isnan(move["end"])
+            if is_skipped[row]:
+                doubtful |= move["end"] != move["start"]
+                continue
+            uncertain[row] = doubtful.any()
+            doubtful &= ~is_stated
+            if not doubtful.any():
+                break
+    return uncertain
+
+
+def _is_outside(shape: object) -> bool:
+    """Whether a tool comes to the stock from outside, across the axis."""
+    return isinstance(shape, Insert) and not shape.is_inside
+
+
+def _spans(lines: Ints) -> str:
+    """Numbers of lines in words, consecutive ones as a range."""
+    ends = np.flatnonzero(np.diff(lines) > 1)
+    firsts, lasts = np.append(lines[0], lines[ends + 1]), np.append(lines[ends], lines[-1])
+    spans = [
+        f"{first}" if first == last else f"{first}–{last}"
+        for first, last in zip(firsts.tolist(), lasts.tolist(), strict=True)
+    ]
+    more = f" and {len(spans) - MOST_SPANS} more ranges" if len(spans) > MOST_SPANS else ""
+    word = "line" if len(lines) == 1 else "lines"
+    return f"{word} {', '.join(spans[:MOST_SPANS])}{more}"
+
+
+class _Detour:
+    """Ways around the stock in place of moves that are left out. Running state.
+
+    Where a move begins, the tool has been in truth: it comes there along its axis, or from
+    outside if it turns, so that it removes nothing but what its own body fills.
+    """
+
+    def __init__(self, stock: Stock, inserts: set[int]) -> None:
+        self._inserts = inserts
+        self._over = stock.high[2] + CLEARANCE
+        self._beside = max(stock.high[0], stock.radius or 0.0) + CLEARANCE
+        self._at: Point | None = None
+        self._tool = 0
+
+    def led_around(self, blocks: Iterable[Numbered]) -> Iterator[Numbered]:
+        """Yield the blocks with detours, whose line is :data:`BRIDGE`."""
+        for line, block in blocks:
+            if isinstance(block, Rapid) and block.is_way:
+                for end in self._ways(block.end):
+                    yield BRIDGE, Rapid(end=end, is_way=True)
+            else:
+                yield line, block
+            if isinstance(block, ToolChange):
+                self._tool = block.number
+            elif isinstance(block, (Rapid, Linear, Circular)):
+                self._at = block.end
+
+    def _ways(self, end: Point) -> Iterator[Point]:
+        """Ends of the moves from the last position around the stock to another."""
+        x, y, z = end
+        start = self._at or end
+        if self._tool in self._inserts:
+            beside = max(self._beside, start[0], x)
+            yield beside, y, start[2]
+            yield beside, y, z
+        else:
+            over = max(self._over, start[2], z)
+            yield start[0], start[1], over
+            yield x, y, over
+        yield end
+
+
+class CodeBlocks:
+    """Blocks of NC code numbered by their line: a line has one feed, however often it runs."""
+
+    def __init__(self, blocks: Iterable[Numbered], code: CodePaths) -> None:
+        self._blocks, self._code = blocks, code
+
+    def __iter__(self) -> Iterator[Numbered]:
+        """Yield the blocks with their lines."""
+        return iter(self._blocks)
+
+    def can_change(self, numbers: Ints) -> Bools:
+        """Whether the feeds of lines may change."""
+        changes: Bools = self._code.can_change[numbers]
+        return changes
+
+    def can_split(self, numbers: Ints) -> Bools:
+        """Whether lines may be split."""
+        splits: Bools = self._code.can_split[numbers]
+        return splits
+
+    def line(self, number: int) -> int:
+        """Line of the program: the number itself."""
+        return number

@@ -1,0 +1,34 @@
+"""Task of planning feeds along paths, from a request."""
+
+from service.along_path.run import AlongPathTask
+from service.requests.advice import AdviceRequest
+from simulator.motion.control import control_model
+from simulator.motion.segments import axis_limits
+from simulator.spec import Machine
+from stepnc_model.errors import StepNcError
+from stepnc_model.units import speed_from_mm_min
+
+
+def task_of(request: AdviceRequest, machine: Machine) -> AlongPathTask:
+    """Task of planning feeds along paths, as requested.
+
+    Raises
+    ------
+    StepNcError
+        When no control model follows from the machine's axes.
+    """
+    try:
+        control = control_model(request.motion, axis_limits(machine))
+    except ValueError as error:
+        raise StepNcError(
+            f"machine '{machine.name}', control {request.motion.value}: {error}"
+        ) from error
+    greatest = request.max_feed_mm_min
+    return AlongPathTask(
+        control=control,
+        greatest=None if greatest is None else speed_from_mm_min(greatest),
+        levels=request.levels,
+        has_jerk=request.is_jerk_limited,
+        margin=request.stock_margin_mm,
+        tolerance=request.corner_tolerance_mm,
+    )

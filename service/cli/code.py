@@ -1,0 +1,34 @@
+"""The command ``optimise`` for NC code. Imports are late, so that ``--help`` stays quick."""
+
+import argparse
+
+from service.cli.options import OK
+
+
+def optimise_code(options: argparse.Namespace) -> int:
+    """Plan the feeds along the paths of NC code and write them into a copy of it."""
+    from service.along_path.code_output import code_advice_json, print_code_advice, write_views
+    from service.along_path.of_code import CodeFiles
+    from service.along_path.of_code import optimise_code as optimise
+    from service.cli.machine import length_unit
+    from service.requests.advice import AdviceRequest
+    from service.requests.fields import from_options
+    from service.terminal import tell, write_out
+
+    files = CodeFiles(
+        file=options.file,
+        tools=options.tools,
+        tools_unit=length_unit(options.tools_unit),
+        output=options.output,
+        in_place=options.in_place,
+        dry_run=options.dry_run,
+        report=options.report,
+        feeds=options.feeds_csv,
+    )
+    found = optimise(from_options(AdviceRequest, options), files, tell=tell)
+    write_views(found, files, tell=tell)
+    if options.json:
+        write_out(code_advice_json(found))
+    else:
+        print_code_advice(found)
+    return OK

@@ -1,0 +1,105 @@
+"""A program of ISO 14649 as an AP238 file, built along the reference paths.
+
+What the table has no path for is left out and listed, so that nothing gets lost silently.
+
+References
+----------
+.. [1] ISO 10303-238, edition 3, schema ``model_based_integrated_manufacturing_schema``.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from stepnc_model.ap238.building import SCHEMA, Builder, Unsayable
+from stepnc_model.ap238.completing import complete
+from stepnc_model.ap238.drafting import AimDraft
+from stepnc_model.ap238.instances import Instances
+from stepnc_model.errors import Finding, FindingList, SchemaError, Severity
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.writer import format_value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Exported:
+    """Bytes of an AP238 file, and what could not be said in it."""
+
+    data: bytes
+    findings: tuple[Finding, ...]
+
+
+def to_ap238(file: Part21File) -> Exported:
+    """Convert a program of ISO 14649 to AP238.
+
+    Parameters
+    ----------
+    file : Part21File
+        Program of ISO 14649.
+
+    Returns
+    -------
+    Exported
+        The file, with one finding for each attribute and entity that was left out.
+
+    Raises
+    ------
+    SchemaError
+        If the file has neither a project nor a workplan.
+    """
+    empty = Part21File.from_bytes(_skeleton(file), name=file.name)
+    instances = Instances(empty)
+    draft = AimDraft(empty, instances)
+    builder = Builder(file, draft, {})
+    roots = [*file.ids_of("PROJECT")] or [*file.ids_of("WORKPLAN")]
+    if not roots:
+        raise SchemaError("no PROJECT and no WORKPLAN: there is no program to convert")
+    for number in roots:
+        builder.build(number)
+    complete(draft)
+    findings = FindingList()
+    findings.extend(_findings(file, builder))
+    return Exported(data=draft.apply(), findings=findings.all())
+
+
+def _findings(file: Part21File, builder: Builder) -> Iterator[Finding]:
+    """Findings about what was left out, each once."""
+    for each in dict.fromkeys(builder.unsayable):
+        yield _finding(file, each)
+    for number in file.ids():
+        if number not in builder.built:
+            each = Unsayable(number=number, attribute="")
+            if each not in builder.unsayable:
+                yield _finding(file, each, "nothing that AP238 expresses refers to it")
+
+
+def _finding(file: Part21File, each: Unsayable, message: str = "") -> Finding:
+    """Finding about one instance or attribute."""
+    is_known = each.number in file
+    return Finding(
+        severity=Severity.WARNING,
+        message=message or "cannot be expressed in AP238 and is left out",
+        entity=file.label(each.number) if is_known else f"#{each.number}",
+        attribute=each.attribute,
+        line=file.line(each.number) if is_known else 0,
+        rule="ISO 10303-238",
+    )
+
+
+def _skeleton(file: Part21File) -> bytes:
+    """AP238 file without instances, with the description and the name of another."""
+    header = [
+        file.data[statement.start : statement.end] + b";"
+        for statement in file.structure.statements
+        if statement.keyword in ("FILE_DESCRIPTION", "FILE_NAME")
+    ]
+    schema = b"FILE_SCHEMA((%s));" % format_value(SCHEMA)
+    return b"\n".join([
+        b"ISO-10303-21;",
+        b"HEADER;",
+        *header,
+        schema,
+        b"ENDSEC;",
+        b"DATA;",
+        b"ENDSEC;",
+        b"END-ISO-10303-21;",
+        b"",
+    ])

@@ -1,0 +1,123 @@
+"""Instances of an AP238 file: attributes by name, and references backwards.
+
+Simple and complex instances look alike here: an attribute is found by the entity that defines
+it, in whichever part of the instance that entity stands.
+"""
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from typing import TypeAlias
+
+from stepnc_model.ap238.dictionary import attributes, is_a, own_attributes, subtypes
+from stepnc_model.errors import Part21Error
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.record import Part
+from stepnc_model.part21.values import Ref, Typed, Value
+
+Slot: TypeAlias = tuple[int, int]
+"""Position of an attribute: number of the part, and place among its parameters."""
+
+
+def references(value: Value) -> Iterator[Ref[object]]:
+    """All references in a value, also in lists and typed values."""
+    if isinstance(value, Ref):
+        yield value
+    elif isinstance(value, tuple):
+        for item in value:
+            yield from references(item)
+    elif isinstance(value, Typed):
+        yield from references(value.value)
+
+
+class Instances:
+    """Instances of one file, by the names of entities and attributes.
+
+    The object has state: parts and backward references are cached once read.
+
+    Parameters
+    ----------
+    file : Part21File
+    """
+
+    def __init__(self, file: Part21File) -> None:
+        self.file = file
+        self._parts: dict[int, tuple[Part, ...]] = {}
+        self._referrers: dict[tuple[str, str], Mapping[int, list[int]]] = {}
+        self._complex: dict[str, list[int]] | None = None
+
+    def __contains__(self, id: int) -> bool:
+        return id in self.file
+
+    def parts(self, id: int) -> tuple[Part, ...]:
+        """Entities of an instance with their parameters; none if it is malformed."""
+        if id not in self._parts:
+            try:
+                self._parts[id] = self.file.parts(id)
+            except Part21Error:  # a finding of the file
+                self._parts[id] = ()
+        return self._parts[id]
+
+    def is_a(self, id: int, name: str) -> bool:
+        """Whether an instance is of an entity or of a subtype."""
+        if id not in self.file:
+            return False
+        keyword = self.file.keyword(id)
+        if keyword:
+            return is_a(keyword, name)
+        return any(is_a(part, name) for part, _ in self.parts(id))
+
+    def slots(self, id: int, attribute: str) -> tuple[Slot, ...]:
+        """Positions of an attribute; several where supertypes share a name."""
+        found: list[Slot] = []
+        parts = self.parts(id)
+        for number, (keyword, values) in enumerate(parts):
+            names = attributes(keyword) if len(parts) == 1 else own_attributes(keyword)
+            found += [
+                (number, place)
+                for place, name in enumerate(names)
+                if name == attribute and place < len(values)
+            ]
+        return tuple(found)
+
+    def values(self, id: int, attribute: str) -> tuple[Value, ...]:
+        """Values of an attribute; several where supertypes share its name."""
+        parts = self.parts(id)
+        return tuple(parts[part][1][place] for part, place in self.slots(id, attribute))
+
+    def value(self, id: int, attribute: str) -> Value:
+        """Value of an attribute: the last that is neither ``$`` nor empty, else None."""
+        found = self.values(id, attribute)
+        return next((value for value in reversed(found) if value not in (None, "")), None)
+
+    def of_entity(self, name: str) -> Iterator[int]:
+        """Instances of an entity and its subtypes, in file order."""
+        found = [id for keyword in subtypes(name) for id in self.file.ids_of(keyword)]
+        complexes = self._complexes()
+        found += {id for keyword in subtypes(name) for id in complexes.get(keyword, ())}
+        return iter(sorted(found, key=self.file.span))
+
+    def referrers(self, id: int, name: str, attribute: str) -> list[int]:
+        """Instances of an entity whose attribute refers to an instance, in file order."""
+        key = name, attribute
+        if key not in self._referrers:
+            found: defaultdict[int, list[int]] = defaultdict(list)
+            for other in self.of_entity(name):
+                for target in self._targets(other, attribute):
+                    found[target].append(other)
+            self._referrers[key] = found
+        return self._referrers[key].get(id, [])
+
+    def _targets(self, id: int, attribute: str) -> Iterator[int]:
+        """Instances that an attribute refers to, each once."""
+        refs = (ref for value in self.values(id, attribute) for ref in references(value))
+        return iter(dict.fromkeys(int(ref) for ref in refs))
+
+    def _complexes(self) -> dict[str, list[int]]:
+        """Complex instances by the entities of their parts."""
+        if self._complex is None:
+            found: dict[str, list[int]] = {}
+            for id in self.file.ids_of(""):
+                for keyword, _ in self.parts(id):
+                    found.setdefault(keyword, []).append(id)
+            self._complex = found
+        return self._complex

@@ -1,0 +1,581 @@
+"""Reading of an AP238 program into instances of ISO 14649, along the reference paths.
+
+Beginning at the project, every instance is converted by the rule for the entity that is
+expected there. The number of an instance of ISO 14649 is that of the AIM instance that stands
+for it; where one AIM instance stands for several (a tool, its body and its dimensions), the
+others get numbers above the largest of the file. Deviations are findings; reading never fails.
+"""
+
+from collections import deque
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from stepnc_model.ap238.instances import Instances, references
+from stepnc_model.ap238.quantity import (
+    MEASURES,
+    Conversion,
+    Measure,
+    Unit,
+    Units,
+    conversion,
+    number_of,
+)
+from stepnc_model.ap238.table import (
+    Condition,
+    Ending,
+    Kind,
+    Move,
+    Path,
+    Row,
+    Rule,
+    Step,
+    rules,
+    rules_for,
+)
+from stepnc_model.entities.conversion import AttributeSlot, slots_of
+from stepnc_model.errors import Finding, FindingList, Severity
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.values import Enumeration, Real, Ref, Typed, Value
+from stepnc_model.units import MM_PER_M
+
+RULE = "ISO 10303-238"
+
+SLOW = 0.1e-3
+"""Speed in m/s below which the unit of a number is doubtful: no cutter feeds 6 mm/min."""
+
+MAX_FOUND = 250_000
+"""Greatest number of places that one path may lead to."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Place:
+    """Place that a path has led to: an instance or a value, and the way there."""
+
+    id: int
+    """Instance, or the one that holds the value."""
+    value: Value = None
+    """Value; None for an instance."""
+    context: int | None = None
+    """Representation context that gives the units of geometry."""
+    way: tuple[int, ...] = ()
+    """Instances passed, from the one of the rule on."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Origin:
+    """AIM instance that stands for an instance of ISO 14649."""
+
+    id: int
+    rule: Rule
+    context: int | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Converted:
+    """Instance of ISO 14649 with the AIM instance that stands for it."""
+
+    number: int
+    keyword: str
+    parameters: tuple[Value, ...]
+    origin: int
+    rule: Rule | None
+    context: int | None = None
+    """Representation context that gives the units of its geometry."""
+
+
+@dataclass(slots=True)
+class Reading:
+    """Instances of ISO 14649 read from an AP238 file, and the findings on the way."""
+
+    converted: list[Converted] = field(default_factory=list)
+    findings: FindingList = field(default_factory=FindingList)
+
+
+_Key = tuple[int, str, float]
+
+
+class Reader:
+    """Reader of one file.
+
+    The object has state: the instances met so far, and those still to be converted.
+
+    Parameters
+    ----------
+    file : Part21File
+    """
+
+    def __init__(self, file: Part21File) -> None:
+        self.instances = Instances(file)
+        self.units = Units(self.instances)
+        self._file = file
+        self._numbers: dict[_Key, int] = {}
+        self._taken: set[int] = set()
+        self._next = max(file.ids(), default=0) + 1
+        self._waiting: deque[tuple[int, Origin]] = deque()
+        self._reading = Reading()
+        self._visited: set[int] = set()
+        """Instances on the ways to all values read."""
+
+    def read(self) -> Reading:
+        """Convert all programs of the file."""
+        for rule in rules():
+            if rule.is_root:
+                for name in rule.base.types[:1]:
+                    for id in self.instances.of_entity(name):
+                        if self.matches(id, rule):
+                            self._number(Place(id=id), rule)
+        while self._waiting:
+            number, origin = self._waiting.popleft()
+            self._convert(number, origin)
+        self._note_unread()
+        return self._reading
+
+    def _note_unread(self) -> None:
+        """Note the properties of converted instances that no path has led to."""
+        known = {each.origin for each in self._reading.converted}
+        for entity, owner in _PROPERTIES:
+            for id in self.instances.of_entity(entity):
+                ref = self.instances.value(id, owner)
+                if isinstance(ref, Ref) and int(ref) in known and id not in self._visited:
+                    self._note(id, f"the property {self._named(id)!r}", owner)
+        for body in self.instances.of_entity("MACHINING_TOOL_BODY_REPRESENTATION"):
+            for value in self.instances.values(body, "items"):
+                for item in references(value):
+                    if body in self._visited and int(item) not in self._visited:
+                        self._note(
+                            int(item), f"the dimension {self._named(int(item))!r}", "name"
+                        )
+
+    def _named(self, id: int) -> str:
+        """Name of an instance, as far as it has one."""
+        return str(self.instances.value(id, "name") or "")
+
+    def _note(self, id: int, what: str, attribute: str) -> None:
+        """Note something that ISO 14649 cannot say, or that is not read here."""
+        message = f"{what} is left out: no attribute of ISO 14649 has a path to it"
+        self._remark(Severity.NOTE, message, id, attribute)
+
+    def matches(self, id: int, rule: Rule) -> bool:
+        """Whether an instance is one that a rule describes."""
+        place = Place(id=id, way=(id,))
+        if not self._is_fitting(place, rule.base):
+            return False
+        return not rule.proof or bool(self.follow(place, rule.proof))
+
+    def follow(self, start: Place, steps: tuple[Step, ...]) -> list[Place]:
+        """Places that a path leads to from an instance."""
+        places = [start]
+        for step in steps:
+            places = [
+                place
+                for each in places
+                for place in self._moved(each, step)
+                if self._is_fitting(place, step)
+            ][:MAX_FOUND]
+        return places
+
+    def _moved(self, place: Place, step: Step) -> Iterator[Place]:
+        """Places one step away, without regard to its conditions."""
+        if step.move is Move.STAY:
+            yield place
+            return
+        if place.value is not None:
+            return
+        if step.move is Move.FORWARD:
+            yield from self._forward(place, step)
+            return
+        found = self.instances.referrers(place.id, step.entity, step.attribute)
+        if step.move is Move.USED:
+            if found:
+                yield place
+            return
+        for id in self._sorted(found, step.order):
+            yield Place(id=id, context=self._context(id, place), way=(*place.way, id))
+
+    def _forward(self, place: Place, step: Step) -> Iterator[Place]:
+        """Places that an attribute leads to: instances, or else its value."""
+        found = self.instances.values(place.id, step.attribute)
+        refs = [ref for value in found for ref in references(value)]
+        for ref in refs:
+            if int(ref) not in self.instances:
+                message = f"{ref} does not exist in this file"
+                self._remark(Severity.ERROR, message, place.id, step.attribute)
+                continue
+            yield Place(
+                id=int(ref),
+                context=self._context(int(ref), place),
+                way=(*place.way, int(ref)),
+            )
+        if not refs:
+            value = self.instances.value(place.id, step.attribute)
+            if value is None and "" in found:
+                value = ""
+            if value is not None:
+                yield Place(id=place.id, value=value, context=place.context, way=place.way)
+
+    def _sorted(self, found: list[int], order: str) -> list[int]:
+        """Instances by an attribute, or in file order."""
+        if not order:
+            return found
+        return sorted(found, key=lambda id: number_of(self.instances.value(id, order)) or 0.0)
+
+    def _context(self, id: int, place: Place) -> int | None:
+        """Context of a representation, or that of the place before."""
+        value = self.instances.value(id, "context_of_items")
+        if isinstance(value, Ref) and self.instances.is_a(
+            int(value), "GLOBAL_UNIT_ASSIGNED_CONTEXT"
+        ):
+            return int(value)
+        return place.context
+
+    def _is_fitting(self, place: Place, step: Step) -> bool:
+        """Whether a place fulfils the conditions of a step."""
+        if step.types and (
+            place.value is not None
+            or not all(self.instances.is_a(place.id, name) for name in step.types)
+        ):
+            return False
+        return all(self._is_true(place, condition) for condition in step.conditions)
+
+    def _is_true(self, place: Place, condition: Condition) -> bool:
+        """Whether a condition holds."""
+        ids, values = [place.id], list[Value]()
+        for name in condition.attributes:
+            values = [value for id in ids for value in self.instances.values(id, name)]
+            ids = [int(ref) for value in values for ref in references(value)]
+        if condition.type:
+            return any(self.instances.is_a(id, condition.type) for id in ids)
+        if condition.texts:
+            wanted = {text.casefold() for text in condition.texts}
+            return any(isinstance(v, str) and v.strip().casefold() in wanted for v in values)
+        return any(value not in (None, (), "") for value in values)
+
+    def _number(self, place: Place, rule: Rule) -> Ref[object]:
+        """Number of the instance that a place stands for; it is converted once."""
+        scale = self._geometry_factor(place.context) if _is_scaled(rule) else 1.0
+        key = place.id, rule.entity.keyword, scale
+        if key not in self._numbers:
+            number = place.id
+            if number in self._taken:
+                number = self._next
+                self._next += 1
+            self._taken.add(number)
+            self._numbers[key] = number
+            origin = Origin(id=place.id, rule=rule, context=place.context)
+            self._waiting.append((number, origin))
+        return Ref(self._numbers[key])
+
+    def _convert(self, number: int, origin: Origin) -> None:
+        """Convert one instance by its rule."""
+        rows = {row.attribute: row for row in origin.rule.rows}
+        start = Place(id=origin.id, context=origin.context, way=(origin.id,))
+        parameters = tuple(
+            self._parameter(start, rows[name], slot) if name in rows else _empty(slot)
+            for name, slot in slots_of(origin.rule.entity).items()
+        )
+        self._reading.converted.append(
+            Converted(
+                number=number,
+                keyword=origin.rule.entity.keyword,
+                parameters=parameters,
+                origin=origin.id,
+                rule=origin.rule,
+                context=origin.context,
+            )
+        )
+
+    def _parameter(self, start: Place, row: Row, slot: AttributeSlot) -> Value:
+        """Value of one attribute, by the first of its paths that gives one."""
+        for path in row.paths:
+            if path.ending.kind is Kind.VERBATIM:
+                return self._verbatim(start, row.attribute, slot)
+            found = self._along(start, path, slot, row.attribute)
+            if row.is_derived:
+                found = list(dict.fromkeys(found))
+            if slot.items is not None and found:
+                return _listed(found)
+            if found:
+                return found[0]
+        if row.default:
+            is_number = row.default.isdecimal()
+            return int(row.default) if is_number else Enumeration(row.default)
+        return _empty(slot)
+
+    def _along(
+        self, start: Place, path: Path, slot: AttributeSlot, attribute: str
+    ) -> list[Value]:
+        """Values that a path leads to."""
+        places = self.follow(start, path.steps)
+        for place in places:
+            self._visited.update(place.way)
+        if path.ending.kind is Kind.REFERENCE:
+            inner = slot.items or slot
+            found = (self._reference(place, inner, attribute) for place in places)
+            return [ref for ref in found if ref is not None]
+        values = (self._value(start, place, path.ending, attribute) for place in places)
+        return [value for value in values if value is not None]
+
+    def _reference(
+        self, place: Place, slot: AttributeSlot, attribute: str
+    ) -> Ref[object] | None:
+        """Reference to the entity that a place stands for."""
+        if place.value is not None:
+            return None
+        for wanted in slot.references:
+            for rule in rules_for(wanted):
+                if self.matches(place.id, rule):
+                    return self._number(place, rule)
+        return self._unknown(place, attribute)
+
+    def _unknown(self, place: Place, attribute: str) -> Ref[object] | None:
+        """Reference to an instance that no rule describes, kept under a name of its own."""
+        key = place.id, "", 1.0
+        if key not in self._numbers and place.id not in self._taken:
+            keyword = self._file.keyword(place.id) or "COMPLEX_INSTANCE"
+            self._numbers[key] = place.id
+            self._taken.add(place.id)
+            self._reading.converted.append(
+                Converted(
+                    number=place.id,
+                    keyword=f"AIM_{keyword}",
+                    parameters=(),
+                    origin=place.id,
+                    rule=None,
+                )
+            )
+            described = self.instances.value(place.id, "description")
+            name = f" '{described}'" if isinstance(described, str) else ""
+            message = f"{keyword}{name} has no counterpart in ISO 14649 that is supported here"
+            self._remark(Severity.WARNING, message, place.id, attribute)
+        number = self._numbers.get(key)
+        return None if number is None else Ref(number)
+
+    def _value(self, start: Place, place: Place, ending: Ending, attribute: str) -> Value:
+        """Value of ISO 14649 for a place; None if it has none."""
+        kind = ending.kind
+        if kind in (Kind.FLAG, Kind.CHOICE, Kind.TEXT_ITEM):
+            return self._described(place, ending, attribute)
+        if kind is Kind.TEXT:
+            return place.value if isinstance(place.value, str) else None
+        if kind is Kind.INTEGER:
+            number = number_of(place.value)
+            return None if number is None else int(number)
+        if kind is Kind.CONSTANT:
+            return Enumeration(ending.keyword)
+        if kind is Kind.TEXTS:
+            return self._text_of(place)
+        if kind is Kind.UNIT:
+            return self._unit_name(place)
+        if kind is Kind.COORDINATES:
+            return _scaled(place.value, self._geometry_factor(place.context))
+        return self._measured(start, place, ending, attribute)
+
+    def _verbatim(self, start: Place, attribute: str, slot: AttributeSlot) -> Value:
+        """Value that both standards write alike; a required text may be empty."""
+        value = self.instances.value(start.id, attribute)
+        if value is None and str in slot.plain:
+            return ""
+        return self._with_references(value, start, slot.items or slot, attribute)
+
+    def _with_references(
+        self, value: Value, start: Place, slot: AttributeSlot, attribute: str
+    ) -> Value:
+        """Value whose references lead to converted instances."""
+        if isinstance(value, tuple):
+            items = (self._with_references(item, start, slot, attribute) for item in value)
+            return tuple(items)
+        if isinstance(value, Ref):
+            place = Place(id=int(value), context=start.context)
+            return self._reference(place, slot, attribute)
+        return value
+
+    def _described(self, place: Place, ending: Ending, attribute: str) -> Value:
+        """Value that the text of a descriptive item stands for."""
+        text = self._text_of(place)
+        if text is None or ending.kind is Kind.TEXT_ITEM:
+            return text
+        for aim, iso in ending.texts:
+            if aim == text.strip().casefold():
+                return Enumeration(iso)
+        known = ", ".join(f"'{aim}'" for aim, _ in ending.texts)
+        self._remark(
+            Severity.WARNING,
+            f"'{text}' is none of {known} ({attribute})",
+            place.id,
+            "description",
+        )
+        return None
+
+    def _text_of(self, place: Place) -> str | None:
+        """Text of a descriptive item."""
+        value = self.instances.value(place.id, "description")
+        return value if isinstance(value, str) else None
+
+    def _unit_name(self, place: Place) -> str:
+        """Name of a measure's unit as ISO 14649 writes it."""
+        ref = self.instances.value(place.id, "unit_component")
+        if not isinstance(ref, Ref):
+            return ""
+        unit, name = self.units.unit(int(ref)), self.units.name(int(ref))
+        if name in _WRITTEN_NAMES:
+            return _WRITTEN_NAMES[name]
+        if unit is not None:
+            for kind in (Kind.LENGTH, Kind.ANGLE):
+                if unit.exponents == MEASURES[kind].exponents:
+                    return MEASURES[kind].unit
+        return name
+
+    def _measured(self, start: Place, place: Place, ending: Ending, attribute: str) -> Value:
+        """Number in the unit of ISO 14649."""
+        kind = measure_kind(ending)
+        number, unit = self._number_and_unit(start, place, ending.kind)
+        if number is None:
+            return None
+        if ending.kind is Kind.WRITTEN:
+            if unit is None or self._unit_name(place) not in (_MM, _DEGREE):
+                return _real(number, 1.0)
+            kind = Kind.ANGLE if "angle" in unit.exponents else kind
+        measure = MEASURES[kind]
+        found = conversion(unit, measure)
+        if not found.is_fitting:
+            self._remark_unit(place.id, measure, found, attribute)
+        if kind is Kind.COUNT:
+            return int(number) if float(number).is_integer() else _real(number, 1.0)
+        value = _real(number, found.factor)
+        if kind is Kind.SPEED and 0.0 < abs(value) < SLOW:
+            message = (
+                f"{value * MM_PER_M:g} mm/s ({attribute}) is very slow; "
+                "the number would be usual in m/s"
+            )
+            self._remark(Severity.WARNING, message, place.id, "value_component")
+        if ending.kind is Kind.RADIUS:
+            value = Real(0.5 * value)
+        if ending.kind is Kind.LIP_ANGLE:
+            value = Real(0.5 * (180.0 - value))
+        if ending.kind is Kind.TYPED:
+            return Typed(ending.keyword, value)
+        return Typed("SPEED_PROFILE", value) if ending.kind is Kind.PROFILE else value
+
+    def _number_and_unit(
+        self, start: Place, place: Place, kind: Kind
+    ) -> tuple[float | None, Unit | None]:
+        """Number of a measure with its unit, or a plain number with that of its owner."""
+        if kind is Kind.OWN_LENGTH:
+            return number_of(place.value), self.unit_of(start)
+        number = number_of(self.instances.value(place.id, "value_component"))
+        return number, self.unit_of(place)
+
+    def unit_of(self, place: Place) -> Unit | None:
+        """Unit of a measure; that of the geometry if it names none."""
+        ref = self.instances.value(place.id, "unit_component")
+        if isinstance(ref, Ref):
+            return self.units.unit(int(ref))
+        return None
+
+    def _geometry_factor(self, context: int | None) -> float:
+        """Factor from the lengths of a context to mm."""
+        return conversion(self.units.length_in(context), MEASURES[Kind.LENGTH]).factor
+
+    def _remark_unit(
+        self, id: int, measure: Measure, found: Conversion, attribute: str
+    ) -> None:
+        """Note a unit that does not fit its value."""
+        ref = self.instances.value(id, "unit_component")
+        name = self.units.name(int(ref)) if isinstance(ref, Ref) else ""
+        message = (
+            f"the unit{f' {name!r}' if name else ''} does not measure {measure.noun} "
+            f"({attribute}); one is taken for {found.factor:g} {measure.unit}"
+        )
+        self._remark(Severity.WARNING, message, id, "unit_component")
+
+    def _remark(self, severity: Severity, message: str, id: int, attribute: str) -> None:
+        """Add a finding about an instance of the file."""
+        self._reading.findings.add(
+            Finding(
+                severity=severity,
+                message=message,
+                entity=self._file.label(id),
+                attribute=attribute,
+                line=self._file.line(id),
+                rule=RULE,
+            )
+        )
+
+
+_PROPERTIES = (
+    ("ACTION_PROPERTY", "definition"),
+    ("RESOURCE_PROPERTY", "resource"),
+    ("PROPERTY_DEFINITION", "definition"),
+)
+"""Entities of properties, with the attribute that refers to their owner."""
+
+_MM = MEASURES[Kind.LENGTH].unit
+_DEGREE = MEASURES[Kind.ANGLE].unit
+_WRITTEN_NAMES = {
+    "kilowatt": "kW",
+    "newton": "N",
+    "joule": "J",
+    "second": "s",
+    "micrometre": "um",
+    "micrometer": "um",
+    "pascal": "Pa",
+}
+"""Names of units in the files of ISO 14649; their numbers are not converted."""
+
+_MEASURE_OF: Mapping[Kind, Kind] = {
+    Kind.LENGTH: Kind.LENGTH,
+    Kind.LENGTHS: Kind.LENGTH,
+    Kind.OWN_LENGTH: Kind.LENGTH,
+    Kind.RADIUS: Kind.LENGTH,
+    Kind.WRITTEN: Kind.LENGTH,
+    Kind.ANGLE: Kind.ANGLE,
+    Kind.LIP_ANGLE: Kind.ANGLE,
+    Kind.RATIO: Kind.RATIO,
+    Kind.PROFILE: Kind.RATIO,
+    Kind.COUNT: Kind.COUNT,
+    Kind.TIME: Kind.TIME,
+    Kind.SPEED: Kind.SPEED,
+    Kind.ROTATION: Kind.ROTATION,
+    Kind.PRESSURE: Kind.PRESSURE,
+}
+
+
+def measure_kind(ending: Ending) -> Kind:
+    """Kind of measure that an ending gives, in the units of ``MEASURES``."""
+    return ending.measure if ending.kind is Kind.TYPED else _MEASURE_OF[ending.kind]
+
+
+def _is_scaled(rule: Rule) -> bool:
+    """Whether a rule is about geometry, whose numbers depend on a context."""
+    return any(
+        path.ending.kind in (Kind.COORDINATES, Kind.VERBATIM)
+        for row in rule.rows
+        for path in row.paths
+    )
+
+
+def _listed(found: list[Value]) -> tuple[Value, ...]:
+    """List of the values found; a value that is a list already stands for itself."""
+    if len(found) == 1 and isinstance(found[0], tuple):
+        return found[0]
+    return tuple(found)
+
+
+def _empty(slot: AttributeSlot) -> Value:
+    """Value of an attribute that a file does not give."""
+    return () if slot.items is not None and not slot.is_optional else None
+
+
+def _real(number: float, factor: float) -> Real:
+    """Number in another unit; with its own digits if the unit is the same."""
+    if factor == 1.0:
+        return number if isinstance(number, Real) else Real(number)
+    return Real(number * factor)
+
+
+def _scaled(value: Value, factor: float) -> Value:
+    """Lengths of geometry in mm."""
+    if isinstance(value, tuple):
+        return tuple(_scaled(item, factor) for item in value)
+    number = number_of(value)
+    return None if number is None else _real(number, factor)

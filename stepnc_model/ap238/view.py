@@ -1,0 +1,113 @@
+"""An AP238 file seen as a program of ISO 14649.
+
+The view is a Part 21 file in memory whose instances are those of ISO 14649. Its instance
+numbers, lines and findings are those of the AP238 file, so that whatever reads a program of ISO
+14649 reads an AP238 program too, and names the right places of it.
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Self
+
+from stepnc_model.ap238.reading import Converted, Reader
+from stepnc_model.errors import Finding
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.writer import format_value
+
+SCHEMAS = ("MODEL_BASED_INTEGRATED_MANUFACTURING_SCHEMA", "INTEGRATED_CNC_SCHEMA")
+"""Schemas of AP238: of its second and later editions, and of the first."""
+
+MARKS = (
+    "MACHINING_WORKPLAN",
+    "MACHINING_PROJECT",
+    "MACHINING_WORKINGSTEP",
+    "MACHINING_TOOLPATH",
+)
+"""Entities that make a file an AP238 program, where no workplan of ISO 14649 is in it."""
+
+
+def is_aim(file: Part21File) -> bool:
+    """Whether a file is an AP238 program, judged by its instances and not by its schema."""
+    workplans = file.ids_of("MACHINING_WORKPLAN") or file.ids_of("MACHINING_PROJECT")
+    if workplans:
+        return True
+    if not any(file.ids_of(name) for name in MARKS):
+        return False
+    return not file.ids_of("WORKPLAN") and bool(file.ids_of("ACTION_PROPERTY"))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class AimView(Part21File):
+    """Instances of ISO 14649 that an AP238 file describes.
+
+    The class has no slots, as its base has none.
+    """
+
+    source: Part21File
+    """AP238 file as it was read."""
+    origins: dict[int, Converted] = field(default_factory=dict)
+    """What each instance was converted from, by its number."""
+    remarks: tuple[Finding, ...] = ()
+    """Deviations met during the conversion."""
+
+    @classmethod
+    def of(cls, source: Part21File) -> Self:
+        """Convert an AP238 file."""
+        reading = Reader(source).read()
+        text = _text(source, reading.converted)
+        plain = Part21File.from_bytes(text, name=source.name)
+        return cls(
+            data=plain.data,
+            name=source.name,
+            structure=plain.structure,
+            source=source,
+            origins={each.number: each for each in reading.converted},
+            remarks=reading.findings.all(),
+        )
+
+    def line(self, id: int) -> int:
+        """Line of the AP238 file on which the instance begins."""
+        found = self.origins.get(id)
+        return super().line(id) if found is None else self.source.line(found.origin)
+
+    def label(self, id: int) -> str:
+        """Name of an instance in messages: its number in the AP238 file and its entity."""
+        found = self.origins.get(id)
+        if found is None:
+            return super().label(id)
+        if found.rule is None:
+            return self.source.label(found.origin)
+        return f"#{found.origin} {found.keyword}"
+
+    @cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        """Deviations of the AP238 file from the syntax, and from its reference paths."""
+        return self.source.findings + self.remarks
+
+
+def _text(source: Part21File, converted: list[Converted]) -> bytes:
+    """File of ISO 14649 with the description and the name of the source."""
+    header = [
+        source.data[statement.start : statement.end] + b";"
+        for statement in source.structure.statements
+        if statement.keyword in ("FILE_DESCRIPTION", "FILE_NAME")
+    ]
+    names = ("MACHINING_SCHEMA", "MILLING_SCHEMA", "TURNING_SCHEMA")
+    schema = b"FILE_SCHEMA((%s));" % b",".join(format_value(name) for name in names)
+    lines = [
+        b"#%d=%s%s;"
+        % (each.number, each.keyword.encode("ascii"), format_value(each.parameters))
+        for each in converted
+    ]
+    return b"\n".join([
+        b"ISO-10303-21;",
+        b"HEADER;",
+        *header,
+        schema,
+        b"ENDSEC;",
+        b"DATA;",
+        *lines,
+        b"ENDSEC;",
+        b"END-ISO-10303-21;",
+        b"",
+    ])

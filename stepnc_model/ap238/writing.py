@@ -1,0 +1,290 @@
+"""Changes of a program of ISO 14649 brought into the AP238 file that it was read from.
+
+A changed number is replaced where it stands; what several attributes share is split first. New
+instances are built along the reference paths, and instances that are no longer part of the
+program are removed together with what only they use. All other bytes stay as they are.
+"""
+
+from collections.abc import Iterable
+from itertools import pairwise
+
+from stepnc_model.ap238.building import Builder, aim_number
+from stepnc_model.ap238.drafting import LISTS, AimDraft
+from stepnc_model.ap238.quantity import MEASURES, conversion
+from stepnc_model.ap238.reading import RULE, Converted, Place, Reader, measure_kind
+from stepnc_model.ap238.table import Ending, Kind, Move, Path, Row
+from stepnc_model.ap238.view import AimView
+from stepnc_model.entities.conversion import AttributeSlot, slots_of
+from stepnc_model.errors import SchemaError
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.values import Real, Ref, Typed, Value
+
+
+def spliced_into(view: AimView, changed: bytes, removed: Iterable[int] = ()) -> bytes:
+    """Bring the changes of a view into its AP238 file; return the bytes of the new file.
+
+    Parameters
+    ----------
+    view : AimView
+        Program as it was read.
+    changed : bytes
+        The same program of ISO 14649 after changes.
+    removed : iterable of int
+        Instances removed from the view; a new one may have the number of a removed one.
+
+    Returns
+    -------
+    bytes
+
+    Raises
+    ------
+    SchemaError
+        If AP238 cannot express a change.
+    """
+    return _Splice(view, Part21File.from_bytes(changed, name=view.name), set(removed)).apply()
+
+
+class _Splice:
+    """Changes of one file, applied once."""
+
+    def __init__(self, view: AimView, new: Part21File, removed: set[int]) -> None:
+        self._view = view
+        self._new = new
+        self._reader = Reader(view.source)
+        self._draft = AimDraft(view.source, self._reader.instances)
+        present = set(new.ids())
+        self._gone = removed | {id for id in view.ids() if id not in present}
+        kept = {
+            number: each.origin
+            for number, each in view.origins.items()
+            if number not in self._gone
+        }
+        self._kept = kept
+        self._builder = Builder(new, self._draft, kept)
+
+    def apply(self) -> bytes:
+        """Bytes of the AP238 file with all changes."""
+        self._remove()
+        # First what is new, in the order in which it was added: records come last, so that
+        # their numbers are the same when they are written again.
+        for number in sorted(set(self._new.ids()) - self._kept.keys()):
+            self._builder.build(number)
+        for number in self._kept:
+            self._change(self._view.origins[number])
+        for each in self._builder.unsayable:
+            raise self._refusal(each.number, each.attribute)
+        return self._draft.apply()
+
+    def _remove(self) -> None:
+        """Remove the instances that are gone, with what only they use."""
+        kept = frozenset(self._kept.values())
+        gone: list[int] = []
+        for number in sorted(self._gone):
+            each = self._view.origins.get(number)
+            if each is None or each.rule is None:
+                continue
+            start = Place(id=each.origin, context=each.context, way=(each.origin,))
+            for row in each.rule.rows:
+                if row.is_derived:
+                    continue
+                for path in row.paths:
+                    for place in self._reader.follow(start, path.steps):
+                        gone += _own_part(place, path)
+            if each.origin not in kept:
+                gone.append(each.origin)
+        self._draft.remove_with(gone, kept)
+        self._draft.forget_removed()
+
+    def _change(self, each: Converted) -> None:
+        """Bring the changed attributes of one instance into the file."""
+        if each.rule is None:
+            return
+        new = self._new.parameters(each.number)
+        if new == each.parameters:
+            return
+        rows = {row.attribute: row for row in each.rule.rows}
+        for place, (name, slot) in enumerate(slots_of(each.rule.entity).items()):
+            old = each.parameters[place]
+            value = new[place] if place < len(new) else None
+            if value == old:
+                continue
+            row = rows.get(name)
+            if row is None:
+                raise self._refusal(each.number, name)
+            if not row.is_derived:
+                self._change_attribute(each, row, slot, value)
+
+    def _change_attribute(
+        self, each: Converted, row: Row, slot: AttributeSlot, value: Value
+    ) -> None:
+        """Change one attribute: in place where it is given, or along its path."""
+        start = Place(id=each.origin, context=each.context, way=(each.origin,))
+        found = [
+            (path, place)
+            for path in row.paths
+            for place in self._reader.follow(start, path.steps)
+        ]
+        if slot.items is not None and slot.items.references:
+            self._change_list(each, row, found, value)
+        elif isinstance(value, Ref) and found:
+            self._redirect(found[0], value)
+        elif found and value is not None:
+            self._edit(each, row, found[0], value)
+        elif found:
+            for path, place in found:
+                self._draft.remove_with(_own_part(place, path), frozenset(self._kept.values()))
+        elif value is not None:
+            self._builder.write_row(each.number, each.origin, row, value)
+
+    def _change_list(
+        self, each: Converted, row: Row, found: list[tuple[Path, Place]], value: Value
+    ) -> None:
+        """Remove from a list of references what is gone, and add what is new."""
+        items = value if isinstance(value, tuple) else ()
+        wanted = [int(item) for item in items if isinstance(item, Ref)]
+        stays = {self._kept[number] for number in wanted if number in self._kept}
+        for path, place in found:
+            if place.id not in stays and path.steps[-1].move is Move.FORWARD:
+                self._draft.take(place.way[-2], path.steps[-1].attribute, place.id)
+        here = {place.id for _, place in found}
+        new = [number for number in wanted if self._kept.get(number) not in here]
+        if new:
+            refs = tuple(Ref[object](number) for number in new)
+            self._builder.write_row(each.number, each.origin, row, refs)
+
+    def _redirect(self, found: tuple[Path, Place], value: Ref[object]) -> None:
+        """Let the last step of a path lead to another instance."""
+        path, place = found
+        target = self._builder.build(int(value))
+        if target is None or not path.steps:
+            raise self._refusal(int(value), "")
+        last, holder = path.steps[-1], place.way[-2]
+        if last.move is Move.BACK:
+            if last.attribute in LISTS:
+                self._draft.take(place.id, last.attribute, holder)
+            self._draft.put(target, last.attribute, holder)
+            return
+        holder = self._unshared(place.way[:-1])
+        self._draft.set(holder, last.attribute, Ref(target))
+
+    def _edit(self, each: Converted, row: Row, found: tuple[Path, Place], value: Value) -> None:
+        """Replace a text or a number where it stands."""
+        path, place = found
+        ending = path.ending
+        if ending.kind in (Kind.TEXT, Kind.INTEGER):
+            holder = self._unshared(place.way)
+            self._draft.set(holder, path.steps[-1].attribute, value)
+        elif ending.kind in (Kind.FLAG, Kind.CHOICE):
+            text = next((aim for aim, iso in ending.texts if iso == str(value)), None)
+            if text is None:
+                raise self._refusal(each.number, row.attribute)
+            self._draft.set(self._unshared(place.way), "description", text)
+        elif ending.kind is Kind.LENGTHS:
+            self._edit_list(each, row, path, value)
+        elif ending.kind is Kind.WRITTEN:
+            self._set_number(place.id, value)
+        elif ending.kind in MEASURES or ending.kind in (Kind.RADIUS, Kind.LIP_ANGLE):
+            holder = self._unshared(place.way)
+            self._set_number(holder, self._in_file(place, ending, value))
+        else:
+            raise self._refusal(each.number, row.attribute)
+
+    def _edit_list(self, each: Converted, row: Row, path: Path, value: Value) -> None:
+        """Replace the numbers of a list, if there are as many as before."""
+        start = Place(id=each.origin, context=each.context, way=(each.origin,))
+        places = self._reader.follow(start, path.steps)
+        numbers = value if isinstance(value, tuple) else (value,)
+        for place in places[len(numbers) :]:
+            self._draft.take(place.way[-2], path.steps[-1].attribute, place.id)
+        for place, number in zip(places, numbers, strict=False):
+            ending = Ending(kind=Kind.LENGTH)
+            holder = self._unshared(place.way)
+            self._set_number(holder, self._in_file(place, ending, number))
+        if len(numbers) > len(places):
+            raise self._refusal(each.number, row.attribute)
+
+    def _set_number(self, holder: int, number: Value) -> None:
+        """Replace the number of a measure; its type stays."""
+        present = self._draft.get(holder, "value_component")
+        keyword = present.keyword if isinstance(present, Typed) else "NUMERIC_MEASURE"
+        self._draft.set(holder, "value_component", Typed(keyword, number))
+
+    def _in_file(self, place: Place, ending: Ending, value: Value) -> Real:
+        """Number in the unit of the file for a number of ISO 14649."""
+        number = aim_number(ending.kind, value)
+        unit = self._reader.unit_of(place)
+        factor = conversion(unit, MEASURES[measure_kind(ending)]).factor
+        if factor == 1.0:
+            return number
+        # Twelve digits, as all numbers that are written.
+        return Real(float(f"{number / factor:.12g}"))
+
+    def _unshared(self, way: tuple[int, ...]) -> int:
+        """Last instance of a way, copied as far as others use the way too."""
+        draft, holder = self._draft, way[0]
+        for before, id in pairwise(way):
+            attributes = [
+                name for name in _FORWARD if Ref(id) in _targets(draft.get(before, name))
+            ]
+            if not attributes:
+                holder = id
+                continue
+            if holder == before and draft.uses(id) < 2:
+                holder = id
+                continue
+            copy = draft.copy(id)
+            present = draft.get(holder, attributes[0])
+            draft.set(holder, attributes[0], _replaced(present, id, copy))
+            holder = copy
+        return holder
+
+    def _refusal(self, number: int, attribute: str) -> SchemaError:
+        """Error about something that AP238 cannot express."""
+        line = self._view.line(number) if number in self._view else 0
+        label = (self._view if number in self._view else self._new).label(number)
+        return SchemaError(
+            f"cannot be written into an AP238 file ({RULE})",
+            entity=label,
+            attribute=attribute,
+            line=line,
+        )
+
+
+_FORWARD = (
+    "representation",
+    "used_representation",
+    "items",
+    "item_element",
+    "qualifiers",
+    "related_method",
+    "formation",
+    "of_product",
+)
+"""Attributes through which several instances may come to share what they lead to."""
+
+
+def _targets(value: Value) -> tuple[Value, ...]:
+    """References of an attribute."""
+    if isinstance(value, Typed):
+        value = value.value
+    return value if isinstance(value, tuple) else (value,)
+
+
+def _replaced(value: Value, old: int, new: int) -> Value:
+    """Value in which a reference leads to another instance."""
+    if isinstance(value, Typed):
+        return Typed(value.keyword, _replaced(value.value, old, new))
+    if isinstance(value, tuple):
+        return tuple(_replaced(item, old, new) for item in value)
+    return Ref(new) if isinstance(value, Ref) and value == old else value
+
+
+def _own_part(place: Place, path: Path) -> list[int]:
+    """Instances of a way that refer back to its start, directly or by others."""
+    own: list[int] = []
+    steps = [step for step in path.steps if step.move in (Move.BACK, Move.FORWARD)]
+    for step, id in zip(steps, place.way[1:], strict=False):
+        if step.move is Move.FORWARD or step is steps[-1]:
+            break
+        own.append(id)
+    return own

@@ -1,0 +1,121 @@
+"""Caps by place: what is air, what is near the stock, and the way into the material."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from optimiser.along_path.caps import NAMES, CapName, CutBounds
+from optimiser.along_path.stretch import (
+    ENTRY_LENGTH,
+    ENTRY_SHARE,
+    PathStretch,
+    excess,
+    place_caps,
+    segment_caps,
+)
+from simulator.motion.segments import arc
+from simulator.removal.stations import StationKind, Stations
+from tests.optimiser.along_path.stretches import LIMITS, straight, stretch_of
+from tests.optimiser.cuts import CARBIDE, CUT
+
+BOUNDS = CutBounds(cut=CUT, at=CARBIDE)
+
+
+def half_cut(ends: list[float], is_cut: list[bool]) -> Stations:
+    """Stations of a mill of 12 mm that cuts half its diameter, 3 mm deep, or nothing."""
+    cuts = np.array(is_cut)
+    values = {
+        "section": 18.0,
+        "growth": 0.0,
+        "axial_depth": 3.0,
+        "radial_width": 6.0,
+        "entry_angle": 0.0,
+        "exit_angle": 0.5 * np.pi,
+        "contact_angle": 0.5 * np.pi,
+        "chip_ratio": 2.0 / np.pi,
+        "diameter": 12.0,
+    }
+    return Stations(
+        segment=np.zeros(len(ends), dtype=np.int64),
+        station=np.array(ends),
+        kind=np.where(cuts, int(StationKind.MILLING), int(StationKind.AIR)),
+        **{name: np.where(cuts, value, 0.0) for name, value in values.items()},
+    )
+
+
+def stretch(met: Stations, near: Stations | None = None) -> PathStretch:
+    """Line of 30 mm with a bounded tool."""
+    return replace(stretch_of(straight([30.0])), met=met, near=near, bounds=BOUNDS)
+
+
+def names_at(found: PathStretch, places: list[float]) -> list[CapName]:
+    """Names of the caps at some places, mm."""
+    caps = place_caps(found)
+    rows = np.searchsorted(caps.ends, places)
+    return [NAMES[number] for number in caps.caps.name[rows]]
+
+
+def test_the_chip_is_reduced_on_the_way_in() -> None:
+    met = half_cut([10.0, 10.5, 30.0], [False, True, True])
+    caps = place_caps(stretch(met))
+    before, entry, inside = (
+        caps.caps.feed[caps.ends.searchsorted(at)] for at in (5.0, 10.2, 20.0)
+    )
+    assert before == np.inf
+    assert entry == pytest.approx(ENTRY_SHARE * inside)
+    assert 10.0 + ENTRY_LENGTH * CUT.diameter > 10.5
+    assert names_at(stretch(met), [10.2])[0] is CapName.ENTRY
+
+
+def test_a_place_near_the_stock_is_no_air() -> None:
+    met = half_cut([10.0, 30.0], [False, True])
+    near = half_cut([6.0, 30.0], [False, True])
+    caps = place_caps(stretch(met, near))
+    assert caps.caps.feed[caps.ends.searchsorted(8.0)] < np.inf
+    assert caps.caps.feed[caps.ends.searchsorted(3.0)] == np.inf
+
+
+def test_a_thicker_cut_near_the_stock_does_not_slow_the_cut() -> None:
+    met = half_cut([10.0, 30.0], [False, True])
+    deeper = half_cut([10.0, 30.0], [True, True])
+    deeper = replace(
+        deeper, **{each.name: getattr(deeper, each.name) for each in fields(Stations)}
+    )
+    with_margin, without = place_caps(stretch(met, deeper)), place_caps(stretch(met))
+    at = 20.0
+    one = with_margin.caps.feed[with_margin.ends.searchsorted(at)]
+    assert one == without.caps.feed[without.ends.searchsorted(at)]
+
+
+def test_an_engagement_that_is_no_number_is_refused() -> None:
+    met = half_cut([10.0, 30.0], [True, True])
+    broken = replace(met, section=np.array([18.0, np.nan]))
+    with pytest.raises(
+        ValueError, match="block 0: the engagement at station 1 is not a number"
+    ):
+        place_caps(stretch(broken))
+
+
+def test_the_excess_is_the_programmed_feed_over_the_permitted_one() -> None:
+    found = stretch(half_cut([30.0], [True]))
+    permitted = place_caps(found).caps.feed[-1]
+    assert excess(found)[0] == pytest.approx(10.0 / permitted)
+    assert excess(replace(found, is_free=np.array([False])))[0] == 0.0
+
+
+def test_arcs_keep_the_acceleration_of_the_axes() -> None:
+    circle = arc((2.0, 0.0, 0.0), (0.0, 0.0, 0.0), 2.0 * np.pi, speed=5.0)
+    found = segment_caps(circle, LIMITS, greatest=None)
+    assert NAMES[found.name[0]] is CapName.CURVATURE
+    assert found.feed[0] == pytest.approx(np.sqrt(0.8 * 4000.0 * 2.0))
+
+
+def test_the_block_time_limits_short_blocks() -> None:
+    limits = replace(LIMITS, block_time=0.01)
+    found = segment_caps(straight([0.5, 10.0]), limits, greatest=200.0)
+    assert found.feed.tolist() == [50.0, 200.0]
+    assert [NAMES[number] for number in found.name] == [
+        CapName.BLOCK_TIME,
+        CapName.FEED_MECHANISM,
+    ]

@@ -1,0 +1,44 @@
+"""``convert --to``: a program by the other standard, and what could not be said in it."""
+
+from pathlib import Path
+
+import pytest
+
+from service.conversion import Standard, convert_to
+from stepnc_model.errors import StepNcError
+from stepnc_model.program import Program
+
+PARTS = Path(__file__).parents[2] / "examples" / "parts"
+
+
+def test_a_program_goes_to_ap238_and_back(tmp_path: Path) -> None:
+    there, back = tmp_path / "there.238", tmp_path / "back.stpnc"
+    left = convert_to(PARTS / "bracket.stpnc", standard=Standard.AP238, output=there)
+    assert {each.entity.partition(" ")[2] for each in left} == {
+        "MACHINED_SURFACE",
+        "SURFACE_TEXTURE_PARAMETER",
+    }
+    assert convert_to(there, standard=Standard.ISO14649, output=back) == ()
+    one, other = Program.load(PARTS / "bracket.stpnc"), Program.load(back)
+    assert [step.id for step in one.workingsteps] == [step.id for step in other.workingsteps]
+
+
+@pytest.mark.parametrize("standard", Standard)
+def test_a_program_of_that_standard_already_is_refused(
+    standard: Standard, tmp_path: Path
+) -> None:
+    path = PARTS / "paper002.stpnc"
+    if standard is Standard.AP238:
+        path = tmp_path / "a.238"
+        convert_to(PARTS / "paper002.stpnc", standard=standard, output=path)
+    with pytest.raises(StepNcError, match=f"standard '{standard.value}' already"):
+        convert_to(path, standard=standard, output=tmp_path / "b.238")
+    assert not (tmp_path / "b.238").exists()
+
+
+def test_the_program_itself_is_never_overwritten(tmp_path: Path) -> None:
+    path = tmp_path / "part.stpnc"
+    path.write_bytes((PARTS / "paper002.stpnc").read_bytes())
+    with pytest.raises(StepNcError):
+        convert_to(path, standard=Standard.AP238, output=path)
+    assert path.read_bytes() == (PARTS / "paper002.stpnc").read_bytes()

@@ -1,0 +1,258 @@
+"""NC code of every control, read as what it says."""
+
+from functools import cache
+from math import isnan
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from stepnc_model.errors import PostError
+from stepnc_model.nc.moves import MoveKind
+from stepnc_model.nc.neutral_blocks import neutral_blocks
+from stepnc_model.nc.program import NcProgram, read_program
+from stepnc_model.post.blocks import Circular, Cycles, Linear, MachineType, Rapid
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.dialects import PLACES, read_blocks, write
+from stepnc_model.post.neutral import blocks_of
+from stepnc_model.program import Program
+from stepnc_model.toolpath.generate import generate
+
+PARTS = Path(__file__).parents[3] / "examples" / "parts"
+CONTROLS = [control for control in Dialect if control is not Dialect.CANONICAL]
+PROGRAMS = [
+    (MachineType.MILL, control, cycles) for control in CONTROLS for cycles in Cycles
+] + [
+    (MachineType.LATHE, control, Cycles.EXPANDED)
+    for control in CONTROLS
+    if control is not Dialect.HEIDENHAIN
+]
+
+
+@cache
+def code_of(machine: MachineType, control: Dialect, cycles: Cycles) -> bytes:
+    name = "bracket" if machine is MachineType.MILL else "shaft"
+    program = Program.load(PARTS / f"{name}.stpnc")
+    blocks = blocks_of(program, list(generate(program)), name="P")
+    return "".join(f"{line}\n" for line in write(blocks, control, cycles=cycles)).encode()
+
+
+def ends(blocks: list[object]) -> list[tuple[str, tuple[float, float, float], float]]:
+    """Fed moves: kind, end, feed."""
+    return [
+        (type(block).__name__, block.end, block.rate.value)
+        for block in blocks
+        if isinstance(block, (Linear, Circular))
+    ]
+
+
+def flat(program: bytes, control: Dialect, machine: MachineType) -> list[object]:
+    found: list[object] = []
+    for block in read_blocks(program.decode().splitlines(), control, machine=machine):
+        found += getattr(block, "expansion", None) or [block]
+    return found
+
+
+@pytest.mark.parametrize(("machine", "control", "cycles"), PROGRAMS)
+def test_our_own_code_reads_back_as_the_strict_readers_read_it(
+    machine: MachineType, control: Dialect, cycles: Cycles
+) -> None:
+    code = code_of(machine, control, cycles)
+    program = read_program(code)
+    assert (program.dialect, program.machine) == (control, machine)
+    assert not [each for each in program.findings if "not understood" in each.message]
+    mine = ends([block for _, block in neutral_blocks(program)])
+    truth = ends(flat(code, control, machine))
+    assert len(mine) == len(truth)
+    slack = 2.0 * 10.0 ** -PLACES[control]
+    for (kind, end, feed), (wanted, there, rate) in zip(mine, truth, strict=True):
+        assert kind == wanted
+        assert end == pytest.approx(there, abs=slack)
+        assert feed == pytest.approx(rate, rel=1e-9)
+
+
+@pytest.mark.parametrize(("machine", "control", "cycles"), PROGRAMS)
+def test_blocks_laid_end_to_end_are_the_file(
+    machine: MachineType, control: Dialect, cycles: Cycles
+) -> None:
+    code = code_of(machine, control, cycles)
+    text = read_program(code).text
+    assert "".join(text.blocks()).encode("latin-1") == code
+
+
+def fed(program: NcProgram) -> list[tuple[float, ...]]:
+    moves = program.moves
+    return [
+        (*moves.end[row].tolist(), moves.feed[row])
+        for row in range(len(moves))
+        if moves.kind[row] in {MoveKind.LINE, MoveKind.ARC}
+    ]
+
+
+def test_a_program_of_a_haas_with_subprograms_in_every_frame() -> None:
+    program = read_program(
+        b"%\nO00010 (HAAS)\nT1 M6\nG0 G90 G54 X0. Y0. S2000 M3\nG43 H1 Z10.\nM97 P100\n"
+        b"G55 X0. Y0.\nM97 P100 L2\nM30\nN100 G0 Z2.\nG1 Z-1. F200.\nX10.\nG0 Z2.\nM99\n%\n",
+    )
+    assert program.dialect is Dialect.HAAS
+    assert program.moves.frames == ("G54", "G55")
+    cuts = program.moves.kind == MoveKind.LINE
+    assert program.moves.frame[cuts].tolist() == [0, 0, 1, 1, 1, 1]
+    assert program.moves.call[cuts].tolist() == [1, 1, 2, 2, 3, 3]
+    assert program.moves.calls == ((0, -1), (0, 5), (0, 7), (0, 7))
+    assert [feed[3] for feed in fed(program)] == pytest.approx([200.0 / 60.0] * 6)
+
+
+def test_a_feed_per_revolution_and_a_surface_speed_are_resolved() -> None:
+    program = read_program(
+        b"O1234\nG50 S2000\nT0101\nG96 S100 M3\nG0 X40. Z2.\nG1 Z-10. F0.2\nX60.\nG97 S600\n"
+        b"G98 G1 Z-20. F120.\nM30\n",
+        dialect=Dialect.FANUC,
+        machine=MachineType.LATHE,
+    )
+    feeds = [values[3] for values in fed(program)]
+    # n = v_c / (π d): 100 m/min at 40 mm are 795.77 rpm, at 60 mm 530.52 rpm.
+    assert feeds == pytest.approx([0.2 * 795.7747 / 60, 0.2 * 530.5165 / 60, 2.0], rel=1e-6)
+    assert program.moves.end[-1].tolist() == [30.0, 0.0, -20.0] or isnan(
+        program.moves.end[-1][1]
+    )
+
+
+def test_inverse_time_gives_the_feed_of_each_move() -> None:
+    program = read_program(b"G21 G0 X0 Y0 Z0\nG93 G1 X30 F2\nY40 F4\nG94 X0 F100\n")
+    feeds = [values[3] * 60.0 for values in fed(program)]
+    assert feeds == pytest.approx([60.0, 160.0, 100.0])
+
+
+def test_repeats_are_expanded_in_every_dialect() -> None:
+    programs = {
+        Dialect.LINUXCNC: b"G0 X0 Y0 Z0\nF60\no1 repeat [3]\nG91 G1 X1\no1 endrepeat\nM2\n",
+        Dialect.FANUC: b"O1\nG0 X0. Y0. Z0.\nF60.\nM98 P30002\nM30\nO2\nG91 G1 X1.\nM99\n",
+        Dialect.SINUMERIK: b"G0 X0 Y0 Z0\nF60\nLAB: G91 G1 X1\nREPEAT LAB P=2\nM30\n",
+        Dialect.HEIDENHAIN: b"BEGIN PGM A MM\nL X+0 Y+0 Z+0 FMAX\nLBL 1\nL IX+1 F60\n"
+        b"CALL LBL 1 REP2\nEND PGM A MM\n",
+    }
+    for control, code in programs.items():
+        program = read_program(code, dialect=control, machine=MachineType.MILL)
+        assert [values[0] for values in fed(program)] == [1.0, 2.0, 3.0], control
+        assert not [each for each in program.findings if "not und" in each.message]
+
+
+@pytest.mark.parametrize(
+    ("control", "code", "line"),
+    [
+        (Dialect.FANUC, b"O1\nG1 X1. F1.\nM98 P1\nM30\n", "line 3: calls and repeats"),
+        (Dialect.LINUXCNC, b"o1 repeat [99999999]\nG4 P0\no1 endrepeat\n", "line"),
+    ],
+)
+def test_endless_programs_are_refused_with_a_line(
+    control: Dialect, code: bytes, line: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("stepnc_model.nc.flow.MOST_REPEATED", 2000)
+    with pytest.raises(PostError, match=line):
+        read_program(code, dialect=control)
+
+
+def test_what_is_not_understood_stops_only_what_depends_on_it() -> None:
+    program = read_program(
+        b"G21 G90\nT1 M6\nG0 X0 Y0 Z5\nG1 Z-1 F100\nX10\nG5.3 X20 Y5\nG1 Y10\nX30\n"
+        b"X40 Y11 Z-1\nX[#1]\nY3\nX0 Y0\n",
+        dialect=Dialect.LINUXCNC,
+    )
+    lines = {each.line for each in program.findings if "not understood" in each.message}
+    assert lines == {6}
+    moves = program.moves
+    advisable = {program.text.line(int(block)) for block in moves.block[moves.is_advisable]}
+    assert advisable == {4, 5}
+    assert np.isnan(moves.end[moves.block == 9][:, 0]).all()
+
+
+def test_missing_values_are_found_by_line() -> None:
+    program = read_program(
+        b"G21\nG0 X0 Y0 Z0\nG1 X1\nX2 F0\nG95 X3 F0.1\nT1 M6\nS500 M3\nG1 X4\n",
+        dialect=Dialect.LINUXCNC,
+    )
+    found = {(each.line, each.message.split(":")[0]) for each in program.findings}
+    assert (3, "no feed F is in force") in found
+    assert (4, "the feed is 0") in found
+    assert (5, "a feed per revolution while the spindle is stopped") in found
+    assert (3, "no tool was called before this cut") in found
+
+
+def test_rapids_lead_to_where_the_first_cut_begins() -> None:
+    program = read_program(b"G21\nT2 M6\nS600 M3\nG0 X1 Y2\nZ3\nG1 Z0 F60\n")
+    blocks = [block for _, block in neutral_blocks(program, name="x")]
+    assert Rapid(end=(1.0, 2.0, 3.0)) in blocks
+    assert isinstance(blocks[-2], Linear)
+
+
+@pytest.mark.parametrize(
+    "control", [each for each in CONTROLS if each is not Dialect.HEIDENHAIN]
+)
+def test_short_blocks_mean_the_same_as_with_a_comment(control: Dialect) -> None:
+    lines = [
+        *("G90", "T1 M6", "S900 M3", "G0 X1.0 Y2.5", "Z0.5 F120", "G01 Z-1.", "N7 X5.5 Y-3."),
+        *(
+            "X.5",
+            "G1X2.0Y1.0",
+            "G20",
+            "X1.0 F10.5",
+            "G91",
+            "X1.0",
+            "G90",
+            "G41 D1",
+            "X3.0 Y3.0",
+        ),
+        *(
+            "G40",
+            "X4.0",
+            "G95 F0.2",
+            "X5.0",
+            "G93",
+            "X6.0 F2.",
+            "G94",
+            "X7.0 F50",
+            "G0",
+            "Z5.0",
+        ),
+        *(
+            "G81 X1. Y1. Z-2. R1. F60",
+            "X2.0",
+            "G80",
+            "G0 Z9.0",
+            "G68 R5",
+            "G1 X8.0",
+            "A5.",
+            "X9.0",
+        ),
+    ]
+    mark = " ;a" if control is Dialect.SINUMERIK else " (a)"
+    short = read_program("\n".join(lines).encode(), dialect=control, machine=MachineType.MILL)
+    long = read_program(
+        "\n".join(line + mark for line in lines).encode(),
+        dialect=control,
+        machine=MachineType.MILL,
+    )
+    assert short.moves.rows.tobytes() == long.moves.rows.tobytes()
+    assert short.moves.settings == long.moves.settings
+
+
+def test_a_tool_may_have_a_name() -> None:
+    for control, code in (
+        (Dialect.SINUMERIK, b'T="MILL 10"\nM6\nG0 X0 Y0 Z0\nG1 X1 F100\nM30\n'),
+        (Dialect.HEIDENHAIN, b'TOOL CALL "MILL 10" Z S900\nL X+0 Y+0 Z+0 FMAX\nL X+1 F100\n'),
+    ):
+        program = read_program(code, dialect=control)
+        move = program.moves.move(len(program.moves) - 1)
+        assert (move.setting.tool, move.setting.tool_name) == (None, "MILL 10")
+        assert [each.message.split(":")[0] for each in program.findings] == [
+            "the tool has a name and no number"
+        ]
+
+
+def test_the_motion_before_a_cycle_is_in_force_after_it() -> None:
+    code = b"G90 G0 X0. Y0. Z9.\nG81 X1. Z-1. R1. F60.\nG80\nZ20.\nG1 Z3.\n"
+    fanuc = read_program(code, dialect=Dialect.FANUC)
+    assert fanuc.moves.kind[-2:].tolist() == [MoveKind.RAPID, MoveKind.LINE]
+    linuxcnc = read_program(code, dialect=Dialect.LINUXCNC)
+    assert linuxcnc.moves.kind[-2:].tolist() == [MoveKind.UNKNOWN, MoveKind.LINE]
