@@ -1,7 +1,7 @@
 """Attributes of simple and complex instances by name, and references backwards."""
 
 from stepnc_model.ap238.instances import Instances, references
-from stepnc_model.part21.values import Ref, Typed
+from stepnc_model.part21.values import Ref, Typed, Value
 from tests.stepnc_model.ap238.samples import read
 
 TEXT = b"""ISO-10303-21;
@@ -55,5 +55,10 @@ def test_a_malformed_instance_has_no_attributes() -> None:
 
 
 def test_references_are_found_in_lists_and_typed_values() -> None:
-    value = (Ref(1), Typed("LIST_REPRESENTATION_ITEM", (Ref(2), (Ref(3),))), "text", None)
+    value: Value = (
+        Ref(1),
+        Typed("LIST_REPRESENTATION_ITEM", (Ref(2), (Ref(3),))),
+        "text",
+        None,
+    )
     assert list(references(value)) == [Ref(1), Ref(2), Ref(3)]
