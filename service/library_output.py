@@ -107,6 +107,12 @@ def _machine_facts(machine: Machine) -> list[Fact]:
     if machine.block_time is not None:
         of = f" ({machine.block_time_source})" if machine.block_time_source else ""
         facts.append(("block time ms", f"{1e3 * machine.block_time:g}{of}"))
+    for name, value in (
+        ("least block mm", machine.least_block),
+        ("least feed change", machine.least_feed_change),
+    ):
+        if value is not None:
+            facts.append((name, f"{value:g}"))
     facts.append(("motion control", CONTROL))
     for mode in machine.modes:
         of = mode.tool or (f"{mode.tool_diameter:g} mm" if mode.tool_diameter else "")

@@ -235,6 +235,11 @@ class Machine:
     addition."""
     block_time_source: str = ""
     """Source of the block time, where it is another than that of the machine."""
+    least_block: float | None = None
+    """Least length of a block that a program should have, mm; ``None``: not stated."""
+    least_feed_change: float | None = None
+    """Least change of the feed that is worth a word, over the lesser feed; ``None``: not
+    stated."""
     handling: Handling | None = None
     """States between parts and batches; ``None``: unknown."""
     deviation: PowerDeviation | None = None

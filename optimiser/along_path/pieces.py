@@ -33,6 +33,8 @@ class PieceRules:
     """Greatest loss for which the programmed feed of a block is kept, over its time."""
     block_time: float = 0.0
     """Time that the control takes for a block, s."""
+    least_change: float = 0.02
+    """Least change of the feed within a block that is worth a part, over the lesser feed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -106,6 +108,23 @@ def pieces_of(stretch: PathStretch, commands: Commands, rules: PieceRules) -> Fe
         is_per_revolution=is_per_revolution[starts],
         run=commands.run[at][starts],
     )
+
+
+def without_small_changes(pieces: FeedPieces, change: float) -> Floats:
+    """Feeds in which neighbouring parts of a block differ by at least a share, (P,).
+
+    Parts that differ by less both get the lesser feed.
+    """
+    rate = pieces.rate.copy()
+    is_one_block = np.diff(pieces.block) == 0
+    while True:
+        low = np.minimum(rate[1:], rate[:-1])
+        high = np.maximum(rate[1:], rate[:-1])
+        rows = np.flatnonzero(is_one_block & (high > low) & (high < (1.0 + change) * low))
+        if not len(rows):
+            return rate
+        np.minimum.at(rate, rows, low[rows])
+        np.minimum.at(rate, rows + 1, low[rows])
 
 
 def _cut_at_ends(ends: Floats, least: float) -> tuple[Floats, Ints]:

@@ -17,7 +17,12 @@ import numpy as np
 
 from optimiser.along_path.caps import NAMES, CapName
 from optimiser.along_path.free import FreeProfile, free_profile
-from optimiser.along_path.pieces import FeedPieces, PieceRules, pieces_of
+from optimiser.along_path.pieces import (
+    FeedPieces,
+    PieceRules,
+    pieces_of,
+    without_small_changes,
+)
 from optimiser.along_path.runs import MachineFeeds, commands_of, own_caps
 from optimiser.along_path.stretch import PathStretch, PlaceCaps, excess, place_caps
 from optimiser.levels import best_levels
@@ -159,6 +164,8 @@ class FeedPlanner:
         chosen: dict[str, FeedPieces] = {}
         for name, pieces in free.items():
             planned = replace(pieces, rate=_levelled(pieces, self.task.levels))
+            change = self.task.rules.least_change
+            planned = replace(planned, rate=without_small_changes(planned, change))
             is_kept = name in kept or self._is_as_good(name, planned)
             chosen[name] = replace(planned, rate=planned.programmed) if is_kept else planned
         chosen = in_every_run(chosen)

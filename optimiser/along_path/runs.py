@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from optimiser.along_path.caps import NUMBER, CapName, Caps, capped
+from optimiser.along_path.caps import NUMBER, CapName, Caps, capped, unbounded
 from optimiser.along_path.envelope import lower_envelope
 from optimiser.along_path.stretch import (
     PathStretch,
@@ -25,8 +25,9 @@ from simulator.motion.path_limits import corners
 from simulator.motion.segments import AxisLimits, ControlModel, Floats, Ints, Segments
 from simulator.motion.smoothing import Smoothing, smoothing_of
 
-TRIALS = 16
-"""Number of greatest feeds that are tried for each run."""
+TRIALS, ROUNDS = 16, 2
+"""Number of intervals between the greatest feeds that are tried for each run, and how often
+they are tried, the second time more finely around the best."""
 
 SLOWEST = 1e-3
 """Least of the greatest feeds that are tried, over the greatest."""
@@ -120,6 +121,7 @@ def commands_of(stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds) 
         runs.append(np.full(len(found[-1].ends), len(locked)))
         locked.append(run.greatest_locked)
         given += run.given.window
+    found = found or [_Smoothed(ends=np.zeros(0), caps=unbounded(0), time=0.0)]
     ends = np.concatenate([part.ends for part in found])
     middle = ends - 0.5 * np.diff(ends, prepend=0.0)
     return Commands(
@@ -129,7 +131,7 @@ def commands_of(stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds) 
             feed=np.concatenate([part.caps.feed for part in found]),
             name=np.concatenate([part.caps.name for part in found]),
         ),
-        run=np.concatenate(runs),
+        run=np.concatenate(runs or [np.zeros(0, dtype=np.int64)]),
         greatest_locked=np.array(locked),
         given_window=given,
     )
@@ -209,13 +211,26 @@ class _FeedRun:
         """Commands of the greatest feed that gives the least time."""
         known = self.caps.feed[np.isfinite(self.caps.feed)]
         top = float(known.max(initial=float(self.segments.speed.max())))
-        low = max(float(known.min(initial=top)), SLOWEST * top, self.greatest_locked)
+        low = max(SLOWEST * top, self.greatest_locked)
         best = self._smoothed(top)
-        if self.given.window > 0.0:
-            for greatest in np.geomspace(top, low, TRIALS)[1:].tolist():
-                tried = self._smoothed(greatest)
-                best = tried if tried.time < best.time else best
+        if self.given.window == 0.0:
+            return best
+        ratio = (top / low) ** (1.0 / TRIALS)
+        for _ in range(ROUNDS):
+            # Between two trials the time has no other minimum that matters.
+            middle, best = self._best_near(best, top, low)
+            top, low = min(top, middle * ratio), max(low, middle / ratio)
+            ratio = (top / low) ** (1.0 / TRIALS)
         return best
+
+    def _best_near(self, best: _Smoothed, top: float, low: float) -> tuple[float, _Smoothed]:
+        """Greatest feed of least time among trials in a range, and its commands."""
+        chosen = top
+        for greatest in np.geomspace(top, low, TRIALS + 1).tolist():
+            tried = self._smoothed(greatest)
+            if tried.time <= best.time:
+                chosen, best = greatest, tried
+        return chosen, best
 
     @property
     def greatest_locked(self) -> float:

@@ -192,6 +192,17 @@ def _idle(totals: PartTotals) -> frozenset[str]:
     return frozenset(name for name, total in totals.rows() if total.volume <= 0.0)
 
 
+def _rules(machine: Machine, block_time: float) -> PieceRules:
+    """How finely blocks may be split, as the machine's file says."""
+    usual = PieceRules()
+    length, change = machine.least_block, machine.least_feed_change
+    return PieceRules(
+        least_length=usual.least_length if length is None else length,
+        least_change=usual.least_change if change is None else change,
+        block_time=block_time,
+    )
+
+
 def _feed_task(machine: Machine, task: AlongPathTask) -> FeedTask:
     """Task of the optimiser for a machine."""
     limits = axis_limits(machine)
@@ -205,7 +216,7 @@ def _feed_task(machine: Machine, task: AlongPathTask) -> FeedTask:
             ),
             tolerance=task.tolerance,
         ),
-        rules=PieceRules(block_time=limits.block_time),
+        rules=_rules(machine, limits.block_time),
         levels=task.levels,
         has_jerk=task.has_jerk,
     )

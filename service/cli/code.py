@@ -14,7 +14,10 @@ def optimise_code(options: argparse.Namespace) -> int:
     from service.requests.advice import AdviceRequest
     from service.requests.fields import from_options
     from service.terminal import tell, write_out
+    from stepnc_model.errors import StepNcError
 
+    if options.write_toolpaths:
+        raise StepNcError("--write-toolpaths writes into STEP-NC programs: name one")
     files = CodeFiles(
         file=options.file,
         tools=options.tools,

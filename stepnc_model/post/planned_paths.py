@@ -7,7 +7,7 @@ moves get the feeds of their blocks back, as factors on the feed of their techno
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import floor, nextafter
+from math import nextafter
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Finding, Severity
@@ -33,9 +33,6 @@ from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.explicit.operation import path_frames
 from stepnc_model.toolpath.explicit.planned_path import MovePart, PlannedMove, PlannedPath
 from stepnc_model.toolpath.path import Dwell, Feed, Function, Move, Step, ToolPath
-
-FINEST = 1e-9
-"""Factors are rounded down to a multiple of this number."""
 
 NOT_WRITTEN = "its tool path is not written"
 
@@ -147,16 +144,22 @@ class _Factors:
     def factor(self, technology: Ref[Entity], rate: Rate, value: float) -> float | None:
         """Greatest factor of a feed that is not above a value; None if it has none."""
         if technology not in self._rates:
-            found = conditions(
-                self._program, Feed(technology=technology), self._step.tool_ref, self._machine
-            )
-            self._rates[technology] = found.rate
+            self._rates[technology] = self._rate(Feed(technology=technology))
         whole = self._rates[technology]
         if whole is None or whole.mode is not rate.mode:
             return None
         factor = value / whole.value
-        factor = floor(factor / FINEST) * FINEST or factor
-        return factor if factor * whole.value <= value else nextafter(factor, 0.0)
+        while self._value(Feed(technology=technology, ratio=factor)) > value:
+            factor = nextafter(factor, 0.0)
+        return factor
+
+    def _rate(self, feed: Feed) -> Rate | None:
+        return conditions(self._program, feed, self._step.tool_ref, self._machine).rate
+
+    def _value(self, feed: Feed) -> float:
+        """Feed as it is read from the file."""
+        found = self._rate(feed)
+        return 0.0 if found is None else found.value
 
 
 def _steps(

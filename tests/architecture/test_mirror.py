@@ -98,6 +98,7 @@ TOGETHER = {
     "service/trial/request.py": "fields only; read in rest/test_bodies.py and storage",
     "service/requests/knowledge.py": "fields only; read in rest/test_bodies.py and storage",
     "stepnc_model/file_profile.py": "names only; chosen in test_writeback.py",
+    "stepnc_model/toolpath/explicit/planned_path.py": "nouns; read in test_path_writer.py",
     "stepnc_model/post/dialect.py": "names only; chosen in test_dialects.py",
     "simulator/motion/model_name.py": "names only; chosen in test_control.py",
     "simulator/machine/noise_kind.py": "names only; chosen in test_disturbance.py",

@@ -9,11 +9,13 @@ from pathlib import Path
 import pytest
 
 from service.cli.serve import USUAL_RATE
+from service.code_check import LONGEST as LONGEST_CHECK
 from service.factory import asked
 from service.http_protocol import HEAD_S
 from service.jobs.runner import LONGEST, LONGEST_PACED, MOST_PACED
 from service.live.series import MOST_BYTES
 from service.requests.factory import MOST_REPLICATIONS
+from service.rest.files import LARGEST_TOOLS
 from service.rest.settings import Settings
 from service.rest.verifications import PLACES_SHOWN
 from service.session.runner import FORGOTTEN_AFTER, MOST_ROWS
@@ -21,6 +23,7 @@ from service.simulation.live import MOST_SAMPLES
 from service.storage.jobs import MOST_WAITING, OWNERS
 from service.verification.inputs import MOST_ELEMENTS
 from service.verification.inputs import MOST_ROWS as MOST_LOGGED
+from simulator.toml_bounds import MOST_BYTES as MOST_BYTES_OF_TOML
 from tests.docs.pages import DOCS, ROOT, blocks
 from tests.service.rest.server import Server
 
@@ -54,6 +57,8 @@ def test_bounds_are_those_of_the_program() -> None:
         f"{MOST_LOGGED // 1_000_000} million rows in Parquet, "
         f"{MOST_ELEMENTS // 1_000_000} million elements in XML",
         f"{PLACES_SHOWN // 1000} 000 places",
+        f"check of NC code | {LONGEST_CHECK:g} s",
+        f"tool table | {LARGEST_TOOLS >> 20} MB; {MOST_BYTES_OF_TOML >> 10} KB in TOML",
         f"{asked.LARGEST >> 10} KB; {asked.MOST_MACHINES} machines, {asked.MOST_STEPS} steps, "
         f"{asked.MOST_RUNS} programs times kinds of machines, {asked.MOST_BATCH // 1000} 000 "
         f"parts a batch; {asked.MOST_HOURS / 1000:g} 000 simulated hours and "
@@ -79,6 +84,11 @@ def test_the_commands_do_what_the_page_says(served: Server, tmp_path: Path) -> N
     optimised = (tmp_path / "part.optimised.stpnc").read_text(encoding="utf-8")
     assert optimised.startswith("ISO-10303-21;")
     assert "G1" in (tmp_path / "part.ngc").read_text(encoding="utf-8")
+    assert (tmp_path / "feeds.csv").read_text(encoding="utf-8").startswith("block,part,")
+    assert '"control":"linuxcnc"' in done.stdout
+    rewritten = (tmp_path / "part.optimised.ngc").read_text(encoding="utf-8")
+    given = (tmp_path / "part.ngc").read_text(encoding="utf-8")
+    assert rewritten.count("\n") > given.count("\n")
     assert '"verdict":"nothing beyond the uncertainty of the log"' in done.stdout
     assert (tmp_path / "places.csv").read_text(encoding="utf-8").startswith('"x_mm"')
 

@@ -6,9 +6,11 @@ import pytest
 
 from service.usecases import optimise
 from stepnc_model import writeback
+from stepnc_model.draft import Draft
 from stepnc_model.errors import SchemaError
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from stepnc_model.technology import programmed
 from tests.asking import asked_advice
@@ -93,6 +95,36 @@ def test_a_short_operation_is_filled_up(
     once = optimised(data, tmp_path, profile)
     assert len(writeback.records(Program(Part21File.from_bytes(once)))) == 1
     assert optimised(once, tmp_path, profile) == once
+
+
+PATHS = (
+    b"#60=TOOLPATH_LIST((#61));\n"
+    b"#61=CUTTER_LOCATION_TRAJECTORY(.T.,.CONTACT.,$,$,$,$,#62,$,$);\n"
+    b"#62=POLYLINE('',(#63,#64,#63,#26));\n#63=CARTESIAN_POINT('',(0.,0.,0.));\n"
+    b"#64=CARTESIAN_POINT('',(1.,0.,0.));\nENDSEC;\nEND"
+)
+
+
+@pytest.mark.parametrize(
+    ("more", "expected"),
+    [
+        (b"", [60, 61, 62, 63, 64]),
+        (b"#65=POLYLINE('',(#63,#26));\n", [60, 61, 62, 64]),
+        (b"#65=TOOLPATH_LIST((#61));\n", [60]),
+        (b"#65=PLANE_FINISH_MILLING(#60);\n", []),
+    ],
+)
+def test_what_others_refer_to_is_not_only_under_an_instance(
+    more: bytes, expected: list[int]
+) -> None:
+    """The operation refers to #60; a placement refers to the point #26."""
+    data = paper002().replace(b"#40=PLANE_ROUGH_MILLING($", b"#40=PLANE_ROUGH_MILLING(#60")
+    data = data.replace(b"ENDSEC;\nEND", more + PATHS)
+    draft = Draft(Program(Part21File.from_bytes(data)))
+    keywords = frozenset({
+        *("TOOLPATH_LIST", "CUTTER_LOCATION_TRAJECTORY", "POLYLINE", "CARTESIAN_POINT"),
+    })
+    assert sorted(draft.only_under(Ref(60), keywords)) == expected
 
 
 def test_the_printed_place_of_a_record_is_left_and_depths_stay_in_theirs(

@@ -8,8 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from optimiser.along_path.caps import NAMES, CapName
-from optimiser.along_path.pieces import PieceRules, pieces_of
+from optimiser.along_path.pieces import (
+    FeedPieces,
+    PieceRules,
+    pieces_of,
+    without_small_changes,
+)
 from optimiser.along_path.runs import Commands, commands_of
+from optimiser.along_path.stretch import place_caps
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import Segments, lines
 from simulator.motion.smoothing import smoothing_of
@@ -137,9 +143,44 @@ def test_the_parts_of_a_block_cover_it_and_keep_its_caps() -> None:
         assert rate <= commands.caps.feed[touched].min() * (1.0 + 1e-12)
 
 
+@given(
+    st.lists(st.tuples(st.integers(0, 3), st.floats(1.0, 50.0)), min_size=1, max_size=12),
+    st.floats(0.0, 0.5),
+)
+def test_small_changes_within_a_block_are_lowered(
+    rows: list[tuple[int, float]], change: float
+) -> None:
+    rows.sort(key=lambda row: row[0])
+    block, rate = np.array([each for each, _ in rows]), np.array([each for _, each in rows])
+    ones = np.ones(len(rows))
+    pieces = FeedPieces(
+        block=block,
+        begin=ones,
+        length=ones,
+        weight=ones,
+        rate=rate,
+        name=block,
+        programmed=ones,
+        is_per_revolution=np.zeros(len(rows), dtype=np.bool_),
+        run=block,
+    )
+    found = without_small_changes(pieces, change)
+    assert (found <= rate).all()
+    together = np.diff(block) == 0
+    low, high = np.minimum(found[1:], found[:-1]), np.maximum(found[1:], found[:-1])
+    assert ((high == low) | (high >= (1.0 + change) * low))[together].all()
+
+
 def test_a_programmed_feed_near_the_best_is_kept() -> None:
     segments = straight([30.0], speed=4.95)
     stretch = stretch_of(segments)
     commands = commands_of(stretch, places_of(segments, [30.0], [5.0]), FIR)
     pieces = pieces_of(stretch, commands, PieceRules())
     assert pieces.rate.tolist() == [4.95]
+
+
+def test_a_path_without_length_has_no_commands() -> None:
+    segments = lines([(1, 2, 3), (1, 2, 3)], speed=5.0)
+    found = commands_of(stretch_of(segments), place_caps(stretch_of(segments)), FIR)
+    assert len(found.ends) == len(found.run) == 0
+    assert len(pieces_of(stretch_of(segments), found, PieceRules())) == 0

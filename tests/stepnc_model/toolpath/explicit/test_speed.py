@@ -1,5 +1,6 @@
 """Feeds of explicit tool paths: what is left out, factors, and curves of factors."""
 
+from dataclasses import replace
 from math import cos, pi, sin
 
 import pytest
@@ -114,6 +115,55 @@ class TestPaced:
             assert move.feed.ratio == pytest.approx(1.0 - middle / 16.0)
             station = move.end[0]
         assert station == 8.0
+
+    def test_a_constant_factor_splits_nothing(self) -> None:
+        moves = [contact(2.0), contact(8.0)]
+        poles = ((0.5, 0.0, 0.0), (0.5, 0.0, 0.0))
+        found = list(paced((0.0, 0.0, 0.0), moves, replace(HALVING, poles=poles)))
+        assert [(move.end[0], move.feed and move.feed.ratio) for move in found] == [
+            (2.0, 0.5),
+            (8.0, 0.5),
+        ]
+
+    @pytest.mark.parametrize(
+        ("low", "high", "factors", "expected"),
+        [
+            (2.95, 3.0, (1.0, 0.5), [(2.95, 1.0), (8.0, 0.5)]),
+            (3.0, 3.05, (0.5, 1.0), [(3.05, 0.5), (8.0, 1.0)]),
+            (4.95, 5.0, (1.0, 0.5), [(5.0, 1.0), (8.0, 0.5)]),
+            (5.0, 5.05, (0.5, 1.0), [(5.0, 0.5), (8.0, 1.0)]),
+            (4.97, 5.03, (0.5, 1.0), [(5.0, 0.5), (8.0, 1.0)]),
+        ],
+    )
+    def test_a_short_ramp_is_a_step_at_its_slower_end_or_a_corner(
+        self,
+        low: float,
+        high: float,
+        factors: tuple[float, float],
+        expected: list[tuple[float, float]],
+    ) -> None:
+        before, after = factors
+        curve = Spline(
+            degree=1,
+            knots=(0.0, 0.0, low, high, 8.0, 8.0),
+            poles=tuple((each, 0.0, 0.0) for each in (before, before, after, after)),
+        )
+        found = list(paced((0.0, 0.0, 0.0), [contact(5.0), contact(8.0)], curve))
+        merged = {move.feed.ratio: move.end[0] for move in found if move.feed}
+        assert merged == pytest.approx({ratio: end for end, ratio in expected})
+        assert len(found) == (2 if low < 5.05 and high > 4.96 else 3)
+
+    def test_only_a_long_ramp_is_sampled(self) -> None:
+        """From 1 to 1/2 between 2 and 6 mm: half of a path of 8 mm."""
+        curve = Spline(
+            degree=1,
+            knots=(0.0, 0.0, 2.0, 6.0, 8.0, 8.0),
+            poles=tuple((each, 0.0, 0.0) for each in (1.0, 1.0, 0.5, 0.5)),
+        )
+        found = list(paced((0.0, 0.0, 0.0), [contact(8.0)], curve))
+        assert len(found) == PIECES // 2 + 2
+        assert found[0].end[0] == pytest.approx(2.0)
+        assert found[-2].end[0] == pytest.approx(6.0)
 
     def test_there_are_enough_pieces_for_a_path_of_one_move(self) -> None:
         assert len(list(paced((0.0, 0.0, 0.0), [contact(5.0)], HALVING))) == PIECES
