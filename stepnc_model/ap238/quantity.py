@@ -143,6 +143,7 @@ class Units:
     def __init__(self, instances: Instances) -> None:
         self._instances = instances
         self._known: dict[int, Unit | None] = {}
+        self._lengths: dict[int, Unit | None] = {}
         self._default: Unit | None = None
         self._has_default = False
 
@@ -155,7 +156,9 @@ class Units:
     def length_in(self, context: int | None) -> Unit | None:
         """Unit of length of a representation context, or of the file where it has none."""
         if context is not None:
-            found = self._length(context)
+            if context not in self._lengths:
+                self._lengths[context] = self._length(context)
+            found = self._lengths[context]
             if found is not None:
                 return found
         if not self._has_default:
