@@ -7,8 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from service.code_contents import check_code
-from service.code_contents_output import code_json
+from service.code_check import checked_code
 from service.contents import check
 from service.contents_output import contents_json
 from service.errors import Unreadable
@@ -281,7 +280,7 @@ def _contents(data_folder: DataFolder, stored: StoredProgram, units: str) -> byt
     file = data_folder.program_file(stored.id)
     try:
         if stored.kind is ProgramKind.NC_CODE:
-            return code_json(check_code(file, name=stored.name)).encode()
+            return checked_code(file, name=stored.name)
         return contents_json(check(file, units=units, name=stored.name)).encode()
     except StepNcError:
         programs.require_file(data_folder, stored.id)

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from service.cli.serve import USUAL_RATE
+from service.code_check import LONGEST as LONGEST_CHECK
 from service.factory import asked
 from service.http_protocol import HEAD_S
 from service.jobs.runner import LONGEST, LONGEST_PACED, MOST_PACED
@@ -56,6 +57,7 @@ def test_bounds_are_those_of_the_program() -> None:
         f"{MOST_LOGGED // 1_000_000} million rows in Parquet, "
         f"{MOST_ELEMENTS // 1_000_000} million elements in XML",
         f"{PLACES_SHOWN // 1000} 000 places",
+        f"check of NC code | {LONGEST_CHECK:g} s",
         f"tool table | {LARGEST_TOOLS >> 20} MB; {MOST_BYTES_OF_TOML >> 10} KB in TOML",
         f"{asked.LARGEST >> 10} KB; {asked.MOST_MACHINES} machines, {asked.MOST_STEPS} steps, "
         f"{asked.MOST_RUNS} programs times kinds of machines, {asked.MOST_BATCH // 1000} 000 "

@@ -1,0 +1,64 @@
+"""Check of NC code in a process of its own, with a time limit.
+
+Subprograms and loops let a small program execute for minutes, and the check of a large one
+takes that long too: neither may hold up the requests that a web process answers meanwhile.
+"""
+
+import subprocess
+import sys
+from pathlib import Path
+
+from service.code_contents import check_code
+from service.code_contents_output import code_json
+from stepnc_model.errors import StepNcError
+
+LONGEST = 120.0
+"""Time limit of a check, in s."""
+
+REFUSED = 3
+"""Exit code of a check that ends with an error of the project."""
+
+
+def checked_code(file: Path, *, name: str, longest: float = LONGEST) -> bytes:
+    """Check NC code and return its contents and findings as JSON.
+
+    Parameters
+    ----------
+    file : Path
+    name : str
+        Name of the program.
+    longest : float, s
+        Time limit.
+
+    Raises
+    ------
+    StepNcError
+        As :func:`service.code_contents.check_code`, or when the time limit is exceeded.
+    """
+    words = [sys.executable, "-m", "service.code_check", str(file), name]
+    try:
+        done = subprocess.run(words, capture_output=True, timeout=longest, check=False)
+    except subprocess.TimeoutExpired:
+        text = f"the check takes longer than {longest:g} s, the limit of this service"
+        raise StepNcError(f"{name}: {text}; check it with `stepnc check`") from None
+    if done.returncode == REFUSED:
+        raise StepNcError(f"{name}: {done.stderr.decode(errors='replace').strip()}")
+    if done.returncode:
+        raise RuntimeError(done.stderr.decode(errors="replace")[-2000:])
+    return done.stdout
+
+
+def main() -> int:
+    """Check the file that the command line names; return the exit code."""
+    file, name = sys.argv[1:]
+    try:
+        text = code_json(check_code(Path(file), name=name))
+    except StepNcError as error:
+        sys.stderr.write(str(error))
+        return REFUSED
+    sys.stdout.buffer.write(text.encode())
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
