@@ -19,6 +19,7 @@ from urllib.parse import quote
 from sqlalchemy import Connection, CursorResult, Table, func, insert, select, text
 from sqlalchemy.engine import URL
 
+from kbe.checksum import add_checksums, why_damaged
 from kbe.connection import reading, snapshot, writing
 from kbe.errors import (
     BackupDiffers,
@@ -169,7 +170,9 @@ def _copied(store: Store, fresh: StoreLocation) -> Content:
         _require_one_file(fresh)
     with open_place(fresh, is_new_allowed=False) as copy:
         copy.check()
-        return content(copy)
+        found = content(copy)
+    add_checksums(fresh.file)
+    return found
 
 
 def _copy_pages(file: str, fresh: StoreLocation) -> None:
@@ -196,6 +199,8 @@ def _readable(path: str) -> Iterator[Store]:
     with translated(place), tempfile.TemporaryDirectory(prefix="stepnc-restore-") as folder:
         copy = _moved(place, str(Path(folder) / "copy.db"))
         _copy_pages(place.file, copy)
+        if reason := why_damaged(copy.file):
+            raise StoreDamaged(place.shown, reason=reason)
         with open_place(copy, is_new_allowed=False) as store:
             store.check()
             yield store

@@ -158,8 +158,10 @@ def read_text(path: Path) -> str:
 def read_bounded(path: Path, *, most: int = MOST_BYTES) -> bytes:
     """Bytes of a library file, which is small."""
     try:
-        if path.is_char_device():
+        if path.is_char_device() or path.is_block_device():
             raise LibraryError("is a device, not a file", path=str(path))
+        if path.is_fifo() or path.is_socket():
+            raise LibraryError("is a pipe or socket, not a file", path=str(path))
         with path.open("rb") as file:
             data = file.read(most + 1)
     except ValueError as error:

@@ -6,8 +6,8 @@
     The record as prefixed parameters to which no instance refers: standard entities only, in
     places where no interpreter looks. A system that saves the file again may drop them.
 
-An AP238 file takes profile ``standard`` only: the parameters become representation items of an
-action property of the machine functions (:mod:`stepnc_model.ap238.writing`).
+An AP238 file takes profile ``standard`` only: the parameters become representation items of
+action properties of the workplan (:mod:`stepnc_model.ap238.loose`).
 
 In both profiles the operation's own technology holds the feed. A technology shared by several
 operations is copied before it is edited. Existing records are removed first, so that writing

@@ -24,6 +24,7 @@ SLOW = (
     "optimiser/test_side_by_side.py",
     "properties",
     "service/agent/test_run.py",
+    "service/along_path/test_of_code.py",
     "service/calibration/test_run.py",
     "service/cli/test_kbe_verbs.py",
     "service/cli/test_main.py",

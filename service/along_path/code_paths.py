@@ -184,9 +184,13 @@ class CodePaths:
 
     def fastest(self, block: int) -> float:
         """Greatest spindle speed at which a block moves at a feed, rev/s; 0 if not known."""
+        return self.program.moves.fastest(self.rows_of(block))
+
+    def rows_of(self, block: int) -> Ints:
+        """Rows of the moves of a block at a feed."""
         order, blocks = self._by_block
         low, high = np.searchsorted(blocks, (block, block + 1))
-        return self.program.moves.fastest(order[low:high])
+        return order[low:high]
 
     @cached_property
     def _by_block(self) -> tuple[Ints, Ints]:
@@ -226,7 +230,7 @@ class CodePaths:
             return {}
         starts = np.array([each.start() for each in found])
         blocks = np.searchsorted(text.starts, starts, side="right") - 1
-        moving = np.unique(moves.block)
+        moving = np.unique(moves.block).astype(np.int64)
         at: dict[int, bool] = {}
         last: dict[int, int] = {}
         for row, (block, call) in enumerate(

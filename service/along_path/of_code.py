@@ -12,8 +12,10 @@ from optimiser.along_path.tool_bounds import bounds_of_tool
 from optimiser.modes import Mode
 from service.along_path.code_paths import CodeBlocks, CodePaths
 from service.along_path.course import PathSource
-from service.along_path.run import FeedsAlongPath, along_path
+from service.along_path.plan_run import PartTotals
+from service.along_path.run import AlongPathTask, FeedsAlongPath, along_path
 from service.along_path.task import task_of
+from service.along_path.written_code import slowed
 from service.chosen import (
     DEFAULT_LATHE,
     DEFAULT_MILL,
@@ -28,6 +30,7 @@ from service.files import (
     write_atomically,
 )
 from service.numbers import tool_numbers_in
+from service.progress import Ticker
 from service.reading import Tell, silent
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
@@ -37,7 +40,7 @@ from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.read import read_tools
 from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
 from stepnc_model.nc.advice import BlockAdvice, RewrittenCode
-from stepnc_model.nc.program import read_program
+from stepnc_model.nc.program import NcProgram, read_program
 from stepnc_model.nc.rewrite import rewrite
 from stepnc_model.post.block_feeds import BlockPart
 from stepnc_model.post.blocks import MachineType
@@ -104,14 +107,18 @@ def optimise_code(
     material = load_material_named(request.material)
     tell(f"material: {material.reason}")
     library = read_tools(files.tools, unit=files.tools_unit)
-    code = CodePaths(
-        program,
-        machine,
-        material,
-        name=name,
-        tools=library.by_number,
-        stock=request.stock,
-    )
+
+    def paths_of(program: NcProgram) -> CodePaths:
+        return CodePaths(
+            program,
+            machine,
+            material,
+            name=name,
+            tools=library.by_number,
+            stock=request.stock,
+        )
+
+    code = paths_of(program)
     bounds = _bounds(code, request)
     source = PathSource(
         prepare=code.prepared,
@@ -124,6 +131,11 @@ def optimise_code(
     along = along_path(source, task, tell=tell)
     advice = (_advice(code, line, parts) for line, parts in along.feeds.items())
     rewritten = rewrite(program, advice, mark=request.is_marked)
+    if rewritten.changed:
+        again = read_program(rewritten.data, dialect=program.dialect, machine=program.machine)
+        rewritten = replace(
+            rewritten, data=_slowed(paths_of(again), request, task, along.time_after, tell)
+        )
     found = CodeAdvice(
         program=name,
         machine=machine,
@@ -197,6 +209,24 @@ def _advice(code: CodePaths, line: int, parts: tuple[BlockPart, ...]) -> BlockAd
         feeds=tuple(part.rate * fastest for part in parts),
         reason=", ".join(reasons),
     )
+
+
+def _slowed(
+    code: CodePaths, request: AdviceRequest, task: AlongPathTask, whole: float, tell: Tell
+) -> bytes:
+    """Bytes of a rewritten program whose blocks are nowhere too fast."""
+    bounds = _bounds(code, request)
+    what = "checking the written program"
+    totals = PartTotals(
+        Ticker(tell), what, share=lambda now: min(now / whole, 1.0), keeps_trace=False
+    )
+    slower = slowed(
+        code,
+        bounds=lambda part: bounds.get(part.name),
+        control=task.control,
+        watch=totals.add,
+    )
+    return rewrite(code.program, slower).data
 
 
 def _idle(code: CodePaths, along: FeedsAlongPath) -> Iterator[Finding]:

@@ -16,7 +16,7 @@ def optimise_code(options: argparse.Namespace) -> int:
     from service.terminal import tell, write_out
     from stepnc_model.errors import StepNcError
 
-    if options.write_toolpaths:
+    if options.writes_toolpaths:
         raise StepNcError("--write-toolpaths writes into STEP-NC programs: name one")
     files = CodeFiles(
         file=options.file,

@@ -11,7 +11,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from kbe.rows import OUTCOME, AttributeColumn
+from kbe.rows import OUTCOME, AttributeColumn, outcome_row
 from service.files import read_bytes
 from service.knowledge.verbs import record
 from stepnc_model.errors import StepNcError
@@ -64,6 +64,7 @@ def _outcome(row: object, where: str) -> ProcessOutcome:
     try:
         outcome = OUTCOME.noun(values)
         OUTCOME.row(outcome)
+        outcome_row(outcome)
     except (ValueError, TypeError) as error:
         raise StepNcError(f"{where}: {error}") from error
     return outcome

@@ -7,6 +7,7 @@ import asyncio
 import re
 import secrets
 import time
+from collections.abc import Iterable
 from itertools import count as count_up
 from typing import Any
 
@@ -156,6 +157,7 @@ class AccessMiddleware:
         # HEAD is answered as GET; the server leaves out the body.
         asked_as = {**scope, "method": "GET"} if scope["method"] == "HEAD" else scope
         try:
+            _require_once(scope["headers"])
             self._require_known_host(scope, headers)
             key = await self._key(scope, headers)
             asked_as["state"] = {**scope.get("state", {}), "key": key, "id": id.decode()}
@@ -288,6 +290,17 @@ class AccessMiddleware:
                 "request": id.decode(), "method": scope["method"], "path": scope["path"],
                 "status": status, "seconds": round(seconds, 6), "who": who,
             })  # fmt: skip
+
+
+def _require_once(headers: Iterable[tuple[bytes, bytes]]) -> None:
+    """Refuse a second Host or Authorization header: readers would disagree which one counts.
+
+    RFC 9112 §3.2 demands 400 for a second Host.
+    """
+    names = [name.lower() for name, _ in headers]
+    for name in (b"host", b"authorization"):
+        if names.count(name) > 1:
+            raise Unreadable(f"the header {name.decode().title()} is given more than once")
 
 
 def _host(place: str) -> str:

@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from threading import BoundedSemaphore
 from typing import Annotated, Any
@@ -123,7 +124,8 @@ def idempotency_of(request: Request, key: str | None, body: bytes) -> Idempotenc
         raise Unreadable("Idempotency-Key is empty")
     text = f"{request.method} {request.url.path}?{request.url.query}\n".encode()
     digest = hashlib.sha256(text + body).hexdigest()
-    return IdempotencyKey(owner=owner_of(request), key=key, fingerprint=digest)
+    found = key_of(request)
+    return IdempotencyKey(owner=found.id or found.name, key=key, fingerprint=digest)
 
 
 async def fetched(data_folder: DataFolder, path: Path) -> Path:
@@ -195,6 +197,7 @@ async def queued(
     StepNcError
         When the job could not start; a repeated idempotency key returns the existing job.
     """
+    asked = replace(asked, key=key_of(request).id)
     data_folder, idempotency = (
         data_folder_of(request),
         idempotency_of(request, key, _words(asked)),

@@ -23,6 +23,7 @@ from service.rest.metrics import SHARED
 from service.rest.settings import Settings
 from service.storage import keys, library
 from service.storage.folder import (
+    OTHERS,
     DataFolder,
     FolderAddress,
     open_data_folder,
@@ -66,6 +67,8 @@ def serve(start: ServerOptions) -> None:
         When the service cannot be started.
     """
     settings = start.settings
+    # What this process and its children make is for its user alone.
+    os.umask(OTHERS)
     data_folder = open_data_folder(
         settings.root,
         knowledge=settings.knowledge,

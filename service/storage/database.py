@@ -68,6 +68,8 @@ SCHEMA = (
     """,
     # Programs of earlier versions are STEP-NC programs.
     "ALTER TABLE programs ADD COLUMN kind TEXT NOT NULL DEFAULT 'step-nc'",
+    # The share of the queue belongs to a key; several keys may have one name.
+    "ALTER TABLE jobs ADD COLUMN key TEXT NOT NULL DEFAULT ''",
 )
 """Migration script of each version; the file's version is the number of scripts applied."""
 

@@ -12,6 +12,7 @@ import shutil
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+from stat import S_IMODE, S_ISLNK
 
 from service.errors import NotFound, Unavailable
 from service.files import write_atomically
@@ -22,7 +23,11 @@ from service.storage.connection import Database
 from service.storage.database import FileDatabase
 from service.storage.file_store import FileStore, is_store
 
+OTHERS = 0o077
+"""Rights of other users."""
+
 PRIVATE = 0o700
+PRIVATE_FILE = 0o600
 
 FOLDERS = ("programs", "files", "jobs", "machines", "materials")
 """Folders below the folder of files."""
@@ -147,7 +152,34 @@ def open_data_folder(
             folder.mkdir(mode=PRIVATE, parents=True, exist_ok=True)
         except OSError as error:
             raise Unavailable(f"{named}: {error.strerror or error}") from error
-    return made or _data_folder(address)
+    found = made or _data_folder(address)
+    for folder in {root, place}:
+        _make_private(folder)
+    return found
+
+
+def _make_private(root: Path) -> None:
+    """Take the rights of others off a data folder and what the service keeps in it.
+
+    What belongs to another user is left alone: only that user may change it.
+    """
+    _restrict(root, PRIVATE)
+    for path in root.glob(f"{DATABASE}*"), root.glob("knowledge.db*"), root.glob(MARK):
+        for file in path:
+            _restrict(file, PRIVATE_FILE)
+    for name in FOLDERS:
+        for folder, _, files in os.walk(root / name):
+            _restrict(Path(folder), PRIVATE)
+            for file_name in files:
+                _restrict(Path(folder, file_name), PRIVATE_FILE)
+
+
+def _restrict(path: Path, mode: int) -> None:
+    """Take rights off a file or folder; links, and what others own, stay as they are."""
+    with suppress(OSError):
+        found = path.lstat().st_mode
+        if found & OTHERS and not S_ISLNK(found):
+            path.chmod(S_IMODE(found) & mode)
 
 
 def known_data_folder(address: FolderAddress) -> DataFolder:

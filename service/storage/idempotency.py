@@ -19,6 +19,7 @@ class IdempotencyKey:
     """Idempotency key of a request: its owner, the key and a fingerprint."""
 
     owner: str
+    """Id of the API key, which another key of the same name does not share; else a name."""
     key: str
     fingerprint: str
     """Hash of method, path and body."""

@@ -128,6 +128,8 @@ class JobRequest:
     program: str = ""
     source: str = ""
     owner: str
+    key: str = ""
+    """Id of the API key that asked, whose share of the queue it takes; empty: none."""
 
 
 def add(
@@ -146,15 +148,16 @@ def add(
     with data_folder.database.writing() as connection:
         kept = made_before(connection, idempotency)
         if kept is None:
-            _require_room(connection, asked.owner)
+            _require_room(connection, asked)
             _require_program(connection, asked.program)
             _require_files(connection, asked.request)
             connection.execute(
-                "INSERT INTO jobs (id, kind, state, request, program, source, owner, created) "
-                "VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
+                "INSERT INTO jobs "
+                "(id, kind, state, request, program, source, owner, created, key) "
+                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
                 (
                     id, asked.kind.value, JobState.QUEUED.value, json.dumps(asked.request),
-                    asked.program, asked.source, asked.owner, time.time(),
+                    asked.program, asked.source, asked.owner, time.time(), asked.key,
                 ),
             )  # fmt: skip
             remember(connection, idempotency, id)
@@ -377,14 +380,16 @@ def _changed(connection: Connection, job: Job, columns: str, values: Sequence[ob
     )
 
 
-def _require_room(connection: Connection, owner: str) -> None:
-    """Require room in the queue, and in the part of it that one owner may fill."""
+def _require_room(connection: Connection, asked: JobRequest) -> None:
+    """Require room in the queue, and in the part of it that one API key may fill."""
     row = connection.execute(
-        "SELECT count(*) AS waiting, count(*) FILTER (WHERE owner = ?) AS own "
+        "SELECT count(*) AS waiting, "
+        "count(*) FILTER (WHERE key = ? AND (key <> '' OR owner = ?)) AS own "
         "FROM jobs WHERE state = 'queued'",
-        (owner,),
+        (asked.key, asked.owner),
     ).fetchone()
-    share = MOST_WAITING if owner == LOCAL else max(MOST_WAITING // OWNERS, 1)
+    is_alone = asked.owner == LOCAL and not asked.key
+    share = MOST_WAITING if is_alone else max(MOST_WAITING // OWNERS, 1)
     if row["waiting"] >= MOST_WAITING or row["own"] >= share:
         raise TooMany(60.0)
 

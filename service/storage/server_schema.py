@@ -80,5 +80,6 @@ SCHEMA: tuple[tuple[str, ...], ...] = (
     ),
     # Programs of earlier versions are STEP-NC programs.
     ("ALTER TABLE programs ADD COLUMN kind TEXT NOT NULL DEFAULT 'step-nc'",),
+    ("ALTER TABLE jobs ADD COLUMN key TEXT NOT NULL DEFAULT ''",),
 )
 """Migration statements of each version; the version is the number of entries applied."""

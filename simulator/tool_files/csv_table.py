@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from simulator.errors import LibraryError
-from simulator.tool_files.placed_row import GivenValue, PlacedRow, ToolRows, placed_row
+from simulator.tool_files.placed_row import FileValue, PlacedRow, ToolRows, placed_row
 from simulator.tool_table import ToolRow
 
 SEPARATORS = ",;\t"
@@ -97,7 +97,7 @@ def _placed(columns: list[str], row: Row, path: Path) -> PlacedRow:
         message = f"{len(cells)} cells; the heading has {len(columns)}"
         raise LibraryError(message, path=str(path), line=line)
     given = {
-        column: GivenValue(value=_value(column, cell.strip()), place=column)
+        column: FileValue(value=_value(column, cell.strip()), place=column)
         for column, cell in zip(columns, cells, strict=False)
         if cell.strip()
     }

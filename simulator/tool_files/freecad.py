@@ -16,7 +16,7 @@ from simulator.toml_file import read_text
 from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.json_text import list_in, object_in, parsed_json, shown
 from simulator.tool_files.placed_row import (
-    GivenValue,
+    FileValue,
     PlacedRow,
     ToolRows,
     assumed,
@@ -54,7 +54,7 @@ UNITS = {
 
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S*)\s*$")
 
-Values = dict[str, GivenValue]
+Values = dict[str, FileValue]
 
 
 def read_freecad(content: Mapping[str, Any], path: Path) -> ToolRows:
@@ -73,7 +73,7 @@ def read_freecad(content: Mapping[str, Any], path: Path) -> ToolRows:
         With the file of the tool bit, the parameter, the value, the bound and the unit.
     """
     if "tools" not in content:
-        found = _bit(content, path, number=GivenValue(value=1, place="number"))
+        found = _bit(content, path, number=FileValue(value=1, place="number"))
         note = assumed(f"'{content.get('name', '')}'", "a tool bit has no number: it is T1")
         return ToolRows(rows=found.rows, findings=(note, *found.findings))
     rows: list[PlacedRow] = []
@@ -86,7 +86,7 @@ def read_freecad(content: Mapping[str, Any], path: Path) -> ToolRows:
             if key not in entry:
                 message = "missing; a tool has a number nr and a path"
                 raise LibraryError(message, path=str(path), key=f"{place}.{key}")
-        number = GivenValue(value=entry["nr"], place=f"{path.name}: {place}.nr")
+        number = FileValue(value=entry["nr"], place=f"{path.name}: {place}.nr")
         file = _file(entry["path"], path, f"{place}.path")
         found = _bit(parsed_json(read_text(file), file), file, number=number)
         rows += found.rows
@@ -107,7 +107,7 @@ def _file(name: object, library: Path, place: str) -> Path:
     raise LibraryError(message, path=str(library), key=place)
 
 
-def _bit(content: Mapping[str, Any], path: Path, *, number: GivenValue) -> ToolRows:
+def _bit(content: Mapping[str, Any], path: Path, *, number: FileValue) -> ToolRows:
     """Row of a tool bit, or the finding that it cannot be used."""
     stem = str(content.get("shape-type") or Path(str(content.get("shape", ""))).stem)
     shape = stem.lower().replace("-", "").replace("_", "")
@@ -122,8 +122,8 @@ def _bit(content: Mapping[str, Any], path: Path, *, number: GivenValue) -> ToolR
     }
     given: Values = {
         "number": number,
-        "id": GivenValue(value=name, place="name"),
-        "kind": GivenValue(value=kind.value, place="shape"),
+        "id": FileValue(value=name, place="name"),
+        "kind": FileValue(value=kind.value, place="shape"),
     }
     given |= _dimensions(parameters, shape)
     edge = edge_given(parameters.get("Material", ""), "parameter.Material")
@@ -153,7 +153,7 @@ def _dimensions(parameters: Mapping[str, Any], shape: str) -> Values:
         given["point_angle_deg"] = _plain(parameters["TipAngle"], "parameter.TipAngle")
     if shape in {"ballend", "taperedballnose"}:
         radius = 0.5 * _size(parameters, "Diameter")
-        given["corner_radius_mm"] = GivenValue(value=radius, place="parameter.Diameter")
+        given["corner_radius_mm"] = FileValue(value=radius, place="parameter.Diameter")
     if shape == "taperedballnose" and "TaperAngle" in parameters:
         half = _halved(parameters["TaperAngle"], "parameter.TaperAngle")
         given["taper_angle_deg"] = half
@@ -171,7 +171,7 @@ def _bull_nose(parameters: Mapping[str, Any]) -> Values:
         return {"corner_radius_mm": _length(parameters["CornerRadius"], place)}
     if "FlatRadius" in parameters:
         radius = 0.5 * _size(parameters, "Diameter") - _size(parameters, "FlatRadius")
-        return {"corner_radius_mm": GivenValue(value=radius, place="parameter.FlatRadius")}
+        return {"corner_radius_mm": FileValue(value=radius, place="parameter.FlatRadius")}
     return {}
 
 
@@ -187,14 +187,14 @@ def _cone(parameters: Mapping[str, Any]) -> Values:
     return {"point_angle_deg": _plain(parameters["CuttingEdgeAngle"], place)}
 
 
-def _length(value: object, place: str) -> GivenValue:
+def _length(value: object, place: str) -> FileValue:
     """Length in mm; what is none stays as it is, to be refused."""
     found = _QUANTITY.match(value) if isinstance(value, str) else None
     if found is None:
         return given_length(value, place, FileUnit.MM)
     unit = UNITS.get(found[2].lower())
     if unit is None:
-        return GivenValue(value=value, place=place)
+        return FileValue(value=value, place=place)
     return given_length(float(found[1]), place, unit)
 
 
@@ -204,17 +204,17 @@ def _size(parameters: Mapping[str, Any], key: str) -> float:
     return float(value) if isinstance(value, int | float) else 0.0
 
 
-def _plain(value: object, place: str) -> GivenValue:
+def _plain(value: object, place: str) -> FileValue:
     """Number of a count or of degrees."""
     found = _QUANTITY.match(value) if isinstance(value, str) else None
     if found is not None and found[2] in {"", "°", "deg"}:
-        return GivenValue(value=float(found[1]), place=place)
-    return GivenValue(value=value, place=place)
+        return FileValue(value=float(found[1]), place=place)
+    return FileValue(value=value, place=place)
 
 
-def _halved(value: object, place: str) -> GivenValue:
+def _halved(value: object, place: str) -> FileValue:
     """Half of an included angle."""
     whole = _plain(value, place)
     if isinstance(whole.value, float):
-        return GivenValue(value=0.5 * whole.value, place=place)
+        return FileValue(value=0.5 * whole.value, place=place)
     return whole

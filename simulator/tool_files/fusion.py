@@ -17,7 +17,7 @@ from simulator.tool_files.cam_kind import FLAT, PER_TOOTH, POINTED, kind_named
 from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.json_text import list_in, object_in, shown
 from simulator.tool_files.placed_row import (
-    GivenValue,
+    FileValue,
     PlacedRow,
     ToolRows,
     assumed,
@@ -35,7 +35,7 @@ MM_PER_FOOT = 304.8
 
 HANDS = {"R": TurningHand.RIGHT, "L": TurningHand.LEFT, "N": TurningHand.NEUTRAL}
 
-Values = dict[str, GivenValue]
+Values = dict[str, FileValue]
 
 
 def read_fusion(content: Mapping[str, Any], path: Path) -> ToolRows:
@@ -70,7 +70,7 @@ def read_fusion(content: Mapping[str, Any], path: Path) -> ToolRows:
             findings.append(left_out(f"{place} '{name}'", "it has no number of the machine"))
             continue
         given, notes = _tool(tool, kind, path, place)
-        given["number"] = GivenValue(value=post["number"], place=f"{place}.post-process.number")
+        given["number"] = FileValue(value=post["number"], place=f"{place}.post-process.number")
         rows.append(placed_row(given, path, place=place))
         findings += [assumed(f"{place} '{name}'", note) for note in notes]
     return ToolRows(rows=tuple(rows), findings=tuple(findings))
@@ -82,15 +82,15 @@ def _tool(
     """Values of a tool, and what was assumed about it."""
     unit = _unit(tool, path, place)
     notes: list[str] = []
-    given: Values = {"kind": GivenValue(value=kind.value, place=f"{place}.type")}
+    given: Values = {"kind": FileValue(value=kind.value, place=f"{place}.type")}
     if tool.get("description"):
-        given["id"] = GivenValue(value=tool["description"], place=f"{place}.description")
+        given["id"] = FileValue(value=tool["description"], place=f"{place}.description")
     edge = edge_given(tool.get("BMC", ""), f"{place}.BMC")
     if not edge:
         notes.append(f"edge material {shown(tool.get('BMC'))} is taken for carbide")
     given |= edge
     if tool.get("grade"):
-        given["grade"] = GivenValue(value=tool["grade"], place=f"{place}.grade")
+        given["grade"] = FileValue(value=tool["grade"], place=f"{place}.grade")
     geometry = object_in(tool, "geometry", path, place=place)
     holder = object_in(tool, "holder", path, place=place)
     if kind in TURNED:
@@ -124,14 +124,14 @@ def _cutter(
     take("diameter_mm", "DC")
     take("edge_length_mm", "LCF")
     if geometry.get("NOF"):
-        given["teeth"] = GivenValue(value=geometry["NOF"], place=f"{at}.NOF")
+        given["teeth"] = FileValue(value=geometry["NOF"], place=f"{at}.NOF")
     if geometry.get("HA"):
-        given["helix_deg"] = GivenValue(value=geometry["HA"], place=f"{at}.HA")
+        given["helix_deg"] = FileValue(value=geometry["HA"], place=f"{at}.HA")
     if kind in POINTED:
         if name == FLAT:
-            given["point_angle_deg"] = GivenValue(value=180.0, place=f"{place}.type")
+            given["point_angle_deg"] = FileValue(value=180.0, place=f"{place}.type")
         elif geometry.get("SIG"):
-            given["point_angle_deg"] = GivenValue(value=geometry["SIG"], place=f"{at}.SIG")
+            given["point_angle_deg"] = FileValue(value=geometry["SIG"], place=f"{at}.SIG")
         return given
     if name == "chamfer mill":
         return given | _chamfer(geometry, unit, at)
@@ -140,7 +140,7 @@ def _cutter(
         return given | {"corner_radius_mm": radius}
     take("corner_radius_mm", "RE")
     if name == "tapered mill" and geometry.get("TA"):
-        given["taper_angle_deg"] = GivenValue(value=geometry["TA"], place=f"{at}.TA")
+        given["taper_angle_deg"] = FileValue(value=geometry["TA"], place=f"{at}.TA")
     return given
 
 
@@ -152,9 +152,9 @@ def _chamfer(geometry: Mapping[str, Any], unit: FileUnit, at: str) -> Values:
     if tip:
         return {
             "diameter_mm": given_length(tip, f"{at}.tip-diameter", unit),
-            "taper_angle_deg": GivenValue(value=angle, place=f"{at}.TA"),
+            "taper_angle_deg": FileValue(value=angle, place=f"{at}.TA"),
         }
-    return {"point_angle_deg": GivenValue(value=2.0 * angle, place=f"{at}.TA")}
+    return {"point_angle_deg": FileValue(value=2.0 * angle, place=f"{at}.TA")}
 
 
 def _holder(
@@ -198,9 +198,9 @@ def _insert(
             break
     hand = HANDS.get(str(holder.get("HAND")).upper())
     if hand is not None:
-        given["hand"] = GivenValue(value=hand, place=f"{place}.holder.HAND")
+        given["hand"] = FileValue(value=hand, place=f"{place}.holder.HAND")
     if str(tool.get("type")).endswith("boring"):
-        given["inside"] = GivenValue(value=True, place=f"{place}.type")
+        given["inside"] = FileValue(value=True, place=f"{place}.type")
     return given
 
 
@@ -223,7 +223,7 @@ def _windows(
             if values:
                 row = choose(values, key=values.__getitem__)
                 place_of = f"{at}[{row}].{symbol}"
-                given[f"{end}_{name}"] = GivenValue(value=values[row], place=place_of)
+                given[f"{end}_{name}"] = FileValue(value=values[row], place=place_of)
     count = max(len(feeds), len(speeds))
     note = [f"its windows of feed and speed span {count} presets"] if count > 1 else []
     return given, note

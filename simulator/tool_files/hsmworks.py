@@ -16,7 +16,7 @@ from simulator.spec import ToolKind
 from simulator.tool_files.cam_kind import FLAT, PER_TOOTH, POINTED, kind_named
 from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.placed_row import (
-    GivenValue,
+    FileValue,
     PlacedRow,
     ToolRows,
     assumed,
@@ -43,7 +43,7 @@ LEAST_POINT = 30.0
 
 _DECLARATION = re.compile(r"^\s*<\?xml[^>]*\?>[^\S\n]*")
 
-Values = dict[str, GivenValue]
+Values = dict[str, FileValue]
 
 
 def read_hsmworks(text: str, path: Path) -> ToolRows:
@@ -77,8 +77,8 @@ def read_hsmworks(text: str, path: Path) -> ToolRows:
             findings.append(left_out(f"'{name}'", reason, line=line))
             continue
         given, notes = _cutter(tool, kind, path, line)
-        given["number"] = GivenValue(value=_number(number), place="nc.number")
-        given["id"] = GivenValue(value=name, place="description")
+        given["number"] = FileValue(value=_number(number), place="nc.number")
+        given["id"] = FileValue(value=name, place="description")
         rows.append(placed_row(given, path, line=line))
         findings += [assumed(f"'{name}'", note, line=line) for note in notes]
     return ToolRows(rows=tuple(rows), findings=tuple(findings))
@@ -134,7 +134,7 @@ def _cutter(tool: "Element", kind: ToolKind, path: Path, line: int) -> tuple[Val
         message = f"'{tool.get('unit')}' is not one of {', '.join(UNITS)}"
         raise LibraryError(message, path=str(path), key="tool.unit", line=line)
     body = _attributes(tool, "body")
-    given: Values = {"kind": GivenValue(value=kind.value, place="tool.type")}
+    given: Values = {"kind": FileValue(value=kind.value, place="tool.type")}
     given |= _body(body, str(tool.get("type", "")).lower(), kind, unit)
     given |= _holder(tool, body, unit)
     material = _attributes(tool, "material").get("name", "")
@@ -161,27 +161,27 @@ def _body(body: Mapping[str, str], name: str, kind: ToolKind, unit: FileUnit) ->
     take("edge_length_mm", "flute-length")
     if body.get("number-of-flutes", "0") != "0":
         value = _number(body["number-of-flutes"])
-        given["teeth"] = GivenValue(value=value, place="body.number-of-flutes")
+        given["teeth"] = FileValue(value=value, place="body.number-of-flutes")
     angle = _number(body.get("tip-angle", body.get("taper-angle", "0")))
     place = "body.tip-angle" if "tip-angle" in body else "body.taper-angle"
     if kind in POINTED:
         if name == FLAT:
-            given["point_angle_deg"] = GivenValue(value=180.0, place="tool.type")
+            given["point_angle_deg"] = FileValue(value=180.0, place="tool.type")
         elif isinstance(angle, str) or angle >= LEAST_POINT:
-            given["point_angle_deg"] = GivenValue(value=angle, place=place)
+            given["point_angle_deg"] = FileValue(value=angle, place=place)
         return given
     diameter = given.get("diameter_mm")
     if name == "ball end mill" and diameter is not None and isinstance(diameter.value, float):
-        given["corner_radius_mm"] = GivenValue(value=0.5 * diameter.value, place=diameter.place)
+        given["corner_radius_mm"] = FileValue(value=0.5 * diameter.value, place=diameter.place)
         return given
     if name in {"chamfer mill", "tapered mill"} and angle != 0.0:
         if name == "chamfer mill" and _number(body.get("tip-diameter", "0")) == 0.0:
             if isinstance(angle, float):
                 angle = 2.0 * angle
-            return given | {"point_angle_deg": GivenValue(value=angle, place=place)}
+            return given | {"point_angle_deg": FileValue(value=angle, place=place)}
         if name == "chamfer mill":
             take("diameter_mm", "tip-diameter")
-        given["taper_angle_deg"] = GivenValue(value=angle, place=place)
+        given["taper_angle_deg"] = FileValue(value=angle, place=place)
     take("corner_radius_mm", "corner-radius")
     return given
 
@@ -210,8 +210,8 @@ def _windows(tool: "Element", diameter: float, teeth: float, *, unit: FileUnit) 
     given: Values = {}
     for name, values in (("feed_mm", feeds), ("cutting_speed_m_min", speeds)):
         if values:
-            given[f"min_{name}"] = GivenValue(value=min(values), place="presets")
-            given[f"max_{name}"] = GivenValue(value=max(values), place="presets")
+            given[f"min_{name}"] = FileValue(value=min(values), place="presets")
+            given[f"max_{name}"] = FileValue(value=max(values), place="presets")
     return given
 
 

@@ -22,7 +22,7 @@ from simulator.errors import LibraryError
 from simulator.spec import ToolKind
 from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.placed_row import (
-    GivenValue,
+    FileValue,
     PlacedRow,
     ToolRows,
     assumed,
@@ -160,15 +160,15 @@ def _edges(words: dict[str, float]) -> tuple[float, float]:
     return min(angles), max(angles)
 
 
-def _insert(words: dict[str, float], unit: FileUnit) -> dict[str, GivenValue]:
+def _insert(words: dict[str, float], unit: FileUnit) -> dict[str, FileValue]:
     """Values of a turning tool."""
     orientation = words.get("Q", 0.0)
     given = {
-        "number": GivenValue(value=words["T"], place="T"),
-        "kind": GivenValue(value=ToolKind.TURNING.value, place="Q"),
+        "number": FileValue(value=words["T"], place="T"),
+        "kind": FileValue(value=ToolKind.TURNING.value, place="Q"),
         "nose_radius_mm": _half(words.get("D", 0.0), unit),
-        "inside": GivenValue(value=orientation in INSIDE, place="Q"),
-        "hand": GivenValue(value=HANDS.get(int(orientation), f"Q{orientation:g}"), place="Q"),
+        "inside": FileValue(value=orientation in INSIDE, place="Q"),
+        "hand": FileValue(value=HANDS.get(int(orientation), f"Q{orientation:g}"), place="Q"),
     }
     if "I" not in words or "J" not in words:
         return given
@@ -177,21 +177,21 @@ def _insert(words: dict[str, float], unit: FileUnit) -> dict[str, GivenValue]:
     leading, trailing = 180.0 - high, low
     if given["hand"].value == TurningHand.LEFT:
         leading, trailing = trailing, leading
-    given["cutting_edge_angle_deg"] = GivenValue(value=leading, place="I, J")
+    given["cutting_edge_angle_deg"] = FileValue(value=leading, place="I, J")
     if given["hand"].value != TurningHand.NEUTRAL:
-        given["trailing_angle_deg"] = GivenValue(value=trailing, place="I, J")
+        given["trailing_angle_deg"] = FileValue(value=trailing, place="I, J")
     return given
 
 
-def _half(diameter: float, unit: FileUnit) -> GivenValue:
+def _half(diameter: float, unit: FileUnit) -> FileValue:
     """Radius of a diameter that may be negative, mm."""
     value = 0.5 * unit.mm(abs(diameter))
-    return GivenValue(value=value, place="D", written=f"a diameter of {diameter:g} {unit}")
+    return FileValue(value=value, place="D", written=f"a diameter of {diameter:g} {unit}")
 
 
 def _cutter(
     words: dict[str, float], remark: str, unit: FileUnit
-) -> tuple[dict[str, GivenValue], list[str]]:
+) -> tuple[dict[str, FileValue], list[str]]:
     """Values of a rotating tool, and what was assumed about it."""
     lower, notes = remark.lower(), []
     kind = next((each for words_, each in KINDS if re.search(words_, lower)), None)
@@ -199,18 +199,18 @@ def _cutter(
         notes.append("no remark tells its kind: taken for an end mill")
         kind = ToolKind.ENDMILL
     given = {
-        "number": GivenValue(value=words["T"], place="T"),
-        "kind": GivenValue(value=kind.value, place="the remark"),
+        "number": FileValue(value=words["T"], place="T"),
+        "kind": FileValue(value=kind.value, place="the remark"),
         "diameter_mm": given_length(abs(words["D"]), "D", unit),
     }
     if remark:
-        given["id"] = GivenValue(value=remark, place="the remark")
+        given["id"] = FileValue(value=remark, place="the remark")
     if kind is ToolKind.ENDMILL and "ball" in lower:
         given["corner_radius_mm"] = _half(words["D"], unit)
     teeth = TEETH.search(lower)
     if teeth:
         count = float(teeth[1] or teeth[2])
-        given["teeth"] = GivenValue(value=count, place="the remark")
+        given["teeth"] = FileValue(value=count, place="the remark")
     elif kind in {ToolKind.ENDMILL, ToolKind.FACEMILL}:
         notes.append("no remark tells the number of its teeth: taken for one")
     return given, notes

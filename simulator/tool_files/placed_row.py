@@ -25,7 +25,7 @@ EDGE_WORDS = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GivenValue:
+class FileValue:
     """Value of a key of a tool row, as a file gives it."""
 
     value: object
@@ -36,11 +36,11 @@ class GivenValue:
     """What the file says if its unit is another one, such as ``500 inch``."""
 
 
-def given_length(value: object, place: str, unit: FileUnit) -> GivenValue:
+def given_length(value: object, place: str, unit: FileUnit) -> FileValue:
     """Length of a file in mm; what is no number stays as it is, to be refused."""
     if unit is FileUnit.MM or isinstance(value, bool) or not isinstance(value, int | float):
-        return GivenValue(value=value, place=place)
-    return GivenValue(value=unit.mm(value), place=place, written=f"{value:g} {unit}")
+        return FileValue(value=value, place=place)
+    return FileValue(value=unit.mm(value), place=place, written=f"{value:g} {unit}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,7 +52,7 @@ class PlacedRow:
     """Path to the tool in the file; empty if the line gives the place."""
     line: int = 0
     """Line of the file, counted from 1; 0 if there is none."""
-    given: Mapping[str, GivenValue] = field(default_factory=dict)
+    given: Mapping[str, FileValue] = field(default_factory=dict)
     """Values by the keys of a tool row."""
 
     def error(self, message: str, path: Path, key: str) -> LibraryError:
@@ -73,13 +73,13 @@ class ToolRows:
 
 
 def placed_row(
-    given: Mapping[str, GivenValue], path: Path, *, place: str = "", line: int = 0
+    given: Mapping[str, FileValue], path: Path, *, place: str = "", line: int = 0
 ) -> PlacedRow:
     """Check the values of a tool and make a row of them.
 
     Parameters
     ----------
-    given : mapping of str to GivenValue
+    given : mapping of str to FileValue
         Values by the keys of a tool row.
     path : Path
         The file, for messages.
@@ -107,12 +107,12 @@ def placed_row(
     return PlacedRow(row=row, place=place, line=line, given=given)
 
 
-def edge_given(name: object, place: str) -> dict[str, GivenValue]:
+def edge_given(name: object, place: str) -> dict[str, FileValue]:
     """Cutting material of a name; nothing if the name is not one of an edge material."""
     material = EDGE_WORDS.get(str(name).strip().lower())
     if material is None:
         return {}
-    return {"cutting_material": GivenValue(value=material.value, place=place)}
+    return {"cutting_material": FileValue(value=material.value, place=place)}
 
 
 def left_out(what: str, why: str, *, line: int = 0) -> Finding:

@@ -10,7 +10,17 @@ from dataclasses import dataclass
 
 from stepnc_model.ap238.drafting import LISTS, AimDraft
 from stepnc_model.ap238.quantity import number_of
-from stepnc_model.ap238.table import Condition, Ending, Kind, Move, Path, Row, Rule, Step, rules
+from stepnc_model.ap238.requirements import Requirements
+from stepnc_model.ap238.table import (
+    Ending,
+    Kind,
+    Path,
+    PathMove,
+    PathStep,
+    Row,
+    Rule,
+    rules,
+)
 from stepnc_model.entities.catalogue import class_of
 from stepnc_model.entities.conversion import AttributeSlot, slots_of
 from stepnc_model.entities.entity import Entity
@@ -45,9 +55,6 @@ _MEASURES: Mapping[Kind, tuple[tuple[str, ...], str, str]] = {
 
 _GEOMETRY = ("GEOMETRIC_REPRESENTATION_ITEM",)
 
-SCHEMA = "MODEL_BASED_INTEGRATED_MANUFACTURING_SCHEMA"
-"""Schema that new files name."""
-
 
 class Builder:
     """Builder of the AIM instances for the instances of one ISO 14649 file.
@@ -67,8 +74,9 @@ class Builder:
     def __init__(self, file: Part21File, draft: AimDraft, known: Mapping[int, int]) -> None:
         self._file = file
         self._draft = draft
+        self._asked = Requirements(draft)
         self._nodes: dict[int, int] = dict(known)
-        self._made: dict[tuple[int, Step, Step | None, int], int] = {}
+        self._made: dict[tuple[int, PathStep, PathStep | None, int], int] = {}
         self._onto_nodes: set[tuple[int, int]] = set()
         self._named: set[int] = set()
         """Instances whose name a path asks for."""
@@ -141,10 +149,10 @@ class Builder:
 
     def _begin(self, number: int, node: int, rule: Rule) -> None:
         """Give an instance what its rule asks of it; the rows follow later."""
-        self._set_all(node, node, rule.base.settings)
+        self._asked.set_all(node, node, rule.base.settings)
         for condition in rule.base.conditions:
-            self._fulfil(node, condition)
-        self._complete(node)
+            self._asked.fulfil(node, condition)
+        self._asked.complete(node)
         self._waiting.append((number, node, rule))
 
     def _fill(self, number: int, node: int, rule: Rule) -> None:
@@ -196,12 +204,12 @@ class Builder:
             return None if node is None else Ref(node)
         return value
 
-    def _refer(self, node: int, steps: tuple[Step, ...], value: Value, place: int) -> None:
+    def _refer(self, node: int, steps: tuple[PathStep, ...], value: Value, place: int) -> None:
         """Build a path to the instance that a reference leads to."""
         if not isinstance(value, Ref):
             return
         number = int(value)
-        if all(step.move in (Move.STAY, Move.USED) for step in steps):
+        if all(step.move in (PathMove.STAY, PathMove.USED) for step in steps):
             self._onto(node, number)
             return
         target = self._node(number)
@@ -216,10 +224,10 @@ class Builder:
                 target = self._twin(number, target)
         for condition in last.conditions:
             if self._draft.is_new(target):
-                self._fulfil(target, condition)
+                self._asked.fulfil(target, condition)
         if name:
             self._named.add(target)
-        if last.move is Move.BACK:
+        if last.move is PathMove.BACK:
             self._draft.put(target, last.attribute, holder)
             return
         present = self._draft.get(holder, last.attribute)
@@ -228,7 +236,7 @@ class Builder:
             holder = self._walk(node, steps[:-1], target=(last, target), place=place, fork=True)
         self._draft.put(holder, last.attribute, target)
         if any(self._draft.is_a(target, name) for name in _GEOMETRY):
-            self._set_context(holder)
+            self._asked.set_context(holder)
 
     def _twin(self, number: int, target: int) -> int:
         """Second AIM instance for a measure that is used under two names."""
@@ -253,21 +261,21 @@ class Builder:
     def _walk(
         self,
         node: int,
-        steps: tuple[Step, ...],
+        steps: tuple[PathStep, ...],
         *,
-        target: tuple[Step, int] | None,
+        target: tuple[PathStep, int] | None,
         place: int,
         fork: bool = False,
     ) -> int:
         """Go along a path and make what is missing; return the last instance."""
         owner = node
         for number, step in enumerate(steps):
-            if step.move in (Move.STAY, Move.USED):
+            if step.move in (PathMove.STAY, PathMove.USED):
                 continue
             following = steps[number + 1] if number + 1 < len(steps) else None
-            is_own = place if step.move is Move.BACK and _is_repeated(steps, number) else 0
+            is_own = place if step.move is PathMove.BACK and _is_repeated(steps, number) else 0
             # What refers back is shared by paths that leave it through the same attribute.
-            leaving = following if following and following.move is Move.FORWARD else None
+            leaving = following if following and following.move is PathMove.FORWARD else None
             key = node, step, leaving, is_own if not fork else -1 - place
             if key not in self._made:
                 self._made[key] = self._stepped(owner, node, step, target, place)
@@ -278,13 +286,13 @@ class Builder:
         self,
         owner: int,
         node: int,
-        step: Step,
-        target: tuple[Step, int] | None,
+        step: PathStep,
+        target: tuple[PathStep, int] | None,
         place: int,
     ) -> int:
         """Instance one step away: the one that is there, or a new one."""
         draft = self._draft
-        if step.move is Move.FORWARD:
+        if step.move is PathMove.FORWARD:
             present = draft.get(node, step.attribute)
             if isinstance(present, Ref) and step.attribute not in LISTS:
                 return int(present)
@@ -301,154 +309,14 @@ class Builder:
             draft.put(made, step.attribute, node)
             if step.order:
                 draft.set(made, step.order, Real(float(place + 1)))
-        self._describe(made, owner, step)
+        self._asked.describe(made, owner, step)
         return made
-
-    def _describe(self, made: int, owner: int, step: Step) -> None:
-        """Set what a step says about the instance that it makes."""
-        self._set_all(made, owner, step.settings)
-        for condition in step.conditions:
-            self._fulfil(made, condition)
-        self._complete(made)
-
-    def _set_all(self, node: int, owner: int, settings: tuple[tuple[str, str], ...]) -> None:
-        """Set attributes of an instance, some of them as its owner has them."""
-        for name, text in settings:
-            path, _, type_ = name.partition(":")
-            names = tuple(path.split("."))
-            if text == "*":
-                described = self._draft.get(owner, "description")
-                self._draft.set(node, name, described if isinstance(described, str) else "")
-            elif name == "ranking":
-                self._draft.set(node, name, int(text))
-            else:
-                texts = (text,) if text else ()
-                self._fulfil(node, Condition(attributes=names, type=type_, texts=texts))
-
-    def _complete(self, node: int) -> None:
-        """Give a new instance the context that its entity requires."""
-        draft = self._draft
-        if draft.is_a(node, "REPRESENTATION") and draft.get(node, "context_of_items") is None:
-            if draft.is_a(node, "SHAPE_REPRESENTATION"):
-                self._set_context(node)
-            else:
-                draft.set(node, "context_of_items", Ref(self._plain_context()))
-        if draft.is_a(node, "SHAPE_ASPECT") and draft.get(node, "of_shape") is None:
-            if not draft.is_a(node, "INSTANCED_FEATURE"):
-                draft.set(node, "of_shape", Ref(self._component_shape()))
-            else:
-                draft.set(node, "product_definitional", Enumeration("T"))
-
-        if draft.is_a(node, "PRODUCT") and draft.get(node, "frame_of_reference") is None:
-            context = draft.shared(
-                ("PRODUCT_CONTEXT",),
-                {
-                    "name": "CNC Machining",
-                    "frame_of_reference": Ref(self._application()),
-                    "discipline_type": "manufacturing",
-                },
-            )
-            draft.set(node, "frame_of_reference", (Ref(context),))
-        if draft.is_a(node, "PRODUCT_DEFINITION"):
-            context = draft.shared(
-                ("PRODUCT_DEFINITION_CONTEXT",),
-                {
-                    "name": "CNC Machining",
-                    "frame_of_reference": Ref(self._application()),
-                    "life_cycle_stage": "manufacturing",
-                },
-            )
-            draft.set(node, "frame_of_reference", Ref(context))
-
-    def _application(self) -> int:
-        """Context of the application, with the standard that defines it."""
-        context = self._draft.shared(
-            ("APPLICATION_CONTEXT",),
-            {"application": "Application protocol for the exchange of CNC data"},
-        )
-        self._draft.shared(
-            ("APPLICATION_PROTOCOL_DEFINITION",),
-            {
-                "status": "international standard",
-                "application_interpreted_model_schema_name": SCHEMA.lower(),
-                "application_protocol_year": 2020,
-                "application": Ref(context),
-            },
-        )
-        return context
-
-    def _plain_context(self) -> int:
-        """Context of representations without geometry."""
-        return self._draft.shared(
-            ("REPRESENTATION_CONTEXT",), {"context_type": "units not necessary"}
-        )
-
-    def _set_context(self, node: int) -> None:
-        """Give a representation the context of geometry in mm and degrees."""
-        draft = self._draft
-        if not draft.is_new(node) or not draft.is_a(node, "REPRESENTATION"):
-            return
-        units = tuple(Ref[object](draft.unit(name)) for name in ("mm", "deg"))
-        context = draft.shared(
-            ("GEOMETRIC_REPRESENTATION_CONTEXT", "GLOBAL_UNIT_ASSIGNED_CONTEXT"),
-            {"coordinate_space_dimension": 3, "units": units},
-        )
-        draft.set(node, "context_of_items", Ref(context))
-
-    def _component_shape(self) -> int:
-        """Shape that the components of features are aspects of."""
-        draft = self._draft
-        definition = draft.shared(
-            ("FEATURE_COMPONENT_DEFINITION",), {"name": "feature component"}
-        )
-        return draft.shared(
-            ("PRODUCT_DEFINITION_SHAPE",),
-            {"name": "feature component", "definition": Ref(definition)},
-        )
-
-    def _fulfil(self, node: int, condition: Condition) -> None:
-        """Make a condition true."""
-        *path, last = condition.attributes
-        if condition.type:
-            path, last = [*path, last], ""
-        if not path:
-            if condition.texts:
-                self._draft.set(node, last, condition.texts[0])
-            return
-        if not last:
-            self._chain(node, path, condition.type)
-            return
-        if not condition.texts or path == ["items"]:
-            return
-        if path[0] == "formation":
-            for attribute in path:
-                present = self._draft.get(node, attribute)
-                node = int(present) if isinstance(present, Ref) else node
-            self._draft.set(node, last, condition.texts[0])
-            return
-        type_ = {"kind": "ACTION_RESOURCE_TYPE"}[path[0]]
-        made = self._draft.shared((type_,), {last: condition.texts[0]})
-        self._draft.put(node, path[0], made)
-
-    def _chain(self, node: int, path: list[str], last: str) -> None:
-        """Make a chain of instances, such as the formation and the product of a definition."""
-        types = {"formation": "PRODUCT_DEFINITION_FORMATION"}
-        for place, attribute in enumerate(path):
-            is_last = place == len(path) - 1
-            present = self._draft.get(node, attribute)
-            if isinstance(present, Ref):
-                node = int(present)
-                continue
-            made = self._draft.make((last if is_last else types[attribute],), {})
-            self._complete(made)
-            self._draft.put(node, attribute, made)
-            node = made
 
     def _value(self, node: int, path: Path, value: Value) -> None:
         """Build a path to a text or a number."""
         ending = path.ending
         last = path.steps[-1] if path.steps else None
-        if last is None or last.move is not Move.FORWARD:
+        if last is None or last.move is not PathMove.FORWARD:
             self._measure_on(node, ending, value)
             return
         if ending.kind in (Kind.TEXT, Kind.OWN_LENGTH, Kind.INTEGER):
@@ -537,7 +405,7 @@ def _is_plain_list(path: Path, value: Value) -> bool:
     return (
         isinstance(value, tuple)
         and len(path.steps) == 1
-        and path.steps[0].move is Move.FORWARD
+        and path.steps[0].move is PathMove.FORWARD
         and path.steps[0].attribute not in LISTS
     )
 
@@ -547,7 +415,7 @@ def _plain(value: Value) -> Value:
     return value.value if isinstance(value, Typed) else value
 
 
-def _name_of(step: Step) -> str:
+def _name_of(step: PathStep) -> str:
     """Name that a step asks of its instance; empty for any."""
     named = (c.texts[0] for c in step.conditions if c.attributes == ("name",) and c.texts)
     return next(named, "")
@@ -558,9 +426,9 @@ def _mark(path: Path) -> int:
     return 0 if path.ending.kind is not Kind.OWN_LENGTH else 1
 
 
-def _is_repeated(steps: tuple[Step, ...], number: int) -> bool:
+def _is_repeated(steps: tuple[PathStep, ...], number: int) -> bool:
     """Whether each value of a list has a chain of its own, which begins at a step."""
-    return number == 0 and steps[0].move is Move.BACK and _is_relation(steps[0].entity)
+    return number == 0 and steps[0].move is PathMove.BACK and _is_relation(steps[0].entity)
 
 
 def _is_relation(entity: str) -> bool:

@@ -10,10 +10,12 @@ References
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from stepnc_model.ap238.building import SCHEMA, Builder, Unsayable
+from stepnc_model.ap238.building import Builder, Unsayable
 from stepnc_model.ap238.completing import complete
 from stepnc_model.ap238.drafting import AimDraft
 from stepnc_model.ap238.instances import Instances
+from stepnc_model.ap238.loose import hang, loose_numbers
+from stepnc_model.ap238.requirements import SCHEMA
 from stepnc_model.errors import Finding, FindingList, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.writer import format_value
@@ -54,10 +56,20 @@ def to_ap238(file: Part21File) -> Exported:
         raise SchemaError("no PROJECT and no WORKPLAN: there is no program to convert")
     for number in roots:
         builder.build(number)
+    _hang_loose(file, draft, builder)
     complete(draft)
     findings = FindingList()
     findings.extend(_findings(file, builder))
     return Exported(data=draft.apply(), findings=findings.all())
+
+
+def _hang_loose(file: Part21File, draft: AimDraft, builder: Builder) -> None:
+    """Add the parameters to which nothing refers, such as records of an optimisation."""
+    built = {number: builder.build(number) for number in loose_numbers(file, file.ids())}
+    items = {number: node for number, node in built.items() if node is not None}
+    workplans = [number for number in file.ids_of("WORKPLAN") if number in builder.built]
+    if items and workplans:
+        hang(draft, file, items, builder.built[workplans[0]])
 
 
 def _findings(file: Part21File, builder: Builder) -> Iterator[Finding]:

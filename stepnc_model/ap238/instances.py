@@ -6,6 +6,7 @@ it, in whichever part of the instance that entity stands.
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
+from functools import cache
 from typing import TypeAlias
 
 from stepnc_model.ap238.dictionary import attributes, is_a, own_attributes, subtypes
@@ -68,20 +69,22 @@ class Instances:
 
     def slots(self, id: int, attribute: str) -> tuple[Slot, ...]:
         """Positions of an attribute; several where supertypes share a name."""
-        found: list[Slot] = []
         parts = self.parts(id)
-        for number, (keyword, values) in enumerate(parts):
-            names = attributes(keyword) if len(parts) == 1 else own_attributes(keyword)
-            found += [
-                (number, place)
-                for place, name in enumerate(names)
-                if name == attribute and place < len(values)
-            ]
-        return tuple(found)
+        known = _places if len(parts) == 1 else _own_places
+        return tuple(
+            (number, place)
+            for number, (keyword, values) in enumerate(parts)
+            for place in known(keyword, attribute)
+            if place < len(values)
+        )
 
     def values(self, id: int, attribute: str) -> tuple[Value, ...]:
         """Values of an attribute; several where supertypes share its name."""
         parts = self.parts(id)
+        if len(parts) == 1:
+            keyword, values = parts[0]
+            places = _places(keyword, attribute)
+            return tuple([values[place] for place in places if place < len(values)])
         return tuple(parts[part][1][place] for part, place in self.slots(id, attribute))
 
     def value(self, id: int, attribute: str) -> Value:
@@ -121,3 +124,15 @@ class Instances:
                     found.setdefault(keyword, []).append(id)
             self._complex = found
         return self._complex
+
+
+@cache
+def _places(keyword: str, attribute: str) -> tuple[int, ...]:
+    """Places of an attribute among the parameters of a simple instance."""
+    return tuple(i for i, name in enumerate(attributes(keyword)) if name == attribute)
+
+
+@cache
+def _own_places(keyword: str, attribute: str) -> tuple[int, ...]:
+    """Places of an attribute among the parameters of one part of a complex instance."""
+    return tuple(i for i, name in enumerate(own_attributes(keyword)) if name == attribute)

@@ -68,7 +68,7 @@ _ISO_BASES = {"length": 1e-3, "time": 1.0, "angle": pi / 180.0, "pascal": 1.0}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Measure:
+class AimMeasure:
     """Dimension of a kind of value, and its unit in ISO 14649."""
 
     exponents: Mapping[str, float]
@@ -79,18 +79,20 @@ class Measure:
 
 
 MEASURES = {
-    Kind.LENGTH: Measure(exponents={"length": 1.0}, iso=1e-3, noun="a length", unit="mm"),
-    Kind.ANGLE: Measure(exponents={"angle": 1.0}, iso=pi / 180.0, noun="an angle", unit="deg"),
-    Kind.RATIO: Measure(exponents={}, iso=1.0, noun="a ratio", unit="1"),
-    Kind.COUNT: Measure(exponents={}, iso=1.0, noun="a count", unit="1"),
-    Kind.TIME: Measure(exponents={"time": 1.0}, iso=1.0, noun="a time", unit="s"),
-    Kind.SPEED: Measure(
+    Kind.LENGTH: AimMeasure(exponents={"length": 1.0}, iso=1e-3, noun="a length", unit="mm"),
+    Kind.ANGLE: AimMeasure(
+        exponents={"angle": 1.0}, iso=pi / 180.0, noun="an angle", unit="deg"
+    ),
+    Kind.RATIO: AimMeasure(exponents={}, iso=1.0, noun="a ratio", unit="1"),
+    Kind.COUNT: AimMeasure(exponents={}, iso=1.0, noun="a count", unit="1"),
+    Kind.TIME: AimMeasure(exponents={"time": 1.0}, iso=1.0, noun="a time", unit="s"),
+    Kind.SPEED: AimMeasure(
         exponents={"length": 1.0, "time": -1.0}, iso=1.0, noun="a speed", unit="m/s"
     ),
-    Kind.ROTATION: Measure(
+    Kind.ROTATION: AimMeasure(
         exponents={"time": -1.0}, iso=1.0, noun="a rotational speed", unit="rev/s"
     ),
-    Kind.PRESSURE: Measure(exponents={"pascal": 1.0}, iso=1.0, noun="a pressure", unit="Pa"),
+    Kind.PRESSURE: AimMeasure(exponents={"pascal": 1.0}, iso=1.0, noun="a pressure", unit="Pa"),
 }
 
 
@@ -103,7 +105,7 @@ class Conversion:
     """Whether the unit has the dimension of the value."""
 
 
-def conversion(unit: Unit | None, measure: Measure) -> Conversion:
+def conversion(unit: Unit | None, measure: AimMeasure) -> Conversion:
     """Factor from a unit to that of ISO 14649.
 
     A unit of another dimension does not fit; its own bases are used as far as they go, because
@@ -113,7 +115,7 @@ def conversion(unit: Unit | None, measure: Measure) -> Conversion:
     ----------
     unit : Unit, optional
         None: the unit of ISO 14649.
-    measure : Measure
+    measure : AimMeasure
     """
     if unit is None:
         return Conversion(factor=1.0)
@@ -141,6 +143,7 @@ class Units:
     def __init__(self, instances: Instances) -> None:
         self._instances = instances
         self._known: dict[int, Unit | None] = {}
+        self._lengths: dict[int, Unit | None] = {}
         self._default: Unit | None = None
         self._has_default = False
 
@@ -153,7 +156,9 @@ class Units:
     def length_in(self, context: int | None) -> Unit | None:
         """Unit of length of a representation context, or of the file where it has none."""
         if context is not None:
-            found = self._length(context)
+            if context not in self._lengths:
+                self._lengths[context] = self._length(context)
+            found = self._lengths[context]
             if found is not None:
                 return found
         if not self._has_default:

@@ -7,58 +7,39 @@ others get numbers above the largest of the file. Deviations are findings; readi
 """
 
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from stepnc_model.ap238.following import PathFollower, Place
 from stepnc_model.ap238.instances import Instances, references
 from stepnc_model.ap238.quantity import (
     MEASURES,
+    AimMeasure,
     Conversion,
-    Measure,
     Unit,
     Units,
     conversion,
     number_of,
 )
 from stepnc_model.ap238.table import (
-    Condition,
     Ending,
     Kind,
-    Move,
     Path,
+    PathStep,
     Row,
     Rule,
-    Step,
+    loose_rule,
     rules,
     rules_for,
 )
 from stepnc_model.entities.conversion import AttributeSlot, slots_of
-from stepnc_model.errors import Finding, FindingList, Severity
+from stepnc_model.errors import Finding, Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Enumeration, Real, Ref, Typed, Value
 from stepnc_model.units import MM_PER_M
 
-RULE = "ISO 10303-238"
-
 SLOW = 0.1e-3
 """Speed in m/s below which the unit of a number is doubtful: no cutter feeds 6 mm/min."""
-
-MAX_FOUND = 250_000
-"""Greatest number of places that one path may lead to."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Place:
-    """Place that a path has led to: an instance or a value, and the way there."""
-
-    id: int
-    """Instance, or the one that holds the value."""
-    value: Value = None
-    """Value; None for an instance."""
-    context: int | None = None
-    """Representation context that gives the units of geometry."""
-    way: tuple[int, ...] = ()
-    """Instances passed, from the one of the rule on."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,17 +65,17 @@ class Converted:
 
 
 @dataclass(slots=True)
-class Reading:
+class AimReading:
     """Instances of ISO 14649 read from an AP238 file, and the findings on the way."""
 
     converted: list[Converted] = field(default_factory=list)
-    findings: FindingList = field(default_factory=FindingList)
+    findings: tuple[Finding, ...] = ()
 
 
 _Key = tuple[int, str, float]
 
 
-class Reader:
+class AimReader:
     """Reader of one file.
 
     The object has state: the instances met so far, and those still to be converted.
@@ -107,28 +88,47 @@ class Reader:
     def __init__(self, file: Part21File) -> None:
         self.instances = Instances(file)
         self.units = Units(self.instances)
+        self._paths = PathFollower(self.instances)
         self._file = file
         self._numbers: dict[_Key, int] = {}
         self._taken: set[int] = set()
         self._next = max(file.ids(), default=0) + 1
         self._waiting: deque[tuple[int, Origin]] = deque()
-        self._reading = Reading()
+        self._reading = AimReading()
         self._visited: set[int] = set()
         """Instances on the ways to all values read."""
 
-    def read(self) -> Reading:
+    def read(self) -> AimReading:
         """Convert all programs of the file."""
         for rule in rules():
             if rule.is_root:
                 for name in rule.base.types[:1]:
                     for id in self.instances.of_entity(name):
-                        if self.matches(id, rule):
+                        if self._paths.matches(id, rule):
                             self._number(Place(id=id), rule)
+        for place in self.loose():
+            self._visited.update(place.way)
+            self._reference(place, AttributeSlot(references=(loose_rule().entity,)), "items")
         while self._waiting:
             number, origin = self._waiting.popleft()
             self._convert(number, origin)
         self._note_unread()
+        self._reading.findings = self._paths.findings.all()
         return self._reading
+
+    def follow(self, start: Place, steps: tuple[PathStep, ...]) -> list[Place]:
+        """Places that a path leads to from an instance."""
+        return self._paths.follow(start, steps)
+
+    def loose(self) -> list[Place]:
+        """Items that nothing refers to in ISO 14649."""
+        rule = loose_rule()
+        return [
+            place
+            for id in self.instances.of_entity(rule.base.types[0])
+            if self._paths.matches(id, rule)
+            for place in self._paths.follow(Place(id=id, way=(id,)), rule.proof)
+        ]
 
     def _note_unread(self) -> None:
         """Note the properties of converted instances that no path has led to."""
@@ -153,102 +153,7 @@ class Reader:
     def _note(self, id: int, what: str, attribute: str) -> None:
         """Note something that ISO 14649 cannot say, or that is not read here."""
         message = f"{what} is left out: no attribute of ISO 14649 has a path to it"
-        self._remark(Severity.NOTE, message, id, attribute)
-
-    def matches(self, id: int, rule: Rule) -> bool:
-        """Whether an instance is one that a rule describes."""
-        place = Place(id=id, way=(id,))
-        if not self._is_fitting(place, rule.base):
-            return False
-        return not rule.proof or bool(self.follow(place, rule.proof))
-
-    def follow(self, start: Place, steps: tuple[Step, ...]) -> list[Place]:
-        """Places that a path leads to from an instance."""
-        places = [start]
-        for step in steps:
-            places = [
-                place
-                for each in places
-                for place in self._moved(each, step)
-                if self._is_fitting(place, step)
-            ][:MAX_FOUND]
-        return places
-
-    def _moved(self, place: Place, step: Step) -> Iterator[Place]:
-        """Places one step away, without regard to its conditions."""
-        if step.move is Move.STAY:
-            yield place
-            return
-        if place.value is not None:
-            return
-        if step.move is Move.FORWARD:
-            yield from self._forward(place, step)
-            return
-        found = self.instances.referrers(place.id, step.entity, step.attribute)
-        if step.move is Move.USED:
-            if found:
-                yield place
-            return
-        for id in self._sorted(found, step.order):
-            yield Place(id=id, context=self._context(id, place), way=(*place.way, id))
-
-    def _forward(self, place: Place, step: Step) -> Iterator[Place]:
-        """Places that an attribute leads to: instances, or else its value."""
-        found = self.instances.values(place.id, step.attribute)
-        refs = [ref for value in found for ref in references(value)]
-        for ref in refs:
-            if int(ref) not in self.instances:
-                message = f"{ref} does not exist in this file"
-                self._remark(Severity.ERROR, message, place.id, step.attribute)
-                continue
-            yield Place(
-                id=int(ref),
-                context=self._context(int(ref), place),
-                way=(*place.way, int(ref)),
-            )
-        if not refs:
-            value = self.instances.value(place.id, step.attribute)
-            if value is None and "" in found:
-                value = ""
-            if value is not None:
-                yield Place(id=place.id, value=value, context=place.context, way=place.way)
-
-    def _sorted(self, found: list[int], order: str) -> list[int]:
-        """Instances by an attribute, or in file order."""
-        if not order:
-            return found
-        return sorted(found, key=lambda id: number_of(self.instances.value(id, order)) or 0.0)
-
-    def _context(self, id: int, place: Place) -> int | None:
-        """Context of a representation, or that of the place before."""
-        value = self.instances.value(id, "context_of_items")
-        if isinstance(value, Ref) and self.instances.is_a(
-            int(value), "GLOBAL_UNIT_ASSIGNED_CONTEXT"
-        ):
-            return int(value)
-        return place.context
-
-    def _is_fitting(self, place: Place, step: Step) -> bool:
-        """Whether a place fulfils the conditions of a step."""
-        if step.types and (
-            place.value is not None
-            or not all(self.instances.is_a(place.id, name) for name in step.types)
-        ):
-            return False
-        return all(self._is_true(place, condition) for condition in step.conditions)
-
-    def _is_true(self, place: Place, condition: Condition) -> bool:
-        """Whether a condition holds."""
-        ids, values = [place.id], list[Value]()
-        for name in condition.attributes:
-            values = [value for id in ids for value in self.instances.values(id, name)]
-            ids = [int(ref) for value in values for ref in references(value)]
-        if condition.type:
-            return any(self.instances.is_a(id, condition.type) for id in ids)
-        if condition.texts:
-            wanted = {text.casefold() for text in condition.texts}
-            return any(isinstance(v, str) and v.strip().casefold() in wanted for v in values)
-        return any(value not in (None, (), "") for value in values)
+        self._paths.remark(Severity.NOTE, message, id, attribute)
 
     def _number(self, place: Place, rule: Rule) -> Ref[object]:
         """Number of the instance that a place stands for; it is converted once."""
@@ -305,7 +210,7 @@ class Reader:
         self, start: Place, path: Path, slot: AttributeSlot, attribute: str
     ) -> list[Value]:
         """Values that a path leads to."""
-        places = self.follow(start, path.steps)
+        places = self._paths.follow(start, path.steps)
         for place in places:
             self._visited.update(place.way)
         if path.ending.kind is Kind.REFERENCE:
@@ -323,7 +228,7 @@ class Reader:
             return None
         for wanted in slot.references:
             for rule in rules_for(wanted):
-                if self.matches(place.id, rule):
+                if self._paths.matches(place.id, rule):
                     return self._number(place, rule)
         return self._unknown(place, attribute)
 
@@ -346,7 +251,7 @@ class Reader:
             described = self.instances.value(place.id, "description")
             name = f" '{described}'" if isinstance(described, str) else ""
             message = f"{keyword}{name} has no counterpart in ISO 14649 that is supported here"
-            self._remark(Severity.WARNING, message, place.id, attribute)
+            self._paths.remark(Severity.WARNING, message, place.id, attribute)
         number = self._numbers.get(key)
         return None if number is None else Ref(number)
 
@@ -398,7 +303,7 @@ class Reader:
             if aim == text.strip().casefold():
                 return Enumeration(iso)
         known = ", ".join(f"'{aim}'" for aim, _ in ending.texts)
-        self._remark(
+        self._paths.remark(
             Severity.WARNING,
             f"'{text}' is none of {known} ({attribute})",
             place.id,
@@ -447,7 +352,7 @@ class Reader:
                 f"{value * MM_PER_M:g} mm/s ({attribute}) is very slow; "
                 "the number would be usual in m/s"
             )
-            self._remark(Severity.WARNING, message, place.id, "value_component")
+            self._paths.remark(Severity.WARNING, message, place.id, "value_component")
         if ending.kind is Kind.RADIUS:
             value = Real(0.5 * value)
         if ending.kind is Kind.LIP_ANGLE:
@@ -477,7 +382,7 @@ class Reader:
         return conversion(self.units.length_in(context), MEASURES[Kind.LENGTH]).factor
 
     def _remark_unit(
-        self, id: int, measure: Measure, found: Conversion, attribute: str
+        self, id: int, measure: AimMeasure, found: Conversion, attribute: str
     ) -> None:
         """Note a unit that does not fit its value."""
         ref = self.instances.value(id, "unit_component")
@@ -486,20 +391,7 @@ class Reader:
             f"the unit{f' {name!r}' if name else ''} does not measure {measure.noun} "
             f"({attribute}); one is taken for {found.factor:g} {measure.unit}"
         )
-        self._remark(Severity.WARNING, message, id, "unit_component")
-
-    def _remark(self, severity: Severity, message: str, id: int, attribute: str) -> None:
-        """Add a finding about an instance of the file."""
-        self._reading.findings.add(
-            Finding(
-                severity=severity,
-                message=message,
-                entity=self._file.label(id),
-                attribute=attribute,
-                line=self._file.line(id),
-                rule=RULE,
-            )
-        )
+        self._paths.remark(Severity.WARNING, message, id, "unit_component")
 
 
 _PROPERTIES = (

@@ -21,7 +21,7 @@ from stepnc_model.entities.conversion import slots_of
 from stepnc_model.entities.entity import Entity
 
 
-class Move(StrEnum):
+class PathMove(StrEnum):
     """Direction of one step of a reference path."""
 
     FORWARD = "."
@@ -35,7 +35,7 @@ class Move(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Condition:
+class PathCondition:
     """Condition that an attribute holds one of some texts, or anything."""
 
     attributes: tuple[str, ...]
@@ -47,14 +47,14 @@ class Condition:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Step:
+class PathStep:
     """Step of a reference path with its conditions."""
 
-    move: Move
+    move: PathMove
     entity: str = ""
     """Entity of the step; empty for any."""
     attribute: str = ""
-    conditions: tuple[Condition, ...] = ()
+    conditions: tuple[PathCondition, ...] = ()
     types: tuple[str, ...] = ()
     """Entities that the instance must be."""
     order: str = ""
@@ -118,7 +118,7 @@ class Ending:
 class Path:
     """Reference path with the value at its end."""
 
-    steps: tuple[Step, ...]
+    steps: tuple[PathStep, ...]
     ending: Ending
 
 
@@ -139,20 +139,34 @@ class Rule:
     """AIM instance that stands for an entity, and the paths of its attributes."""
 
     entity: type[Entity]
-    base: Step
+    base: PathStep
     """Entity and conditions of the instance."""
-    proof: tuple[Step, ...] = ()
+    proof: tuple[PathStep, ...] = ()
     """Path that must lead somewhere."""
     rows: tuple[Row, ...] = ()
     is_root: bool = False
     """Whether every such instance is read, even if nothing refers to it."""
+    is_loose: bool = False
+    """Whether the proof leads to instances that nothing refers to in ISO 14649."""
+
+
+@cache
+def _all_rules() -> tuple[Rule, ...]:
+    """All rules, in the order of the table."""
+    text = files("stepnc_model.ap238").joinpath("paths.txt").read_text("ascii")
+    return tuple(_TableParser(text).rules())
 
 
 @cache
 def rules() -> tuple[Rule, ...]:
-    """All rules, in the order of the table."""
-    text = files("stepnc_model.ap238").joinpath("paths.txt").read_text("ascii")
-    return tuple(_Parser(text).rules())
+    """Rules of instances that stand for entities, in the order of the table."""
+    return tuple(rule for rule in _all_rules() if not rule.is_loose)
+
+
+@cache
+def loose_rule() -> Rule:
+    """Rule of the parameters to which nothing refers in ISO 14649."""
+    return next(rule for rule in _all_rules() if rule.is_loose)
 
 
 @cache
@@ -166,7 +180,7 @@ _STEP = re.compile(
     r"|:(?P<type>[A-Z0-9_]+)|\[(?P<condition>[^\]]*)\]|\{(?P<made>[^}]*)\}|\^(?P<order>[a-z_]+))"
 )
 _CALL = re.compile(r"\b([a-z_]+)\(([^()]*)\)")
-_RULE = re.compile(r"(root )?([A-Z0-9_]+) = ([A-Z0-9_&]+)(.*)")
+_RULE = re.compile(r"(root |loose )?([A-Z0-9_]+) = ([A-Z0-9_&]+)(.*)")
 _ROW = re.compile(r"  ([a-z0-9_]+) (~?=) ?(.*)")
 _MACRO = re.compile(r"macro ([a-z_]+)\(([^()]*)\) = (.*)")
 
@@ -176,9 +190,10 @@ class _Draft:
     """Rule while its rows are collected."""
 
     entity: type[Entity]
-    base: Step
-    proof: tuple[Step, ...]
+    base: PathStep
+    proof: tuple[PathStep, ...]
     is_root: bool
+    is_loose: bool
     rows: dict[str, Row] = field(default_factory=dict)
 
     def finished(self) -> Rule:
@@ -190,10 +205,11 @@ class _Draft:
             proof=self.proof,
             rows=rows,
             is_root=self.is_root,
+            is_loose=self.is_loose,
         )
 
 
-class _Parser:
+class _TableParser:
     """Parser of the table; a mistake in it is a ``ValueError`` with the line."""
 
     def __init__(self, text: str) -> None:
@@ -248,15 +264,16 @@ class _Parser:
             rows.update(self._groups[name])
         return _Draft(
             entity=classes()[match[2]],
-            base=Step(
-                move=Move.STAY,
+            base=PathStep(
+                move=PathMove.STAY,
                 types=made,
                 conditions=base.conditions,
                 made=base.made or made,
                 settings=base.settings,
             ),
             proof=tuple(proof),
-            is_root=bool(match[1]),
+            is_root=match[1] == "root ",
+            is_loose=match[1] == "loose ",
             rows=rows,
         )
 
@@ -299,7 +316,7 @@ class _Parser:
             ending=_ending(ending.strip()) if arrow else Ending(kind=Kind.REFERENCE),
         )
 
-    def _steps(self, text: str) -> tuple[Step, ...]:
+    def _steps(self, text: str) -> tuple[PathStep, ...]:
         """Steps of a path; types, conditions and settings belong to the step before them."""
         expanded, place, steps = self._expanded(text).strip(), 0, list[_StepDraft]()
         while place < len(expanded):
@@ -315,18 +332,18 @@ class _Parser:
 class _StepDraft:
     """Step while its modifiers are collected."""
 
-    move: Move
+    move: PathMove
     entity: str = ""
     attribute: str = ""
-    conditions: list[Condition] = field(default_factory=list)
+    conditions: list[PathCondition] = field(default_factory=list)
     types: list[str] = field(default_factory=list)
     order: str = ""
     made: tuple[str, ...] = ()
     settings: list[tuple[str, str]] = field(default_factory=list)
 
-    def finished(self) -> Step:
+    def finished(self) -> PathStep:
         """Step with all its modifiers."""
-        return Step(
+        return PathStep(
             move=self.move,
             entity=self.entity,
             attribute=self.attribute,
@@ -343,14 +360,14 @@ def _add_step(steps: list[_StepDraft], match: re.Match[str]) -> None:
     kind = match.lastgroup
     if kind == "back":
         steps.append(
-            _StepDraft(Move(match["move"]), entity=match["entity"], attribute=match["back"])
+            _StepDraft(PathMove(match["move"]), entity=match["entity"], attribute=match["back"])
         )
         return
     if kind == "forward":
-        steps.append(_StepDraft(Move.FORWARD, attribute=match["forward"]))
+        steps.append(_StepDraft(PathMove.FORWARD, attribute=match["forward"]))
         return
     if not steps:
-        steps.append(_StepDraft(Move.STAY))
+        steps.append(_StepDraft(PathMove.STAY))
     step = steps[-1]
     if kind == "type":
         step.types.append(match["type"])
@@ -362,11 +379,11 @@ def _add_step(steps: list[_StepDraft], match: re.Match[str]) -> None:
         _add_settings(step, match["made"])
 
 
-def _condition(text: str) -> Condition:
+def _condition(text: str) -> PathCondition:
     """Condition from ``a.b=text|text``, ``a.b:ENTITY`` or ``a``."""
     path, equals, texts = text.partition("=")
     names, _, type_ = path.partition(":")
-    return Condition(
+    return PathCondition(
         attributes=tuple(names.split(".")),
         type=type_,
         texts=tuple(texts.split("|")) if equals else (),
@@ -419,9 +436,9 @@ def _same(words: list[str]) -> Rule:
             kind = Kind.COORDINATES
         elif inner.references and not inner.plain:
             kind = Kind.REFERENCE
-        step = Step(move=Move.FORWARD, attribute=attribute)
+        step = PathStep(move=PathMove.FORWARD, attribute=attribute)
         rows.append(
             Row(attribute=attribute, paths=(Path(steps=(step,), ending=Ending(kind=kind)),))
         )
-    base = Step(move=Move.STAY, types=(name,), made=(name,))
+    base = PathStep(move=PathMove.STAY, types=(name,), made=(name,))
     return Rule(entity=entity, base=base, rows=tuple(rows))

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Self
 
-from stepnc_model.ap238.reading import Converted, Reader
+from stepnc_model.ap238.reading import AimReader, Converted
 from stepnc_model.errors import Finding
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.writer import format_value
@@ -53,7 +53,7 @@ class AimView(Part21File):
     @classmethod
     def of(cls, source: Part21File) -> Self:
         """Convert an AP238 file."""
-        reading = Reader(source).read()
+        reading = AimReader(source).read()
         text = _text(source, reading.converted)
         plain = Part21File.from_bytes(text, name=source.name)
         return cls(
@@ -62,7 +62,7 @@ class AimView(Part21File):
             structure=plain.structure,
             source=source,
             origins={each.number: each for each in reading.converted},
-            remarks=reading.findings.all(),
+            remarks=reading.findings,
         )
 
     def line(self, id: int) -> int:

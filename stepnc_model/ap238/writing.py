@@ -10,9 +10,11 @@ from itertools import pairwise
 
 from stepnc_model.ap238.building import Builder, aim_number
 from stepnc_model.ap238.drafting import LISTS, AimDraft
+from stepnc_model.ap238.following import RULE, Place
+from stepnc_model.ap238.loose import hang, loose_numbers, without
 from stepnc_model.ap238.quantity import MEASURES, conversion
-from stepnc_model.ap238.reading import RULE, Converted, Place, Reader, measure_kind
-from stepnc_model.ap238.table import Ending, Kind, Move, Path, Row
+from stepnc_model.ap238.reading import AimReader, Converted, measure_kind
+from stepnc_model.ap238.table import Ending, Kind, Path, PathMove, Row
 from stepnc_model.ap238.view import AimView
 from stepnc_model.entities.conversion import AttributeSlot, slots_of
 from stepnc_model.errors import SchemaError
@@ -50,7 +52,7 @@ class _Splice:
     def __init__(self, view: AimView, new: Part21File, removed: set[int]) -> None:
         self._view = view
         self._new = new
-        self._reader = Reader(view.source)
+        self._reader = AimReader(view.source)
         self._draft = AimDraft(view.source, self._reader.instances)
         present = set(new.ids())
         self._gone = removed | {id for id in view.ids() if id not in present}
@@ -67,8 +69,12 @@ class _Splice:
         self._remove()
         # First what is new, in the order in which it was added: records come last, so that
         # their numbers are the same when they are written again.
-        for number in sorted(set(self._new.ids()) - self._kept.keys()):
-            self._builder.build(number)
+        added = sorted(set(self._new.ids()) - self._kept.keys())
+        built = {number: self._builder.build(number) for number in added}
+        loose = loose_numbers(self._new, added)
+        items = {number: node for number in loose if (node := built[number]) is not None}
+        if items:
+            hang(self._draft, self._new, items, self._kept[self._new.ids_of("WORKPLAN")[0]])
         for number in self._kept:
             self._change(self._view.origins[number])
         for each in self._builder.unsayable:
@@ -92,6 +98,7 @@ class _Splice:
                         gone += _own_part(place, path)
             if each.origin not in kept:
                 gone.append(each.origin)
+        gone += without(self._reader, self._draft, set(gone))
         self._draft.remove_with(gone, kept)
         self._draft.forget_removed()
 
@@ -144,7 +151,7 @@ class _Splice:
         wanted = [int(item) for item in items if isinstance(item, Ref)]
         stays = {self._kept[number] for number in wanted if number in self._kept}
         for path, place in found:
-            if place.id not in stays and path.steps[-1].move is Move.FORWARD:
+            if place.id not in stays and path.steps[-1].move is PathMove.FORWARD:
                 self._draft.take(place.way[-2], path.steps[-1].attribute, place.id)
         here = {place.id for _, place in found}
         new = [number for number in wanted if self._kept.get(number) not in here]
@@ -159,7 +166,7 @@ class _Splice:
         if target is None or not path.steps:
             raise self._refusal(int(value), "")
         last, holder = path.steps[-1], place.way[-2]
-        if last.move is Move.BACK:
+        if last.move is PathMove.BACK:
             if last.attribute in LISTS:
                 self._draft.take(place.id, last.attribute, holder)
             self._draft.put(target, last.attribute, holder)
@@ -282,9 +289,9 @@ def _replaced(value: Value, old: int, new: int) -> Value:
 def _own_part(place: Place, path: Path) -> list[int]:
     """Instances of a way that refer back to its start, directly or by others."""
     own: list[int] = []
-    steps = [step for step in path.steps if step.move in (Move.BACK, Move.FORWARD)]
+    steps = [step for step in path.steps if step.move in (PathMove.BACK, PathMove.FORWARD)]
     for step, id in zip(steps, place.way[1:], strict=False):
-        if step.move is Move.FORWARD or step is steps[-1]:
+        if step.move is PathMove.FORWARD or step is steps[-1]:
             break
         own.append(id)
     return own

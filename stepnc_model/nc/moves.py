@@ -6,10 +6,12 @@ the program in mm, in the frame of the row; on a lathe x is a radius. Unknown co
 NaN. Rows name their block, so that advice finds its way back into the file.
 """
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum, IntFlag, StrEnum
 from functools import cached_property
 from math import inf, nan, pi
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -197,6 +199,12 @@ ROW = np.dtype([
     ("flags", np.int32),
     ("kind", np.int8),
 ])
+KINDS = tuple(MoveKind)
+"""Kinds of moves by their values."""
+
+CHUNK = 1 << 14
+"""Rows that become values together."""
+
 ARC_NUMBERS = 5
 """Columns of :attr:`NcMoves.arcs`."""
 PLANES = tuple(ArcPlane)
@@ -392,23 +400,33 @@ class NcMoves:
 
     def move(self, index: int) -> NcMove:
         """Return one row as a value."""
-        row = self.rows[index]
-        arc = int(row["arc"])
-        numbers = self.arcs[arc] if arc >= 0 else None
+        return self._value(self.rows[index].item(), float(self.feed[index]))
+
+    def each(self) -> Iterator[NcMove]:
+        """Yield all rows as values, in bounded memory."""
+        for begin in range(0, len(self), CHUNK):
+            part = self.part(begin, begin + CHUNK)
+            for row, feed in zip(part.rows.tolist(), part.feed.tolist(), strict=True):
+                yield self._value(row, feed)
+
+    def _value(self, row: tuple[Any, ...], feed: float) -> NcMove:
+        """Value of a row in the order of :data:`ROW`."""
+        start, end, word, block, _, call, arc, setting, flags, kind = row
+        numbers = None if arc < 0 else self.arcs[arc].tolist()
         return NcMove(
-            kind=MoveKind(int(row["kind"])),
-            start=_point(row["start"]),
-            end=_point(row["end"]),
+            kind=KINDS[kind],
+            start=_point(start),
+            end=_point(end),
             centre=None if numbers is None else _point(numbers),
-            turn=0.0 if numbers is None else float(numbers[3]),
+            turn=0.0 if numbers is None else numbers[3],
             plane=ArcPlane.XY if numbers is None else PLANES[int(numbers[4])],
-            feed=float(self.feed[index]),
-            word=float(row["word"]),
-            seconds=float(row["word"]) if row["kind"] == MoveKind.DWELL else 0.0,
-            block=int(row["block"]),
-            call=int(row["call"]),
-            flags=MoveFlag(int(row["flags"])),
-            setting=self.settings[int(row["setting"])],
+            feed=feed,
+            word=word,
+            seconds=word if kind == MoveKind.DWELL else 0.0,
+            block=block,
+            call=call,
+            flags=MoveFlag(flags),
+            setting=self.settings[setting],
         )
 
     def _of_arcs(self, column: int | slice, filled: float) -> Floats:
@@ -421,5 +439,5 @@ class NcMoves:
         return spread
 
 
-def _point(numbers: Floats) -> Point:
+def _point(numbers: Sequence[float]) -> Point:
     return float(numbers[0]), float(numbers[1]), float(numbers[2])

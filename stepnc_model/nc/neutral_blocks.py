@@ -56,8 +56,7 @@ def neutral_blocks(
     moves, text = program.moves, program.text
     state = _State(setting=ModalSetting(), at=(nan, nan, nan))
     line = 1
-    for index in range(len(moves)):
-        move = moves.move(index)
+    for index, move in enumerate(moves.each()):
         line = text.line(move.block)
         if index in before:
             yield line, before[index]

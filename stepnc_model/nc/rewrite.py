@@ -98,10 +98,13 @@ class _Rewriting:
         self.style = style_of(program.text, program.dialect, unit=program.unit)
         self.unchanged: list[UnchangedBlock] = []
         self._order = np.zeros(0, np.int64)
-        self._sorted = np.zeros(0, np.int32)
+        self._sorted = np.zeros(0, np.int64)
         if advice:
-            self._order = np.argsort(self.moves.block, kind="stable")
-            self._sorted = self.moves.block[self._order]
+            kinds = (MoveKind.LINE, MoveKind.ARC, MoveKind.UNKNOWN)
+            fed = np.flatnonzero(np.isin(self.moves.kind, kinds))
+            self._order = fed[np.argsort(self.moves.block[fed], kind="stable")]
+            # As wide as what is looked up: a search would copy the array otherwise.
+            self._sorted = self.moves.block[self._order].astype(np.int64)
         self._feed_words: dict[int, str | None] = {}
         self.plans: dict[int, _Plan] = {}
         for block in sorted(advice):
@@ -141,7 +144,8 @@ class _Rewriting:
                 ends, feeds = [1.0], [min(feeds)]
         form = self._scale(first.setting)
         is_short = len(ends) > 1
-        pieces = divided(first, ends, feeds, scale=form, by_radius=self._is_by_radius(block))
+        by_radius = first.kind is MoveKind.ARC and self._is_by_radius(block)
+        pieces = divided(first, ends, feeds, scale=form, by_radius=by_radius)
         if is_short and len(pieces) == 1 and len(set(feeds)) > 1:
             self._leave(
                 block,
@@ -158,10 +162,9 @@ class _Rewriting:
 
     def _fed_rows(self, block: int) -> NDArray[np.int64]:
         """Rows of a block that move at a feed."""
-        low, high = np.searchsorted(self._sorted, (block, block + 1))
-        rows = self._order[low:high]
-        kinds = self.moves.kind[rows]
-        return rows[np.isin(kinds, (MoveKind.LINE, MoveKind.ARC, MoveKind.UNKNOWN))]
+        low = int(self._sorted.searchsorted(block))
+        high = int(self._sorted.searchsorted(block, side="right"))
+        return self._order[low:high]
 
     def _hindrance(self, rows: NDArray[np.int64]) -> str:
         """Reason why the feed of a block is left alone, or an empty string."""
@@ -174,7 +177,8 @@ class _Rewriting:
             return _named(flags & UNADVISED)
         if not self.moves.is_advisable[rows].all():
             return "its start or end is not known"
-        modes = {self.moves.move(int(row)).setting.mode for row in rows}
+        settings = set(self.moves.rows["setting"][rows].tolist())
+        modes = {self.moves.settings[each].mode for each in settings}
         if len(modes) > 1:
             return "its executions have feeds in different modes"
         if FeedMode.PER_REVOLUTION in modes and not 0.0 < self.moves.fastest(rows) < inf:

@@ -53,6 +53,7 @@ ACTIVE = (
     "PROBE",
     "PY,",
     "ABORT,",
+    "AXIS,",
 )
 """Beginnings that turn a comment into a command."""
 

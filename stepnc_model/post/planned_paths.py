@@ -6,7 +6,7 @@ moves get the feeds of their blocks back, as factors on the feed of their techno
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import nextafter
 
 from stepnc_model.entities.entity import Entity
@@ -32,7 +32,7 @@ from stepnc_model.post.neutral import unsplit
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.explicit.operation import path_frames
 from stepnc_model.toolpath.explicit.planned_path import MovePart, PlannedMove, PlannedPath
-from stepnc_model.toolpath.path import Dwell, Feed, Function, Move, Step, ToolPath
+from stepnc_model.toolpath.path import Dwell, Feed, Function, Move, MoveType, Step, ToolPath
 
 NOT_WRITTEN = "its tool path is not written"
 
@@ -169,7 +169,7 @@ def _steps(
     factors: _Factors,
 ) -> list[PlannedMove | Dwell] | None:
     """Moves and pauses with their factors; None if blocks and moves do not match."""
-    steps = list(unsplit(path.start, path.steps))
+    steps = list(_merged(path))
     if len(steps) != len(group):
         return None
     found: list[PlannedMove | Dwell] = []
@@ -179,6 +179,24 @@ def _steps(
             return None
         found.append(planned)
     return found
+
+
+def _merged(path: ToolPath) -> Iterator[Step]:
+    """Steps as blocks have them; a move that touches material anywhere counts as contact."""
+    rest = iter(path.steps)
+    for step in unsplit(path.start, path.steps):
+        touches = False
+        for one in rest:
+            if isinstance(one, Move) and isinstance(step, Move):
+                touches = touches or one.type is MoveType.CONTACT
+                if one.end == step.end:
+                    break
+            elif one is step:
+                break
+        if touches and isinstance(step, Move):
+            yield replace(step, type=MoveType.CONTACT)
+        else:
+            yield step
 
 
 def _step(

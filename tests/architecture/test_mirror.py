@@ -13,6 +13,17 @@ NOUNS = {
 """folders whose modules are tested together"""
 
 TOGETHER = {
+    "service/along_path/written_code.py": "run in tests/service/along_path/test_of_code.py",
+    "service/requests/stored_advice.py": "fields only; read in rest/test_openapi.py",
+    "service/rest/advice_views.py": "shapes; held against the document in rest/test_openapi.py",
+    "stepnc_model/ap238/building.py": "builds whole programs in tests/.../test_export.py",
+    "stepnc_model/ap238/completing.py": "held against the long form in test_export.py",
+    "stepnc_model/ap238/dictionary.py": "held against the long form in test_table.py",
+    "stepnc_model/ap238/drafting.py": "changes files in test_writing.py and test_export.py",
+    "stepnc_model/ap238/following.py": "follows all paths in test_reading.py",
+    "stepnc_model/ap238/loose.py": "carries the records of test_writing.py",
+    "stepnc_model/ap238/requirements.py": "held against the long form in test_export.py",
+    "stepnc_model/ap238/view.py": "read by every command in test_reading.py",
     "optimiser/along_path/pieces.py": "its parts are checked in along_path/test_runs.py",
     "optimiser/along_path/tool_bounds.py": "kept by tests/service/along_path/test_of_code.py",
     "service/along_path/course.py": "run in tests/service/along_path/test_run.py",
@@ -51,7 +62,7 @@ TOGETHER = {
     "service/storage/connection.py": "Protocols; kept by both databases in storage",
     "service/storage/server_schema.py": "statements; run in storage/test_server_database.py",
     "service/jobs/preloaded.py": "loads what it names; tests/service/jobs/test_runner.py",
-    "service/rest/views.py": "shapes; answers are held against them in rest/test_openapi.py",
+    "service/rest/views.py": "shapes; held against the document in rest/test_openapi.py",
     "service/rest/advice_views.py": "shapes; held against answers in rest/test_code_advice.py",
     "service/requests/stored_advice.py": "asked for in tests/service/rest/test_code_advice.py",
     "service/rest/monitor_views.py": "held against the document in rest/test_monitors.py",

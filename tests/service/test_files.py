@@ -2,11 +2,13 @@
 
 import errno
 import os
+import socket
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from service.files import read_bytes, write_atomically
+from service.files import open_lines, read_bytes, write_atomically
 from stepnc_model.errors import StepNcError, WriteError
 from tests.full_disk import files_of_at_most
 
@@ -102,3 +104,20 @@ def test_what_cannot_be_read_is_named(tmp_path: Path, place: str) -> None:
     (tmp_path / "a_folder").mkdir()
     with pytest.raises(StepNcError, match=place):
         read_bytes(tmp_path / place)
+
+
+@pytest.mark.parametrize("read", [read_bytes, open_lines])
+def test_a_pipe_is_refused_before_it_blocks(
+    read: Callable[[Path], object], tmp_path: Path
+) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(StepNcError, match="is a pipe, not a regular file"):
+        read(tmp_path / "pipe")
+
+
+def test_a_socket_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with socket.socket(socket.AF_UNIX) as listener:
+        listener.bind("s")
+        with pytest.raises(StepNcError, match="is a socket, not a regular file"):
+            read_bytes(Path("s"))

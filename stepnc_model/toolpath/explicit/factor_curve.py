@@ -31,7 +31,7 @@ class FactorPart:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Level:
+class _FactorLevel:
     """Stretch of the path between two changes of the factor."""
 
     begin: float
@@ -92,9 +92,9 @@ def factor_curve(parts: Sequence[FactorPart]) -> Spline:
     )
 
 
-def _levels(parts: Sequence[FactorPart]) -> list[_Level]:
+def _levels(parts: Sequence[FactorPart]) -> list[_FactorLevel]:
     """Stretches of one factor; short parts are joined to their neighbours."""
-    levels: list[_Level] = []
+    levels: list[_FactorLevel] = []
     begin = 0.0
     for part in parts:
         last = levels[-1] if levels else None
@@ -106,6 +106,6 @@ def _levels(parts: Sequence[FactorPart]) -> list[_Level]:
             factor = min(part.factor, last.factor)
             levels[-1] = replace(last, end=part.end, factor=factor)
         else:
-            levels.append(_Level(begin=begin, end=part.end, factor=part.factor))
+            levels.append(_FactorLevel(begin=begin, end=part.end, factor=part.factor))
         begin = part.end
     return levels

@@ -85,7 +85,7 @@ def write_paths(program: Program, paths: Sequence[PlannedPath], profile: FilePro
         if old is not None:
             draft.remove(draft.only_under(old, PATH_KEYWORDS))
     for path in paths:
-        trajectories = tuple(_Writer(draft, path, form).toolpaths())
+        trajectories = tuple(_PathWriter(draft, path, form).toolpaths())
         added = draft.add(ToolpathList(its_list=trajectories))
         draft.put(path.step.operation_ref, "its_toolpath", added)
     return draft.edits.apply()
@@ -102,7 +102,7 @@ class _Kind:
     """Number of the trajectory where one would have too many moves."""
 
 
-class _Writer:
+class _PathWriter:
     """Writer of one path; keeps the points of its factors."""
 
     def __init__(self, draft: Draft, path: PlannedPath, form: HelixForm) -> None:

@@ -10,6 +10,8 @@ import pytest
 from service.along_path.course import PathSource
 from service.along_path.run import FeedsAlongPath, along_path
 from service.along_path.task import task_of
+from service.cli.main import optimise_main
+from service.cli.options import BAD_INPUT
 from service.files import beside
 from service.paths.toolpaths import PostRequest, post
 from service.reading import read_program, silent
@@ -182,3 +184,14 @@ def test_the_option_needs_feeds_along_the_path(tmp_path: Path) -> None:
     request = AdviceRequest(writes_toolpaths=True)
     with pytest.raises(StepNcError, match="--write-toolpaths needs --along-path"):
         optimise(request, AdviceFiles(file=FACE, output=tmp_path / "out.stpnc"))
+
+
+def test_nc_code_has_no_place_for_tool_paths(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code = tmp_path / "part.ngc"
+    code.write_text("G21 G90\nM2\n")
+    with pytest.raises(SystemExit) as stopped:
+        optimise_main([str(code), "--along-path", "--write-toolpaths"])
+    assert stopped.value.code == BAD_INPUT
+    assert "--write-toolpaths writes into STEP-NC programs" in capsys.readouterr().err

@@ -330,3 +330,17 @@ def test_the_owner_is_who_has_the_key(locked: Server) -> None:
         assert client.post("/v1/programs?example=paper002").json()["owner"] == "Ümit"
         assert client.get("/v1/about").json()["owner"] == "Ümit"
         assert client.get("/v1/about").json()["needs_keys"]
+
+
+def test_a_second_authorization_is_refused(client: httpx.Client) -> None:
+    words = [("authorization", "Bearer x"), ("authorization", "Bearer y")]
+    answer = client.get("/v1/jobs", headers=words)
+    assert answer.status_code == 400
+    assert "Authorization is given more than once" in answer.json()["detail"]
+
+
+def test_a_second_host_is_refused(client: httpx.Client) -> None:
+    name = client.base_url.netloc.decode()
+    with socket.create_connection((client.base_url.host, client.base_url.port or 80)) as line:
+        line.sendall(f"GET /v1/jobs HTTP/1.1\r\nHost: {name}\r\nHost: {name}\r\n\r\n".encode())
+        assert line.recv(100).startswith(b"HTTP/1.1 400")

@@ -58,3 +58,12 @@ def test_a_place_is_the_first_page_without_a_cursor() -> None:
 
 def test_who_needs_no_key_has_the_whole_queue() -> None:
     assert ANYBODY.name == LOCAL
+
+
+def test_a_key_is_told_apart_from_another_of_its_name() -> None:
+    one, two = request(), request()
+    one.state.key, two.state.key = (replace(ANYBODY, name="anna", id=id) for id in "xy")
+    first, second = idempotency_of(one, "k", b""), idempotency_of(two, "k", b"")
+    assert first is not None
+    assert second is not None
+    assert (first.owner, second.owner) == ("x", "y")

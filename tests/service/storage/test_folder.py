@@ -27,6 +27,24 @@ def test_a_new_folder_is_its_owners_alone(data_folder: DataFolder) -> None:
     assert {stat.S_IMODE(each.stat().st_mode) for each in folders} == {0o700}
 
 
+def test_what_others_made_becomes_private_too(tmp_path: Path) -> None:
+    root = tmp_path / "shop"
+    open_data_folder(root).database.close()
+    for folder in (root, root / "programs"):
+        folder.chmod(0o775)
+    made = [root / "programs" / "x.stpnc", root / "service.db", root / "knowledge.db"]
+    other = root / "notes.txt"
+    for file in (*made, other):
+        file.touch()
+        file.chmod(0o664)
+    open_data_folder(root).database.close()
+    assert {stat.S_IMODE(each.stat().st_mode) for each in made} == {0o600}
+    for folder in (root, root / "programs"):
+        assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+    # What the service does not keep there is not its business.
+    assert stat.S_IMODE(other.stat().st_mode) == 0o664
+
+
 def test_what_is_of_an_id_lies_in_the_folder(data_folder: DataFolder) -> None:
     id = new_id()
     assert data_folder.program_file(id) == data_folder.root / "programs" / f"{id}.stpnc"

@@ -300,3 +300,15 @@ def test_whatever_happens_what_is_over_stays_over(
         over |= {id: state for id, state in now.items() if state.is_finished}
     while (left := jobs.claim(data_folder, kinds=ALL)) is not None:
         jobs.finish(data_folder, left, JobState.CANCELLED)
+
+
+def test_the_share_of_the_queue_belongs_to_a_key_not_to_its_name(
+    data_folder: DataFolder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(jobs, "MOST_WAITING", 2 * jobs.OWNERS)
+    one, two = (JobRequest(kind=JobKind.REVIEW, request={}, owner="anna", key=k) for k in "xy")
+    for _ in range(2):
+        jobs.add(data_folder, one)
+    with pytest.raises(TooMany):
+        jobs.add(data_folder, one)
+    jobs.add(data_folder, two)

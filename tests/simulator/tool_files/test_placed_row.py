@@ -8,7 +8,7 @@ from simulator.errors import LibraryError
 from simulator.spec import CuttingMaterial
 from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.placed_row import (
-    GivenValue,
+    FileValue,
     edge_given,
     given_length,
     placed_row,
@@ -17,10 +17,10 @@ from simulator.tool_files.placed_row import (
 FILE = Path("tools.json")
 
 
-def mill(**changes: GivenValue) -> dict[str, GivenValue]:
+def mill(**changes: FileValue) -> dict[str, FileValue]:
     return {
-        "number": GivenValue(value=3, place="n"),
-        "kind": GivenValue(value="endmill", place="type"),
+        "number": FileValue(value=3, place="n"),
+        "kind": FileValue(value="endmill", place="type"),
         "diameter_mm": given_length(0.5, "DC", FileUnit.INCH),
     } | changes
 

@@ -3,7 +3,7 @@
 import pytest
 
 from stepnc_model.ap238.dictionary import attributes, dictionary, is_a, lineage
-from stepnc_model.ap238.table import Kind, Move, rules
+from stepnc_model.ap238.table import Kind, PathMove, rules
 from stepnc_model.entities.conversion import slots_of
 from tests.stepnc_model.ap238.long_form import schema
 from tests.stepnc_model.ap238.samples import long_form
@@ -43,7 +43,7 @@ def test_every_step_names_an_attribute_that_its_entity_has() -> None:
         for row in rule.rows:
             for path in row.paths:
                 for step in path.steps:
-                    if step.move in (Move.BACK, Move.USED):
+                    if step.move in (PathMove.BACK, PathMove.USED):
                         assert step.attribute in attributes(step.entity), (rule, row.attribute)
                     for name in step.types + step.made:
                         assert name in dictionary(), name

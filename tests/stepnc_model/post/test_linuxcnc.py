@@ -61,7 +61,9 @@ def test_whatever_moves_linuxcnc_runs_it(
     assert difference(read(lines, Dialect.LINUXCNC), judged) == ""
 
 
-@pytest.mark.parametrize("text", ["MSG, hello", "debug,x", "PROBEOPEN x", " print, #1", "(x)"])
+@pytest.mark.parametrize(
+    "text", ["MSG, hello", "debug,x", "PROBEOPEN x", " print, #1", "(x)", "AXIS,hide"]
+)
 def test_a_comment_does_nothing(text: str, interpreter: Interpreter) -> None:
     blocks: list[Block] = [ProgramStart(name="C"), Comment(text=text), ProgramEnd()]
     names = [command.name for command in interpreter(write(blocks, Dialect.LINUXCNC))]

@@ -17,7 +17,7 @@ from stepnc_model.program import Program
 from stepnc_model.toolpath.explicit.path_writer import write_paths
 from stepnc_model.toolpath.explicit.planned_path import PlannedMove
 from stepnc_model.toolpath.generate import generate
-from stepnc_model.toolpath.path import Function, Move, Point, ToolPath, length
+from stepnc_model.toolpath.path import Function, Move, MoveType, Point, ToolPath, length
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
 Items = tuple[ToolPath | Function, ...]
@@ -88,6 +88,14 @@ def test_no_factor_gives_more_than_the_planned_feed(ratio: float) -> None:
         (part,) = move.parts
         assert part.factor * rates[0] <= ratio * rates[0]
         assert part.factor == pytest.approx(ratio)
+
+
+def test_a_stroke_with_overcut_is_a_contact() -> None:
+    """One block makes the stroke and its overcut through air."""
+    longest = max(
+        fed_moves(planned(program("paper002"), halved)), key=lambda each: abs(each.move.end[1])
+    )
+    assert longest.move.type is MoveType.CONTACT
 
 
 @pytest.mark.parametrize("profile", FileProfile)

@@ -1,0 +1,286 @@
+"""Feeds along the paths of NC code of any origin."""
+
+import re
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from service.along_path.code_output import code_advice_json, print_code_advice
+from service.along_path.of_code import CodeAdvice, CodeFiles, optimise_code
+from service.requests.advice import AdviceRequest
+from service.usecases import AdviceFiles, optimise
+from simulator.removal.engage import MillingStock
+from simulator.removal.stock_file import stock_bytes
+from stepnc_model.errors import StepNcError
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.program import Stock
+from tests.service.along_path.foreign import (
+    END,
+    HEAD,
+    LATHE,
+    MILL,
+    advised,
+    lines_of,
+    rewritten,
+    slot,
+)
+from tests.service.along_path.samples import BRACKET
+from tests.service.verification.files import write_stl
+from tests.simulator.verification.box import box
+
+FEED = re.compile(r" ?F[0-9.]+")
+
+WITHIN = 1.01
+"""Greatest found load over its bound."""
+
+SUBPROGRAMS = (
+    HEAD + "G0 X-10. Y10.\nZ-4.\nM98 P2 L2\nG90 G0 Z20.\nT2 M6\nS4000 M3\nG0 X-10. Y60.\nZ-3.\n"
+    "M98 P2\nG90 G0 Z20.\nM30\nO0002\nG91 G1 X120. F60.\nY8.\nX-120.\nY8.\nM99\n%\n"
+)
+CYCLES = (
+    HEAD + slot(10.0) + "T5 M6\nS2000 M3\nG0 X20. Y50.\nZ5.\n"
+    "G98 G83 X20. Y50. Z-15. R2. Q4. F150.\nX40.\nX60.\nG80\nG0 Z50.\n" + END
+)
+INCH = (
+    HEAD.replace("G21", "G20") + "G0 X-.5 Y.5\nZ-.15\nG1 X4.5 F12.\nY1.\nX-.5\nG0 Z1.\n" + END
+)
+ARCS = (
+    HEAD + "G0 X-10. Y15. Z5.\nG1 Z-5. F200.\nX80. F800.\nG3 X90. Y25. R10.\nG1 Y60.\n"
+    "G3 X80. Y70. I-10. J0.\nG2 X60. Y50. Z-8. I0. J-20. F300.\nG1 X20.\nG0 Z15.\n" + END
+)
+INVERSE = (
+    HEAD + "G0 X-10. Y10.\nZ-3.\nG93 G1 X50. F5.\nX110. F5.\nG94 Y30. F300.\nX-10.\n" + END
+)
+FREECAD = (
+    "(Exported by FreeCAD)\nG17 G54 G40 G49 G80 G90\nG21\nM6 T2\nG43 H2\nM3 S3000\n"
+    "G0 Z8.000\nG0 X-15.000 Y40.000\nG0 Z5.000\nG1 X-15.000 Y40.000 Z-4.000 F100.000\n"
+    "G1 X10.000 Y40.000 Z-4.000 F600.000\n"
+    "G2 X50.000 Y80.000 Z-4.000 I40.000 J0.000 K0.000 F600.000\n"
+    "G1 X110.000 Y80.000 Z-4.000 F600.000\nG0 Z8.000\nM5\nM2\n"
+)
+MASTERCAM = (
+    "%\nO0000(T)\nN100 G21\nN102 G0 G17 G40 G49 G80 G90\nN104 T1 M6\n"
+    "N106 G0 G90 G54 X-15. Y40. S3000 M3\nN108 G43 H1 Z25.\nN110 Z5.\nN112 G1 Z-3. F150.\n"
+    "N114 X40. F500.\nN116 G41 D1 X50. Y30.\nN118 X90.\nN120 Y70.\nN122 X50.\n"
+    "N124 G40 X40. Y60.\nN126 Y20.\nN128 X110.\nN130 G0 Z25.\nN134 G91 G28 Z0.\nN138 M30\n%\n"
+)
+SINUMERIK = (
+    "N10 G71 G90 G17 G54\nN20 T1 D1\nN30 M6\nN40 S3000 M3\nN50 G0 X-15 Y10 Z5\n"
+    "N60 G1 Z-4 F200\nMARK1: G91 G1 X130 F60\nY12\nX-130\nY5\nG90\nREPEAT MARK1 P=1\n"
+    "N100 G0 Z50\nN110 MCALL CYCLE82(5,0,2,-10,0,0.5)\nN130 X20 Y60 F100\nN150 MCALL\nM30\n"
+)
+KLARTEXT = (
+    "0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S3000 F500\n2 L X-15 Y+10 R0 FMAX M3\n"
+    "3 L Z+5 FMAX\n4 L Z-4 F200\n5 L X+50 F600\n6 CC X+50 Y+30\n7 C X+70 Y+30 DR+\n"
+    "8 L Y+70\n9 L X+115\n10 L Z+50 FMAX\n11 L X+5 Y+5 RL F300\n12 L X+5 Y+90 R0\n"
+    "13 L Z+100 R0 FMAX M30\n14 END PGM A MM\n"
+)
+TURNED = (
+    "%\nO0001\nG21 G40 G99\nG50 S2500\nT0101\nG96 S180 M3\nG0 X55. Z2.\nG0 X46.\n"
+    "G1 Z-40. F0.25\nX52.\nG0 Z2.\nX42.\nG1 Z-30.\nX52.\nG0 X100. Z50.\nT0303\n"
+    "G97 S800 M3\nG0 X52. Z-30.\nG1 X36. F0.08\nG0 X60.\nG0 X100. Z50.\nM30\n%\n"
+)
+PROGRAMS = {
+    "subprograms": (SUBPROGRAMS, MILL),
+    "cycles": (CYCLES, MILL),
+    "inch": (INCH, MILL),
+    "arcs and helix": (ARCS, MILL),
+    "inverse time": (INVERSE, MILL),
+    "freecad": (FREECAD, MILL),
+    "mastercam": (MASTERCAM, MILL),
+    "sinumerik": (SINUMERIK, replace(MILL, dialect=Dialect.SINUMERIK)),
+    "heidenhain": (KLARTEXT, replace(MILL, dialect=Dialect.HEIDENHAIN)),
+    "turning": (TURNED, LATHE),
+}
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_the_rewritten_program_takes_the_planned_time_and_stays(name: str) -> None:
+    text, request = PROGRAMS[name]
+    first = advised(text, request)
+    again = advised(rewritten(text, request), request)
+    assert first.rewritten.changed > 0
+    assert again.rewritten.changed == again.rewritten.added == 0
+    assert again.along.time_before == pytest.approx(first.along.time_after, rel=0.005)
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_loads_keep_their_bounds(name: str) -> None:
+    found = advised(*PROGRAMS[name])
+    greatest = found.machine.max_cutting_force
+    for step in found.along.steps:
+        if step.plan is None:
+            continue
+        permitted = max(WITHIN * (greatest or np.inf), step.before.force.value)
+        assert step.after.force.value <= permitted, step.name
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_all_but_feeds_and_split_blocks_stays_byte_for_byte(name: str) -> None:
+    text, request = PROGRAMS[name]
+    changed = advised(text, request).along.feeds
+    kept = [
+        FEED.sub("", line)
+        for number, line in enumerate(text.splitlines(), start=1)
+        if number not in changed
+    ]
+    new = [FEED.sub("", line) for line in rewritten(text, request).splitlines()]
+    place = 0
+    for line in kept:
+        place = new.index(line, place) + 1
+
+
+def test_a_subprogram_for_two_tools_has_the_feed_that_both_permit() -> None:
+    def feed(text: str) -> float:
+        return advised(text).along.feeds[lines_of(text, "X120.")[0]][0].rate
+
+    calls, sub = (
+        SUBPROGRAMS[: SUBPROGRAMS.index("M30")],
+        SUBPROGRAMS[SUBPROGRAMS.index("M30") :],
+    )
+    change = calls.index("T2 M6")
+    first, second = calls[:change] + sub, HEAD + calls[change:] + sub
+    assert feed(SUBPROGRAMS) == pytest.approx(min(feed(first), feed(second)), rel=0.02)
+    assert feed(first) != pytest.approx(feed(second), rel=0.02)
+
+
+def test_a_tool_that_meets_no_stock_keeps_its_feeds() -> None:
+    text = HEAD + slot(10.0) + "T2 M6\nS3000 M3\n" + slot(40.0).replace("Z-4.", "Z30.") + END
+    found = advised(text)
+    assert sorted(found.along.feeds) == lines_of(text, "G1 X110.")[:1]
+    said = next(each for each in found.findings if "T2 meets no stock" in each.message)
+    assert "do the stock and G54 have the same zero?" in said.message
+
+
+MISSING = {
+    "no feed F is in force": slot(10.0).replace(" F300.", ""),
+    "the feed is 0": slot(10.0).replace("F300.", "F0."),
+    "a feed per revolution while the spindle is stopped": "M5\nG95\n"
+    + slot(10.0).replace("F300.", "F0.1"),
+    "the tool is not in the tool table": "T9 M6\nS3000 M3\n" + slot(10.0),
+    "cutter radius compensation": "G0 Y40.\nG41 D1 X-10. Y10.\nZ-4.\nG1 X110. F300.\nG40 Y0.\n",
+}
+
+
+@pytest.mark.parametrize("what", MISSING)
+def test_what_is_missing_is_told_and_the_bytes_stay(what: str) -> None:
+    text = HEAD + MISSING[what] + END
+    found = advised(text, replace(MILL, dialect=Dialect.FANUC))
+    assert found.rewritten.data == text.encode("latin-1")
+    said = "\n".join(each.message for each in found.findings)
+    assert what in said
+    assert "no feed of this program may be chosen" in said
+
+
+def test_a_program_that_calls_itself_is_refused_with_the_line() -> None:
+    with pytest.raises(StepNcError, match=r"line 6: .*nested more than 50 deep"):
+        advised(HEAD + "M98 P1\n" + END)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.data())
+def test_mutilated_programs_give_a_plan_or_a_message(data: st.DataObject) -> None:
+    text, request = PROGRAMS[data.draw(st.sampled_from(sorted(PROGRAMS)))]
+    at = data.draw(st.integers(0, len(text) - 1))
+    count = data.draw(st.integers(0, 9))
+    put = data.draw(st.text(alphabet="GMXYZFST/#[](),.-19\n", max_size=6))
+    with suppress(StepNcError):
+        advised(text[:at] + put + text[at + count :], request)
+
+
+OVER = (
+    HEAD + slot(10.0) + "G0 X0. Y40.\nZ2.5\nG1 X90. F300.\nG0 Z20.\n"
+    "X0. Y40.\nZ0.5\nG1 X90. F300.\nG0 Z20.\n" + END
+)
+"""A slot, then passes in air, 2.5 mm and 0.5 mm over the block."""
+
+
+def stocks(folder: Path) -> dict[str, str]:
+    """The same block as numbers, as a mesh, and as an earlier run left it."""
+    write_stl(folder / "part.stl", box((0.0, 0.0, -20.0), (100.0, 80.0, 0.0)))
+    block = Stock(low=(0.0, 0.0, -20.0), high=(100.0, 80.0, 0.0))
+    (folder / "left.npz").write_bytes(stock_bytes(MillingStock(block, cell=0.25)))
+    return {
+        "box": "0,0,-20,100,80,0",
+        "bar": "50,40,150,-20,0",
+        "mesh": str(folder / "part.stl"),
+        "kept": str(folder / "left.npz"),
+    }
+
+
+@pytest.mark.parametrize("kind", ["box", "bar", "mesh", "kept"])
+def test_within_the_margin_of_the_stock_nothing_is_air(kind: str, tmp_path: Path) -> None:
+    stock = stocks(tmp_path)[kind]
+    _, high, low = lines_of(OVER, "G1 X110.", "G1 X90.")
+
+    def middle(line: int, margin: float) -> float:
+        parts = advised(OVER, replace(MILL, stock=stock, stock_margin_mm=margin)).along.feeds[
+            line
+        ]
+        return next(part.rate for part in parts if part.end > 0.5)
+
+    fast = middle(high, 1.0)
+    assert middle(low, 1.0) < 0.5 * fast
+    assert middle(high, 3.0) < 0.5 * fast
+    assert middle(low, 0.0) == pytest.approx(fast, rel=0.05)
+
+
+def test_the_frame_of_the_stock_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    found = advised(HEAD.replace("G54", "G56") + slot(10.0) + END)
+    print_code_advice(found)
+    assert "the stock stands in G56" in capsys.readouterr().out
+    assert '"frame": "G56"' in code_advice_json(found)
+
+
+def test_messages_of_the_planned_run_name_lines_of_the_file() -> None:
+    text = HEAD + slot(10.0) + "G0 X50. Y40. Z5.\nG0 Z-2.\nG0 Z20.\n" + END
+    found = advised(text)
+    hit = next(each for each in found.findings if "a rapid move cuts" in each.message)
+    assert hit.line == lines_of(text, "G0 Z-2.")[0]
+
+
+@pytest.fixture(scope="module")
+def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, float], CodeAdvice]:
+    """Times of the bracket along its paths, as STEP-NC by workingstep and as NC code."""
+    folder = tmp_path_factory.mktemp("both")
+    request = AdviceRequest(machine="vmc15", nc_control=Dialect.LINUXCNC)
+    optimise(request, AdviceFiles(file=BRACKET, output=folder / "one.stpnc"))
+    along = optimise(
+        replace(request, is_along_path=True),
+        AdviceFiles(file=BRACKET, output=folder / "along.stpnc"),
+    ).along
+    assert along is not None
+    tools = BRACKET.parents[1] / "tools" / "bracket.toml"
+    code = optimise_code(
+        AdviceRequest(machine="vmc15", material="c45", stock="-3,-3,-40,153,93,2"),
+        CodeFiles(file=folder / "one.ngc", tools=tools, dry_run=True),
+    )
+    return {step.name: step.after.duration for step in along.steps}, code
+
+
+def test_a_workingstep_has_the_same_plan_as_nc_code(
+    both: tuple[dict[str, float], CodeAdvice],
+) -> None:
+    # Roughing a face knows the same limits both ways: no tolerance, no roughness.
+    times, code = both
+    first = next(step for step in code.along.steps if step.name == "T1")
+    assert first.after.duration == pytest.approx(times["ROUGH FACE"], rel=0.01)
+
+
+def test_our_own_code_is_left_by_a_second_run(
+    both: tuple[dict[str, float], CodeAdvice], tmp_path: Path
+) -> None:
+    _, code = both
+    file = tmp_path / "again.ngc"
+    file.write_bytes(code.rewritten.data)
+    again = optimise_code(
+        AdviceRequest(machine="vmc15", material="c45", stock="-3,-3,-40,153,93,2"),
+        CodeFiles(file=file, tools=BRACKET.parents[1] / "tools" / "bracket.toml", dry_run=True),
+    )
+    assert again.rewritten.changed == 0
+    assert again.rewritten.data == code.rewritten.data
