@@ -129,7 +129,7 @@ def test_a_table_without_the_tool_is_told(client: httpx.Client, code: CodeDone) 
     assert ended["state"] == "succeeded"
     result = client.get(f"/v1/advice/{job}").json()
     assert result["along_path"]["blocks"] == 0
-    assert "T1 is not in the tool table" in str(result["findings"])
+    assert "the tool is not in the tool table" in str(result["findings"])
 
 
 def test_a_program_of_the_wrong_kind_is_refused_in_words(
