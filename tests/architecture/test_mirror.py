@@ -14,8 +14,6 @@ NOUNS = {
 
 TOGETHER = {
     "service/along_path/written_code.py": "run in tests/service/along_path/test_of_code.py",
-    "service/requests/stored_advice.py": "fields only; read in rest/test_openapi.py",
-    "service/rest/advice_views.py": "shapes; held against the document in rest/test_openapi.py",
     "stepnc_model/ap238/building.py": "builds whole programs in tests/.../test_export.py",
     "stepnc_model/ap238/completing.py": "held against the long form in test_export.py",
     "stepnc_model/ap238/dictionary.py": "held against the long form in test_table.py",
