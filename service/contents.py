@@ -5,9 +5,10 @@ from pathlib import Path
 
 from service.files import read_bytes
 from service.paths.remarks import program_remarks
+from service.paths.toolpaths import Paths, paths_of
 from service.reading import Tell, program_in, silent
 from service.uses import Use, UseName, uses_of
-from stepnc_model.errors import Finding, SchemaError, Severity
+from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.plausibility import implausible, unit_findings
 from stepnc_model.program import Program
@@ -62,16 +63,25 @@ def check(path: Path, *, units: str = "iso", name: str = "", tell: Tell = silent
             program=None,
             findings=(*file.findings, fault),
         )
-    found = program_remarks(program)
+    made = _paths(program)
+    found = program_remarks(program) if isinstance(made, StepNcError) else made.remarks
     return Contents(
         name=called,
         schemas=file.schemas,
         instances=len(file),
         program=program,
         findings=(*_all_findings(program), *found),
-        uses=uses_of(program),
+        uses=uses_of(program, made),
         remarks=found,
     )
+
+
+def _paths(program: Program) -> Paths | StepNcError:
+    """Return the tool paths of a program, or the reason why they cannot be made."""
+    try:
+        return paths_of(program)
+    except StepNcError as error:
+        return error
 
 
 def _all_findings(program: Program) -> tuple[Finding, ...]:

@@ -6,6 +6,7 @@ file that a command refuses is never called usable for it.
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 from optimiser.formulate import OptimisationTask
 from optimiser.optimise import optimise_program
@@ -16,6 +17,9 @@ from simulator.spec import MaterialMatch
 from stepnc_model.errors import StepNcError
 from stepnc_model.plausibility import refusal
 from stepnc_model.program import Program
+
+if TYPE_CHECKING:
+    from service.paths.toolpaths import Paths
 
 ANY_MATERIAL = "c45"
 """Material with which a program that names none is tried."""
@@ -46,20 +50,22 @@ class Use:
         return not self.reason
 
 
-def uses_of(program: Program) -> tuple[Use, ...]:
+def uses_of(program: Program, made: "Paths | StepNcError") -> tuple[Use, ...]:
     """Uses of a program, each with the reason where it is not possible.
 
     Parameters
     ----------
     program : Program
+    made : Paths or StepNcError
+        Tool paths of the program, or the reason why they cannot be made.
 
     Returns
     -------
     tuple of Use
         One for each :class:`UseName`, in their order.
     """
-    paths = _paths(program)
-    code = paths or _code(program)
+    paths = str(made) if isinstance(made, StepNcError) else ""
+    code = str(made) if isinstance(made, StepNcError) else _code(program, made)
     match = _material(program)
     any_match = match if isinstance(match, MaterialMatch) else load_material_named(ANY_MATERIAL)
     missing = match if isinstance(match, str) else ""
@@ -90,27 +96,16 @@ def _material(program: Program) -> MaterialMatch | str:
         return str(error)
 
 
-def _paths(program: Program) -> str:
-    """Reason why tool paths cannot be made; empty where they can."""
-    from service.paths.toolpaths import paths_of  # noqa: PLC0415 (shapely)
-
-    try:
-        paths_of(program)
-    except StepNcError as error:
-        return str(error)
-    return ""
-
-
-def _code(program: Program) -> str:
+def _code(program: Program, paths: "Paths") -> str:
     """Reason why no NC code can be written of a program with paths; empty where it can."""
-    from service.paths.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (shapely)
+    from service.paths.toolpaths import nc_lines, with_feeds  # noqa: PLC0415 (shapely)
     from stepnc_model.post.dialect import Dialect  # noqa: PLC0415 (with the paths)
 
     try:
         error = refusal(program, program.workingsteps)
         if error is not None:
             return str(error)
-        for _ in nc_lines(with_feeds(paths_of(program), keep_going=False), Dialect.LINUXCNC):
+        for _ in nc_lines(with_feeds(paths, keep_going=False), Dialect.LINUXCNC):
             pass
     except StepNcError as error:
         return str(error)

@@ -39,7 +39,7 @@ class GivenData:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GivenValue:
+class SetAttribute:
     """Attribute that was set, with what stood there before."""
 
     ref: Ref[object]
@@ -55,7 +55,7 @@ class Completed:
     """Program with the data that were given."""
 
     program: Program
-    given: tuple[GivenValue, ...]
+    given: tuple[SetAttribute, ...]
 
 
 def completed(program: Program, data: GivenData) -> Completed:
@@ -89,14 +89,14 @@ def completed(program: Program, data: GivenData) -> Completed:
     return Completed(program=found, given=tuple(given))
 
 
-def without_given(program: Program, given: Sequence[GivenValue]) -> bytes:
+def without_given(program: Program, given: Sequence[SetAttribute]) -> bytes:
     """Bytes of a program with given data withdrawn, where they were not changed since.
 
     Parameters
     ----------
     program : Program
         Program that holds the given data, and perhaps advice.
-    given : sequence of GivenValue
+    given : sequence of SetAttribute
 
     Returns
     -------
@@ -116,7 +116,7 @@ def _read(program: Program, data: bytes) -> Program:
     return Program(file, units=program.units, name=program.name, stock=program.stock)
 
 
-def _set(draft: Draft, text: str) -> GivenValue:
+def _set(draft: Draft, text: str) -> SetAttribute:
     """Set one attribute from text like ``#46.depth=12``."""
     program, found = draft.program, _PLACE.fullmatch(text)
     if found is None:
@@ -134,13 +134,13 @@ def _set(draft: Draft, text: str) -> GivenValue:
 
 def _put(
     draft: Draft, ref: Ref[object], attribute: str, value: Value, added: tuple[int, ...] = ()
-) -> GivenValue:
+) -> SetAttribute:
     """Set an attribute and remember what stood there."""
     values = draft.program.file.parameters(int(ref))
     place = draft.program.model.position(ref, attribute)
     before = values[place] if place < len(values) else None
     draft.put(ref, attribute, value)
-    return GivenValue(ref=ref, attribute=attribute, before=before, value=value, added=added)
+    return SetAttribute(ref=ref, attribute=attribute, before=before, value=value, added=added)
 
 
 def _value(written: str, text: str) -> Value:
@@ -178,7 +178,7 @@ def _fitting(draft: Draft, slot: AttributeSlot, value: Value) -> tuple[Value, tu
     return value, ()
 
 
-def _teeth(draft: Draft, text: str) -> Iterator[GivenValue]:
+def _teeth(draft: Draft, text: str) -> Iterator[SetAttribute]:
     """Set the number of teeth of a tool from text like ``T3=2``."""
     program = draft.program
     name, _, count = text.rpartition("=")
@@ -196,7 +196,7 @@ def _teeth(draft: Draft, text: str) -> Iterator[GivenValue]:
         yield _put(draft, Ref(body), "number_of_teeth", int(count))
 
 
-def _feeds(draft: Draft, feed: float) -> Iterator[GivenValue]:
+def _feeds(draft: Draft, feed: float) -> Iterator[SetAttribute]:
     """Set the feed of milling technologies that give none."""
     program = draft.program
     for step in {int(each.technology_ref): each for each in program.workingsteps}.values():
@@ -215,7 +215,7 @@ def _feeds(draft: Draft, feed: float) -> Iterator[GivenValue]:
         yield _put(draft, step.technology_ref, "feedrate", Real(number))
 
 
-def _require_taken(model: Model, given: GivenValue) -> None:
+def _require_taken(model: Model, given: SetAttribute) -> None:
     """Refuse a value that the attribute cannot hold."""
     for finding in model.findings():
         label = model.file.label(int(given.ref))

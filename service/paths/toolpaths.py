@@ -63,6 +63,11 @@ class Paths:
         return next((step.setup for step in self.program.workingsteps), None)
 
     @property
+    def remarks(self) -> tuple[Finding, ...]:
+        """Warnings about the program, the same for every command."""
+        return remarks(self.program, self.paths)
+
+    @property
     def findings(self) -> tuple[Finding, ...]:
         """Assumptions made for the tool paths."""
         of_paths = tuple(finding for path in self.paths for finding in path.findings)
@@ -97,7 +102,7 @@ def tool_paths(
 
 def with_remarks(paths: Paths, tell: Tell) -> Paths:
     """Tell the warnings about a program, and keep them with its paths."""
-    told = remarks(paths.program, paths.paths)
+    told = paths.remarks
     tell_remarks(told, tell)
     return replace(paths, told=told)
 

@@ -26,7 +26,6 @@ from stepnc_model.post.dialect import SUFFIXES, Dialect
 from stepnc_model.post.dialects import read_blocks
 from stepnc_model.post.neutral import blocks_of, tool_numbers
 from stepnc_model.program import Program, Stock
-from stepnc_model.toolpath.remarks import remarks
 from stepnc_model.toolpath.task import stock_of
 
 T = TypeVar("T")
@@ -154,7 +153,7 @@ def prepared_program(
         read=lambda: blocks.count,
         program=program,
         findings=paths.findings,
-        remarks=remarks(program, paths.paths),
+        remarks=paths.remarks,
     )
 
 
