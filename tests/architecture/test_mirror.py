@@ -61,6 +61,8 @@ TOGETHER = {
     "service/storage/server_schema.py": "statements; run in storage/test_server_database.py",
     "service/jobs/preloaded.py": "loads what it names; tests/service/jobs/test_runner.py",
     "service/rest/views.py": "shapes; held against the document in rest/test_openapi.py",
+    "service/rest/advice_views.py": "shapes; held against answers in rest/test_code_advice.py",
+    "service/requests/stored_advice.py": "asked for in tests/service/rest/test_code_advice.py",
     "service/rest/monitor_views.py": "held against the document in rest/test_monitors.py",
     "service/contents_output.py": "printed in test_plan_output.py and test_output_json.py",
     "service/library_output.py": "printed in test_plan_output.py and test_output_json.py",
