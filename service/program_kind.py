@@ -40,9 +40,9 @@ def kind_of(data: bytes) -> ProgramKind:
 
     Examples
     --------
-    >>> kind_of(b"%\\nO1234 (PART)\\nG21 G54\\nT1 M6\\n")
+    >>> kind_of(b"%\nO1234 (PART)\nG21 G54\nT1 M6\n")
     <ProgramKind.NC_CODE: 'nc-code'>
-    >>> kind_of(b"ISO-10303-21;\\nHEADER;\\n")
+    >>> kind_of(b"ISO-10303-21;\nHEADER;\n")
     <ProgramKind.STEP_NC: 'step-nc'>
     """
     head = data[:LOOKED_AT]

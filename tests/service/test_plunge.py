@@ -180,7 +180,7 @@ def test_a_plunge_feed_that_is_not_positive_is_refused(
 ) -> None:
     text = written(outcome).read_text(encoding="ascii")
     wrong, output = tmp_path / "wrong.stpnc", tmp_path / "out.ngc"
-    wrong.write_text(text.replace(",'stepnc-optimiser',0.025)", ",'stepnc-optimiser',-0.025)"))
+    wrong.write_text(text.replace("'stepnc-optimiser',0.025", "'stepnc-optimiser',-0.025"))
     with pytest.raises(SystemExit) as stopped:
         main(["post", str(wrong), "--control", "linuxcnc", "-o", str(output)])
     assert stopped.value.code == BAD_INPUT

@@ -7,7 +7,6 @@ import pytest
 from service.usecases import optimise
 from stepnc_model import writeback
 from stepnc_model.draft import Draft
-from stepnc_model.errors import SchemaError
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
@@ -79,11 +78,14 @@ def test_one_operation_of_two_workingsteps_carries_one_record(
     assert optimised(once, tmp_path, profile) == once
 
 
-def test_an_operation_without_machine_functions_is_refused_by_name(tmp_path: Path) -> None:
+@pytest.mark.parametrize("profile", list(FileProfile))
+def test_an_operation_without_machine_functions_carries_a_record(
+    profile: FileProfile, tmp_path: Path
+) -> None:
     data = paper002().replace(b"#50,#41,#42,$,#43", b"#50,#41,$,$,#43")
-    with pytest.raises(SchemaError, match="#40 PLANE_ROUGH_MILLING") as caught:
-        optimised(data, tmp_path, FileProfile.STANDARD)
-    assert caught.value.attribute == "its_machine_functions"
+    once = optimised(data, tmp_path, profile)
+    assert list(writeback.records(Program(Part21File.from_bytes(once)))) == [40]
+    assert optimised(once, tmp_path, profile) == once
 
 
 @pytest.mark.parametrize("profile", list(FileProfile))
