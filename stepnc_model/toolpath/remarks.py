@@ -55,7 +55,8 @@ def _of_stock(program: Program) -> Iterator[Finding]:
             continue
         if not is_known:
             text = "no stock is known: engagement is estimated, collisions are not found"
-            at = step.ref if step.setup is None else step.setup
+            setup = step.ref if step.setup is None else step.setup
+            at = setup if int(setup) in program.file else step.ref
             yield program.finding(Severity.WARNING, text, at)
             return
 
