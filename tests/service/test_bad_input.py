@@ -463,7 +463,7 @@ def test_a_program_of_ap238_without_a_feed_is_refused(
     tmp_path: Path, refused: Optimise, name: str
 ) -> None:
     path = CORPUS / "ap238" / f"{name}.stpnc"
-    answer = refused("-o", tmp_path / "out.stpnc", file=path)
+    answer = refused("--material", "c45", "-o", tmp_path / "out.stpnc", file=path)
     assert "MILLING_TECHNOLOGY.feedrate" in answer.error
     assert not (tmp_path / "out.stpnc").exists()
 
