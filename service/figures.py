@@ -6,7 +6,7 @@ import plotly.graph_objects as go
 
 from optimiser.advice import Advice, EvaluatedSetting, Plan, tightest
 from optimiser.problem import BoundSide, LimitName
-from service.panels import BLUE, CLEAR, FAINT, GREY, RED
+from service.panels import BLUE, CLEAR, FAINT, GREY, LEGEND, RED
 from stepnc_model.units import kw_from_watts, mm_min_from_speed, um_from_mm
 
 ROW = 26
@@ -141,13 +141,7 @@ def _laid_out(figure: go.Figure, title: str, unit: str, rows: int) -> go.Figure:
         paper_bgcolor=CLEAR,
         plot_bgcolor=CLEAR,
         margin={"l": 10, "r": 10, "t": 50, "b": 40},
-        legend={
-            "orientation": "h",
-            "y": 1.0,
-            "yanchor": "bottom",
-            "x": 1.0,
-            "xanchor": "right",
-        },
+        legend=LEGEND,
     )
     figure.update_yaxes(autorange="reversed", automargin=True, gridcolor=FAINT)
     return figure.update_xaxes(title=unit or None, automargin=True, gridcolor=FAINT)

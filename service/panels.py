@@ -23,6 +23,8 @@ DIM = "#757575"
 CLEAR = "rgba(0,0,0,0)"
 FAINT = "rgba(128,128,128,0.25)"
 BAND = "rgba(128,128,128,0.10)"
+LEGEND = {"orientation": "h", "y": 1.0, "yanchor": "bottom", "x": 1.0, "xanchor": "right"}
+"""Place of a legend above its figure, to the right."""
 STRIPES = ("rgba(86,180,233,0.45)", "rgba(230,159,0,0.45)")
 """Alternating colours of workingsteps."""
 

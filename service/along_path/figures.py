@@ -9,7 +9,19 @@ from service.along_path.plan_run import LimitStretch
 from service.along_path.run import FeedsAlongPath
 from service.along_path.trace import PathSignal, PathTrace
 from service.buckets import BucketedRun
-from service.panels import BLUE, CLEAR, FAINT, GREEN, GREY, ORANGE, PINK, RED, SKY, key
+from service.panels import (
+    BLUE,
+    CLEAR,
+    FAINT,
+    GREEN,
+    GREY,
+    LEGEND,
+    ORANGE,
+    PINK,
+    RED,
+    SKY,
+    key,
+)
 from simulator.motion.segments import Floats
 
 COLOURS = (
@@ -71,13 +83,7 @@ def _compared(before: BucketedRun, after: BucketedRun, title: str, axis: str) ->
         paper_bgcolor=CLEAR,
         plot_bgcolor=CLEAR,
         margin={"l": 10, "r": 10, "t": 50, "b": 40},
-        legend={
-            "orientation": "h",
-            "y": 1.0,
-            "yanchor": "bottom",
-            "x": 1.0,
-            "xanchor": "right",
-        },
+        legend=LEGEND,
         hovermode="x unified",
         hoverlabel_bgcolor="#ffffff",
     )

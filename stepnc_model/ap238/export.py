@@ -18,7 +18,7 @@ from stepnc_model.ap238.loose import hang, loose_numbers
 from stepnc_model.ap238.requirements import SCHEMA
 from stepnc_model.errors import Finding, FindingList, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.part21.writer import format_value
+from stepnc_model.part21.writer import described_as
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,7 +47,7 @@ def to_ap238(file: Part21File) -> Exported:
     SchemaError
         If the file has neither a project nor a workplan.
     """
-    empty = Part21File.from_bytes(_skeleton(file), name=file.name)
+    empty = Part21File.from_bytes(described_as(file, [SCHEMA], []), name=file.name)
     instances = Instances(empty)
     draft = AimDraft(empty, instances)
     builder = Builder(file, draft, {})
@@ -94,24 +94,3 @@ def _finding(file: Part21File, each: Unsayable, message: str = "") -> Finding:
         line=file.line(each.number) if is_known else 0,
         rule="ISO 10303-238",
     )
-
-
-def _skeleton(file: Part21File) -> bytes:
-    """AP238 file without instances, with the description and the name of another."""
-    header = [
-        file.data[statement.start : statement.end] + b";"
-        for statement in file.structure.statements
-        if statement.keyword in ("FILE_DESCRIPTION", "FILE_NAME")
-    ]
-    schema = b"FILE_SCHEMA((%s));" % format_value(SCHEMA)
-    return b"\n".join([
-        b"ISO-10303-21;",
-        b"HEADER;",
-        *header,
-        schema,
-        b"ENDSEC;",
-        b"DATA;",
-        b"ENDSEC;",
-        b"END-ISO-10303-21;",
-        b"",
-    ])

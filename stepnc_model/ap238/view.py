@@ -12,7 +12,7 @@ from typing import Self
 from stepnc_model.ap238.reading import AimReader, Converted
 from stepnc_model.errors import Finding
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.part21.writer import format_value
+from stepnc_model.part21.writer import described_as, format_value
 
 SCHEMAS = ("MODEL_BASED_INTEGRATED_MANUFACTURING_SCHEMA", "INTEGRATED_CNC_SCHEMA")
 """Schemas of AP238: of its second and later editions, and of the first."""
@@ -87,27 +87,9 @@ class AimView(Part21File):
 
 def _text(source: Part21File, converted: list[Converted]) -> bytes:
     """File of ISO 14649 with the description and the name of the source."""
-    header = [
-        source.data[statement.start : statement.end] + b";"
-        for statement in source.structure.statements
-        if statement.keyword in ("FILE_DESCRIPTION", "FILE_NAME")
-    ]
-    names = ("MACHINING_SCHEMA", "MILLING_SCHEMA", "TURNING_SCHEMA")
-    schema = b"FILE_SCHEMA((%s));" % b",".join(format_value(name) for name in names)
-    lines = [
+    lines = (
         b"#%d=%s%s;"
         % (each.number, each.keyword.encode("ascii"), format_value(each.parameters))
         for each in converted
-    ]
-    return b"\n".join([
-        b"ISO-10303-21;",
-        b"HEADER;",
-        *header,
-        schema,
-        b"ENDSEC;",
-        b"DATA;",
-        *lines,
-        b"ENDSEC;",
-        b"END-ISO-10303-21;",
-        b"",
-    ])
+    )
+    return described_as(source, ("MACHINING_SCHEMA", "MILLING_SCHEMA", "TURNING_SCHEMA"), lines)

@@ -408,3 +408,27 @@ class _Added:
 def _is_schema(text: str, name: str) -> bool:
     """Whether an entry of FILE_SCHEMA names a schema, ignoring an object identifier."""
     return text.partition("{")[0].strip().upper() == name.strip().upper()
+
+
+def described_as(
+    source: Part21File, schemas: Sequence[str], instances: Iterable[bytes]
+) -> bytes:
+    """File with the description and the name of another, of given schemas and instances."""
+    header = [
+        source.data[statement.start : statement.end] + b";"
+        for statement in source.structure.statements
+        if statement.keyword in ("FILE_DESCRIPTION", "FILE_NAME")
+    ]
+    names = b",".join(format_value(name) for name in schemas)
+    return b"\n".join([
+        b"ISO-10303-21;",
+        b"HEADER;",
+        *header,
+        b"FILE_SCHEMA((%s));" % names,
+        b"ENDSEC;",
+        b"DATA;",
+        *instances,
+        b"ENDSEC;",
+        b"END-ISO-10303-21;",
+        b"",
+    ])

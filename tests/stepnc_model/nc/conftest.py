@@ -1,9 +1,6 @@
 """LinuxCNC's interpreter and the samples of its package, and programs of several origins."""
 
-import os
-import platform
 import re
-import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from stepnc_model.units import mm_from_inches
-from tests.stepnc_model.post.conftest import PLACE, SETTINGS, TOOLS, _fetch
+from tests.stepnc_model.post.conftest import PLACE, interpreter_in
 
 SAMPLES = PLACE / "usr" / "share" / "linuxcnc" / "ncfiles"
 COMMAND = re.compile(r"\s*\d+\s+N\S*\s+([A-Z_0-9]+)\((.*)\)")
@@ -66,34 +63,8 @@ def moves_of(text: str) -> list[CanonicalMove]:
 @pytest.fixture(scope="session")
 def linuxcnc(tmp_path_factory: pytest.TempPathFactory) -> Oracle:
     """LinuxCNC's interpreter: bytes in, moves out."""
-    if not PLACE.is_dir():
-        _fetch()
-    folder = tmp_path_factory.mktemp("rs274_nc")
-    (folder / "mill.ini").write_text(SETTINGS)
-    (folder / "tool.tbl").write_text(TOOLS)
-    libraries = PLACE / "usr" / "lib"
-    paths = f"{libraries}:{libraries / f'{platform.machine()}-linux-gnu'}"
-    program = PLACE / "usr" / "bin" / "rs274"
-    options = ("-g", "-i", "mill.ini", "-t", "tool.tbl", "-v", "rs.var")
-
-    def interpret(data: bytes) -> list[CanonicalMove]:
-        (folder / "part.ngc").write_bytes(data)
-        (folder / "rs.var").write_text("")
-        answer = subprocess.run(
-            [str(program), *options, "part.ngc", "out.canon"],
-            cwd=folder,
-            env={**os.environ, "LD_LIBRARY_PATH": paths, "HOME": str(folder)},
-            capture_output=True,
-            text=True,
-            timeout=60,
-            check=False,
-        )
-        if "error while loading shared libraries" in answer.stderr:
-            pytest.skip(f"rs274 does not run here: {answer.stderr.strip()}")
-        assert answer.returncode == 0, answer.stderr
-        return moves_of((folder / "out.canon").read_text(errors="replace"))
-
-    return interpret
+    interpret = interpreter_in(tmp_path_factory.mktemp("rs274_nc"))
+    return lambda data: moves_of(interpret(data))
 
 
 @pytest.fixture(scope="session")

@@ -102,12 +102,10 @@ def _fetch() -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-@pytest.fixture(scope="session")
-def interpreter(tmp_path_factory: pytest.TempPathFactory) -> Interpreter:
-    """LinuxCNC's interpreter: NC code in, canonical commands out."""
+def interpreter_in(folder: Path) -> Callable[[bytes], str]:
+    """LinuxCNC's interpreter in a folder of its own: NC code in, canonical commands out."""
     if not PLACE.is_dir():
         _fetch()
-    folder = tmp_path_factory.mktemp("rs274")
     (folder / "mill.ini").write_text(SETTINGS)
     (folder / "tool.tbl").write_text(TOOLS)
     libraries = PLACE / "usr" / "lib"
@@ -115,8 +113,8 @@ def interpreter(tmp_path_factory: pytest.TempPathFactory) -> Interpreter:
     program = PLACE / "usr" / "bin" / "rs274"
     options = ("-g", "-i", "mill.ini", "-t", "tool.tbl", "-v", "rs.var")
 
-    def interpret(lines: Iterable[str]) -> tuple[Canonical, ...]:
-        (folder / "part.ngc").write_text("".join(f"{line}\n" for line in lines))
+    def interpret(data: bytes) -> str:
+        (folder / "part.ngc").write_bytes(data)
         (folder / "rs.var").write_text("")
         answer = subprocess.run(
             [str(program), *options, "part.ngc", "out.canon"],
@@ -131,9 +129,21 @@ def interpreter(tmp_path_factory: pytest.TempPathFactory) -> Interpreter:
         if "error while loading shared libraries" in answer.stderr:
             pytest.skip(f"rs274 does not run here: {answer.stderr.strip()}")
         assert answer.returncode == 0, answer.stderr
-        return tuple(read((folder / "out.canon").read_text().splitlines()))
+        return (folder / "out.canon").read_text(errors="replace")
 
     return interpret
+
+
+@pytest.fixture(scope="session")
+def interpreter(tmp_path_factory: pytest.TempPathFactory) -> Interpreter:
+    """LinuxCNC's interpreter: lines of NC code in, canonical commands out."""
+    interpret = interpreter_in(tmp_path_factory.mktemp("rs274"))
+
+    def interpret_lines(lines: Iterable[str]) -> tuple[Canonical, ...]:
+        text = "".join(f"{line}\n" for line in lines)
+        return tuple(read(interpret(text.encode()).splitlines()))
+
+    return interpret_lines
 
 
 def _head(machine: MachineType, *, name: str = "PART") -> list[Block]:
