@@ -52,7 +52,7 @@ def watched(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Watched]:
             simulation = made(client.post("/v1/simulations", json=asked))
             assert over(client, simulation)["state"] == "succeeded"
         yield Watched(agent=agent, server=server, simulation=simulation)
-        assert server.faults() == []
+        assert server.faults() == ""
 
 
 @pytest.fixture

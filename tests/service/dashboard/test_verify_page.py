@@ -49,7 +49,7 @@ def watched(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Watched]:
             run = made(client.post("/v1/simulations", json=asked))
             assert over(client, run)["state"] == "succeeded"
         yield Watched(server=server, slot=slot, run=run)
-        assert server.faults() == []
+        assert server.faults() == ""
 
 
 @pytest.fixture

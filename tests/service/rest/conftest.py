@@ -23,7 +23,7 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
         store.add(list(outcomes(300)))
     with server:
         yield server
-        assert server.faults() == []
+        assert server.faults() == ""
 
 
 @pytest.fixture

@@ -23,6 +23,9 @@ STEPNC = Path(sys.executable).with_name("stepnc")
 PATIENCE = 30.0
 """s for an answer"""
 
+FAULTS = ('"event":"fault"', "Traceback", '"level":"error"')
+"""What a line of the log has when the program is at fault."""
+
 TRUSTING_NOBODY = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
 """for clients without TLS: httpx reads the certificates of the world for each otherwise"""
 
@@ -123,14 +126,13 @@ class Server:
             **more,
         )
 
-    def faults(self) -> list[str]:
-        """What the log says of faults of the program."""
+    def faults(self) -> str:
+        """What the log says from the first fault of the program on; empty if it has none."""
         lines = self.log.read_text(encoding="utf-8", errors="replace").splitlines()
-        return [
-            line
-            for line in lines
-            if '"event":"fault"' in line or "Traceback" in line or '"level":"error"' in line
-        ]
+        for number, line in enumerate(lines):
+            if any(word in line for word in FAULTS):
+                return "\n".join(lines[max(0, number - 2) : number + 60])
+        return ""
 
 
 def over(client: httpx.Client, id: str, *, within: float = 60.0) -> dict[str, Any]:

@@ -151,7 +151,7 @@ def test_a_program_of_the_wrong_kind_is_refused_in_words(
         found = is_problem(client.post(path, json=body), 422)
         words = "program 'plate.NC' is NC code; this needs a STEP-NC program"
         assert words in found["detail"], path
-    assert service.faults() == []
+    assert service.faults() == ""
 
 
 def test_a_step_nc_program_gets_feeds_along_its_paths(client: httpx.Client, done: Done) -> None:

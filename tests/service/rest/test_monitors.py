@@ -38,7 +38,7 @@ def server(agent: PlayedAgent, tmp_path_factory: pytest.TempPathFactory) -> Iter
     folder = tmp_path_factory.mktemp("monitors")
     with Server(folder, "--agent", f"paper003={agent.url}") as found:
         yield found
-        assert found.faults() == []
+        assert found.faults() == ""
 
 
 @pytest.fixture
@@ -166,7 +166,7 @@ def test_a_viewer_may_watch_and_nobody_else(agent: PlayedAgent, tmp_path: Path) 
     with server, server.client(key) as client:
         until(lambda: client.get(ONE).json()["state"] == "connected")
         assert httpx.get(f"{server.url}{ONE}", trust_env=False).status_code == 401
-    assert server.faults() == []
+    assert server.faults() == ""
 
 
 def test_an_agent_needs_a_machine_of_the_library_or_the_shop(tmp_path: Path) -> None:

@@ -237,7 +237,7 @@ def watched(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
         create_key(server, "first", "viewer")
         with server:
             yield server
-            assert server.faults() == []
+            assert server.faults() == ""
 
 
 def test_the_latest_run_of_a_monitored_machine_is_verified(watched: Server) -> None:
