@@ -37,6 +37,15 @@ AROUND = 2
 FINEST = 6
 """Decimals of a millimetre up to which the rounding of positions is looked for."""
 
+STRAIGHT = 0.02
+"""Turn of the path, rad, up to which it shows at what speed the tool goes on."""
+
+FLAT = 1e-3
+"""Distance of the path from the line between two samples, mm, up to which it is this line."""
+
+STEADY = 0.9
+"""Ratio of the ways on two straight lines above which the tool is as fast on both."""
+
 STILL = 1e-9
 """Movement, mm, below which a tool stands still."""
 
@@ -156,6 +165,9 @@ class SampledStretch:
     is_gap: Bools
     """Whether so many are missing before a sample that the tool was elsewhere, (N,): what is
     on the line is not taken as cut."""
+    way: Floats
+    """Longest way that the tool may have gone to each sample, (N,), mm; infinite where it is
+    not known. On straights it is the line."""
 
     @property
     def is_unseen(self) -> Bools:
@@ -226,6 +238,7 @@ class SampleSteps:
                 unseen=whole.unseen[rows],
                 # No line leads from the tool before.
                 is_gap=np.where(part == part[0], False, whole.is_gap[rows]),
+                way=whole.way[rows],
             )
 
     def _begin(self, samples: LoggedSamples) -> None:
@@ -250,13 +263,18 @@ class SampleSteps:
         if is_usual.any():
             usual = float(np.quantile(way[is_usual], 0.99))
             self.facts.step = max(self.facts.step, usual)
-        turn = np.where(is_gap, pi, turns_of(samples.position))
+        before, behind = turns_of(samples.position)
+        turn = np.where(is_gap, pi, np.minimum(before + behind, pi))
         around = _greatest_around(way)
-        bend = _greatest_around(0.5 * around * np.sin(0.5 * turn))
+        corner = 0.5 * around * np.sin(0.5 * turn)
+        bend = _greatest_around(corner)
         rise = _greatest_around(np.where(is_gap, way, np.abs(lines[:, 2])))
         # Places to which the way from one end to the other is as long form an ellipse.
         unseen = 0.5 * np.sqrt(np.maximum(way * way - straight * straight, 0.0))
         unseen = np.where((way > straight) & (straight > STILL), unseen, 0.0)
+        is_straight = ~is_gap & (np.minimum(before, behind) < STRAIGHT)
+        furthest = _longest_ways(np.where(is_straight, way, np.nan), seconds)
+        furthest = np.where(corner < FLAT, straight, np.maximum(furthest, way))
         return SampledStretch(
             samples=samples,
             step=_to_ends(around),
@@ -264,6 +282,7 @@ class SampleSteps:
             rise=_to_ends(rise),
             unseen=np.concatenate(([0.0], unseen)),
             is_gap=np.append(False, is_gap & (seconds > ELSEWHERE * self.facts.interval)),
+            way=np.append(0.0, np.where(is_gap, np.inf, furthest)),
         )
 
 
@@ -392,8 +411,8 @@ def rounding_of(position: Floats) -> float:
     return 0.0
 
 
-def turns_of(position: Floats) -> Floats:
-    """Angle by which the path turns from before to after each line between samples, rad.
+def turns_of(position: Floats) -> tuple[Floats, Floats]:
+    """Angles by which the path turns at the start and the end of each line between samples.
 
     Parameters
     ----------
@@ -401,20 +420,20 @@ def turns_of(position: Floats) -> Floats:
 
     Returns
     -------
-    (N - 1,) array, rad
-        At most half a turn, which also counts at both ends, where it is not known; 0 where the
-        tool stands still.
+    (N - 1,) array, (N - 1,) array, rad
+        Half a turn at both ends of the path, where it is not known; 0 where the tool stands
+        still.
     """
     lines = np.diff(position, axis=0)
     length = np.linalg.norm(lines, axis=1)
     moves = np.flatnonzero(length > STILL)
-    found = np.zeros(len(lines))
+    before, behind = np.zeros(len(lines)), np.zeros(len(lines))
     if len(moves):
         along = lines[moves] / length[moves, None]
         cosine = np.clip(np.sum(along[:-1] * along[1:], axis=1), -1.0, 1.0)
         turn = np.concatenate(([pi], np.arccos(cosine), [pi]))
-        found[moves] = np.minimum(turn[:-1] + turn[1:], pi)
-    return found
+        before[moves], behind[moves] = turn[:-1], turn[1:]
+    return before, behind
 
 
 def unmet(shape: tuple[int, ...]) -> NearestSamples:
@@ -442,6 +461,32 @@ def _with_missing(way: Floats, seconds: Floats, interval: float) -> Floats:
         return way
     usual = _greatest_around(np.where(is_whole, way, 0.0))
     return np.where(is_lost, np.maximum(way, usual * counts), way)
+
+
+def _longest_ways(ways: Floats, seconds: Floats) -> Floats:
+    """Longest way that the tool may have gone between two samples, (N,), mm.
+
+    It goes as fast as on straight lines before and behind, at most ``AROUND`` away, if these
+    are equally fast; otherwise the way is infinite.
+
+    Parameters
+    ----------
+    ways : (N,) array, mm
+        Way where the line is straight at one end at least; NaN elsewhere.
+    seconds : (N,) array, s
+        Time between the samples.
+    """
+    count = len(ways)
+    padded = np.pad(ways, AROUND, constant_values=np.nan)
+    time = np.pad(seconds, AROUND, constant_values=np.nan)
+    longest = np.full(count, np.inf)
+    for before, behind in ((2, 2), (2, 1), (1, 2), (1, 1)):
+        ends = [slice(AROUND + by, AROUND + by + count) for by in (-before, behind)]
+        times = [np.maximum(seconds / np.maximum(time[end], STILL), 1.0) for end in ends]
+        one, other = (padded[end] * each for end, each in zip(ends, times, strict=True))
+        fast = np.maximum(one, other)
+        longest = np.where(np.minimum(one, other) > STEADY * fast, fast, longest)
+    return longest
 
 
 def _to_ends(values: Floats) -> Floats:

@@ -158,7 +158,7 @@ def _side(part: RequiredBar, logged: LoggedBar, *, is_bore: bool) -> SurfacePlac
         is_wall=points.is_face,
         position=found.position,
         deviation=found.deviation,
-        uncertainty=nearest.bend + found.uncertainty,
+        uncertainty=np.minimum(nearest.bend, found.reached) + found.uncertainty,
         certain=found.gouge,
         area=points.area,
         workingstep=by,

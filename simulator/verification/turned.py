@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from math import inf, pi
 
 import numpy as np
+from scipy.ndimage import distance_transform_edt
 from scipy.spatial import cKDTree
 
 from simulator.motion.segments import Bools, Floats, Ints, Segments, lines
@@ -50,6 +51,9 @@ CHANGED = 1e-7
 
 LIMIT = 1e-3
 """Uncertainty of the comparison itself, mm."""
+
+BOX = 5
+"""Corners of a box around a line, the first one twice."""
 
 LEAST_GOUGE = 0.01
 """Least depth of a gouge that samples alone make certain, mm."""
@@ -161,6 +165,10 @@ class LoggedBar:
         self.bar = TurningStock(stock, reference.cell)
         self.possible = TurningStock(stock, reference.cell)
         """What is left if the tool went everywhere that it may have gone unseen."""
+        self.reached = TurningStock(stock, reference.cell)
+        """What is left if the tool went as far between samples as its way there may be long."""
+        self.doubtful = TurningStock(stock, reference.cell)
+        """What is left by lines between samples on which it may have gone any way."""
         self.certain = TurningStock(stock, reference.cell)
         """What is left if the tool cut only where samples show it, near corners of the log."""
         self._shapes = shapes
@@ -191,8 +199,11 @@ class LoggedBar:
             is_wide = part.is_gap | (part.unseen > self.bar.cell)
             for end in np.flatnonzero(is_wide).tolist():
                 reach = max(float(part.unseen[end]), self.bar.cell)
-                around = _box_around(position[end - 1], position[end], reach)
+                around = _box_around(position[end - 1], position[end], reach, reach)
                 _cut(self.possible, lines(around, speed=1.0), shape)
+            _cut(self.reached, _boxes_around(position, part.way), shape)
+            along = lines(list(position), speed=1.0)
+            _cut(self.doubtful, along[np.isinf(part.way[1:])], shape)
             # On straights the line between samples is as certain as they are.
             shown = position[(part.bend > LIMIT) & part.samples.measured]
             if len(shown):
@@ -264,13 +275,37 @@ def _cut(bar: TurningStock, segments: Segments, shape: Shape | None) -> Bools:
     return np.asarray((outer - bar.outer > CHANGED) | (bar.inner - inner > CHANGED))
 
 
-def _box_around(start: Floats, end: Floats, reach: float) -> list[Floats]:
-    """Corners of a box around a line, (3,) each, that lie a distance beside it, mm."""
-    way = float(np.linalg.norm(end - start))
-    along = (end - start) * (reach / way)
-    across = np.array([-along[2], 0.0, along[0]])
-    corners = (start - along + across, end + along + across, end + along - across)
-    return [start, *corners, start - along - across, start]
+def _boxes_around(position: Floats, way: Floats) -> Segments:
+    """Boxes around the places that the tool may have reached between samples.
+
+    Places to which the way from one sample to the other is as long form an ellipse.
+
+    Parameters
+    ----------
+    position : (N, 3) array, mm
+    way : (N,) array, mm
+        Longest way to each sample; without a box where it is infinite.
+    """
+    straight = np.linalg.norm(np.diff(position, axis=0), axis=1)
+    longest = np.where(np.isinf(way[1:]), straight, way[1:])
+    beyond = 0.5 * (longest - straight)
+    beside = 0.5 * np.sqrt(np.maximum(longest * longest - straight * straight, 0.0))
+    boxes = [
+        _box_around(position[row], position[row + 1], float(beyond[row]), float(beside[row]))
+        for row in np.flatnonzero(beside > LIMIT).tolist()
+    ]
+    corners = lines([corner for box in boxes for corner in box], speed=1.0)
+    # Boxes have four sides; the fifth line leads to the next box.
+    return corners[np.arange(len(corners)) % BOX != BOX - 1]
+
+
+def _box_around(start: Floats, end: Floats, beyond: float, beside: float) -> list[Floats]:
+    """Corners of a box around a line, (3,) each, that lie beyond its ends and beside it, mm."""
+    length = float(np.linalg.norm(end - start))
+    one = (end - start) / length if length > 0.0 else np.array([1.0, 0.0, 0.0])
+    along, across = beyond * one, beside * np.array([-one[2], 0.0, one[0]])
+    first = start - along + across
+    return [first, end + along + across, end + along - across, start - along - across, first]
 
 
 def _squares(position: Floats, reach: float) -> Ints:
@@ -304,7 +339,10 @@ class ProfileComparison:
     deviation: Floats
     """(P,), mm: excess positive, gouge negative."""
     uncertainty: Floats
-    """Uncertainty by rounding and cells, (P,), mm."""
+    """Uncertainty by rounding, cells and missing samples, (P,), mm."""
+    reached: Floats
+    """How much of an excess the tool may have cut between samples, (P,), mm, by the length of
+    its way; infinite where that is not known, and without an excess."""
     gouge: Floats
     """Depth that a gouge has at least, by the samples alone, (P,), mm; 0 without one."""
     nearest: NearestSamples
@@ -326,14 +364,21 @@ def compared_profiles(
     away, line = nearest_on(place, np.column_stack([other, bar.z]), bar.cell)
     deviation = (-points.sign if is_bore else points.sign) * away
     limit = np.where(points.is_face, bar.cell, 0.0) + rounding_uncertainty(logged.facts) + LIMIT
-    unknown = _unknown(bar, logged, points, deviation, is_bore=is_bore)
+    nearest = _made_by(logged, points.cell, line, is_bore=is_bore)
+    missing = _unknown(bar, logged.bar, logged.possible, points, deviation, is_bore=is_bore)
+    is_made = _is_made_by(logged.doubtful, logged.bar, is_bore=is_bore)
+    # Deeper cuts beside a place would lie nearer to it than what the log shows.
+    around = distance_transform_edt(~is_made, sampling=bar.cell)
+    is_doubtful = is_made.any() & (around[points.cell] <= np.abs(deviation) + 2.0 * bar.cell)
+    reached = _unknown(bar, logged.bar, logged.reached, points, deviation, is_bore=is_bore)
     return ProfileComparison(
         points=points,
         position=np.column_stack([points.radius, np.zeros(len(place)), points.z]),
         deviation=deviation,
-        uncertainty=np.asarray(limit + unknown),
+        uncertainty=np.asarray(limit + np.minimum(missing, np.maximum(deviation, 0.0))),
+        reached=np.where((deviation > 0.0) & ~is_doubtful, reached, np.inf),
         gouge=_least_gouge(radius, place, limit, bar, logged, is_bore=is_bore),
-        nearest=_made_by(logged, points.cell, line, is_bore=is_bore),
+        nearest=nearest,
     )
 
 
@@ -378,16 +423,23 @@ def _made_by(logged: LoggedBar, cell: Ints, line: Ints, *, is_bore: bool) -> Nea
     return along.followed_by(faces)
 
 
+def _is_made_by(part: TurningStock, whole: TurningStock, *, is_bore: bool) -> Bools:
+    """Whether a part of the sweep made the profile in each cell, (C,)."""
+    if is_bore:
+        return np.asarray(part.inner > whole.inner - CHANGED)
+    return np.asarray(part.outer < whole.outer + CHANGED)
+
+
 def _unknown(
     bar: TurningStock,
-    logged: LoggedBar,
+    left: TurningStock,
+    possible: TurningStock,
     points: ProfilePoints,
     deviation: Floats,
     *,
     is_bore: bool,
 ) -> Floats:
-    """How much of an excess the tool may have cut while samples were missing, (P,), mm."""
-    left, possible = logged.bar, logged.possible
+    """How much more than in a profile the tool may have cut unseen, (P,), mm; 0 in a gouge."""
     if is_bore:
         profile, radius = np.maximum(left.inner, possible.inner), bar.inner
         is_less = (profile > left.inner + CHANGED).any()
@@ -404,8 +456,8 @@ def _unknown(
         is_left = np.maximum(*beside) < points.radius - CHANGED
     else:
         is_left = np.minimum(*beside) > points.radius + CHANGED
-    least = np.where(is_left, away, 0.0)
-    return np.asarray(np.clip(deviation - least, 0.0, np.maximum(deviation, 0.0)))
+    more = deviation - np.where(is_left, away, -away)
+    return np.where(deviation > 0.0, np.maximum(more, 0.0), 0.0)
 
 
 def has_bore(bar: TurningStock, logged: LoggedBar) -> bool:
@@ -424,6 +476,7 @@ def _side(part: TurnedPart, logged: LoggedBar, *, is_bore: bool) -> SurfacePlace
     reach = PIECE + max(noses, default=0.0)
     station = _stations(part, found, chord)
     bend = path_uncertainty(path, station, found.nearest.step, reach=reach)
+    bend = np.minimum(bend, found.reached)
     return SurfacePlaces(
         is_wall=points.is_face,
         position=found.position,

@@ -9,7 +9,9 @@ from math import cos, sin
 import numpy as np
 import pytest
 
-from simulator.motion.segments import Floats, lines
+from simulator.motion.control import ExactStop
+from simulator.motion.segments import AxisLimits, Floats, Motion, Segments, chained, lines
+from simulator.removal.cutter import Insert
 from simulator.verification.deviation import SurfacePlaces, surface_places
 from simulator.verification.logged import LoggedPart, LoggedSamples
 from simulator.verification.path import ProgrammedRun, programmed_path
@@ -158,3 +160,68 @@ def test_a_lost_corner_is_no_excess_though_material_was_left_before() -> None:
     # Material that is left elsewhere is one.
     rows = np.flatnonzero(samples.time > samples.time[-1] - 20.0)
     assert milled(samples[: int(rows[0])]).is_beyond.any()
+
+
+BLADE = Insert(width=0.8)
+GROOVES = 12
+"""random grooves"""
+
+LIMITS = AxisLimits(
+    rapid=np.full(3, 200.0), feed=np.full(3, 100.0), acceleration=np.full(3, 3e3)
+)
+
+
+def grooves(random: np.random.Generator) -> Segments:
+    """Two plunges beside each other, in and out at feeds of their own, with rapids between."""
+    bottom = float(random.uniform(14.0, 18.0))
+    parts = [lines([(24.0, 0.0, 2.0), (24.0, 0.0, -20.0)])]
+    for z, after in ((-20.0, -21.0), (-21.0, 2.0)):
+        top, bottom = 20.5, bottom + float(random.choice([0.0, 0.3]))
+        into, out = random.uniform(5.0, 25.0, 2) if random.integers(2) else [12.0, 12.0]
+        parts += [
+            lines([(24.0, 0.0, z), (top, 0.0, z)]),
+            lines([(top, 0.0, z), (bottom, 0.0, z)], speed=float(into)),
+            lines([(bottom, 0.0, z), (top, 0.0, z)], speed=float(out)),
+            lines([(top, 0.0, z), (24.0, 0.0, z), (24.0, 0.0, after)]),
+        ]
+    return chained(parts)
+
+
+def groove_log(motion: Motion, random: np.random.Generator, offset: Floats) -> LoggedSamples:
+    """Positions at a random rate, phase and jitter; jitter also of their stamps alone."""
+    interval = float(random.choice([0.03, 0.1]))
+    times = np.arange(float(random.uniform(0.0, interval)), motion.duration, interval)
+    off = (
+        interval
+        * random.uniform(-0.4, 0.4, (2, len(times)))
+        * np.array([[0.0], [float(random.integers(0, 2))]])
+    )
+    position = motion.at(np.clip(times + off[0], 0.0, motion.duration)).position + offset
+    count = len(times)
+    return LoggedSamples(
+        time=times + off[0] + off[1] * (off[0] == 0.0), position=np.round(position, 4),
+        tool=np.ones(count, dtype=np.int64), workingstep=np.zeros(count, dtype=np.int64),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(GROOVES))
+def test_bottoms_of_grooves_are_never_more_certain_than_the_log(seed: int) -> None:
+    random = np.random.default_rng([13, seed])
+    segments = grooves(random)
+    run = ProgrammedRun(cutter=BLADE, tool=1, workingstep=0, segments=segments)
+    part = turned_part(programmed_path([run]), test_revolved.BAR)
+    motion = ExactStop().plan(segments, LIMITS)
+
+    def places_of(samples: LoggedSamples) -> SurfacePlaces:
+        left = LoggedBar(part.bar, test_revolved.BAR, {1: BLADE})
+        left.add(samples)
+        return turned_places(part, left)
+
+    assert not places_of(groove_log(motion, random, np.zeros(3))).is_beyond.any()
+    offset = np.array([random.uniform(-0.4, 0.4), 0.0, random.uniform(-0.1, 0.1)])
+    dense = motion.at(np.arange(0.0, motion.duration, 2e-4)).position + offset
+    truth = places_of(samples_at(dense, interval=2e-4))
+    found = places_of(groove_log(motion, random, offset))
+    wrong = np.abs(found.deviation - truth.deviation) - found.uncertainty - truth.uncertainty
+    is_bottom = ~found.is_wall & (found.position[:, 0] < 19.0)
+    assert wrong[is_bottom].max() <= CLOSE

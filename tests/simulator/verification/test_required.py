@@ -84,7 +84,9 @@ def test_a_part_without_walls_is_refused() -> None:
 def test_the_turns_of_a_path() -> None:
     corner = np.array([[0.0, 0.0, 0.0], [1, 0, 0], [2, 0, 0], [2, 0, 0], [2, 1, 0], [2, 2, 0]])
     half = 0.5 * np.pi
-    assert turns_of(corner) == pytest.approx([np.pi, half, 0.0, half, np.pi])
+    before, behind = turns_of(corner)
+    assert before == pytest.approx([np.pi, 0.0, 0.0, half, 0.0])
+    assert behind == pytest.approx([0.0, half, 0.0, 0.0, np.pi])
 
 
 def test_open_and_turned_triangles_are_counted() -> None:
