@@ -170,11 +170,14 @@ def _work(job: Job) -> Callable[[RunningJob], None]:
             from service.jobs import steer  # noqa: PLC0415
 
             return steer.run_trial if job.kind is JobKind.TRIAL else steer.run_control
-        case JobKind.EVALUATION | JobKind.REVIEW:
+        case JobKind.EVALUATION:
             from service.jobs import evaluate  # noqa: PLC0415
 
-            is_review = job.kind is JobKind.REVIEW
-            return evaluate.run_review if is_review else evaluate.run_evaluation
+            return evaluate.run
+        case JobKind.REVIEW:
+            from service.jobs import review  # noqa: PLC0415
+
+            return review.run
         case JobKind.FACTORY:
             from service.jobs import produce  # noqa: PLC0415
 

@@ -62,6 +62,9 @@ LONGEST_PACED = 12 * 3600.0
 MOST_PACED = 16
 """Largest number of paced jobs that run at once."""
 
+LOADED = ("service.jobs.preloaded_common", "service.jobs.preloaded")
+"""Modules that jobs find loaded."""
+
 LOG = structlog.get_logger("runner")
 
 
@@ -111,7 +114,7 @@ class Runner:
     def run(self, *, is_wanted: Callable[[], bool] = lambda: True) -> None:
         """Run jobs until told to stop; the next runner queues unfinished jobs again."""
         context = multiprocessing.get_context("forkserver")
-        context.set_forkserver_preload([log_lines.FORKED, "service.jobs.preloaded"])
+        context.set_forkserver_preload([log_lines.FORKED, *LOADED, "service.jobs.frozen"])
         forkserver.ensure_running()
         try:
             while is_wanted() and not self.is_stopping:

@@ -61,6 +61,8 @@ TOGETHER = {
     "service/storage/server_schema.py": "statements; run in storage/test_server_database.py",
     "service/fork_log.py": "read in tests/service/test_log_lines.py",
     "service/rest/web_config.py": "its faults are read in tests/service/test_log_lines.py",
+    "service/jobs/frozen.py": "loaded by the runners of tests/service/jobs",
+    "service/jobs/preloaded_common.py": "loads what it names; service/jobs/test_runner.py",
     "service/jobs/preloaded.py": "loads what it names; tests/service/jobs/test_runner.py",
     "service/rest/views.py": "shapes; held against the document in rest/test_openapi.py",
     "service/rest/advice_views.py": "shapes; held against answers in rest/test_code_advice.py",
