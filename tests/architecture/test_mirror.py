@@ -62,6 +62,7 @@ TOGETHER = {
     "service/fork_log.py": "read in tests/service/test_log_lines.py",
     "service/rest/web_config.py": "its faults are read in tests/service/test_log_lines.py",
     "service/jobs/frozen.py": "loaded by the runners of tests/service/jobs",
+    "service/jobs/review.py": "run in tests/service/jobs/test_evaluate.py",
     "service/jobs/preloaded_common.py": "loads what it names; service/jobs/test_runner.py",
     "service/jobs/preloaded.py": "loads what it names; tests/service/jobs/test_runner.py",
     "service/rest/views.py": "shapes; held against the document in rest/test_openapi.py",
