@@ -29,7 +29,7 @@ def gate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Gate]:
 
 
 def succeeded(client: httpx.Client, id: str) -> str:
-    job = over(client, id, within=120.0)
+    job = over(client, id)
     assert job["state"] == "succeeded", job
     return str(job["result"])
 
