@@ -186,9 +186,11 @@ def _hosts(folder: Path, url: str, options: argparse.Namespace) -> None:
     begin = time.monotonic()
     sender.start()
     kills = 0
+    # Spread over all jobs, however many there are.
+    apart = max(options.jobs / 1000.0, 1.0)
     try:
         while sender.is_alive() or _waiting(url) or kills < options.kills:
-            time.sleep(random.uniform(0.5, 4.0))
+            time.sleep(random.uniform(0.5, 4.0) * (apart if kills < options.kills else 1.0))
             if kills < options.kills:
                 host = random.choice(hosts)
                 host.kill()

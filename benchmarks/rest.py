@@ -44,7 +44,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--pairs", type=int, default=5)
     parser.add_argument("--seconds", type=int, default=4)
-    parser.add_argument("--database", default="", help="postgresql://…, else a file")
+    parser.add_argument(
+        "--database", default="", help="postgresql://…, without tables so far; else a file"
+    )
     parser.add_argument("--quiet", action="store_true", help="without a job and a stream")
     options = parser.parse_args(arguments)
     if shutil.which("wrk") is None:

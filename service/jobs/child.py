@@ -2,8 +2,12 @@
 
 import logging
 import signal
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from functools import partial
+from threading import Timer, main_thread
 from time import monotonic, sleep
 from types import FrameType
 from typing import Any, TypeVar
@@ -46,8 +50,22 @@ class ProgressHandler(logging.Handler):
         self._task.progress(0.0, record.getMessage())
 
 
+SOON = 0.01
+"""Time until a request to end is repeated that came where nothing could catch it, in s."""
+
+UnraisableHook = Callable[["sys.UnraisableHookArgs"], Any]
+
+
 class Cancelled(BaseException):
     """The runner has asked the job to end; unfinished files are removed on the way out."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JobEnd:
+    """How a job has ended."""
+
+    state: JobState
+    problem: Mapping[str, Any] | None = None
 
 
 def main(folder: FolderAddress, id: str, attempt: int) -> None:
@@ -60,28 +78,52 @@ def main(folder: FolderAddress, id: str, attempt: int) -> None:
         return
     task = RunningJob(data_folder=data_folder, job=job)
     _say_as_progress(task)
-    state, problem = JobState.SUCCEEDED, None
     try:
-        signal.signal(signal.SIGTERM, _cancel)
-        if task.make_folder():
-            _work(job)(task)
-            _insisting(task.publish)
-    except Cancelled:
-        state = JobState.CANCELLED
-    except StepNcError as error:
-        state, problem = JobState.FAILED, problem_of(error, hidden=str(data_folder.files))
-        if isinstance(error, WITHOUT_ROOM):
-            clear(task.folder, LARGE)
-    except MemoryError:
-        detail = "the job needed more memory than is available"
-        state, problem = JobState.FAILED, plain_problem(507, "Out of memory", detail)
+        try:
+            with _cancellable():
+                end = _end_of(task)
+        except Cancelled:
+            # Also where it came between two lines of what handles an error.
+            end = JobEnd(state=JobState.CANCELLED)
     except BaseException:
         # The server's log has the traceback; the client learns that it is not at fault.
         detail = f"internal error in job '{id}'; see the log of the server"
-        _finish(task, JobState.FAILED, plain_problem(500, "Fault", detail))
+        fault = plain_problem(500, "Fault", detail)
+        _finish(task, JobEnd(state=JobState.FAILED, problem=fault))
         raise
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    _finish(task, state, problem)
+    _finish(task, end)
+
+
+def _end_of(task: RunningJob) -> JobEnd:
+    """Do the work of a job, and return how it has ended."""
+    try:
+        if task.make_folder():
+            _work(task.job)(task)
+            _insisting(task.publish)
+    except StepNcError as error:
+        if isinstance(error, WITHOUT_ROOM):
+            clear(task.folder, LARGE)
+        problem = problem_of(error, hidden=str(task.data_folder.files))
+        return JobEnd(state=JobState.FAILED, problem=problem)
+    except MemoryError:
+        detail = "the job needed more memory than is available"
+        problem = plain_problem(507, "Out of memory", detail)
+        return JobEnd(state=JobState.FAILED, problem=problem)
+    return JobEnd(state=JobState.SUCCEEDED)
+
+
+@contextmanager
+def _cancellable() -> Iterator[None]:
+    """Raise Cancelled where the runner asks the job to end, and only within this block."""
+    others = sys.unraisablehook
+    sys.unraisablehook = partial(_cancel_again, others)
+    try:
+        signal.signal(signal.SIGTERM, _cancel)
+        yield
+    finally:
+        # A function instead of SIG_IGN: Python reports a signal that came just before as lost.
+        signal.signal(signal.SIGTERM, _too_late)
+        sys.unraisablehook = others
 
 
 def _say_as_progress(task: RunningJob) -> None:
@@ -91,14 +133,14 @@ def _say_as_progress(task: RunningJob) -> None:
     compilers.propagate = False
 
 
-def _finish(task: RunningJob, state: JobState, problem: Mapping[str, Any] | None) -> None:
-    """Record the final state of a job."""
-    if state is not JobState.SUCCEEDED:
+def _finish(task: RunningJob, end: JobEnd) -> None:
+    """Record how a job has ended."""
+    if end.state is not JobState.SUCCEEDED:
         clear(task.folder, UNFINISHED)
         # Rows of a run that was ended are kept, where there is room for them.
         with suppress(Unavailable):
             task.publish()
-    _insisting(lambda: jobs.finish(task.data_folder, task.job, state, problem=problem))
+    _insisting(lambda: jobs.finish(task.data_folder, task.job, end.state, problem=end.problem))
 
 
 def _insisting(ask: Callable[[], T]) -> T:
@@ -128,11 +170,14 @@ def _work(job: Job) -> Callable[[RunningJob], None]:
             from service.jobs import steer  # noqa: PLC0415
 
             return steer.run_trial if job.kind is JobKind.TRIAL else steer.run_control
-        case JobKind.EVALUATION | JobKind.REVIEW:
+        case JobKind.EVALUATION:
             from service.jobs import evaluate  # noqa: PLC0415
 
-            is_review = job.kind is JobKind.REVIEW
-            return evaluate.run_review if is_review else evaluate.run_evaluation
+            return evaluate.run
+        case JobKind.REVIEW:
+            from service.jobs import review  # noqa: PLC0415
+
+            return review.run
         case JobKind.FACTORY:
             from service.jobs import produce  # noqa: PLC0415
 
@@ -151,3 +196,17 @@ def _cancel(_signal: int, _frame: FrameType | None) -> None:
     # Libraries that are interrupted would log misleading errors.
     logging.disable(logging.CRITICAL)
     raise Cancelled
+
+
+def _cancel_again(others: UnraisableHook, caught: "sys.UnraisableHookArgs") -> None:
+    """Raise Cancelled once more after it came within a destructor, where nothing catches it."""
+    if caught.exc_type is not Cancelled:
+        others(caught)
+        return
+    again = Timer(SOON, signal.pthread_kill, (main_thread().ident, signal.SIGTERM))
+    again.daemon = True
+    again.start()
+
+
+def _too_late(_signal: int, _frame: FrameType | None) -> None:
+    """Ignore a request to end: the job has ended."""

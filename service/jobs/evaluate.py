@@ -1,4 +1,4 @@
-"""Jobs ``evaluation`` and ``review``: tables of the knowledge base and proposed corrections."""
+"""Job ``evaluation``: tables of the knowledge base."""
 
 import json
 from dataclasses import replace
@@ -9,10 +9,8 @@ from service.jobs.task import REPORT, RunningJob
 from service.knowledge.evaluated import table
 from service.knowledge.evaluation_columns import FILE_COLUMNS, lines
 from service.knowledge.evaluation_output import evaluation_page, table_json
-from service.knowledge.review import review
-from service.knowledge.review_output import review_json
 from service.rendering.records import file_columns, file_rows
-from service.requests.knowledge import EvaluationRequest, ReviewRequest
+from service.requests.knowledge import EvaluationRequest
 
 TABLE = "table"
 """File name stem of the tables for other programs."""
@@ -20,7 +18,7 @@ TABLE = "table"
 PLACE = "knowledge base of this service"
 
 
-def run_evaluation(task: RunningJob) -> None:
+def run(task: RunningJob) -> None:
     """Compute the evaluation table and write it in all formats.
 
     Raises
@@ -37,15 +35,3 @@ def run_evaluation(task: RunningJob) -> None:
         write_rows(file, file_columns(FILE_COLUMNS), rows, form=form)
     write_atomically(task.folder / REPORT, evaluation_page(found).encode())
     task.keep(json.loads(table_json(found)))
-
-
-def run_review(task: RunningJob) -> None:
-    """Review recorded outcomes and propose corrections.
-
-    Raises
-    ------
-    KnowledgeError
-        When the knowledge base cannot be read or written.
-    """
-    found = review(task.data_folder.knowledge, task.request(ReviewRequest))
-    task.keep(json.loads(review_json(found)))

@@ -8,6 +8,7 @@ for name in (
     "service.jobs.cycle_time",
     "service.jobs.evaluate",
     "service.jobs.produce",
+    "service.jobs.review",
     "service.jobs.simulate",
     "service.jobs.steer",
     "service.jobs.verify",

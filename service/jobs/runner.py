@@ -29,6 +29,7 @@ from typing import IO, Any
 import structlog
 
 from kbe.store import open_store
+from service import log_lines
 from service.errors import Conflict, Unavailable
 from service.files import write_atomically
 from service.ids import new_id
@@ -60,6 +61,9 @@ LONGEST_PACED = 12 * 3600.0
 
 MOST_PACED = 16
 """Largest number of paced jobs that run at once."""
+
+LOADED = ("service.jobs.preloaded_common", "service.jobs.preloaded")
+"""Modules that jobs find loaded."""
 
 LOG = structlog.get_logger("runner")
 
@@ -96,6 +100,8 @@ class Runner:
     """Largest number of jobs that run at once, without paced ones."""
     name: str = ""
     """Name of the runner in the database."""
+    level: str = "info"
+    """Level of the log of its jobs."""
     is_stopping: bool = False
     running: dict[str, Running] = field(default_factory=dict)
     _ends: list[SilentEnd] = field(default_factory=list)
@@ -108,7 +114,7 @@ class Runner:
     def run(self, *, is_wanted: Callable[[], bool] = lambda: True) -> None:
         """Run jobs until told to stop; the next runner queues unfinished jobs again."""
         context = multiprocessing.get_context("forkserver")
-        context.set_forkserver_preload(["service.jobs.preloaded"])
+        context.set_forkserver_preload([log_lines.FORKED, *LOADED, "service.jobs.frozen"])
         forkserver.ensure_running()
         try:
             while is_wanted() and not self.is_stopping:
@@ -198,8 +204,8 @@ class Runner:
 
     def _start(self, context: multiprocessing.context.ForkServerContext, job: Job) -> bool:
         LOG.info("job started", job=job.id, kind=job.kind.value, attempt=job.attempt)
-        arguments = (self.data_folder.address, job.id, job.attempt)
-        process = context.Process(target=child.main, args=arguments, daemon=False)
+        arguments = (self.level, child.main, self.data_folder.address, job.id, job.attempt)
+        process = context.Process(target=log_lines.reported, args=arguments, daemon=False)
         try:
             process.start()
         except (OSError, EOFError) as error:
@@ -325,7 +331,7 @@ def own_name(data_folder: DataFolder) -> str:
         return f"{socket.gethostname()} {file.read_text('ascii').strip()}"
 
 
-def main(folder: FolderAddress, workers: int, parent: int) -> None:
+def main(folder: FolderAddress, workers: int, parent: int, *, level: str = "info") -> None:
     """Run jobs as long as the server lives that started this process.
 
     Raises
@@ -337,7 +343,9 @@ def main(folder: FolderAddress, workers: int, parent: int) -> None:
     with locked(data_folder.root):
         with open_store(data_folder.knowledge):
             """The store is created if it is new."""
-        runner = Runner(data_folder=data_folder, workers=workers, name=own_name(data_folder))
+        runner = Runner(
+            data_folder=data_folder, workers=workers, name=own_name(data_folder), level=level
+        )
 
         def stop(_signal: int, _frame: FrameType | None) -> None:
             runner.is_stopping = True

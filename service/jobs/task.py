@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import orjson
 
@@ -13,16 +13,17 @@ from service.errors import NotFound, Unavailable
 from service.files import write_atomically
 from service.live.folder import LiveFolder
 from service.progress import share_in
-from service.requests.advice import AdviceRequest
 from service.requests.fields import R, loaded
-from service.requests.runs import RunRequest
-from service.requests.verification import VerificationRequest
 from service.storage import jobs
 from service.storage.folder import DataFolder
 from service.storage.jobs import Job, JobKind
-from service.storage.library import machine_word, material_word
 
-N = TypeVar("N", bound=AdviceRequest | RunRequest | VerificationRequest)
+if TYPE_CHECKING:
+    from service.requests.advice import AdviceRequest
+    from service.requests.runs import RunRequest
+    from service.requests.verification import VerificationRequest
+
+N = TypeVar("N", bound="AdviceRequest | RunRequest | VerificationRequest")
 """Type of requests that name a machine and a material."""
 
 RESULT = "result.json"
@@ -61,6 +62,9 @@ class RunningJob:
 
     def named(self, request: N) -> N:
         """Return the request with machine and material names of the shop replaced by paths."""
+        # Slow to import; the runner and many jobs name neither.
+        from service.storage.library import machine_word, material_word  # noqa: PLC0415
+
         return replace(
             request,
             machine=machine_word(self.data_folder, request.machine),

@@ -13,12 +13,12 @@ from typing import Any
 
 import orjson
 import structlog
-from starlette.concurrency import run_in_threadpool
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.errors import Forbidden, TooLarge, Unauthorised, Unreadable
 from service.problem import plain_problem, problem_of, retry_after
+from service.rest.asking import answered
 from service.rest.logs import RequestLog
 from service.rest.metrics import count
 from service.rest.rate import RateLimit, SharedRateLimit
@@ -234,11 +234,7 @@ class AccessMiddleware:
         at, key = self._good.get(word, (0.0, None))
         if key is not None and now - at < PATIENT:
             return key
-        if self._data_folder.database.is_shared:
-            # A server may be slow to answer, or not answer at all.
-            found = await run_in_threadpool(keys.known, self._data_folder, word)
-        else:
-            found = keys.known(self._data_folder, word)
+        found = await answered(keys.known, self._data_folder, word)
         if found is None:
             self._good.pop(word, None)
             return None

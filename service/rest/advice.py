@@ -7,6 +7,7 @@ are written, so their parts are cached as bytes.
 import os
 import time
 from collections import OrderedDict
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -28,8 +29,9 @@ from service.jobs.task import (
     optimised_name,
 )
 from service.rest.advice_views import AdviceView, AdvisedView, CodeAdviceView, CurvesView
+from service.rest.asking import answered, result_file
 from service.rest.bodies import Id
-from service.rest.context import InDataFolder, OnPage, data_folder_of, fetched, page_reply
+from service.rest.context import InDataFolder, OnPage, data_folder_of, page_reply
 from service.rest.replies import (
     JSON,
     PreparedResponse,
@@ -101,26 +103,36 @@ class AdviceCache:
         NotFound, Conflict
             When the advice does not exist, or has no result yet.
         """
+        return self.ready(data_folder, id) or self._read(data_folder, id)
+
+    def ready(self, data_folder: DataFolder, id: str) -> CachedAdvice | None:
+        """Return a result from the cache; None if it has to be read. Asks no database."""
         known = self._ready.get(id)
-        if known is not None and data_folder.store is not None and _is_old(known):
-            # Its file stays here when another host has deleted the advice.
-            known = None
-        file = _file(data_folder, id) if known is None else known.file
+        if known is None or (data_folder.store is not None and _is_old(known)):
+            # Its file stays here when another host of a store has deleted the advice.
+            return None
+        try:
+            is_same = os.stat(known.file).st_mtime_ns == known.stamp
+        except OSError:
+            is_same = False
+        if not is_same:
+            self._ready.pop(id, None)
+            return None
+        with suppress(KeyError):
+            # Another thread may have dropped it.
+            self._ready.move_to_end(id)
+        return known
+
+    def _read(self, data_folder: DataFolder, id: str) -> CachedAdvice:
+        file = _file(data_folder, id)
         try:
             stamp = os.stat(file).st_mtime_ns
-        except OSError:
-            self._ready.pop(id, None)
-            raise _missing(data_folder, id) from None
-        if known is None or known.stamp != stamp:
             jobs.get(data_folder, id, JobKind.ADVICE)
-            try:
-                known = self._ready[id] = _ready(file, stamp)
-            except FileNotFoundError:
-                raise _missing(data_folder, id) from None
-            while len(self._ready) > MOST_READY:
-                self._ready.popitem(last=False)
-        else:
-            self._ready.move_to_end(id)
+            known = self._ready[id] = _ready(file, stamp)
+        except OSError:
+            raise _missing(data_folder, id) from None
+        while len(self._ready) > MOST_READY:
+            self._ready.popitem(last=False)
         return known
 
 
@@ -172,6 +184,15 @@ def _cache(request: Request) -> AdviceCache:
     return found
 
 
+async def _found(request: Request, id: str) -> CachedAdvice:
+    """Return a result; in most cases from the cache, without a thread."""
+    cache, data_folder = _cache(request), data_folder_of(request)
+    ready = cache.ready(data_folder, id)
+    if ready is not None:
+        return ready
+    return await answered(cache.get, data_folder, id)
+
+
 @ROUTES.get(
     "/{id}/workingsteps/{workingstep}",
     response_model=AdvisedView,
@@ -179,7 +200,7 @@ def _cache(request: Request) -> AdviceCache:
 )
 async def advised(request: Request, id: str, workingstep: str) -> Response:
     """Show the advice for a workingstep, by its id or its instance number without ``#``."""
-    parts = _cache(request).get(data_folder_of(request), id).workingsteps
+    parts = (await _found(request, id)).workingsteps
     found = parts.get(workingstep) or parts.get(f"#{workingstep}")
     if found is None:
         raise NotFound("workingstep", workingstep)
@@ -208,7 +229,7 @@ async def _look_up(request: Request) -> Response:
 @ROUTES.get("", response_model=PageView[JobView], summary="List advice, newest first")
 async def list_advice(request: Request, data_folder: InDataFolder, cursor: OnPage) -> Response:
     """List the advice jobs page by page."""
-    page = jobs.listed(data_folder, cursor, kind=JobKind.ADVICE)
+    page = await answered(jobs.listed, data_folder, cursor, kind=JobKind.ADVICE)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
@@ -218,7 +239,7 @@ async def advice(request: Request, id: Id) -> Response:
 
     Advice on NC code has the parts of the program by tool, with feeds along their paths.
     """
-    return _cache(request).get(data_folder_of(request), id).whole.reply(request)
+    return (await _found(request, id)).whole.reply(request)
 
 
 @ROUTES.get(
@@ -236,7 +257,7 @@ async def optimised(request: Request, data_folder: InDataFolder, id: Id) -> Resp
     if _is_code(result):
         raise NotFound("optimised STEP-NC program (the advice is on NC code)", id)
     name = _name(result, ".stpnc")
-    file = await fetched(data_folder, data_folder.job_folder(id) / OPTIMISED)
+    file = await result_file(data_folder, id, OPTIMISED)
     return file_reply(
         request, file, name=name, kind="application/step", thing="optimised program"
     )
@@ -256,7 +277,7 @@ async def nc_code(request: Request, data_folder: InDataFolder, id: Id) -> Respon
         raise NotFound("NC code (ask for advice with nc_control)", id)
     own = Path(programs.shown_name(result["program"])).suffix
     name = _name(result, own if _is_code(result) else SUFFIXES[Dialect(control)])
-    file = await fetched(data_folder, data_folder.job_folder(id) / NC_CODE)
+    file = await result_file(data_folder, id, NC_CODE)
     return file_reply(
         request, file, name=name, kind="text/plain; charset=utf-8", thing="NC code"
     )
@@ -273,7 +294,7 @@ async def feeds(request: Request, data_folder: InDataFolder, id: Id) -> Response
     result = await run_in_threadpool(_result, request, data_folder, id)
     _require_along(result, id)
     name = f"{Path(programs.shown_name(result['program'])).stem}.feeds.csv"
-    file = await fetched(data_folder, data_folder.job_folder(id) / FEEDS)
+    file = await result_file(data_folder, id, FEEDS)
     return file_reply(request, file, name=name, kind=CSV, thing="feeds along the paths")
 
 
@@ -285,7 +306,7 @@ async def curves(request: Request, data_folder: InDataFolder, id: Id) -> Respons
     """
     result = await run_in_threadpool(_result, request, data_folder, id)
     _require_along(result, id)
-    file = await fetched(data_folder, data_folder.job_folder(id) / CURVES)
+    file = await result_file(data_folder, id, CURVES)
     try:
         body = await run_in_threadpool(file.read_bytes)
     except FileNotFoundError:
@@ -297,8 +318,8 @@ async def curves(request: Request, data_folder: InDataFolder, id: Id) -> Respons
             responses={200: {"content": {"text/html": {}}}})  # fmt: skip
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show the self-contained HTML report, which can be saved, printed and sent."""
-    jobs.get(data_folder, id, JobKind.ADVICE)
-    file = await fetched(data_folder, data_folder.job_folder(id) / REPORT)
+    await answered(jobs.get, data_folder, id, JobKind.ADVICE)
+    file = await result_file(data_folder, id, REPORT)
     return report_reply(request, file, id=id)
 
 

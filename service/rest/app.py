@@ -12,6 +12,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
 from kbe.store import open_store
+from service import log_lines
 from service.agent.shop import ShopAgent
 from service.lifeline import end_with_parent
 from service.monitor.monitor import MonitorSet
@@ -27,7 +28,6 @@ from service.rest import (
     knowledge,
     library,
     live,
-    logs,
     monitors,
     pages,
     programs,
@@ -144,7 +144,7 @@ async def _living(app: FastAPI) -> AsyncIterator[None]:
 def from_environment() -> FastAPI:
     """Create the application of a worker process; its parent has made the data folder."""
     settings = handed_on()
-    logs.configure(settings.level)
+    log_lines.configure(settings.level)
     end_with_parent()
     return _on(known_data_folder(settings.address), settings)
 

@@ -4,7 +4,6 @@ from dataclasses import fields
 from pathlib import Path
 
 from fastapi import APIRouter, Request, Response
-from starlette.concurrency import run_in_threadpool
 
 from service.errors import Unreadable
 from service.jobs.task import REPORT
@@ -12,13 +11,13 @@ from service.recording.logged_run import DOCUMENTS
 from service.recording.table import TABLES
 from service.requests.fields import dumped
 from service.requests.stored_cycle_time import QueuedCycleTime, StoredCycleTimeRequest
+from service.rest.asking import answered, result_file
 from service.rest.bodies import Id
 from service.rest.context import (
     ByOwner,
     IdempotencyHeader,
     InDataFolder,
     OnPage,
-    fetched,
     monitors_of,
     page_reply,
     queued,
@@ -49,7 +48,7 @@ async def ask(
     url = agent_url(monitors_of(request), body.monitor)
     own = {each.name: getattr(body, each.name) for each in fields(body)}
     words = dumped(QueuedCycleTime(**own, agent_url=url))
-    asked = await run_in_threadpool(logged_order, data_folder, JobKind.CYCLE_TIME, words, owner)
+    asked = await answered(logged_order, data_folder, JobKind.CYCLE_TIME, words, owner)
     return await queued(request, asked, key, require=timeable)
 
 
@@ -79,7 +78,7 @@ async def list_cycle_times(
     request: Request, data_folder: InDataFolder, cursor: OnPage
 ) -> Response:
     """List the jobs of cycle times page by page."""
-    page = jobs.listed(data_folder, cursor, kind=JobKind.CYCLE_TIME)
+    page = await answered(jobs.listed, data_folder, cursor, kind=JobKind.CYCLE_TIME)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
@@ -93,6 +92,6 @@ async def cycle_time(request: Request, id: Id) -> Response:
             responses={200: {"content": {"text/html": {}}}})  # fmt: skip
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show the self-contained HTML report with the feed of each block."""
-    jobs.get(data_folder, id, JobKind.CYCLE_TIME)
-    file = await fetched(data_folder, data_folder.job_folder(id) / REPORT)
+    await answered(jobs.get, data_folder, id, JobKind.CYCLE_TIME)
+    file = await result_file(data_folder, id, REPORT)
     return report_reply(request, file, id=id)

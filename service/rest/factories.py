@@ -17,6 +17,7 @@ from service.jobs.task import REPORT
 from service.live.series import open_series
 from service.requests.factory import FactoryChanges, FactoryOrder
 from service.requests.fields import dumped, loaded
+from service.rest.asking import answered, result_file
 from service.rest.bodies import Id
 from service.rest.context import (
     ByOwner,
@@ -100,7 +101,7 @@ async def list_factories(
     request: Request, data_folder: InDataFolder, cursor: OnPage
 ) -> Response:
     """List the jobs page by page."""
-    page = jobs.listed(data_folder, cursor, kind=JobKind.FACTORY)
+    page = await answered(jobs.listed, data_folder, cursor, kind=JobKind.FACTORY)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
@@ -113,13 +114,15 @@ async def factory(request: Request, id: Id) -> Response:
 @ROUTES.get("/{id}/status", summary="Show the current status of a live shop")
 async def status(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show states of machines, buffers, products and processes; null before it begins."""
-    return await status_reply(request, jobs.get(data_folder, id, JobKind.FACTORY))
+    return await status_reply(
+        request, await answered(jobs.get, data_folder, id, JobKind.FACTORY)
+    )
 
 
 @ROUTES.get("/{id}/log", summary="List past events of a live shop")
 async def log(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """List failures, repairs, maintenance, shifts and orders, oldest first."""
-    job = jobs.get(data_folder, id, JobKind.FACTORY)
+    job = await answered(jobs.get, data_folder, id, JobKind.FACTORY)
     events = await run_in_threadpool(past_events, data_folder, job)
     return json_reply(request, {"events": events})
 
@@ -128,7 +131,9 @@ async def log(request: Request, data_folder: InDataFolder, id: Id) -> Response:
             responses=EVENTS)  # fmt: skip
 async def events(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Stream the events ``job``, ``status``, ``rows``, ``event`` and ``gap``."""
-    return await stream_reply(request, jobs.get(data_folder, id, JobKind.FACTORY))
+    return await stream_reply(
+        request, await answered(jobs.get, data_folder, id, JobKind.FACTORY)
+    )
 
 
 @ROUTES.get("/{id}/series", response_model=SeriesView, summary="Power and stock over time")
@@ -142,7 +147,7 @@ async def series(  # noqa: PLR0913, PLR0917 (each is a parameter of the request)
     points: Points = SERIES_POINTS,
 ) -> Response:
     """Show power of line and machines, energy and parts of a live shop over a time range."""
-    job = jobs.get(data_folder, id, JobKind.FACTORY)
+    job = await answered(jobs.get, data_folder, id, JobKind.FACTORY)
     return await series_reply(
         request, job, signals=signals, begin=begin_s, end=end_s, points=points
     )
@@ -158,7 +163,7 @@ async def states(
     bars: Bars = BARS,
 ) -> Response:
     """Show the states of each machine of a live shop over a time range, also during the run."""
-    job = jobs.get(data_folder, id, JobKind.FACTORY)
+    job = await answered(jobs.get, data_folder, id, JobKind.FACTORY)
     found = await read_in_turn(_states, data_folder, job, begin_s, end_s, bars)
     return json_reply(request, found)
 
@@ -193,7 +198,7 @@ async def change_factory(
     request: Request, data_folder: InDataFolder, id: Id, body: FactoryChanges
 ) -> Response:
     """Set the pace, let a machine fail, or end the run; what cannot be done is an event."""
-    job = jobs.get(data_folder, id, JobKind.FACTORY)
+    job = await answered(jobs.get, data_folder, id, JobKind.FACTORY)
     if not job.is_live:
         raise Conflict(f"factory '{id}' is not live: cancel it instead")
     orders: list[dict[str, Any]] = []
@@ -220,7 +225,7 @@ def _machines(data_folder: DataFolder, job: Job) -> list[str]:
 @ROUTES.post("/{id}/cancel", response_model=JobView, summary="Cancel a run of a shop")
 async def cancel_factory(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """End a run without a result."""
-    jobs.get(data_folder, id, JobKind.FACTORY)
+    await answered(jobs.get, data_folder, id, JobKind.FACTORY)
     return json_reply(request, job_view(await run_in_threadpool(jobs.cancel, data_folder, id)))
 
 
@@ -228,8 +233,8 @@ async def cancel_factory(request: Request, data_folder: InDataFolder, id: Id) ->
             responses={200: {"content": {"text/html": {}}}})  # fmt: skip
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show the self-contained HTML report of a run."""
-    jobs.get(data_folder, id, JobKind.FACTORY)
-    file = await fetched(data_folder, data_folder.job_folder(id) / REPORT)
+    await answered(jobs.get, data_folder, id, JobKind.FACTORY)
+    file = await result_file(data_folder, id, REPORT)
     return report_reply(request, file, id=id)
 
 
@@ -237,7 +242,7 @@ async def report(request: Request, data_folder: InDataFolder, id: Id) -> Respons
             responses={200: {"content": {CSV: {}}}})  # fmt: skip
 async def figures(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download the figures of all levels, one row each."""
-    job = jobs.get(data_folder, id, JobKind.FACTORY)
+    job = await answered(jobs.get, data_folder, id, JobKind.FACTORY)
     file = await run_in_threadpool(file_of, data_folder, job, FIGURES, thing="figures")
     return file_reply(request, file, name=f"factory-{id}.csv", kind=CSV, thing="figures")
 
@@ -248,7 +253,7 @@ async def parts(
     request: Request, data_folder: InDataFolder, id: Id, machine: MachineName
 ) -> Response:
     """Download the table of parts of a machine, first replication."""
-    job = jobs.get(data_folder, id, JobKind.FACTORY)
+    job = await answered(jobs.get, data_folder, id, JobKind.FACTORY)
     folder = data_folder.run_folder(job.id, job.attempt)
     await fetched(data_folder, folder / TABLES / f"{FilePath(machine).name}.csv")
     file = table_of(folder, machine)
@@ -261,7 +266,7 @@ async def parts(
             responses={200: {"content": {PARQUET: {}}}})  # fmt: skip
 async def samples(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download the states of all machines, one row each, first replication."""
-    job = jobs.get(data_folder, id, JobKind.FACTORY)
+    job = await answered(jobs.get, data_folder, id, JobKind.FACTORY)
     name = f"{TABLES}/{STATES}"
     file = await run_in_threadpool(file_of, data_folder, job, name, thing="states")
     return file_reply(request, file, name=f"factory-{id}.parquet", kind=PARQUET, thing="states")

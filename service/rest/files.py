@@ -8,6 +8,7 @@ from starlette.concurrency import run_in_threadpool
 
 from service.errors import Unreadable
 from service.file_names import naming
+from service.rest.asking import answered
 from service.rest.bodies import Id
 from service.rest.checks import in_turn
 from service.rest.context import (
@@ -90,21 +91,21 @@ async def list_files(
     kind: Annotated[FileKind | None, Query(description="only files of this kind")] = None,
 ) -> Response:
     """List uploaded files page by page."""
-    page = files.listed(data_folder, cursor, kind=kind)
+    page = await answered(files.listed, data_folder, cursor, kind=kind)
     return page_reply(request, page, [file_view(each) for each in page.items])
 
 
 @ROUTES.get("/{id}", response_model=FileView, summary="Show a file")
 async def file(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show name, kind and size of an uploaded file."""
-    return json_reply(request, file_view(files.get(data_folder, id)))
+    return json_reply(request, file_view(await answered(files.get, data_folder, id)))
 
 
 @ROUTES.get("/{id}/content", summary="Download a file as it was uploaded",
             response_class=Response, responses={200: {"content": {BYTES: {}}}})  # fmt: skip
 async def content(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download an uploaded file, byte for byte."""
-    stored = files.get(data_folder, id)
+    stored = await answered(files.get, data_folder, id)
     return file_reply(
         request,
         await fetched(data_folder, files.file_of(data_folder, stored)),

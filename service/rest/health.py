@@ -6,10 +6,12 @@ from fastapi import APIRouter, Request, Response
 
 from service.errors import ServiceError
 from service.jobs.runner import is_alive
+from service.rest.asking import answered
 from service.rest.context import data_folder_of, owner_of, settings_of
 from service.rest.metrics import JOBS, TYPE, exposition
 from service.rest.programs import samples
 from service.rest.replies import json_reply
+from service.storage import jobs
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobState
 
@@ -25,7 +27,7 @@ async def healthz(request: Request) -> Response:
 @ROUTES.get("/readyz", summary="Check that requests can be served")
 async def readyz(request: Request) -> Response:
     """Report whether the database answers and a runner is alive; 503 if not."""
-    found = _state(data_folder_of(request))
+    found = await answered(_state, data_folder_of(request))
     return json_reply(request, found, status=200 if all(found.values()) else 503)
 
 
@@ -33,11 +35,9 @@ async def readyz(request: Request) -> Response:
             responses={200: {"content": {"text/plain": {}}}})  # fmt: skip
 async def metrics(request: Request) -> Response:
     """Return metrics: requests by route and status, durations, streams, jobs by state."""
-    with data_folder_of(request).database.reading() as connection:
-        rows = connection.execute("SELECT state, count(*) AS jobs FROM jobs GROUP BY state")
-        counts = {row["state"]: row["jobs"] for row in rows.fetchall()}
+    counts = await answered(jobs.counts, data_folder_of(request))
     for state in JobState:
-        JOBS.labels(state.value).set(counts.get(state.value, 0))
+        JOBS.labels(state.value).set(counts.get(state, 0))
     return Response(exposition(), media_type=TYPE)
 
 

@@ -5,6 +5,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
+from service.rest.asking import answered
 from service.rest.bodies import Id
 from service.rest.context import InDataFolder, OnPage, key_of, page_reply
 from service.rest.replies import json_reply
@@ -30,14 +31,14 @@ async def list_jobs(
     state: Annotated[JobState | None, Query(description="only jobs in this state")] = None,
 ) -> Response:
     """List jobs page by page."""
-    page = jobs.listed(data_folder, cursor, kind=kind, state=state)
+    page = await answered(jobs.listed, data_folder, cursor, kind=kind, state=state)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
 @ROUTES.get("/{id}", response_model=JobView, summary="Show a job")
 async def job(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show a job and its progress."""
-    return json_reply(request, job_view(jobs.get(data_folder, id)))
+    return json_reply(request, job_view(await answered(jobs.get, data_folder, id)))
 
 
 @ROUTES.get(
@@ -45,19 +46,19 @@ async def job(request: Request, data_folder: InDataFolder, id: Id) -> Response:
 )
 async def job_events(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Stream events ``job``, ``status``, ``rows``, ``event``, ``gap`` until the job ends."""
-    return await stream_reply(request, jobs.get(data_folder, id))
+    return await stream_reply(request, await answered(jobs.get, data_folder, id))
 
 
 @ROUTES.post("/{id}/cancel", response_model=JobView, summary="Cancel a job")
 async def cancel(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Cancel a job: a queued one at once, a running one within seconds."""
-    require(key_of(request), role_to_end(jobs.get(data_folder, id).kind))
+    require(key_of(request), role_to_end((await answered(jobs.get, data_folder, id)).kind))
     return json_reply(request, job_view(await run_in_threadpool(jobs.cancel, data_folder, id)))
 
 
 @ROUTES.delete("/{id}", status_code=204, summary="Delete a finished job and its results")
 async def delete(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Delete a job; outcomes that it recorded in the knowledge base stay there."""
-    require(key_of(request), role_to_end(jobs.get(data_folder, id).kind))
+    require(key_of(request), role_to_end((await answered(jobs.get, data_folder, id)).kind))
     await run_in_threadpool(jobs.remove, data_folder, id)
     return Response(status_code=204)

@@ -19,6 +19,7 @@ from service.knowledge import verbs
 from service.knowledge.output import corrections_json, listing_json, run_json
 from service.requests.fields import dumped
 from service.requests.knowledge import EvaluationRequest, ReviewRequest
+from service.rest.asking import answered, result_file
 from service.rest.bodies import DecisionBody, Id
 from service.rest.context import (
     ByOwner,
@@ -26,7 +27,6 @@ from service.rest.context import (
     InDataFolder,
     OnPage,
     data_folder_of,
-    fetched,
     page_reply,
     queued,
 )
@@ -77,7 +77,7 @@ async def list_evaluations(
     request: Request, data_folder: InDataFolder, cursor: OnPage
 ) -> Response:
     """List the evaluation jobs page by page."""
-    page = jobs.listed(data_folder, cursor, kind=JobKind.EVALUATION)
+    page = await answered(jobs.listed, data_folder, cursor, kind=JobKind.EVALUATION)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
@@ -100,8 +100,8 @@ async def evaluation_file(
     form: Annotated[TableFormat, Query(description="format of the file")] = TableFormat.CSV,
 ) -> Response:
     """Download a table with one line for each side (roughing, finishing) of a row."""
-    jobs.get(data_folder, id, JobKind.EVALUATION)
-    file = await fetched(data_folder, data_folder.job_folder(id) / f"{TABLE}.{form.value}")
+    await answered(jobs.get, data_folder, id, JobKind.EVALUATION)
+    file = await result_file(data_folder, id, f"{TABLE}.{form.value}")
     name = f"evaluation-{id}.{form.value}"
     return file_reply(request, file, name=name, kind=KINDS[form], thing="table")
 
@@ -110,8 +110,8 @@ async def evaluation_file(
                  responses={200: {"content": {"text/html": {}}}})  # fmt: skip
 async def evaluation_report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show the self-contained HTML page of an evaluation table."""
-    jobs.get(data_folder, id, JobKind.EVALUATION)
-    file = await fetched(data_folder, data_folder.job_folder(id) / REPORT)
+    await answered(jobs.get, data_folder, id, JobKind.EVALUATION)
+    file = await result_file(data_folder, id, REPORT)
     return report_reply(request, file, id=id)
 
 

@@ -13,13 +13,13 @@ from service.jobs.task import REPORT, SAMPLES
 from service.live.journal import append, read_on
 from service.requests.fields import dumped
 from service.requests.runs import ControlChanges, ControlRequest
+from service.rest.asking import answered, result_file
 from service.rest.bodies import Id, TrialBody, TrialChanges
 from service.rest.context import (
     ByOwner,
     IdempotencyHeader,
     InDataFolder,
     OnPage,
-    fetched,
     page_reply,
     queued,
     runnable,
@@ -69,7 +69,10 @@ async def ask_control(
 ) -> Response:
     """Queue a job that runs a program on the virtual machine under force control."""
     return await queued(
-        request, run_order(data_folder, JobKind.CONTROL, body, owner), key, require=runnable
+        request,
+        await answered(run_order, data_folder, JobKind.CONTROL, body, owner),
+        key,
+        require=runnable,
     )
 
 
@@ -95,7 +98,7 @@ async def change_control(
     require_changes(body)
     words = {name: value for name, value in dumped(body).items() if value is not None}
     return await ordered(
-        request, data_folder, jobs.get(data_folder, id, JobKind.CONTROL), words
+        request, data_folder, await answered(jobs.get, data_folder, id, JobKind.CONTROL), words
     )
 
 
@@ -104,7 +107,7 @@ async def change_trial(
     request: Request, data_folder: InDataFolder, id: Id, body: TrialChanges
 ) -> Response:
     """Change inputs of a trial; ``restart`` continues a stopped run, ``end`` finishes it."""
-    job = jobs.get(data_folder, id, JobKind.TRIAL)
+    job = await answered(jobs.get, data_folder, id, JobKind.TRIAL)
     inputs = body.inputs.model_dump(mode="json", exclude_none=True)
     if inputs:
         now = await run_in_threadpool(_inputs, data_folder, job)
@@ -149,7 +152,7 @@ def _add_common(routes: APIRouter, kind: JobKind) -> None:
                 operation_id=f"list_{kind.name.lower()}")  # fmt: skip
     async def listed(request: Request, data_folder: InDataFolder, cursor: OnPage) -> Response:
         """List the jobs of this kind page by page."""
-        page = jobs.listed(data_folder, cursor, kind=kind)
+        page = await answered(jobs.listed, data_folder, cursor, kind=kind)
         return page_reply(request, page, [job_view(job) for job in page.items])
 
     @routes.get("/{id}", summary="Show the result", operation_id=f"result_{kind.name.lower()}")
@@ -161,13 +164,13 @@ def _add_common(routes: APIRouter, kind: JobKind) -> None:
                 operation_id=f"status_{kind.name.lower()}")  # fmt: skip
     async def status(request: Request, data_folder: InDataFolder, id: Id) -> Response:
         """Show inputs, feeds, force, power and the active limit; null before the run begins."""
-        return await status_reply(request, jobs.get(data_folder, id, kind))
+        return await status_reply(request, await answered(jobs.get, data_folder, id, kind))
 
     @routes.get("/{id}/log", summary="List past events",
                 operation_id=f"log_{kind.name.lower()}")  # fmt: skip
     async def log(request: Request, data_folder: InDataFolder, id: Id) -> Response:
         """List the last events, oldest first."""
-        job = jobs.get(data_folder, id, kind)
+        job = await answered(jobs.get, data_folder, id, kind)
         events = await run_in_threadpool(past_events, data_folder, job)
         return json_reply(request, {"events": events})
 
@@ -175,7 +178,7 @@ def _add_common(routes: APIRouter, kind: JobKind) -> None:
                 responses=EVENTS, operation_id=f"events_{kind.name.lower()}")  # fmt: skip
     async def events(request: Request, data_folder: InDataFolder, id: Id) -> Response:
         """Stream the events ``job``, ``status``, ``rows``, ``event`` and ``gap``."""
-        return await stream_reply(request, jobs.get(data_folder, id, kind))
+        return await stream_reply(request, await answered(jobs.get, data_folder, id, kind))
 
     @routes.get("/{id}/series", response_model=SeriesView, summary="Signals over time",
                 operation_id=f"series_{kind.name.lower()}")  # fmt: skip
@@ -189,7 +192,7 @@ def _add_common(routes: APIRouter, kind: JobKind) -> None:
         points: Points = SERIES_POINTS,
     ) -> Response:
         """Show signals over a time range with the requested resolution, also during a run."""
-        job = jobs.get(data_folder, id, kind)
+        job = await answered(jobs.get, data_folder, id, kind)
         return await series_reply(
             request, job, signals=signals, begin=begin_s, end=end_s, points=points
         )
@@ -198,7 +201,7 @@ def _add_common(routes: APIRouter, kind: JobKind) -> None:
                  operation_id=f"cancel_{kind.name.lower()}")  # fmt: skip
     async def cancel(request: Request, data_folder: InDataFolder, id: Id) -> Response:
         """End a run; its rows are kept."""
-        jobs.get(data_folder, id, kind)
+        await answered(jobs.get, data_folder, id, kind)
         return json_reply(
             request, job_view(await run_in_threadpool(jobs.cancel, data_folder, id))
         )
@@ -215,7 +218,7 @@ async def samples(request: Request, data_folder: InDataFolder, id: Id) -> Respon
     file = await run_in_threadpool(
         file_of,
         data_folder,
-        jobs.get(data_folder, id, JobKind.CONTROL),
+        await answered(jobs.get, data_folder, id, JobKind.CONTROL),
         SAMPLES,
         thing="samples",
     )
@@ -228,8 +231,8 @@ async def samples(request: Request, data_folder: InDataFolder, id: Id) -> Respon
              responses={200: {"content": {"text/html": {}}}})  # fmt: skip
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show the self-contained HTML report of a run."""
-    jobs.get(data_folder, id, JobKind.CONTROL)
-    file = await fetched(data_folder, data_folder.job_folder(id) / REPORT)
+    await answered(jobs.get, data_folder, id, JobKind.CONTROL)
+    file = await result_file(data_folder, id, REPORT)
     return report_reply(request, file, id=id)
 
 

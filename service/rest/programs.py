@@ -18,6 +18,7 @@ from service.requests.advice import ISO, Name, Units
 from service.requests.fields import dumped
 from service.requests.stored_advice import StoredAdviceRequest
 from service.rest.advice_views import CodeContentsView
+from service.rest.asking import answered
 from service.rest.bodies import Id
 from service.rest.checks import CheckCache, in_turn
 from service.rest.context import (
@@ -124,14 +125,14 @@ async def list_programs(
     request: Request, data_folder: InDataFolder, cursor: OnPage
 ) -> Response:
     """List programs page by page."""
-    page: Page[StoredProgram] = programs.listed(data_folder, cursor)
+    page: Page[StoredProgram] = await answered(programs.listed, data_folder, cursor)
     return page_reply(request, page, [program_view(each) for each in page.items])
 
 
 @ROUTES.get("/{id}", response_model=ProgramView, summary="Show a program")
 async def program(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show a program."""
-    return json_reply(request, program_view(programs.get(data_folder, id)))
+    return json_reply(request, program_view(await answered(programs.get, data_folder, id)))
 
 
 @ROUTES.get(
@@ -142,7 +143,7 @@ async def program(request: Request, data_folder: InDataFolder, id: Id) -> Respon
 )
 async def program_bytes(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download a program, byte for byte as it was uploaded."""
-    stored = programs.get(data_folder, id)
+    stored = await answered(programs.get, data_folder, id)
     await run_in_threadpool(programs.require_file, data_folder, id)
     return file_reply(
         request,
@@ -161,7 +162,7 @@ async def findings(
     request: Request, data_folder: InDataFolder, id: Id, units: Units = ISO
 ) -> Response:
     """List workingsteps, or moves of NC code, and findings, as ``stepnc check`` does."""
-    stored = programs.get(data_folder, id)
+    stored = await answered(programs.get, data_folder, id)
     await run_in_threadpool(programs.require_file, data_folder, id)
     tag = f'"{stored.sha256[:24]}-{units.value}"'
     if matches(request.headers.get("if-none-match"), tag):
@@ -236,8 +237,8 @@ async def advice_of(
     request: Request, data_folder: InDataFolder, cursor: OnPage, id: Id
 ) -> Response:
     """List the advice jobs of a program, newest first."""
-    programs.get(data_folder, id)
-    page = jobs.listed(data_folder, cursor, kind=JobKind.ADVICE, program=id)
+    await answered(programs.get, data_folder, id)
+    page = await answered(jobs.listed, data_folder, cursor, kind=JobKind.ADVICE, program=id)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 

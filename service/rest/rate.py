@@ -5,13 +5,14 @@ some tokens at a time, so that few requests wait for the database: all hosts tog
 rate on average, and at once up to the burst and what each process has fetched before.
 """
 
+import asyncio
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-
-from starlette.concurrency import run_in_threadpool
+from math import inf
 
 from service.errors import TooMany, Unavailable
+from service.rest.asking import ASKING
 from service.storage import rates
 from service.storage.connection import Database
 
@@ -20,6 +21,9 @@ MOST_CLIENTS = 10_000
 
 SHARE = 10
 """Part of the burst that a process fetches at once: one in so many."""
+
+PATIENCE = 1.0
+"""Time to wait for tokens, and to limit without them when there was no answer, in s."""
 
 SWEEP = 60.0
 """Time between two deletions of buckets that are full again, in s."""
@@ -119,6 +123,7 @@ class SharedRateLimit:
         self._alone = RateLimit(rate, burst=burst, now=now)
         self._fetched: dict[str, _Fetched] = {}
         self._swept_at = now()
+        self._away_until = -inf
 
     async def take(self, client: str) -> None:
         """Take a token for a request of a client; see :meth:`RateLimit.take`."""
@@ -132,8 +137,9 @@ class SharedRateLimit:
             if left > 0.0:
                 raise TooMany(left)
             try:
-                fetched = await run_in_threadpool(self._fetch, client)
-            except Unavailable:
+                fetched = await self._soon(client)
+            except (Unavailable, TimeoutError):
+                self._away_until = self._now() + PATIENCE
                 self._alone.take(client)
                 return
             except TooMany as error:
@@ -142,6 +148,14 @@ class SharedRateLimit:
             # Other requests of the client may have fetched some meanwhile.
             held.tokens += fetched
         held.tokens -= 1
+
+    async def _soon(self, client: str) -> int:
+        """Fetch at least one token; nobody waits long for a database that does not answer."""
+        if self._now() < self._away_until:
+            raise TimeoutError
+        async with asyncio.timeout(PATIENCE):
+            loop = asyncio.get_running_loop()
+            return await loop.run_in_executor(ASKING, self._fetch, client)
 
     def _fetch(self, client: str) -> int:
         """Fetch at least one token."""

@@ -16,6 +16,7 @@ from service.errors import Conflict, NotFound, Unreadable
 from service.jobs.task import RESULT
 from service.live.folder import LiveFolder
 from service.live.series import TIME, Series, Window, open_series, window
+from service.rest.asking import answered
 from service.rest.context import data_folder_of, fetched, hub_of
 from service.rest.replies import json_reply, tag_of, tagged
 from service.storage import jobs
@@ -53,7 +54,7 @@ async def result_reply(request: Request, id: str, kind: JobKind) -> Response:
         When the job does not exist, or has no result (yet).
     """
     data_folder = data_folder_of(request)
-    job = jobs.get(data_folder, id, kind)
+    job = await answered(jobs.get, data_folder, id, kind)
     require_done(job)
     try:
         file = await fetched(data_folder, data_folder.run_folder(id, job.attempt) / RESULT)

@@ -6,21 +6,25 @@ import shutil
 import signal
 import socket
 import threading
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from multiprocessing.context import SpawnProcess
 from pathlib import Path
 from types import FrameType
 
 import structlog
-import uvicorn
+from uvicorn.config import STARTUP_FAILURE
+from uvicorn.server import Server
+from uvicorn.supervisors import Multiprocess
 
+from service import log_lines
 from service.errors import Forbidden
 from service.http_protocol import BoundedHttpProtocol
 from service.jobs import runner
 from service.monitor.source import MonitorSource
-from service.rest import logs
 from service.rest.metrics import SHARED
 from service.rest.settings import Settings
+from service.rest.web_config import WebConfig
 from service.storage import keys, library
 from service.storage.folder import (
     OTHERS,
@@ -96,7 +100,8 @@ def serve(start: ServerOptions) -> None:
 def _serve(start: ServerOptions, data_folder: DataFolder) -> None:
     settings = replace(start.settings, has_agent=start.workers == 1)
     settings.hand_on()
-    logs.configure(settings.level)
+    log_lines.configure(settings.level)
+    log_lines.report_faults()
     if start.workers > 1:
         _share_metrics(data_folder.root)
     keeper = RunnerKeeper(start, data_folder.address)
@@ -106,26 +111,43 @@ def _serve(start: ServerOptions, data_folder: DataFolder) -> None:
     signal.signal(signal.SIGTERM, _end)
     LOG.info("serving", host=settings.host, port=settings.port, data=str(data_folder.root))
     try:
-        uvicorn.run(
-            "service.rest.app:from_environment",
-            factory=True,
-            http=BoundedHttpProtocol,
-            ws="none",
-            host=settings.host,
-            port=settings.port,
-            workers=start.workers,
-            log_config=None,
-            access_log=False,
-            server_header=False,
-            proxy_headers=False,
-            timeout_keep_alive=KEEP_ALIVE,
-            timeout_graceful_shutdown=FAREWELL,
-            limit_concurrency=MOST_CONNECTIONS,
-            ssl_certfile=None if start.certificate is None else str(start.certificate),
-            ssl_keyfile=None if start.key is None else str(start.key),
-        )
+        _run_web(_web_config(start))
     finally:
         keeper.stop()
+
+
+def _web_config(start: ServerOptions) -> WebConfig:
+    return WebConfig(
+        "service.rest.app:from_environment",
+        factory=True,
+        http=BoundedHttpProtocol,
+        ws="none",
+        host=start.settings.host,
+        port=start.settings.port,
+        workers=start.workers,
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        proxy_headers=False,
+        timeout_keep_alive=KEEP_ALIVE,
+        timeout_graceful_shutdown=FAREWELL,
+        limit_concurrency=MOST_CONNECTIONS,
+        ssl_certfile=None if start.certificate is None else str(start.certificate),
+        ssl_keyfile=None if start.key is None else str(start.key),
+    )
+
+
+def _run_web(config: WebConfig) -> None:
+    """Serve in this process, or in several that this one watches."""
+    if config.workers > 1:
+        with config.bind_socket() as listening:
+            Multiprocess(config, sockets=[listening]).run()
+        return
+    server = Server(config)
+    with suppress(KeyboardInterrupt):
+        server.run()
+    if not server.started:
+        raise SystemExit(STARTUP_FAILURE)
 
 
 def _require_machine(data_folder: DataFolder, source: MonitorSource) -> None:
@@ -154,7 +176,8 @@ class RunnerKeeper:
     """Keeps the runner process alive. Running state."""
 
     def __init__(self, start: ServerOptions, folder: FolderAddress) -> None:
-        self._arguments = (folder, start.jobs, os.getpid(), start.settings.level)
+        level = start.settings.level
+        self._arguments = (level, run_jobs, folder, start.jobs, os.getpid(), level)
         self._is_stopping = threading.Event()
         self._process: SpawnProcess | None = None
         self._thread = threading.Thread(target=self._keep, daemon=True)
@@ -176,7 +199,7 @@ class RunnerKeeper:
 
     def _started(self) -> SpawnProcess:
         context = multiprocessing.get_context("spawn")
-        process = context.Process(target=run_jobs, args=self._arguments, daemon=False)
+        process = context.Process(target=log_lines.reported, args=self._arguments, daemon=False)
         process.start()
         return process
 
@@ -189,9 +212,8 @@ class RunnerKeeper:
 
 def run_jobs(folder: FolderAddress, workers: int, parent: int, level: str) -> None:
     """Run jobs; main function of the runner process."""
-    logs.configure(level)
     try:
-        runner.main(folder, workers, parent)
+        runner.main(folder, workers, parent, level=level)
     except StepNcError as error:
         # The message says what is wrong; no traceback is needed.
         LOG.error("jobs cannot be run", reason=str(error))  # noqa: TRY400

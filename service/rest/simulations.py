@@ -12,13 +12,13 @@ from service.live.path import shown_path
 from service.live.series import open_series
 from service.requests.fields import dumped
 from service.requests.runs import RunRequest, SimulationRequest
+from service.rest.asking import answered, result_file
 from service.rest.bodies import Id
 from service.rest.context import (
     ByOwner,
     IdempotencyHeader,
     InDataFolder,
     OnPage,
-    fetched,
     page_reply,
     queued,
     runnable,
@@ -67,7 +67,10 @@ async def ask(
 ) -> Response:
     """Queue a simulation job; watch its events, then read its result."""
     return await queued(
-        request, run_order(data_folder, JobKind.SIMULATION, body, owner), key, require=runnable
+        request,
+        await answered(run_order, data_folder, JobKind.SIMULATION, body, owner),
+        key,
+        require=runnable,
     )
 
 
@@ -96,7 +99,7 @@ async def list_simulations(
     request: Request, data_folder: InDataFolder, cursor: OnPage
 ) -> Response:
     """List the simulation jobs page by page."""
-    page = jobs.listed(data_folder, cursor, kind=JobKind.SIMULATION)
+    page = await answered(jobs.listed, data_folder, cursor, kind=JobKind.SIMULATION)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
@@ -117,7 +120,7 @@ async def series(  # noqa: PLR0913, PLR0917 (each is a parameter of the request)
     points: Points = SERIES_POINTS,
 ) -> Response:
     """Show signals over a time range with the requested resolution, also during a run."""
-    job = jobs.get(data_folder, id, JobKind.SIMULATION)
+    job = await answered(jobs.get, data_folder, id, JobKind.SIMULATION)
     return await series_reply(
         request, job, signals=signals, begin=begin_s, end=end_s, points=points
     )
@@ -128,7 +131,7 @@ async def path(
     request: Request, data_folder: InDataFolder, id: Id, points: PathPoints = PATH_POINTS
 ) -> Response:
     """Show the tool path, thinned but with all corners and changes of feed and force."""
-    job = jobs.get(data_folder, id, JobKind.SIMULATION)
+    job = await answered(jobs.get, data_folder, id, JobKind.SIMULATION)
     found = await read_in_turn(_path, data_folder, job, points)
     return json_reply(request, found)
 
@@ -166,7 +169,7 @@ async def samples(request: Request, data_folder: InDataFolder, id: Id) -> Respon
     file = await run_in_threadpool(
         file_of,
         data_folder,
-        jobs.get(data_folder, id, JobKind.SIMULATION),
+        await answered(jobs.get, data_folder, id, JobKind.SIMULATION),
         SAMPLES,
         thing="samples",
     )
@@ -178,6 +181,6 @@ async def samples(request: Request, data_folder: InDataFolder, id: Id) -> Respon
             responses={200: {"content": {"text/html": {}}}})  # fmt: skip
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show the self-contained HTML report of a simulation."""
-    jobs.get(data_folder, id, JobKind.SIMULATION)
-    file = await fetched(data_folder, data_folder.job_folder(id) / REPORT)
+    await answered(jobs.get, data_folder, id, JobKind.SIMULATION)
+    file = await result_file(data_folder, id, REPORT)
     return report_reply(request, file, id=id)

@@ -20,6 +20,7 @@ from service.errors import NotFound, ServiceError, TooMany
 from service.live.folder import LiveFolder
 from service.live.journal import read_on
 from service.live.series import open_series
+from service.rest.asking import answered
 from service.rest.metrics import STREAMS
 from service.rest.views import job_view
 from service.storage import jobs
@@ -131,11 +132,7 @@ class RunReader:
 
     async def _current(self) -> Job:
         """Return the job as it is, and find its folder."""
-        if self._data_folder.database.is_shared:
-            # Nobody else waits while a server is slow to answer.
-            job = await asyncio.to_thread(jobs.get, self._data_folder, self._id)
-        else:
-            job = jobs.get(self._data_folder, self._id)
+        job = await answered(jobs.get, self._data_folder, self._id)
         path = self._data_folder.run_folder(job.id, job.attempt)
         self._folder = LiveFolder(path=path)
         return job

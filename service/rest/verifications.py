@@ -12,13 +12,13 @@ from service.jobs.task import LOG, PLACES, REPORT, SURFACE
 from service.numbers import numbers_in, stock_in
 from service.requests.fields import dumped
 from service.requests.stored_verification import QueuedVerification, StoredVerificationRequest
+from service.rest.asking import answered, result_file
 from service.rest.bodies import Id
 from service.rest.context import (
     ByOwner,
     IdempotencyHeader,
     InDataFolder,
     OnPage,
-    fetched,
     monitors_of,
     page_reply,
     queued,
@@ -61,9 +61,7 @@ async def ask(
     url = agent_url(monitors_of(request), body.monitor)
     own = {each.name: getattr(body, each.name) for each in fields(body)}
     words = dumped(QueuedVerification(**own, agent_url=url))
-    asked = await run_in_threadpool(
-        logged_order, data_folder, JobKind.VERIFICATION, words, owner
-    )
+    asked = await answered(logged_order, data_folder, JobKind.VERIFICATION, words, owner)
     return await queued(request, asked, key, require=verifiable)
 
 
@@ -97,7 +95,7 @@ async def list_verifications(
     request: Request, data_folder: InDataFolder, cursor: OnPage
 ) -> Response:
     """List the verification jobs page by page."""
-    page = jobs.listed(data_folder, cursor, kind=JobKind.VERIFICATION)
+    page = await answered(jobs.listed, data_folder, cursor, kind=JobKind.VERIFICATION)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
@@ -154,8 +152,8 @@ async def log(request: Request, data_folder: InDataFolder, id: Id) -> Response:
             responses={200: {"content": {"text/html": {}}}})  # fmt: skip
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show the self-contained HTML report of a verification."""
-    jobs.get(data_folder, id, JobKind.VERIFICATION)
-    file = await fetched(data_folder, data_folder.job_folder(id) / REPORT)
+    await answered(jobs.get, data_folder, id, JobKind.VERIFICATION)
+    file = await result_file(data_folder, id, REPORT)
     return report_reply(request, file, id=id)
 
 

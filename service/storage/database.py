@@ -15,8 +15,8 @@ from pathlib import Path
 
 from service.errors import Unavailable
 
-WAIT = 10.0
-"""Time to wait for another writer, in s."""
+WAIT = 30.0
+"""Time to wait for other writers, in s: each of several may wait for a slow disk."""
 
 SCHEMA = (
     """

@@ -10,18 +10,26 @@ import os
 import secrets
 import shutil
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, BinaryIO
 
 from service.errors import Unavailable
+from stepnc_model.errors import StepNcError
 
 FRESH = 1.0
 """Time for which a folder is not compared with the store again, in s."""
 
 VERSION = ("ETag", "etag", "LastModified", "last_modified", "mtime", "updated", "created")
 """Details of a file that change with its content, by the names that stores give them."""
+
+ATTEMPTS = 2
+"""Number of times that a request to a store of objects is sent, where nothing else is set."""
+
+S3 = {"connect_timeout": 3, "read_timeout": 5, "retries": {"total_max_attempts": 1}}
+"""Settings of the client for ``s3://``, in s, where the configuration of fsspec has no others:
+with its own, a bucket that falls silent would keep a request waiting for minutes."""
 
 PRIVATE = frozenset({"memory"})
 """Protocols whose files no other process sees."""
@@ -178,8 +186,16 @@ class FileStore:
         """Convert errors; the address is for the log, not for clients."""
         try:
             yield
+        except StepNcError:
+            raise
         except OSError as error:
             why = error.strerror or type(error).__name__
+            raise Unavailable(f"the store of files does not answer: {why}") from error
+        except Exception as error:
+            # Clients of stores have errors of their own; those of Python are our faults.
+            if type(error).__module__ == "builtins":
+                raise
+            why = type(error).__name__
             raise Unavailable(f"the store of files does not answer: {why}") from error
 
 
@@ -187,12 +203,24 @@ def _system(url: str) -> tuple[Any, str]:
     """Return the file system of a URL, and the path of its folder in it."""
     shown = f"--files {url.partition('://')[0]}://…"
     try:
-        from fsspec.core import url_to_fs  # noqa: PLC0415 (few use it)
+        from fsspec.config import conf  # noqa: PLC0415 (few use it)
+        from fsspec.core import url_to_fs  # noqa: PLC0415
     except ImportError as error:
         what = f"{shown} needs the package fsspec"
         raise Unavailable(f"{what}: pip install 'stepnc-optimiser[files]'") from error
     try:
-        system, base = url_to_fs(url)
+        options = _options(url, conf)
+        system, base = url_to_fs(url, **options)
     except (ImportError, ValueError) as error:
         raise Unavailable(f"{shown}: {error}") from error
+    if options:
+        system.retries = ATTEMPTS
     return system, base.rstrip("/")
+
+
+def _options(url: str, configured: Mapping[str, Any]) -> dict[str, Any]:
+    """Return options of the client of a store that bound the time of its answers."""
+    if url.partition("://")[0].lower() not in {"s3", "s3a"}:
+        return {}
+    own = configured.get("s3", {}).get("config_kwargs", {})
+    return {"config_kwargs": {**S3, **own}}

@@ -199,6 +199,13 @@ def listed(
     return page_of([_job(row) for row in rows], [row["id"] for row in rows], limit=place.limit)
 
 
+def counts(data_folder: DataFolder) -> dict[JobState, int]:
+    """Return the number of jobs in each state that has any."""
+    with data_folder.database.reading() as connection:
+        rows = connection.execute("SELECT state, count(*) AS jobs FROM jobs GROUP BY state")
+        return {JobState(row["state"]): row["jobs"] for row in rows.fetchall()}
+
+
 def cancel(data_folder: DataFolder, id: str) -> Job:
     """Request the end of a job; a queued job is cancelled at once.
 

@@ -12,10 +12,12 @@ import weakref
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeVar
 
 import psycopg
 from psycopg import errors
+from psycopg.abc import PQGen
+from psycopg.pq import TransactionStatus
 from psycopg.rows import DictRow, dict_row
 
 from kbe.faults import fault
@@ -30,6 +32,9 @@ MOST_CONNECTIONS = 8
 WAIT = 10.0
 """Time to wait for a free connection, and for an answer of the server, in s."""
 
+LOOK = 0.1
+"""Interval in which a waiting connection looks for signals, in s."""
+
 CONNECT_TIMEOUT = 5
 """Timeout for connecting, in s."""
 
@@ -41,7 +46,8 @@ IDLE = 5.0
 
 SETTINGS = (
     f"SET search_path = {SPACE}",
-    "SET statement_timeout = '10s'",
+    # Shorter than whoever asks waits for an answer.
+    "SET statement_timeout = '8s'",
     # A process that was stopped in the middle must not keep others waiting.
     "SET idle_in_transaction_session_timeout = '10s'",
     "SET tcp_keepalives_idle = 10",
@@ -53,7 +59,35 @@ SETTINGS = (
 LOCK = 0x53544E44
 """Number of the lock for schema changes; the letters STND."""
 
-Raw = psycopg.Connection[DictRow]
+RV = TypeVar("RV")
+
+MIGRATION = 3600.0
+"""Time to wait for an answer while tables are upgraded, in s."""
+
+
+class Raw(psycopg.Connection[DictRow]):
+    """Connection that is closed when the server does not answer in time. Running state.
+
+    A server whose host is gone, or that was stopped, leaves its connections open: without a
+    bound, whoever waits for an answer would wait for ever.
+    """
+
+    patience: float = WAIT
+
+    def wait(self, gen: PQGen[RV], interval: float = LOOK, timeout: float | None = None) -> RV:
+        """Wait for an answer, at most as long as the connection is patient."""
+        try:
+            return super().wait(gen, interval, self.patience if timeout is None else timeout)
+        except psycopg.OperationalError as error:
+            if self.info.transaction_status is TransactionStatus.ACTIVE:
+                # Nothing else can be asked while this is not answered.
+                self.pgconn.finish()
+                raise NoAnswer("the server does not answer") from error
+            raise
+
+
+class NoAnswer(psycopg.OperationalError):
+    """The server has not answered in time."""
 
 
 class ServerConnection:
@@ -103,13 +137,18 @@ class ServerDatabase:
         weakref.finalize(self, _close, self._idle)
         self._free = threading.BoundedSemaphore(MOST_CONNECTIONS)
         self._failed_at = -PAUSE
+        self._is_away = False
+        self._probing = threading.Lock()
         try:
             with self._lent() as raw:
                 connection = ServerConnection(raw)
                 # Most processes find everything made, and wait for nobody.
                 if _version(connection) != len(SCHEMA):
+                    raw.patience = MIGRATION
                     with raw.transaction():
+                        connection.execute("SET LOCAL statement_timeout = 0")
                         _migrate(connection, self.place)
+                    raw.patience = WAIT
         except psycopg.Error as error:
             raise Unavailable(str(fault(error, self.place))) from error
 
@@ -132,12 +171,18 @@ class ServerDatabase:
     @contextmanager
     def _lent(self) -> Iterator[Raw]:
         """Lend a connection; a broken one is closed, and the idle ones with it."""
+        self._require_present()
         if not self._free.acquire(timeout=WAIT):
             raise Unavailable("the database is busy: no connection is free")
         try:
+            # It may have gone away while this one waited.
+            self._require_present()
             raw = self._checked() or self._connected()
             try:
                 yield raw
+            except NoAnswer:
+                self._went_away()
+                raise
             finally:
                 if raw.closed or raw.info.transaction_status.name != "IDLE":
                     raw.close()
@@ -146,6 +191,14 @@ class ServerDatabase:
                     self._idle.append((time.monotonic(), raw))
         finally:
             self._free.release()
+
+    def _require_present(self) -> None:
+        """Refuse at once while the server is away, but for one who tries now and then."""
+        if time.monotonic() - self._failed_at < PAUSE or self._probing.locked():
+            raise Unavailable("the database does not answer: try again later")
+
+    def _went_away(self) -> None:
+        self._failed_at, self._is_away = time.monotonic(), True
 
     def _checked(self) -> Raw | None:
         """Return an idle connection that still answers; None if there is none."""
@@ -158,16 +211,29 @@ class ServerDatabase:
                 return raw
             try:
                 raw.execute(b"SELECT 1")
+            except NoAnswer:
+                self._went_away()
+                raise
             except psycopg.Error:
                 raw.close()
             else:
                 return raw
 
     def _connected(self) -> Raw:
-        if time.monotonic() - self._failed_at < PAUSE:
+        if not self._is_away:
+            return self._opened()
+        if not self._probing.acquire(blocking=False):
             raise Unavailable("the database does not answer: try again later")
         try:
-            raw = psycopg.connect(
+            raw = self._opened()
+        finally:
+            self._probing.release()
+        self._is_away = False
+        return raw
+
+    def _opened(self) -> Raw:
+        try:
+            raw = Raw.connect(
                 self._address,
                 autocommit=True,
                 row_factory=dict_row,
@@ -180,7 +246,7 @@ class ServerDatabase:
             )
             raw.execute("; ".join(SETTINGS).encode())
         except psycopg.Error:
-            self._failed_at = time.monotonic()
+            self._went_away()
             raise
         return raw
 

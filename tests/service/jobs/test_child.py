@@ -15,6 +15,7 @@ from service.storage.jobs import Job, JobKind, JobState
 from tests.service.jobs.conftest import Shop, made_shop
 from tests.service.live.room import within_room
 from tests.service.rest.samples import SAMPLE
+from tests.service.waiting import until
 
 
 @pytest.fixture(autouse=True)
@@ -129,7 +130,7 @@ def test_an_end_is_said_once_the_database_answers_again(
     task = RunningJob(data_folder=data_folder, job=claimed)
     # A word of progress is no reason to fail.
     task.progress(0.5, "half")
-    child._finish(task, JobState.SUCCEEDED, None)
+    child._finish(task, child.JobEnd(state=JobState.SUCCEEDED))
     other.close()
     found = idle.job(job.id)
     assert (found.state, found.message, len(waits)) == (JobState.SUCCEEDED, "", 3)
@@ -182,3 +183,25 @@ def test_a_job_that_was_asked_to_end_is_cancelled(idle: Shop) -> None:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, previous)
     assert (found.state, found.problem) == (JobState.CANCELLED, None)
+
+
+class Dropped:
+    """Whose destructor is where the request to end comes."""
+
+    def __del__(self) -> None:
+        signal.raise_signal(signal.SIGTERM)
+
+
+def test_a_request_to_end_within_a_destructor_is_repeated_where_it_counts() -> None:
+    def work() -> None:
+        Dropped()
+        until(lambda: None, within=20.0)
+
+    with pytest.raises(child.Cancelled), child._cancellable():
+        work()
+
+
+def test_a_request_to_end_after_the_end_changes_nothing() -> None:
+    with child._cancellable():
+        """The work of a job."""
+    signal.raise_signal(signal.SIGTERM)

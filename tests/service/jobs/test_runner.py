@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from service.errors import Conflict
-from service.jobs import preloaded, runner
+from service.jobs import preloaded, preloaded_common, runner
 from service.storage import jobs
 from service.storage.folder import DATABASE, open_data_folder
 from service.storage.jobs import JobKind, JobState
@@ -162,7 +162,8 @@ def test_all_are_ended_though_one_of_them_is_gone_already(own_shop: Shop) -> Non
 
 def test_what_is_preloaded_is_loaded() -> None:
     assert preloaded.__doc__ is not None
-    assert "service.simulation.output" in sys.modules
+    assert preloaded_common.__doc__ is not None
+    assert {"service.simulation.output", "pydantic.type_adapter"} <= set(sys.modules)
 
 
 def test_a_killed_runner_leaves_nobody_and_the_next_one_finishes_its_job(

@@ -93,6 +93,6 @@ def done(service: Server, log: bytes) -> Done:
         made_end = client.post(f"/v1/trials/{ids['trial']}/changes", json={"end": True})
         assert made_end.status_code == 202
         for id in ids.values():
-            job = over(client, id, within=120.0)
+            job = over(client, id)
             assert job["state"] == "succeeded", job
     return Done(program=program, file=file, **ids)

@@ -20,7 +20,7 @@ from tests.service.waiting import children, environment, is_alive, until
 
 STEPNC = Path(sys.executable).with_name("stepnc")
 
-PATIENCE = 30.0
+PATIENCE = 90.0
 """s for an answer"""
 
 FAULTS = ('"event":"fault"', "Traceback", '"level":"error"')
@@ -82,7 +82,7 @@ class Server:
                 stderr=log,
             )
         with self.client() as client:
-            until(lambda: self._is_ready(client), within=90.0)
+            until(lambda: self._is_ready(client), within=300.0)
 
     def _is_ready(self, client: httpx.Client) -> bool:
         assert self._process is not None
@@ -135,7 +135,7 @@ class Server:
         return ""
 
 
-def over(client: httpx.Client, id: str, *, within: float = 60.0) -> dict[str, Any]:
+def over(client: httpx.Client, id: str, *, within: float = 300.0) -> dict[str, Any]:
     """A job once it is over."""
 
     def look() -> dict[str, Any] | None:

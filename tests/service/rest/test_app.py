@@ -5,8 +5,8 @@ from pathlib import Path
 import httpx
 import pytest
 
+from service import log_lines
 from service.errors import Unavailable
-from service.rest import logs
 from service.rest.app import application, from_environment
 from service.rest.settings import VARIABLE, Settings
 from service.storage.folder import open_data_folder
@@ -118,7 +118,7 @@ def test_a_process_gets_its_settings_from_the_one_that_started_it(
 ) -> None:
     told: list[str] = []
     monkeypatch.setenv(VARIABLE, "{}")
-    monkeypatch.setattr(logs, "configure", told.append)
+    monkeypatch.setattr(log_lines, "configure", told.append)
     monkeypatch.delenv("STEPNC_KB", raising=False)
     settings = Settings(data=str(tmp_path / "data"), upload_bytes=7, level="warning")
     settings.hand_on()

@@ -83,7 +83,7 @@ def faults_of(operation: Any, service: Server, done: Done) -> str:
     def asked(case: Any, is_known: bool) -> None:
         if is_known and case.method == "GET" and "{id}" in operation.path:
             case.path_parameters["id"] = id_of(done, operation.path)
-        answer = case.call(base_url=service.url, timeout=30.0)
+        answer = case.call(base_url=service.url, timeout=90.0)
         if answer.status_code == 202 and "id" in answer.json():
             with service.client() as client:
                 client.post(f"/v1/jobs/{answer.json()['id']}/cancel")

@@ -1,6 +1,7 @@
 """Hosts that share a store of files instead of a folder: what one has written, others read."""
 
 import shutil
+import socket
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -19,6 +20,7 @@ from service.storage.folder import DataFolder, open_data_folder, require_shared_
 from service.storage.jobs import JobKind, JobRequest, JobState
 from service.storage.library import LibrarySection
 from simulator.library import DATA
+from tests.service.waiting import environment
 
 MACHINES = LibrarySection.MACHINES
 MACHINE = (DATA / "machines" / "vmc15.toml").read_bytes()
@@ -258,3 +260,47 @@ def test_a_package_that_is_not_installed_is_named(tmp_path: Path) -> None:
     assert ended.returncode == 3
     assert "pip install 'stepnc-optimiser[files]'" in ended.stderr
     assert "Traceback" not in ended.stderr
+
+
+SILENT = """
+import sys
+from pathlib import Path
+from service.errors import Unavailable
+from service.storage import file_store
+file_store.S3["read_timeout"] = 0.2
+store = file_store.FileStore("s3://shop/stepnc", Path(sys.argv[1]))
+try:
+    store.read("mark")
+except Unavailable as error:
+    print(error)
+"""
+
+
+def test_a_bucket_that_falls_silent_is_told_in_time(tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        found = subprocess.run(
+            [sys.executable, "-c", SILENT, str(tmp_path)],
+            env={
+                **environment(tmp_path),
+                "AWS_ENDPOINT_URL": f"http://127.0.0.1:{silent.getsockname()[1]}",
+                "AWS_ACCESS_KEY_ID": "test",
+                "AWS_SECRET_ACCESS_KEY": "test",
+                "AWS_DEFAULT_REGION": "us-east-1",
+            },
+            capture_output=True, text=True, timeout=120.0, check=True,
+        )  # fmt: skip
+    assert found.stdout == "the store of files does not answer: ReadTimeoutError\n"
+
+
+class ClientFault(Exception):
+    """Error of a store's own client, which is no ``OSError``."""
+
+
+def test_whatever_the_client_of_a_store_raises_is_told_but_not_our_own_faults(
+    tmp_path: Path,
+) -> None:
+    store = FileStore(f"file://{tmp_path}/store", tmp_path)
+    with pytest.raises(Unavailable, match="does not answer: ClientFault"), store._answering():
+        raise ClientFault
+    with pytest.raises(TypeError), store._answering():
+        raise TypeError
