@@ -23,6 +23,7 @@ from simulator.verification.deviation import (
     surface_places,
 )
 from simulator.verification.logged import LogFacts, LoggedPart, LoggedSamples, NearestSamples
+from simulator.verification.logged_bar import LoggedBar
 from simulator.verification.required import required_part, required_places
 from simulator.verification.revolved import (
     RequiredBar,
@@ -31,7 +32,6 @@ from simulator.verification.revolved import (
 )
 from simulator.verification.surface import EXACT, programmed_part
 from simulator.verification.turned import (
-    LoggedBar,
     turned_part,
     turned_places,
     turned_volumes,

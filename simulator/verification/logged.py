@@ -18,6 +18,15 @@ from simulator.removal.zmap import HeightGrid, ZMap
 from simulator.verification.path import rows_between
 from simulator.verification.surface import PartSweep
 from simulator.verification.sweep import UNSEEN, WallTargets, approach, renewed
+from simulator.verification.ways import (
+    STILL,
+    STRAIGHT,
+    greatest_around,
+    longest_ways,
+    to_ends,
+    turns_of,
+    with_missing,
+)
 from stepnc_model.program import Stock
 
 GAP = 3.0
@@ -27,27 +36,11 @@ ELSEWHERE = 10.0
 """Multiple of the usual time between samples from which the tool may have been elsewhere than
 on the line between them."""
 
-LONGEST_LOSS = 2.0
-"""Longest time, s, in which the tool is taken to have gone on unseen. In longer gaps it may
-have rested: some logs have a row only where a position changes."""
-
-AROUND = 2
-"""Samples before and after one whose steps count for its uncertainty."""
-
 FINEST = 6
 """Decimals of a millimetre up to which the rounding of positions is looked for."""
 
-STRAIGHT = 0.02
-"""Turn of the path, rad, up to which it shows at what speed the tool goes on."""
-
 FLAT = 1e-3
 """Distance of the path from the line between two samples, mm, up to which it is this line."""
-
-STEADY = 0.9
-"""Ratio of the ways on two straight lines above which the tool is as fast on both."""
-
-STILL = 1e-9
-"""Movement, mm, below which a tool stands still."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -258,28 +251,28 @@ class SampleSteps:
             longest = float(seconds[is_gap].max())
             self.facts.longest_gap = max(self.facts.longest_gap, longest)
         straight = way
-        way = _with_missing(way, seconds, self.facts.interval)
+        way = with_missing(way, seconds, self.facts.interval)
         is_usual = (samples.position[1:, 2] < self._top) & ~is_gap
         if is_usual.any():
             usual = float(np.quantile(way[is_usual], 0.99))
             self.facts.step = max(self.facts.step, usual)
         before, behind = turns_of(samples.position)
         turn = np.where(is_gap, pi, np.minimum(before + behind, pi))
-        around = _greatest_around(way)
+        around = greatest_around(way)
         corner = 0.5 * around * np.sin(0.5 * turn)
-        bend = _greatest_around(corner)
-        rise = _greatest_around(np.where(is_gap, way, np.abs(lines[:, 2])))
+        bend = greatest_around(corner)
+        rise = greatest_around(np.where(is_gap, way, np.abs(lines[:, 2])))
         # Places to which the way from one end to the other is as long form an ellipse.
         unseen = 0.5 * np.sqrt(np.maximum(way * way - straight * straight, 0.0))
         unseen = np.where((way > straight) & (straight > STILL), unseen, 0.0)
         is_straight = ~is_gap & (np.minimum(before, behind) < STRAIGHT)
-        furthest = _longest_ways(np.where(is_straight, way, np.nan), seconds)
+        furthest = longest_ways(np.where(is_straight, way, np.nan), seconds)
         furthest = np.where(corner < FLAT, straight, np.maximum(furthest, way))
         return SampledStretch(
             samples=samples,
-            step=_to_ends(around),
-            bend=_to_ends(bend),
-            rise=_to_ends(rise),
+            step=to_ends(around),
+            bend=to_ends(bend),
+            rise=to_ends(rise),
             unseen=np.concatenate(([0.0], unseen)),
             is_gap=np.append(False, is_gap & (seconds > ELSEWHERE * self.facts.interval)),
             way=np.append(0.0, np.where(is_gap, np.inf, furthest)),
@@ -411,31 +404,6 @@ def rounding_of(position: Floats) -> float:
     return 0.0
 
 
-def turns_of(position: Floats) -> tuple[Floats, Floats]:
-    """Angles by which the path turns at the start and the end of each line between samples.
-
-    Parameters
-    ----------
-    position : (N, 3) array, mm
-
-    Returns
-    -------
-    (N - 1,) array, (N - 1,) array, rad
-        Half a turn at both ends of the path, where it is not known; 0 where the tool stands
-        still.
-    """
-    lines = np.diff(position, axis=0)
-    length = np.linalg.norm(lines, axis=1)
-    moves = np.flatnonzero(length > STILL)
-    before, behind = np.zeros(len(lines)), np.zeros(len(lines))
-    if len(moves):
-        along = lines[moves] / length[moves, None]
-        cosine = np.clip(np.sum(along[:-1] * along[1:], axis=1), -1.0, 1.0)
-        turn = np.concatenate(([pi], np.arccos(cosine), [pi]))
-        before[moves], behind[moves] = turn[:-1], turn[1:]
-    return before, behind
-
-
 def unmet(shape: tuple[int, ...]) -> NearestSamples:
     """Places to which no sample came near yet."""
     return NearestSamples(
@@ -445,59 +413,3 @@ def unmet(shape: tuple[int, ...]) -> NearestSamples:
         rise=np.zeros(shape),
         workingstep=np.full(shape, -1, dtype=np.int64),
     )
-
-
-def _with_missing(way: Floats, seconds: Floats, interval: float) -> Floats:
-    """Way between samples, mm; where samples are missing, at least that of their neighbours.
-
-    The tool may have gone around a corner, or there and back.
-    """
-    if interval <= 0.0:
-        return way
-    counts = np.round(seconds / interval)
-    is_whole = counts <= 1.0
-    is_lost = ~is_whole & (seconds <= LONGEST_LOSS)
-    if not is_lost.any():
-        return way
-    usual = _greatest_around(np.where(is_whole, way, 0.0))
-    return np.where(is_lost, np.maximum(way, usual * counts), way)
-
-
-def _longest_ways(ways: Floats, seconds: Floats) -> Floats:
-    """Longest way that the tool may have gone between two samples, (N,), mm.
-
-    It goes as fast as on straight lines before and behind, at most ``AROUND`` away, if these
-    are equally fast; otherwise the way is infinite.
-
-    Parameters
-    ----------
-    ways : (N,) array, mm
-        Way where the line is straight at one end at least; NaN elsewhere.
-    seconds : (N,) array, s
-        Time between the samples.
-    """
-    count = len(ways)
-    padded = np.pad(ways, AROUND, constant_values=np.nan)
-    time = np.pad(seconds, AROUND, constant_values=np.nan)
-    longest = np.full(count, np.inf)
-    for before, behind in ((2, 2), (2, 1), (1, 2), (1, 1)):
-        ends = [slice(AROUND + by, AROUND + by + count) for by in (-before, behind)]
-        times = [np.maximum(seconds / np.maximum(time[end], STILL), 1.0) for end in ends]
-        one, other = (padded[end] * each for end, each in zip(ends, times, strict=True))
-        fast = np.maximum(one, other)
-        longest = np.where(np.minimum(one, other) > STEADY * fast, fast, longest)
-    return longest
-
-
-def _to_ends(values: Floats) -> Floats:
-    """Values of N - 1 lines at the end of each, and at the start of the first, (N,)."""
-    return np.concatenate((values[:1] if len(values) else [0.0], values))
-
-
-def _greatest_around(values: Floats) -> Floats:
-    """Greatest of each value and its neighbours, (N,)."""
-    found = values.copy()
-    for shift in range(1, AROUND + 1):
-        found[shift:] = np.maximum(found[shift:], values[:-shift])
-        found[:-shift] = np.maximum(found[:-shift], values[shift:])
-    return found

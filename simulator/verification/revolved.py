@@ -14,9 +14,10 @@ from simulator.kernels.kernel import entry
 from simulator.motion.segments import Bools, Floats
 from simulator.removal.lathe import TurningStock
 from simulator.verification.deviation import SurfacePlaces
+from simulator.verification.logged_bar import LoggedBar
 from simulator.verification.mesh import edges_of
 from simulator.verification.profile import profile_distance
-from simulator.verification.turned import CELL, LoggedBar, compared_profiles, has_bore
+from simulator.verification.turned import CELL, compared_profiles, has_bore
 from stepnc_model.program import Stock
 
 ROUND = 0.01

@@ -14,11 +14,12 @@ from simulator.motion.segments import AxisLimits, Floats, Motion, Segments, chai
 from simulator.removal.cutter import Insert
 from simulator.verification.deviation import SurfacePlaces, surface_places
 from simulator.verification.logged import LoggedPart, LoggedSamples
+from simulator.verification.logged_bar import LoggedBar
 from simulator.verification.path import ProgrammedRun, programmed_path
 from simulator.verification.required import required_places
 from simulator.verification.revolved import required_bar, required_turned_places
 from simulator.verification.surface import programmed_part
-from simulator.verification.turned import LoggedBar, turned_part, turned_places
+from simulator.verification.turned import turned_part, turned_places
 from tests.simulator.verification import test_required, test_revolved
 from tests.simulator.verification.block import sampled, samples_at
 from tests.simulator.verification.meshes import revolved

@@ -6,7 +6,7 @@ import pytest
 from simulator.motion.segments import Floats
 from simulator.removal.cutter import Cutter
 from simulator.verification.deviation import SurfacePlaces
-from simulator.verification.logged import LoggedPart, turns_of
+from simulator.verification.logged import LoggedPart
 from simulator.verification.mesh import edges_of
 from simulator.verification.required import required_part, required_places
 from stepnc_model.program import Stock
@@ -79,14 +79,6 @@ def test_what_is_not_cut_belongs_to_no_tool() -> None:
 def test_a_part_without_walls_is_refused() -> None:
     with pytest.raises(ValueError, match="no wall within the stock"):
         required_part(MESH - np.array([0.0, 0.0, 11.9]), STOCK, cell=0.5)
-
-
-def test_the_turns_of_a_path() -> None:
-    corner = np.array([[0.0, 0.0, 0.0], [1, 0, 0], [2, 0, 0], [2, 0, 0], [2, 1, 0], [2, 2, 0]])
-    half = 0.5 * np.pi
-    before, behind = turns_of(corner)
-    assert before == pytest.approx([np.pi, 0.0, 0.0, half, 0.0])
-    assert behind == pytest.approx([0.0, half, 0.0, 0.0, np.pi])
 
 
 def test_open_and_turned_triangles_are_counted() -> None:

@@ -9,8 +9,9 @@ import pytest
 from simulator.motion.segments import Floats, lines
 from simulator.removal.cutter import Insert
 from simulator.verification.deviation import SurfacePlaces
+from simulator.verification.logged_bar import LoggedBar
 from simulator.verification.path import ProgrammedRun, programmed_path
-from simulator.verification.turned import LoggedBar, turned_part, turned_places, turned_volumes
+from simulator.verification.turned import turned_part, turned_places, turned_volumes
 from stepnc_model.program import Stock
 from tests.simulator.verification.block import sampled, samples_at
 
