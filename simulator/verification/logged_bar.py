@@ -153,7 +153,7 @@ class LoggedBar:
             square = _squares(part.samples.position, PIECE + nose)
             step, bend = (_greatest_beside(each, square) for each in (part.step, part.bend))
             part = replace(part, step=step, bend=bend)
-            self._nearest.meet(cut, part, block[nearest_points(points, self.bar, cut)])
+            self._nearest.meet(cut, part, block[nearest_points(points, self.bar, cut, shape)])
             for faces, radius in (
                 (self._outer_faces, self.bar.outer),
                 (self._bore_faces, self.bar.inner),
@@ -219,7 +219,11 @@ def _greatest_beside(values: Floats, square: Ints) -> Floats:
     return np.asarray(beside[square])
 
 
-def nearest_points(points: Floats, bar: TurningStock, cut: Bools) -> Ints:
-    """Index of the point of a path nearest to the surface of each of some cells."""
-    surface = np.column_stack([bar.outer[cut], bar.z[cut]])
+def nearest_points(points: Floats, bar: TurningStock, cut: Bools, shape: Shape | None) -> Ints:
+    """Index of the point of a path at which a tool was nearest to each of some cells.
+
+    A blade cuts a width beside its point, so that its middle counts.
+    """
+    width = (shape.width if isinstance(shape, Insert) else None) or 0.0
+    surface = np.column_stack([bar.outer[cut], bar.z[cut] - 0.5 * width])
     return np.asarray(cKDTree(points[:, [0, 2]]).query(surface)[1], dtype=np.int64)

@@ -83,7 +83,7 @@ def turned_part(path: ProgrammedPath, stock: Stock, *, cell: float | None = None
         cut = cut_bar(bar, run.segments, run.cutter)
         if cut.any():
             starts, pieces, rows, along = pieces_of(points, PIECE)
-            nearest = nearest_points(starts + 0.5 * pieces, bar, cut)
+            nearest = nearest_points(starts + 0.5 * pieces, bar, cut, run.cutter)
             chord[cut] = first + rows[nearest]
             station[cut] = path.chord_station[chord[cut]] + along[nearest]
         first += len(points) - 1
