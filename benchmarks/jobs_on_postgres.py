@@ -135,6 +135,8 @@ class Client:
             except urllib.error.HTTPError as error:
                 if error.code not in {429, 503}:
                     raise
+                # The queue is full: to ask again at once would only take its time.
+                time.sleep(0.5)
             except OSError:
                 """the host is gone, or ended before its answer came"""
             time.sleep(0.05)

@@ -27,8 +27,9 @@ T = TypeVar("T")
 WITHOUT_ROOM = (StorageFull, StoreFull, WriteError)
 """Errors after which large files of the job are removed, because the disk is full."""
 
-PATIENCE = 60.0
-"""Time for which a failed database call is repeated, in s."""
+PATIENCE = 600.0
+"""Time for which a call that failed is repeated, in s: work of hours outlives the restart of a
+server, and a bucket that is away."""
 
 AGAIN = 1.0
 """Delay between two attempts of a database call, in s."""

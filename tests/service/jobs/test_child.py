@@ -4,6 +4,7 @@ import logging
 import signal
 import sqlite3
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
@@ -205,3 +206,17 @@ def test_a_request_to_end_after_the_end_changes_nothing() -> None:
     with child._cancellable():
         """The work of a job."""
     signal.raise_signal(signal.SIGTERM)
+
+
+def test_a_request_to_end_while_an_error_is_told_is_no_fault(
+    idle: Shop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real = child.problem_of
+
+    def late(*words: Any, **named: Any) -> dict[str, Any]:
+        signal.raise_signal(signal.SIGTERM)
+        return real(*words, **named)
+
+    monkeypatch.setattr(child, "problem_of", late)
+    found = ran(idle, idle.order(JobKind.ADVICE, workingsteps=["NO SUCH STEP"]))
+    assert (found.state, found.problem) == (JobState.CANCELLED, None)
