@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Self
 
-from stepnc_model.ap238.reading import AimReader, Converted
+from stepnc_model.ap238.converted import Converted
+from stepnc_model.ap238.reading import AimReader
 from stepnc_model.errors import Finding
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.writer import described_as, format_value
