@@ -420,6 +420,7 @@ _MEASURE_OF: Mapping[Kind, Kind] = {
     Kind.SPEED: Kind.SPEED,
     Kind.ROTATION: Kind.ROTATION,
     Kind.PRESSURE: Kind.PRESSURE,
+    Kind.ROUGHNESS: Kind.ROUGHNESS,
 }
 
 

@@ -13,11 +13,7 @@ PARTS = Path(__file__).parents[2] / "examples" / "parts"
 
 def test_a_program_goes_to_ap238_and_back(tmp_path: Path) -> None:
     there, back = tmp_path / "there.238", tmp_path / "back.stpnc"
-    left = convert_to(PARTS / "bracket.stpnc", standard=Standard.AP238, output=there)
-    assert {each.entity.partition(" ")[2] for each in left} == {
-        "MACHINED_SURFACE",
-        "SURFACE_TEXTURE_PARAMETER",
-    }
+    assert convert_to(PARTS / "bracket.stpnc", standard=Standard.AP238, output=there) == ()
     assert convert_to(there, standard=Standard.ISO14649, output=back) == ()
     one, other = Program.load(PARTS / "bracket.stpnc"), Program.load(back)
     assert [step.id for step in one.workingsteps] == [step.id for step in other.workingsteps]

@@ -1,7 +1,7 @@
 """AP238 programs seen as programs of ISO 14649: the same nouns, however the file is written."""
 
 import re
-from math import radians, tan
+from math import hypot, radians, tan
 
 import pytest
 
@@ -14,7 +14,7 @@ from stepnc_model.program import Program
 from stepnc_model.technology import programmed
 from stepnc_model.tool import tool_of
 from stepnc_model.toolpath.generate import generate
-from stepnc_model.toolpath.path import Move, ToolPath
+from stepnc_model.toolpath.path import Move, MoveType, ToolPath
 from stepnc_model.toolpath.remarks import remarks
 from stepnc_model.units import PROFILES, rpm_from_rev_s
 from tests.stepnc_model.ap238.samples import (
@@ -172,7 +172,8 @@ class TestTwin:
                     programmed(program, step.technology_ref)
                 assert str(refused.value).partition(": ")[2] == (
                     f"{number} MILLING_TECHNOLOGY.feedrate: neither feedrate nor "
-                    "feedrate_per_tooth is given (ISO 14649-11 WR2)"
+                    "feedrate_per_tooth is given (ISO 14649-11 WR2); optimise --feed MM_MIN "
+                    "gives one"
                 )
 
     def test_speeds_are_those_of_the_twin(self) -> None:
@@ -201,9 +202,26 @@ class TestOtherExamples:
         notes = [each for each in program.findings() if "does not measure" in each.message]
         assert {each.attribute for each in notes} == {"unit_component"}
 
-    def test_the_turning_example_gives_paths_of_its_contour(self) -> None:
-        made = paths(Program(read(public(TURNING))))
-        assert [path.id for path in made] == ["WS ROUGH CONTOUR", "WS FINISH CONTOUR"]
+    def test_the_turning_example_gives_the_paths_of_its_drawing(self) -> None:
+        rough_face, face, rough, finish = paths(Program(read(public(TURNING))))
+        # A face at z = 160 with 0.5 mm for its finish; a cone from radius 20 to 40 over 50 mm.
+        for path, z in ((rough_face, 160.5), (face, 160.0)):
+            cuts = [m for _, m in path.segments() if m.type is MoveType.CONTACT]
+            assert [m.end[2] for m in cuts] == pytest.approx([z] * len(cuts), abs=1e-9)
+            assert cuts[-1].end[0] == pytest.approx(0.0, abs=1e-9)
+        (start, cone), *rest = [
+            (a, m) for a, m in finish.segments() if m.type is MoveType.CONTACT
+        ]
+        assert not rest
+        assert (start[0], start[2]) == pytest.approx((20.0, 160.0), abs=1e-9)
+        assert (cone.end[0], cone.end[2]) == pytest.approx((40.0, 110.0), abs=1e-9)
+        # All roughing stays 0.5 mm off the cone; the tool is sharp.
+        slope = hypot(20.0, 50.0)
+        for _, move in rough.segments():
+            if move.type is MoveType.CONTACT:
+                x, _, z = move.end
+                off = (50.0 * (x - 20.0) + 20.0 * (z - 160.0)) / slope
+                assert off > 0.5 - 1e-5
 
     def test_cutter_locations_give_the_path_as_it_is_in_the_file(self) -> None:
         program = Program(read(public(TOOLPATHS)))
