@@ -4,6 +4,7 @@ from benchmarks import (
     advice,
     agent,
     along_path,
+    ap238,
     breakage,
     closed_loop,
     cluster,
@@ -33,6 +34,7 @@ from benchmarks import (
 
 for title, bench in (
     ("Part 21", part21),
+    ("AP238", ap238),
     ("Workingsteps", workingsteps),
     ("Feed along the path", feed_profile),
     ("Feeds of the samples", along_path),

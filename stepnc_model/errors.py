@@ -80,6 +80,7 @@ class SchemaError(StepNcError):
         place = f"line {line}: " if line else ""
         name = f"{entity}.{attribute}: " if attribute else (f"{entity}: " if entity else "")
         super().__init__(f"{place}{name}{message}")
+        self.rule = message
         self.entity = entity
         self.attribute = attribute
         self.line = line

@@ -8,7 +8,11 @@ advised on its basis does. Units are those of the file.
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import isclose
 
+from stepnc_model.ap238.converted import Converted
+from stepnc_model.ap238.view import AimView
+from stepnc_model.ap238.writing import spliced_into
 from stepnc_model.binding import Model
 from stepnc_model.draft import Draft
 from stepnc_model.entities.conversion import AttributeSlot, slots_of
@@ -48,6 +52,8 @@ class SetAttribute:
     value: Value
     added: tuple[int, ...] = ()
     """Instances that were added for it."""
+    origin: Converted | None = None
+    """What stands for ``ref`` in an AP238 file, where its own number is not kept."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,7 +108,11 @@ def without_given(program: Program, given: Sequence[SetAttribute]) -> bytes:
     -------
     bytes
     """
-    draft = Draft(program)
+    draft, view = Draft(program), program.file
+    if isinstance(view, AimView):
+        for each in given:
+            _withdraw_from_view(draft, view, each)
+        return spliced_into(view, draft.edits.apply(), draft.removed)
     for each in given:
         place = program.model.position(each.ref, each.attribute)
         if program.file.parameters(int(each.ref))[place] == each.value:
@@ -111,8 +121,40 @@ def without_given(program: Program, given: Sequence[SetAttribute]) -> bytes:
     return draft.edits.apply()
 
 
+def _withdraw_from_view(draft: Draft, view: AimView, given: SetAttribute) -> None:
+    """Withdraw one attribute from a program whose numbers may have changed in between."""
+    number = None if given.origin is None else view.number_of(given.origin)
+    if number is None:
+        return
+    ref: Ref[object] = Ref(number)
+    value = view.parameters(number)[draft.program.model.position(ref, given.attribute)]
+    if isinstance(value, Ref) and isinstance(given.value, Ref):
+        draft.put(ref, given.attribute, given.before)
+        draft.remove(tuple(_below(view, value)))
+    elif _is_same(value, given.value):
+        draft.put(ref, given.attribute, given.before)
+
+
+def _is_same(one: Value, other: Value) -> bool:
+    """Whether two values are the same, but for the digits that a change of unit costs."""
+    if isinstance(one, int | float) and isinstance(other, int | float):
+        return isclose(one, other, rel_tol=1e-12)
+    return one == other
+
+
+def _below(file: Part21File, ref: Ref[object]) -> Iterator[int]:
+    """Instance and all that it refers to."""
+    yield int(ref)
+    for value in file.parameters(int(ref)):
+        if isinstance(value, Ref):
+            yield from _below(file, value)
+
+
 def _read(program: Program, data: bytes) -> Program:
+    """Program with changed text; one of AP238 stays one."""
     file = Part21File.from_bytes(data, name=program.name)
+    if isinstance(program.file, AimView):
+        file = program.file.changed(file)
     return Program(file, units=program.units, name=program.name, stock=program.stock)
 
 
@@ -139,8 +181,20 @@ def _put(
     values = draft.program.file.parameters(int(ref))
     place = draft.program.model.position(ref, attribute)
     before = values[place] if place < len(values) else None
+    file = draft.program.file
+    if isinstance(file, AimView) and isinstance(before, Ref):
+        text = "is in the file: only what an AP238 file lacks can be set"
+        raise draft.program.error(text, Ref(int(ref)), attribute)
     draft.put(ref, attribute, value)
-    return SetAttribute(ref=ref, attribute=attribute, before=before, value=value, added=added)
+    origin = file.origins.get(int(ref)) if isinstance(file, AimView) else None
+    return SetAttribute(
+        ref=ref,
+        attribute=attribute,
+        before=before,
+        value=value,
+        added=added,
+        origin=origin,
+    )
 
 
 def _value(written: str, text: str) -> Value:

@@ -182,7 +182,7 @@ def _findings(program: Program, step: ResolvedWorkingstep) -> Iterator[Finding]:
     except SchemaError as error:
         yield Finding(
             severity=Severity.ERROR,
-            message=str(error),
+            message=error.rule,
             entity=error.entity,
             attribute=error.attribute,
             line=error.line,

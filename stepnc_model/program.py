@@ -254,7 +254,7 @@ class Program:
         faults.extend(
             Finding(
                 severity=Severity.ERROR,
-                message=str(fault),
+                message=fault.rule,
                 entity=fault.entity,
                 attribute=fault.attribute,
                 line=fault.line,

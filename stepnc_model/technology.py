@@ -134,13 +134,17 @@ def _milling(program: Program, ref: Ref[Entity], technology: MillingTechnology) 
     speed = spindle or cutspeed
     if feed is None:
         raise program.error(
-            "neither feedrate nor feedrate_per_tooth is given (ISO 14649-11 WR2)",
+            "neither feedrate nor feedrate_per_tooth is given (ISO 14649-11 WR2); "
+            f"{_gives(int(ref), 'feedrate')}",
             ref,
             "feedrate",
         )
     if speed is None:
         raise program.error(
-            "neither cutspeed nor spindle is given (ISO 14649-11 WR1)", ref, "spindle"
+            "neither cutspeed nor spindle is given (ISO 14649-11 WR1); "
+            f"{_gives(int(ref), 'spindle')}",
+            ref,
+            "spindle",
         )
     inhibited = "inhibit_feedrate_override" if technology.inhibit_feedrate_override else ""
     return Programmed(
@@ -247,9 +251,10 @@ def _number(
         return None
     size = abs(written) if quantity is ProgrammedQuantity.SPINDLE_SPEED else written
     if not isfinite(size) or size <= 0.0:
-        raise program.error(
-            f"{quantity.value} {written:g} is not valid: it must be positive", ref, attribute
-        )
+        message = f"{quantity.value} {written:g} is not valid: it must be positive"
+        if written == 0.0 and isinstance(program.get(ref), MillingTechnology):
+            message += f"; {_gives(int(ref), attribute)}"
+        raise program.error(message, ref, attribute)
     return Number(
         ref=ref,
         attribute=attribute,
@@ -257,3 +262,10 @@ def _number(
         value=size * scale,
         scale=scale if written > 0.0 else -scale,
     )
+
+
+def _gives(number: int, attribute: str) -> str:
+    """Option that gives what a milling technology lacks."""
+    if attribute == "feedrate":
+        return "optimise --feed MM_MIN gives one"
+    return f'optimise --set "#{number}.{attribute}=VALUE" gives one'

@@ -49,6 +49,7 @@ _MEASURES: Mapping[Kind, tuple[tuple[str, ...], str, str]] = {
     Kind.SPEED: ((), "NUMERIC_MEASURE", "m/s"),
     Kind.ROTATION: ((), "NUMERIC_MEASURE", "rev/s"),
     Kind.PRESSURE: ((), "NUMERIC_MEASURE", "Pa"),
+    Kind.ROUGHNESS: (("LENGTH_MEASURE_WITH_UNIT",), "LENGTH_MEASURE", "um"),
     Kind.COUNT: ((), "COUNT_MEASURE", "count"),
 }
 """Entities, type and unit of the measure for each kind of value."""
@@ -268,7 +269,7 @@ class Builder:
         fork: bool = False,
     ) -> int:
         """Go along a path and make what is missing; return the last instance."""
-        owner = node
+        owner, begin = node, _last_relation(steps) if fork else len(steps)
         for number, step in enumerate(steps):
             if step.move in (PathMove.STAY, PathMove.USED):
                 continue
@@ -276,7 +277,7 @@ class Builder:
             is_own = place if step.move is PathMove.BACK and _is_repeated(steps, number) else 0
             # What refers back is shared by paths that leave it through the same attribute.
             leaving = following if following and following.move is PathMove.FORWARD else None
-            key = node, step, leaving, is_own if not fork else -1 - place
+            key = node, step, leaving, is_own if number < begin else -1 - place
             if key not in self._made:
                 self._made[key] = self._stepped(owner, node, step, target, place)
             node = self._made[key]
@@ -294,10 +295,12 @@ class Builder:
         draft = self._draft
         if step.move is PathMove.FORWARD:
             present = draft.get(node, step.attribute)
-            if isinstance(present, Ref) and step.attribute not in LISTS:
+            is_shape = step.attribute == "of_shape" and target is not None
+            is_given = isinstance(present, Ref) and step.attribute not in LISTS
+            if isinstance(present, Ref) and is_given and not (is_shape and draft.is_new(node)):
                 return int(present)
             names = step.made or step.types or ("REPRESENTATION",)
-            if step.attribute == "of_shape" and target is not None:
+            if is_shape and target is not None:
                 # All features of a workpiece are aspects of one shape.
                 made = draft.shared(names, {target[0].attribute: Ref(target[1])})
                 draft.put(node, step.attribute, made)
@@ -316,8 +319,16 @@ class Builder:
         """Build a path to a text or a number."""
         ending = path.ending
         last = path.steps[-1] if path.steps else None
+        if ending.kind is Kind.CHOICE and last is None:
+            self._draft.set(node, "description", _choice(ending, value))
+            return
         if last is None or last.move is not PathMove.FORWARD:
             self._measure_on(node, ending, value)
+            return
+        if last.made and ending.kind in _MEASURES:
+            # An item that other attributes describe too.
+            holder = self._walk(node, path.steps, target=None, place=0)
+            self._measure_on(holder, ending, value)
             return
         if ending.kind in (Kind.TEXT, Kind.OWN_LENGTH, Kind.INTEGER):
             holder = self._walk(node, path.steps[:-1], target=None, place=_mark(path))
@@ -341,9 +352,9 @@ class Builder:
     def _item(self, ending: Ending, value: Value, name: str) -> int:
         """Representation item with a text or a number."""
         if ending.kind in (Kind.FLAG, Kind.CHOICE):
-            text = next(aim for aim, iso in ending.texts if iso == str(value))
             return self._draft.make(
-                ("DESCRIPTIVE_REPRESENTATION_ITEM",), {"name": name, "description": text}
+                ("DESCRIPTIVE_REPRESENTATION_ITEM",),
+                {"name": name, "description": _choice(ending, value)},
             )
         if ending.kind is Kind.TEXT_ITEM:
             return self._draft.make(
@@ -410,6 +421,11 @@ def _is_plain_list(path: Path, value: Value) -> bool:
     )
 
 
+def _choice(ending: Ending, value: Value) -> str:
+    """Text of the AIM for a value of an enumeration."""
+    return next(aim for aim, iso in ending.texts if iso == str(value))
+
+
 def _plain(value: Value) -> Value:
     """Value without the type that ISO 14649 may give it."""
     return value.value if isinstance(value, Typed) else value
@@ -429,6 +445,16 @@ def _mark(path: Path) -> int:
 def _is_repeated(steps: tuple[PathStep, ...], number: int) -> bool:
     """Whether each value of a list has a chain of its own, which begins at a step."""
     return number == 0 and steps[0].move is PathMove.BACK and _is_relation(steps[0].entity)
+
+
+def _last_relation(steps: tuple[PathStep, ...]) -> int:
+    """Place of the last relation of a path, from which on a further value has its own chain."""
+    relations = (
+        number
+        for number, step in enumerate(steps)
+        if step.move is PathMove.BACK and _is_relation(step.entity)
+    )
+    return max(relations, default=0)
 
 
 def _is_relation(entity: str) -> bool:

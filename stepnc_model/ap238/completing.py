@@ -10,6 +10,8 @@ from stepnc_model.ap238.instances import references
 from stepnc_model.part21.values import Real, Ref, Typed
 
 _QUALIFIED = "QUALIFIED_REPRESENTATION_ITEM"
+_SURFACE = "surface_condition"
+"""Name of the property that a surface texture is."""
 
 
 def complete(draft: AimDraft) -> None:
@@ -34,6 +36,12 @@ def complete(draft: AimDraft) -> None:
             draft.set(id, "rep_2", Ref(origin))
         elif draft.is_a(id, "ITEM_DEFINED_TRANSFORMATION"):
             draft.set(id, "transform_item_1", Ref(_origin(draft)))
+        elif draft.get(id, "name") == _SURFACE and draft.is_a(id, "PROPERTY_DEFINITION"):
+            general = draft.shared(("GENERAL_PROPERTY",), {"name": _SURFACE})
+            draft.make(
+                ("GENERAL_PROPERTY_ASSOCIATION",),
+                {"base_definition": Ref(general), "derived_definition": Ref(id)},
+            )
         elif draft.is_a(id, _QUALIFIED) and draft.get(id, "qualifiers") is None:
             draft.drop_entity(id, _QUALIFIED)
 

@@ -64,6 +64,8 @@ class AimDraft:
         self._made: dict[int, tuple[tuple[str, ...], _Made]] = {}
         self._changed: dict[tuple[int, int, int], Value] = {}
         self._removed: set[int] = set()
+        self._forgotten: set[int] = set()
+        """Removed instances that were taken out of the edits."""
         self._shared: dict[object, int] = {}
         self._uses: Counter[int] | None = None
 
@@ -317,6 +319,7 @@ class AimDraft:
 
     def apply(self) -> bytes:
         """Bytes of the file with all changes."""
+        self.forget_removed()
         for (id, part, place), value in self._changed.items():
             if id not in self._removed:
                 self.edits.replace_in_part(id, part, place, value)
@@ -326,8 +329,9 @@ class AimDraft:
 
     def forget_removed(self) -> None:
         """Take the removed instances out; to be called before the first new one is made."""
-        for id in self._removed:
+        for id in self._removed - self._forgotten:
             self.edits.remove(id)
+        self._forgotten.update(self._removed)
 
     def _write(self, names: tuple[str, ...], values: _Made) -> None:
         """Add one new instance to the edits."""

@@ -16,6 +16,7 @@ from stepnc_model.ap238.drafting import AimDraft
 from stepnc_model.ap238.instances import Instances
 from stepnc_model.ap238.loose import hang, loose_numbers
 from stepnc_model.ap238.requirements import SCHEMA
+from stepnc_model.ap238.table import rules
 from stepnc_model.errors import Finding, FindingList, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.writer import described_as
@@ -56,6 +57,10 @@ def to_ap238(file: Part21File) -> Exported:
         raise SchemaError("no PROJECT and no WORKPLAN: there is no program to convert")
     for number in roots:
         builder.build(number)
+    for rule in rules():
+        if rule.is_root:
+            for number in file.ids_of(rule.entity.keyword):
+                builder.build(number)
     _hang_loose(file, draft, builder)
     complete(draft)
     findings = FindingList()

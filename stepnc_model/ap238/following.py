@@ -138,6 +138,11 @@ class PathFollower:
             return any(isinstance(v, str) and v.strip().casefold() in wanted for v in values)
         return any(value not in (None, (), "") for value in values)
 
+    def is_course(self, id: int) -> bool:
+        """Whether a direction is that of a linear path, such as the course of a depth."""
+        name = "DIRECTION_SHAPE_REPRESENTATION"
+        return bool(self._instances.referrers(id, name, "items"))
+
     def remark(self, severity: Severity, message: str, id: int, attribute: str) -> None:
         """Add a finding about an instance of the file."""
         self.findings.add(

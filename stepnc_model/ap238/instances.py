@@ -30,6 +30,10 @@ def references(value: Value) -> Iterator[Ref[object]]:
         yield from references(value.value)
 
 
+MOST_KEPT = 20_000
+"""Greatest number of instances whose parameters are kept; large files would fill the memory."""
+
+
 class Instances:
     """Instances of one file, by the names of entities and attributes.
 
@@ -52,6 +56,8 @@ class Instances:
     def parts(self, id: int) -> tuple[Part, ...]:
         """Entities of an instance with their parameters; none if it is malformed."""
         if id not in self._parts:
+            if len(self._parts) >= MOST_KEPT:
+                self._parts.clear()
             try:
                 self._parts[id] = self.file.parts(id)
             except Part21Error:  # a finding of the file

@@ -93,6 +93,9 @@ MEASURES = {
         exponents={"time": -1.0}, iso=1.0, noun="a rotational speed", unit="rev/s"
     ),
     Kind.PRESSURE: AimMeasure(exponents={"pascal": 1.0}, iso=1.0, noun="a pressure", unit="Pa"),
+    Kind.ROUGHNESS: AimMeasure(
+        exponents={"length": 1.0}, iso=1e-6, noun="a roughness", unit="um"
+    ),
 }
 
 

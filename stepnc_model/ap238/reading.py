@@ -10,6 +10,7 @@ from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from stepnc_model.ap238.converted import Converted
 from stepnc_model.ap238.following import PathFollower, Place
 from stepnc_model.ap238.instances import Instances, references
 from stepnc_model.ap238.quantity import (
@@ -32,6 +33,7 @@ from stepnc_model.ap238.table import (
     rules,
     rules_for,
 )
+from stepnc_model.ap238.upright import upright
 from stepnc_model.entities.conversion import AttributeSlot, slots_of
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.part21.reader import Part21File
@@ -49,19 +51,6 @@ class Origin:
     id: int
     rule: Rule
     context: int | None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Converted:
-    """Instance of ISO 14649 with the AIM instance that stands for it."""
-
-    number: int
-    keyword: str
-    parameters: tuple[Value, ...]
-    origin: int
-    rule: Rule | None
-    context: int | None = None
-    """Representation context that gives the units of its geometry."""
 
 
 @dataclass(slots=True)
@@ -112,6 +101,8 @@ class AimReader:
         while self._waiting:
             number, origin = self._waiting.popleft()
             self._convert(number, origin)
+        converted = self._reading.converted
+        self._reading.converted = upright(converted, self._paths, first=self._next)
         self._note_unread()
         self._reading.findings = self._paths.findings.all()
         return self._reading
@@ -429,6 +420,7 @@ _MEASURE_OF: Mapping[Kind, Kind] = {
     Kind.SPEED: Kind.SPEED,
     Kind.ROTATION: Kind.ROTATION,
     Kind.PRESSURE: Kind.PRESSURE,
+    Kind.ROUGHNESS: Kind.ROUGHNESS,
 }
 
 

@@ -93,6 +93,8 @@ class Kind(StrEnum):
     SPEED = "speed"
     ROTATION = "rotation"
     PRESSURE = "pressure"
+    ROUGHNESS = "roughness"
+    """Height of a surface texture, in µm."""
     PROFILE = "profile"
     """Ratio of a speed profile, a typed value of ISO 14649."""
     TYPED = "typed"

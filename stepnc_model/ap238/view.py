@@ -5,11 +5,12 @@ numbers, lines and findings are those of the AP238 file, so that whatever reads 
 14649 reads an AP238 program too, and names the right places of it.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Self
 
-from stepnc_model.ap238.reading import AimReader, Converted
+from stepnc_model.ap238.converted import Converted
+from stepnc_model.ap238.reading import AimReader
 from stepnc_model.errors import Finding
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.writer import described_as, format_value
@@ -64,6 +65,19 @@ class AimView(Part21File):
             origins={each.number: each for each in reading.converted},
             remarks=reading.findings,
         )
+
+    def changed(self, text: Part21File) -> Self:
+        """The view with changed text, which is written with the next changes of the file."""
+        return replace(self, data=text.data, structure=text.structure)
+
+    def number_of(self, origin: Converted) -> int | None:
+        """Number of the instance for which the same AIM instance stands as in another view."""
+        alike = (
+            number
+            for number, each in self.origins.items()
+            if (each.origin, each.keyword) == (origin.origin, origin.keyword)
+        )
+        return next(alike, None)
 
     def line(self, id: int) -> int:
         """Line of the AP238 file on which the instance begins."""

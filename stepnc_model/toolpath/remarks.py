@@ -17,7 +17,7 @@ from stepnc_model.tool import hand_of
 from stepnc_model.toolpath.frame import feature_frame, frame_of
 from stepnc_model.toolpath.left_out import SweptBox, swept_box
 from stepnc_model.toolpath.path import ToolPath
-from stepnc_model.toolpath.task import stock_of
+from stepnc_model.toolpath.task import stock_of, unused_stock
 
 COURSES = ("course_of_travel", "open_boundary", "profile_swept_shape")
 """Attributes of features that refer to a course of travel."""
@@ -46,13 +46,16 @@ def remarks(program: Program, paths: Iterable[ToolPath]) -> tuple[Finding, ...]:
 
 
 def _of_stock(program: Program) -> Iterator[Finding]:
-    """Warning that no stock is known."""
+    """Warnings that a stock is not used, and that none is known."""
     for step in program.workingsteps:
         try:
             with program.using(step.ref, step.setup):
                 is_known = stock_of(program, step.setup) is not None
+                unused = unused_stock(program, step.setup)
         except SchemaError:
             continue
+        if unused is not None:
+            yield unused
         if not is_known:
             text = "no stock is known: engagement is estimated, collisions are not found"
             setup = step.ref if step.setup is None else step.setup

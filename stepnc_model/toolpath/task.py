@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import Setup
-from stepnc_model.entities.geometry import Block, RightCircularCylinder
+from stepnc_model.entities.geometry import Block, ElementarySurface, RightCircularCylinder
 from stepnc_model.entities.turning import TurningMachiningOperation
-from stepnc_model.errors import Finding, PathError, Severity
+from stepnc_model.errors import Finding, PathError, SchemaError, Severity
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, ResolvedWorkingstep, Stock
 from stepnc_model.record_edit import find_record
@@ -45,6 +45,9 @@ ABOVE_STOCK = 1.0
 
 DEFAULT_SECURITY = 50.0
 """Default height of the security plane above zero, mm."""
+
+SAME = 1e-9
+"""Length below which a move is dropped, and two heights are the same, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -150,12 +153,39 @@ def stock_of(program: Program, setup: Ref[Setup] | None) -> Stock | None:
 
 
 def drawn_stock(program: Program, setup: Ref[Setup] | None) -> Stock | None:
-    """Raw part as given in the file; None if the file does not describe it."""
+    """Raw part as given in the file; None if the file does not describe it.
+
+    A raw part that holds none of the features is not used: they could not be cut from it.
+    """
+    stock = _described_stock(program, setup)
+    return None if stock is None or _is_off(program, setup, stock) else stock
+
+
+def unused_stock(program: Program, setup: Ref[Setup] | None) -> Finding | None:
+    """Warning about a raw part that holds none of the features, and is not used."""
+    stock = _described_stock(program, setup)
+    body = _bounding_geometry(program)
+    if stock is None or body is None or not _is_off(program, setup, stock):
+        return None
+    text = (
+        f"the raw part from z = {stock.low[2]:g} to {stock.high[2]:g} mm holds none of the "
+        "features, which lie below it: it is not used"
+    )
+    return program.finding(Severity.WARNING, text, body)
+
+
+def _bounding_geometry(program: Program) -> Ref[Entity] | None:
+    """Body that a file gives as its raw part."""
     workpiece = program.workpiece()
     if workpiece is None:
         return None
     raw = program.get(workpiece.its_rawpiece) if workpiece.its_rawpiece else workpiece
-    reference = raw.its_bounding_geometry or workpiece.its_bounding_geometry
+    return raw.its_bounding_geometry or workpiece.its_bounding_geometry
+
+
+def _described_stock(program: Program, setup: Ref[Setup] | None) -> Stock | None:
+    """Raw part as a file describes it, in the coordinates of a setup."""
+    reference = _bounding_geometry(program)
     if reference is None:
         return None
     shape = program.get(reference)
@@ -164,6 +194,39 @@ def drawn_stock(program: Program, setup: Ref[Setup] | None) -> Stock | None:
     frame = workpiece_frame(program, setup).inner(frame_of(program, shape.position))
     with program.using(reference):
         return _placed(shape, frame)
+
+
+def _is_off(program: Program, setup: Ref[Setup] | None, stock: Stock) -> bool:
+    """Whether the floors of all features lie at or below a stock, and one feature as a whole.
+
+    The first feature that ends within the stock decides, so that large programs cost little.
+    """
+    bottom, is_one_outside = stock.low[2] + SAME, False
+    for step in program.workingsteps:
+        if setup is not None and step.setup != setup:
+            continue
+        for feature in step.features:
+            span = _span(program, step.setup, feature)
+            if span is None or span[0] > bottom:
+                return False
+            is_one_outside = is_one_outside or (span[1] <= bottom and span[0] < span[1] - SAME)
+    return is_one_outside
+
+
+def _span(
+    program: Program, setup: Ref[Setup] | None, feature: Ref[Entity]
+) -> tuple[float, float] | None:
+    """Heights of a feature's floor and top, mm; None where a plane does not give the depth."""
+    try:
+        depth = getattr(program.get(feature), "depth", None)
+        plane = None if depth is None else program.get(depth)
+        if not isinstance(plane, ElementarySurface):
+            return None
+        frame = feature_frame(program, setup, feature)
+        floor = frame.inner(frame_of(program, plane.position)).origin[2]
+    except SchemaError:
+        return None
+    return min(floor, frame.origin[2]), max(floor, frame.origin[2])
 
 
 def _placed(shape: Block | RightCircularCylinder, frame: Frame) -> Stock:
@@ -248,10 +311,6 @@ def _raised(
         height = safe
         findings.append(program.finding(Severity.WARNING, text, step.ref, "its_secplane"))
     return height, tuple(findings)
-
-
-SAME = 1e-9
-"""Length below which a move is dropped, mm."""
 
 
 class PathBuilder:

@@ -312,6 +312,10 @@ def hole_path(job: ToolPathTask) -> ToolPath:
             raise job.fault("the pattern omits every hole", job.step.features[0])
         course = PathBuilder(job, holes[0].at(job.security_z))
         _notes(course, job, operation)
+        if operation.feed_on_retract == 0.0:
+            text = "0 is no feed ratio: read as not given"
+            course.find(job.warning(text, attribute="feed_on_retract"))
+            operation = replace(operation, feed_on_retract=None)
         cuts = [_cut(course, job, operation, hole) for hole in holes]
         for last, cut in zip([None, *cuts[:-1]], cuts, strict=True):
             if last is not None:

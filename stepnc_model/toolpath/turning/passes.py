@@ -33,7 +33,13 @@ from stepnc_model.toolpath.turning.profile import (
     Spot,
     arc_pieces,
 )
-from stepnc_model.toolpath.turning.setting import ALONG, PassLink, TurningSetting, operation_of
+from stepnc_model.toolpath.turning.setting import (
+    ALONG,
+    DEFAULT_OVERCUT,
+    PassLink,
+    TurningSetting,
+    operation_of,
+)
 from stepnc_model.units import rad_from_deg
 
 LEAST_LIFT = 0.05
@@ -332,10 +338,11 @@ def _lead_in(
         up = (-up[0], -up[1])
     if isinstance(strategy, ApRetractAngle):
         angle, length = rad_from_deg(strategy.angle), strategy.travel_length
-        if not (0.0 < length < 1e4 and 0.0 <= strategy.angle <= 90.0):
+        a, b = length * cos(angle), length * sin(angle)
+        # Above 90 degrees it begins over the cut: no farther than the tool starts before it.
+        if not (0.0 < length < 1e4 and 0.0 <= strategy.angle < 180.0) or a < -DEFAULT_OVERCUT:
             message = f"{length:g} mm at {strategy.angle:g} degrees is not a valid lead-in"
             raise job.fault(message, ref or job.step.ref)
-        a, b = length * cos(angle), length * sin(angle)
         start = (end[0] - a * along[0] + b * up[0], end[1] - a * along[1] + b * up[1])
         return (ProfilePiece(start=start, end=end),)
     if isinstance(strategy, ApRetractTangent):

@@ -24,6 +24,7 @@ from stepnc_model.entities.turning import (
 from stepnc_model.entities.turning_tools import TurningMachineCuttingTool
 from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.program import ResolvedWorkingstep
+from stepnc_model.toolpath.path import FARTHEST
 from stepnc_model.toolpath.task import ToolPathTask, job_of
 from stepnc_model.toolpath.turning.offset import (
     InsertFlanks,
@@ -290,7 +291,9 @@ def _after(
     """Bar after an earlier workingstep; unchanged if that step cannot be evaluated."""
     allowance = max(0.0, getattr(step.operation, "allowance", None) or 0.0)
     if isinstance(step.operation, Facing):
-        return _faced(outlines, allowance, bar.left)
+        # A bar that is only assumed is faced as a whole.
+        whole = 0.0 if job.stock is not None else bar.raw.top(bar.raw.low, bar.raw.high)
+        return _faced(outlines, allowance, bar.left, reach=whole)
     if isinstance(step.operation, Grooving):
         surface = surface_of(outlines, HalfPlane())
         rest = grown(surface, allowance).within(surface.low, surface.high)
@@ -321,9 +324,14 @@ def _raw(
     if stock is not None and stock.high[2] > stock.low[2]:
         radius = stock.radius or max(map(abs, (*stock.low[:2], *stock.high[:2])))
         return _cylinder(radius, stock.low[2], stock.high[2]), ()
-    radius = max(outline.radii[1] for outline in outlines)
+    whole = (*outlines, *_around(job))
+    radius = max(outline.radii[1] for outline in whole)
     low, high = min(o.low for o in outlines), max(o.high for o in outlines)
     text = f"no stock given: assuming a bar of {2.0 * radius:g} mm diameter, as the features"
+    length = _to_face(job)
+    if length > 0.0:
+        high += length
+        text += f", and {length:g} mm to face off"
     finding = job.program.finding(Severity.WARNING, text, job.step.ref)
     return _cylinder(radius, min(low, high - JOINT), high), (finding,)
 
@@ -350,18 +358,55 @@ def _outlines(
 
 
 def _faced(
-    outlines: tuple[FeatureOutline, ...], allowance: float, left: RadiusProfile
+    outlines: tuple[FeatureOutline, ...],
+    allowance: float,
+    left: RadiusProfile,
+    *,
+    reach: float,
 ) -> RadiusProfile:
-    """Bar after everything in front of faced features is removed."""
+    """Bar after everything in front of faced features is removed, if they face all of it.
+
+    Parameters
+    ----------
+    outlines : tuple of FeatureOutline
+    allowance : float, mm
+    left : RadiusProfile
+        Bar before.
+    reach : float, mm
+        Radius up to which is faced, where the features themselves are smaller.
+    """
     for outline in outlines:
         z = max(outline.low, outline.high) + allowance
         inner, outer = outline.radii
         front = left.within(z, left.high)
-        if front.pieces and front.top(z, left.high) <= outer + JOINT:
+        if front.pieces and front.top(z, left.high) <= max(outer, reach) + JOINT:
             surface = [level_line(inner, z, left.high)]
             surface += grown(highest(outline.pieces), allowance).pieces
             left = lowered(left, highest(surface))
     return _without_front(left)
+
+
+def _around(job: ToolPathTask) -> Iterator[FeatureOutline]:
+    """Outlines of all turned features, which a bar that is faced is to hold."""
+    if isinstance(job.step.operation, Facing):
+        known: Known = {}
+        for step in job.program.workingsteps:
+            yield from _outlines(job, step, FARTHEST, known)
+
+
+def _to_face(job: ToolPathTask) -> float:
+    """Length in front of a face that its facing takes off: one pass, and what it leaves, mm."""
+    lengths = [0.0]
+    for step in job.program.workingsteps:
+        operation = step.operation
+        is_here = isinstance(job.step.operation, Facing) and step.features == job.step.features
+        if not is_here or not isinstance(operation, Facing):
+            continue
+        reference = operation.its_machining_strategy
+        strategy = None if reference is None else job.program.get(reference)
+        depths = getattr(strategy, "cutting_depth", None) or (0.0,)
+        lengths.append(float(depths[0]) + (operation.allowance or 0.0))
+    return max(lengths)
 
 
 def _trimmed(job: ToolPathTask, part: RadiusProfile, known: Known) -> RadiusProfile:

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from stepnc_model.ap238.export import to_ap238
 from stepnc_model.ap238.view import AimView
+from stepnc_model.entities.profiles import SurfaceTextureParameter
 from stepnc_model.errors import SchemaError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Real
@@ -55,10 +56,42 @@ def test_the_same_program_gives_the_same_bytes(name: str) -> None:
 
 
 def test_what_cannot_be_said_is_listed() -> None:
-    findings = to_ap238(own("bracket")).findings
-    entities = {each.entity.partition(" ")[2] for each in findings}
-    assert entities == {"SURFACE_TEXTURE_PARAMETER", "MACHINED_SURFACE"}
-    assert all(each.line > 0 and each.rule == "ISO 10303-238" for each in findings)
+    assert to_ap238(own("bracket")).findings == ()
+    data = own("bracket").data.replace(b"'ISO 4287',$,(#51)", b"'ISO 4287','max',(#51)")
+    (left,) = to_ap238(read(data)).findings
+    assert left.entity.endswith(" SURFACE_TEXTURE_PARAMETER")
+    assert left.attribute == "parameter_index"
+    assert left.line > 0
+    assert left.rule == "ISO 10303-238"
+
+
+def textures(program: Program) -> set[tuple[float, str, str, str, str]]:
+    """Surface textures of a program, each with the id of its feature."""
+    return {
+        (
+            texture.its_value,
+            texture.parameter_name,
+            texture.measuring_method,
+            program.get(program.get(ref).its_machining_feature).its_id,
+            program.get(ref).surface_element.value,
+        )
+        for _, texture in program.model.of_type(SurfaceTextureParameter)
+        for ref in texture.applied_surfaces
+    }
+
+
+@pytest.mark.parametrize("name", ["bracket", "shaft"])
+def test_surface_textures_come_back_with_their_features(name: str) -> None:
+    wanted = textures(Program(own(name)))
+    assert wanted
+    assert textures(Program(read(exported(name)))) == wanted
+
+
+def test_a_texture_is_one_property_of_its_surfaces() -> None:
+    file = read(exported("bracket"))
+    count = len(file.ids_of("SURFACE_TEXTURE_REPRESENTATION"))
+    assert count == 3
+    assert len(file.ids_of("GENERAL_PROPERTY_ASSOCIATION")) == count
 
 
 def test_a_file_without_program_is_refused() -> None:

@@ -1,6 +1,7 @@
 """AP238 programs seen as programs of ISO 14649: the same nouns, however the file is written."""
 
 import re
+from math import hypot, radians, tan
 
 import pytest
 
@@ -13,7 +14,8 @@ from stepnc_model.program import Program
 from stepnc_model.technology import programmed
 from stepnc_model.tool import tool_of
 from stepnc_model.toolpath.generate import generate
-from stepnc_model.toolpath.path import ToolPath
+from stepnc_model.toolpath.path import Move, MoveType, ToolPath
+from stepnc_model.toolpath.remarks import remarks
 from stepnc_model.units import PROFILES, rpm_from_rev_s
 from tests.stepnc_model.ap238.samples import (
     MILLING,
@@ -38,7 +40,6 @@ TWIN_DIFFERENCES = {
     # Units: the file gives its feeds in mm/s with the numbers of m/s.
     "MILLING_TECHNOLOGY.feedrate",
     # Values that the AP238 file states differently from its twin.
-    "DIRECTION.direction_ratios",  # axis of the pocket, shared with its course of travel
     "MILLING_TECHNOLOGY.inhibit_feedrate_override",
     "MILLING_TECHNOLOGY.inhibit_spindle_override",
     "TOOL_DIMENSION.edge_radius",
@@ -82,12 +83,15 @@ def shape(path: ToolPath) -> tuple[object, ...]:
     return path.start, re.sub(r"#\d+", "#", repr(path.steps))
 
 
+def lowest(path: ToolPath) -> float:
+    """Lowest height of the tool tip in a path, mm."""
+    return min(each.end[2] for each in path.steps if isinstance(each, Move))
+
+
 def twinned() -> bytes:
     """The public example with what its twin says differently, or does not say, as in it."""
     data = (
         public(MILLING)
-        .replace(b"'orientation',#4814,#4907,#4815", b"'orientation',#4814,#3507,#4815")
-        .replace(b"#424=MAKE_FROM_USAGE_OPTION(", b"#424=PRODUCT_DEFINITION_RELATIONSHIP(")
         .replace(b"LENGTH_MEASURE(0.05)", b"LENGTH_MEASURE(1.5)")
         .replace(b"PLANE_ANGLE_MEASURE(120.)", b"PLANE_ANGLE_MEASURE(62.)")
     )
@@ -116,13 +120,61 @@ class TestTwin:
         for mine, its in zip(one, other, strict=True):
             assert shape(mine) == shape(its)
 
-    def test_without_a_raw_part_that_contradicts_the_features_there_would_be_paths(
-        self,
-    ) -> None:
+    def test_only_stated_data_make_paths_differ_from_those_of_the_twin(self) -> None:
+        one, other = paths(Program(read(public(MILLING)))), paths(Program.load(TWIN))
+        assert [path.id for path in one] == [path.id for path in other]
+        # Overcut, tip of the drill, test cut, edge radius: see the table in docs/ap238.md.
+        x, y, z = other[0].start
+        assert one[0].start == pytest.approx((x, y - 3.0, z), abs=1e-9)
+        assert [path.start for path in one[1:]] == [path.start for path in other[1:]]
+        for path, lip in ((one[1], 30.0), (other[1], 59.0)):
+            assert lowest(path) == pytest.approx(-30.0 - 10.0 * tan(radians(lip)), abs=1e-9)
+        for mine, its in zip(one[2:], other[2:], strict=True):
+            assert lowest(mine) == pytest.approx(lowest(its), abs=1e-9)
+
+    def test_what_the_file_contradicts_is_read_with_a_warning(self) -> None:
+        program = Program(read(public(MILLING)))
+        made = paths(program)
+        told = [str(each) for each in (*program.findings(), *remarks(program, made))]
+        for text in (
+            "line 1478: #4808 AXIS2_PLACEMENT_3D.axis: the axis (0, 0, -1) is the direction "
+            "of the depth and points away from the tool: read as (0, 0, 1) (ISO 10303-238)",
+            "line 51: #305 BLOCK: the raw part from z = 0 to 100 mm holds none of the "
+            "features, which lie below it: it is not used",
+            "line 710: #2500 DRILLING.feed_on_retract: 0 is no feed ratio: read as not given",
+        ):
+            assert f"warning: {text}" in told
+
+    def test_an_axis_away_from_the_tool_that_is_no_course_of_a_depth_is_refused(self) -> None:
+        course = b"#4906=DIRECTION_SHAPE_REPRESENTATION('',(#4907)"
+        data = public(MILLING).replace(course, course.replace(b"#4907", b"#3507"))
         errors: list[str] = []
-        list(generate(Program(read(public(MILLING))), lambda _, e: errors.append(str(e))))
-        assert "breaks through the workpiece" in errors[0]
-        assert "axis (0, 0, -1) is not parallel to the tool" in errors[2]
+        list(generate(Program(read(data)), lambda _, e: errors.append(str(e))))
+        assert len(errors) == 2
+        assert all("axis (0, 0, -1) is not parallel to the tool" in each for each in errors)
+
+    def test_a_raw_part_that_holds_a_feature_is_used(self) -> None:
+        low = public(MILLING).replace(
+            b"#314=CARTESIAN_POINT('',(0.,0.,0.))", b"#314=CARTESIAN_POINT('',(0.,0.,-25.))"
+        )
+        program = Program(read(low))
+        errors: list[str] = []
+        list(generate(program, lambda _, e: errors.append(str(e))))
+        assert "breaks through the workpiece, whose bottom lies at z = -25 mm" in errors[0]
+
+    def test_both_refuse_the_same_technologies_in_the_same_words(self) -> None:
+        for program, first, second in (
+            (Program(read(public(MILLING))), "#3800", "#4100"),
+            (Program.load(TWIN), "#50", "#52"),
+        ):
+            for step, number in zip(program.workingsteps[3:], (first, second), strict=True):
+                with pytest.raises(SchemaError) as refused:
+                    programmed(program, step.technology_ref)
+                assert str(refused.value).partition(": ")[2] == (
+                    f"{number} MILLING_TECHNOLOGY.feedrate: neither feedrate nor "
+                    "feedrate_per_tooth is given (ISO 14649-11 WR2); optimise --feed MM_MIN "
+                    "gives one"
+                )
 
     def test_speeds_are_those_of_the_twin(self) -> None:
         one, other = Program(read(public(MILLING))), Program.load(TWIN)
@@ -150,9 +202,26 @@ class TestOtherExamples:
         notes = [each for each in program.findings() if "does not measure" in each.message]
         assert {each.attribute for each in notes} == {"unit_component"}
 
-    def test_the_turning_example_gives_paths_of_its_contour(self) -> None:
-        made = paths(Program(read(public(TURNING))))
-        assert [path.id for path in made] == ["WS ROUGH CONTOUR", "WS FINISH CONTOUR"]
+    def test_the_turning_example_gives_the_paths_of_its_drawing(self) -> None:
+        rough_face, face, rough, finish = paths(Program(read(public(TURNING))))
+        # A face at z = 160 with 0.5 mm for its finish; a cone from radius 20 to 40 over 50 mm.
+        for path, z in ((rough_face, 160.5), (face, 160.0)):
+            cuts = [m for _, m in path.segments() if m.type is MoveType.CONTACT]
+            assert [m.end[2] for m in cuts] == pytest.approx([z] * len(cuts), abs=1e-9)
+            assert cuts[-1].end[0] == pytest.approx(0.0, abs=1e-9)
+        (start, cone), *rest = [
+            (a, m) for a, m in finish.segments() if m.type is MoveType.CONTACT
+        ]
+        assert not rest
+        assert (start[0], start[2]) == pytest.approx((20.0, 160.0), abs=1e-9)
+        assert (cone.end[0], cone.end[2]) == pytest.approx((40.0, 110.0), abs=1e-9)
+        # All roughing stays 0.5 mm off the cone; the tool is sharp.
+        slope = hypot(20.0, 50.0)
+        for _, move in rough.segments():
+            if move.type is MoveType.CONTACT:
+                x, _, z = move.end
+                off = (50.0 * (x - 20.0) + 20.0 * (z - 160.0)) / slope
+                assert off > 0.5 - 1e-5
 
     def test_cutter_locations_give_the_path_as_it_is_in_the_file(self) -> None:
         program = Program(read(public(TOOLPATHS)))

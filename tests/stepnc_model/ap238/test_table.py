@@ -20,6 +20,7 @@ WITHOUT_PATH = {
     },
     "MILLING_TECHNOLOGY": {"its_adaptive_control"},
     "PROJECT": {"its_owner", "its_release", "its_status"},
+    "SURFACE_TEXTURE_PARAMETER": {"parameter_index"},
     "TURNING_TECHNOLOGY": {"its_adaptive_control"},
     "TURNING_WORKINGSTEP": {"its_effect"},
     "WORKPIECE_SETUP": {"its_offset", "its_restricted_area", "its_instructions"},

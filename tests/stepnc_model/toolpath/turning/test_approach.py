@@ -1,6 +1,7 @@
 """Approach and retract as the operation says."""
 
 from collections.abc import Callable
+from math import cos, radians, sin
 
 import pytest
 
@@ -30,13 +31,32 @@ def test_the_first_cut_is_met_tangentially_and_the_last_left_at_an_angle(
     assert leaving[1].end[0] - leaving[0][0] == pytest.approx(2.0**0.5)
 
 
-def test_an_angle_without_length_is_refused(path_of: Callable[..., ToolPath]) -> None:
+def test_an_obtuse_retract_leaves_back_over_the_cut(path_of: Callable[..., ToolPath]) -> None:
+    path = path_of(
+        "FINISH CONTOUR",
+        (
+            "'FINISH CONTOUR',5.,$,#410,#301,#330,$,$",
+            "'FINISH CONTOUR',5.,$,#410,#301,#330,$,#601",
+        ),
+        (END, "#601=AP_RETRACT_ANGLE($,100.,2.);\n" + END),
+    )
+    before, move = [(a, m) for a, m in path.segments() if m.feed][-1]
+    leaving = (move.end[0] - before[0], move.end[2] - before[2])
+    # The contour ends up a shoulder, along x; its free side is that of z.
+    wanted = (2.0 * cos(radians(100.0)), 2.0 * sin(radians(100.0)))
+    assert leaving == pytest.approx(wanted, abs=1e-9)
+
+
+@pytest.mark.parametrize("given", ["45.,0.", "100.,12.", "180.,1."])
+def test_an_angle_without_length_or_deep_in_the_material_is_refused(
+    path_of: Callable[..., ToolPath], given: str
+) -> None:
     edits = (
         (
             "'FINISH CONTOUR',5.,$,#410,#301,#330,$,$",
             "'FINISH CONTOUR',5.,$,#410,#301,#330,#600,$",
         ),
-        (END, "#600=AP_RETRACT_ANGLE($,45.,0.);\n" + END),
+        (END, f"#600=AP_RETRACT_ANGLE($,{given});\n" + END),
     )
     with pytest.raises(SchemaError, match="is not a valid lead-in"):
         path_of("FINISH CONTOUR", *edits)
