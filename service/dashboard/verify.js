@@ -14,8 +14,8 @@ const log = logChoice(ready);
 const choice = programChoice((chosen, contents) => { program = chosen && contents.is_usable ? chosen : null; ready(); });
 tools = new FileField(byId("tools-place"), { id: "tools-file", kind: "tools", accept: TOOL_FILES,
   title: "Measured tools", hint: "tool table: TOML, CSV or of CAM", changed: ready });
-required = new FileField(byId("required-place"), { id: "required-file", kind: "required-part", accept: ".stl",
-  title: "Required part", hint: ".stl, mm; else the features", changed: ready });
+required = new FileField(byId("required-place"), { id: "required-file", kind: "required-part", accept: ".stl,.step,.stp",
+  title: "Required part", hint: ".stl in mm, or .step; else the features", changed: ready });
 for (const name of ["stock", "machine"]) byId(name).addEventListener("input", ready);
 
 byId("units").addEventListener("change", () => choice.again(program?.id));

@@ -7,10 +7,10 @@ import numpy as np
 
 from service.chosen import machine_for, material_for
 from service.numbers import stock_in
+from service.part_file import read_part
 from service.reading import Tell, read_program, silent
 from service.requests.verification import VerificationRequest
 from service.simulation.setup import PreparedRun, prepared_program
-from service.stl import read_stl
 from service.verification.log import ProgramNames
 from simulator.library import load_machine
 from simulator.machine.acts import MoveStretch, ToolTo, WorkingstepTo
@@ -27,6 +27,16 @@ MM_PER_INCH = 25.4
 
 LIKE = 0.1
 """Relative difference of sizes that count as the same."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RequiredFile:
+    """File of a required part, in coordinates of the setup."""
+
+    path: Path
+    """STL or STEP file."""
+    solid: str = ""
+    """Solid of a STEP file, by its name or its place; empty: the only one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -129,7 +139,7 @@ def prepared(
 
 
 def required_setup(
-    request: VerificationRequest, tools: Path | None, required: Path | None
+    request: VerificationRequest, tools: Path | None, required: RequiredFile | None
 ) -> RequiredSetup:
     """Prepare a verification without a program.
 
@@ -139,7 +149,7 @@ def required_setup(
         When something is not given that a program would tell, or a file is invalid.
     """
     given = {
-        "--required STL": required,
+        "--required FILE": required,
         "--tools TABLE": tools,
         "--stock NUMBERS": request.stock,
         "--machine NAME": request.machine,
@@ -160,16 +170,25 @@ def required_setup(
         raise StepNcError(f"{tools}: no tool {what}: {machine.name} needs one")
     stock = stock_in(request.stock)
     return RequiredSetup(
-        name=required.name,
+        name=required.path.name,
         machine=machine,
         stock=stock,
         cutters={tool.number: tool.shape for tool in table},
-        required=required_triangles(required, stock),
+        required=required_triangles(required, stock, tolerance=request.tolerance_mm),
     )
 
 
-def with_required(program: PreparedProgram, path: Path) -> PreparedProgram:
-    """Compare the programmed part with an STL file in place of the features.
+def with_required(
+    program: PreparedProgram, file: RequiredFile, *, tolerance: float
+) -> PreparedProgram:
+    """Compare the programmed part with an STL or STEP file in place of the features.
+
+    Parameters
+    ----------
+    program : PreparedProgram
+    file : RequiredFile
+    tolerance : float, mm
+        Deviation that is an error.
 
     Raises
     ------
@@ -177,19 +196,29 @@ def with_required(program: PreparedProgram, path: Path) -> PreparedProgram:
         When the file is invalid, or has another part.
     """
     return replace(
-        program, required=required_triangles(path, program.stock), required_name=str(path)
+        program,
+        required=required_triangles(file, program.stock, tolerance=tolerance),
+        required_name=str(file.path),
     )
 
 
-def required_triangles(path: Path, stock: Stock) -> Floats:
+def required_triangles(file: RequiredFile, stock: Stock, *, tolerance: float) -> Floats:
     """Read a required part that lies in a stock, (T, 3, 3), mm.
+
+    Parameters
+    ----------
+    file : RequiredFile
+    stock : Stock
+    tolerance : float, mm
+        Deviation that is an error.
 
     Raises
     ------
     StepNcError
         When the file is invalid, or the part is in inches or lies elsewhere.
     """
-    triangles = read_stl(path)
+    path = file.path
+    triangles = read_part(path, solid=file.solid, tolerance=tolerance)
     corners = triangles.reshape(-1, 3)
     low, high = corners.min(axis=0), corners.max(axis=0)
     stock_low, stock_high = np.array(stock.low), np.array(stock.high)
