@@ -7,11 +7,13 @@ tools cut.
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
+from service.brep.bodies import USUAL_TOLERANCE
 from service.file_names import PROGRAMS
 from service.files import read_bytes
 from service.numbers import require_size, stock_in
 from service.part_file import part_place, read_part
-from service.requests.verification import INCH_THOUSANDTH
 from simulator.machine.virtual import StockMap
 from simulator.motion.segments import Floats
 from simulator.removal.engage import MillingStock
@@ -22,6 +24,7 @@ from simulator.spec import Machine, MachineKind
 from simulator.verification.mesh_stock import bounds_of, milling_stock_of, turning_stock_of
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Stock
+from stepnc_model.toolpath.frame import Frame
 
 KEPT_SUFFIX = ".npz"
 """Ending of a file that keeps a stock."""
@@ -80,7 +83,7 @@ def raw_stock_of(text: str) -> GivenStock:
         return GivenStock(bounds=bounds, kept=kept, name=str(path))
     if path is not None:
         solid = part_place(text.strip())[1]
-        triangles = read_part(path, solid=solid, tolerance=INCH_THOUSANDTH)
+        triangles = read_part(path, solid=solid, tolerance=USUAL_TOLERANCE)
         raw = GivenStock(bounds=bounds_of(triangles), triangles=triangles, name=str(path))
         _require_size(raw)
         return raw
@@ -137,6 +140,12 @@ def larger_stock_map(machine: Machine, raw: GivenStock, margin: float) -> StockM
     if isinstance(drawn, MillingStock):
         return grown_milling_stock(drawn, margin)
     return drawn
+
+
+def placed_triangles(triangles: Floats, frame: Frame) -> Floats:
+    """Triangles, (T, 3, 3) in mm, of a part that lies in a frame."""
+    axes = np.array([frame.x, frame.y, frame.z])
+    return np.asarray(triangles @ axes + np.array(frame.origin))
 
 
 def _require_size(raw: GivenStock) -> None:

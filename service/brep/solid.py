@@ -108,8 +108,10 @@ def _not_one(
 ) -> StepNcError:
     """Error of a file without a solid, with several, or without the one that was named."""
     if not len(found.number):
-        shells = f"; {found.shells} surfaces belong to none" if found.shells else ""
-        return StepNcError(f"{place.name}: no solid (MANIFOLD_SOLID_BREP or the like){shells}")
+        shells = f"; {found.shells} open shells or surfaces" if found.shells else ""
+        return StepNcError(
+            f"{place.name}: no closed solid (such as MANIFOLD_SOLID_BREP){shells}"
+        )
     rows = []
     for row, number in enumerate(found.number.tolist()[:MOST_NAMED]):
         size = " x ".join(f"{each:.4g}" for each in (found.high[row] - found.low[row]).tolist())

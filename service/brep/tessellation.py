@@ -40,6 +40,9 @@ ALL = 0
 ARRAYS = ("number", "volume", "area", "low", "high", "triangles")
 """Arrays that the process hands over."""
 
+REFUSED = 3
+"""Exit code of the process if it ends with an error of the file."""
+
 SAME = 1e-5
 """Distance at which corners are the same, mm."""
 
@@ -165,6 +168,8 @@ def _run(words: list[str], name: str, longest: float) -> None:
     if done.returncode < 0:
         reason = signal.Signals(-done.returncode).name
         raise StepNcError(f"{name}: Open CASCADE crashes on this file ({reason})")
+    if done.returncode == REFUSED:
+        raise StepNcError(f"{name}: {done.stderr.decode(errors='replace').strip()}")
     if done.returncode:
         said = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
         raise StepNcError(f"{name}: Open CASCADE fails: {said[:LAST_WORDS]}")
@@ -179,6 +184,15 @@ def main() -> int:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     # Open CASCADE tells its progress there.
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    try:
+        return _keep(words)
+    except StepNcError as error:
+        sys.stderr.write(str(error))
+        return REFUSED
+
+
+def _keep(words: dict[str, Any]) -> int:
+    """Tessellate and write what was found; return the exit code."""
     choice = Choice(**{each.name: words[each.name] for each in fields(Choice)})
     np.savez(words["kept"], **_tessellated(words["file"], choice, words["sag"]))
     return 0
@@ -190,7 +204,10 @@ def _tessellated(file: str, choice: Choice, sag: float) -> dict[str, Any]:
     from OCP.TopAbs import TopAbs_ShapeEnum
 
     reader = _reader(file)
-    shape = _shape(reader, choice.root)
+    shape = _shape(reader, (choice.root,))
+    if choice.root == ALL and shape.NbChildren() == 0:
+        # A file without products.
+        shape = _shape(reader, choice.solids)
     solids = _within(shape, TopAbs_ShapeEnum.TopAbs_SOLID)
     number = _numbers(reader, solids, choice.solids)
     if choice.place:
@@ -221,20 +238,21 @@ def _reader(file: str) -> Any:
 
     reader = STEPControl_Reader()
     if reader.ReadFile(file) != IFSelect_ReturnStatus.IFSelect_RetDone:
-        raise RuntimeError("it finds no STEP instances")
+        raise StepNcError("Open CASCADE finds no STEP instances")
     return reader
 
 
-def _shape(reader: Any, root: int) -> Any:
-    """Shape of an instance or of all products; an empty one where there is none."""
+def _shape(reader: Any, roots: tuple[int, ...]) -> Any:
+    """Shape of instances or of all products; an empty one where there is none."""
     from OCP.BRep import BRep_Builder
     from OCP.TopoDS import TopoDS_Compound
 
     reader.ClearShapes()
-    if root == ALL:
-        reader.TransferRoots()
-    else:
-        reader.TransferOne(root)
+    for root in roots:
+        if root == ALL:
+            reader.TransferRoots()
+        else:
+            reader.TransferOne(root)
     if reader.NbShapes():
         return reader.OneShape()
     nothing = TopoDS_Compound()
@@ -246,7 +264,7 @@ def _numbers(reader: Any, solids: list[Any], candidates: tuple[int, ...]) -> lis
     """Number of the instance of each solid; 0: not known."""
     number = [0] * len(solids)
     for each in candidates:
-        shape = _shape(reader, each)
+        shape = _shape(reader, (each,))
         for row, solid in enumerate(solids):
             if solid.IsPartner(shape):
                 number[row] = each
@@ -298,7 +316,7 @@ def _triangles(solid: Any) -> tuple[Floats, int]:
         face = TopoDS.Face(shape)
         mesh = BRep_Tool.Triangulation_s(face, location)
         if mesh is None:
-            raise RuntimeError("a face has no triangles: is its surface damaged?")
+            raise StepNcError("a face gets no triangles: is its surface damaged?")
         count += mesh.NbTriangles()
         if count > MOST_TRIANGLES:
             continue

@@ -5,10 +5,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, TypeVar
 
+from service.brep.bodies import ProgramBodies
 from service.chosen import load_material_named, machine_for, material_for
 from service.files import open_lines
 from service.paths.toolpaths import paths_of, with_feeds
-from service.raw_stock import GivenStock, raw_stock_of, stock_map
+from service.raw_stock import (
+    GivenStock,
+    larger_stock_map,
+    placed_triangles,
+    raw_stock_of,
+    stock_map,
+)
 from service.reading import Tell, one_of, read_program
 from simulator.library import load_machine
 from simulator.machine.interpreter import Numbered
@@ -18,6 +25,7 @@ from simulator.spec import Machine, MachineKind, MaterialMatch
 from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.read import read_tools
 from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.executables import Setup
 from stepnc_model.errors import Finding, PostError, Severity, StepNcError
 from stepnc_model.part21.values import Ref
 from stepnc_model.plausibility import refusal
@@ -26,7 +34,8 @@ from stepnc_model.post.dialect import SUFFIXES, Dialect
 from stepnc_model.post.dialects import read_blocks
 from stepnc_model.post.neutral import blocks_of, tool_numbers
 from stepnc_model.program import Program, Stock
-from stepnc_model.toolpath.task import stock_of
+from stepnc_model.toolpath.frame import workpiece_frame
+from stepnc_model.toolpath.task import raw_body, stock_of
 
 T = TypeVar("T")
 
@@ -246,9 +255,22 @@ class _Clamped:
         setup = self._setups[workingstep]
         if setup not in self._maps:
             raw = stock_of(self._program, setup)
-            drawn = None if raw is None else GivenStock(bounds=raw.grown(self._margin))
-            self._maps[setup] = None if drawn is None else stock_map(self._machine, drawn)
+            self._maps[setup] = None if raw is None else self._map(raw, setup)
         return self._maps[setup]
+
+    def _map(self, bounds: Stock, setup: Ref[Setup] | None) -> StockMap:
+        """Map of a raw part, which is a mesh if the file has a B-rep body of it."""
+        body, bodies = raw_body(self._program), self._program.bodies
+        mesh = None
+        if body is not None and isinstance(bodies, ProgramBodies):
+            mesh = bodies.raw(self._program.file, body)
+        if mesh is None:
+            return stock_map(self._machine, GivenStock(bounds=bounds.grown(self._margin)))
+        placed = placed_triangles(mesh, workpiece_frame(self._program, setup))
+        raw = GivenStock(bounds=bounds, triangles=placed, name=self._program.name)
+        if self._margin > 0.0:
+            return larger_stock_map(self._machine, raw, self._margin)
+        return stock_map(self._machine, raw)
 
 
 def _tools(

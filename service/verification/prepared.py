@@ -5,9 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
+from service.brep.bodies import body_triangles
 from service.chosen import machine_for, material_for
 from service.numbers import stock_in
 from service.part_file import read_part
+from service.raw_stock import placed_triangles
 from service.reading import Tell, read_program, silent
 from service.requests.verification import VerificationRequest
 from service.simulation.setup import PreparedRun, prepared_program
@@ -20,8 +22,10 @@ from simulator.removal.cutter import Cutter, Insert
 from simulator.spec import Machine, MachineKind, MaterialMatch
 from simulator.tool_files.read import read_tools
 from simulator.verification.path import ProgrammedPath, ProgrammedRun, programmed_path
-from stepnc_model.errors import StepNcError
+from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.program import Program, Stock
+from stepnc_model.toolpath.frame import workpiece_frame
+from stepnc_model.toolpath.task import finished_body
 
 MM_PER_INCH = 25.4
 
@@ -66,6 +70,8 @@ class PreparedProgram:
     """Triangles of the required part, (T, 3, 3), mm; None: the nominal features count."""
     required_name: str = ""
     """File of the required part, for messages."""
+    findings: tuple[Finding, ...] = ()
+    """What is to be known of the required part in the program."""
 
     @property
     def is_turned(self) -> bool:
@@ -112,7 +118,7 @@ def prepared(
     StepNcError
         When the program cannot be run, has several setups, or has no stock.
     """
-    read = read_program(program, units=request.units, stock=request.stock)
+    read = read_program(program, units=request.units, stock=request.stock, tell=tell)
     match = material_for(request.material, read)
     tell(f"material: {match.reason}")
     run = prepared_program(read, machine_for(request.machine, read), match, tell=tell)
@@ -199,6 +205,37 @@ def with_required(
         program,
         required=required_triangles(file, program.stock, tolerance=tolerance),
         required_name=str(file.path),
+    )
+
+
+def with_own_part(program: PreparedProgram, *, tolerance: float) -> PreparedProgram:
+    """Compare the programmed part with the B-rep body of the finished part, if there is one.
+
+    Where it cannot be read, the features count, which a finding says.
+
+    Parameters
+    ----------
+    program : PreparedProgram
+    tolerance : float, mm
+        Deviation that is an error.
+    """
+    source = program.program
+    body = finished_body(source)
+    if body is None:
+        return program
+    try:
+        triangles = body_triangles(source.file, body, tolerance=tolerance)
+    except StepNcError as error:
+        text = f"the part of the program is not compared, its features are: {error}"
+        warning = source.finding(Severity.WARNING, text, body)
+        return replace(program, findings=(*program.findings, warning))
+    frame = workpiece_frame(source, source.workingsteps[0].setup)
+    note = source.finding(Severity.NOTE, "is the required part, in place of the features", body)
+    return replace(
+        program,
+        required=placed_triangles(triangles, frame),
+        required_name=program.name,
+        findings=(*program.findings, note),
     )
 
 

@@ -25,6 +25,7 @@ from service.verification.prepared import (
     StepName,
     prepared,
     required_setup,
+    with_own_part,
     with_required,
     with_tools,
 )
@@ -149,6 +150,8 @@ def verify(
         ready = with_tools(ready, given.tools)
     if given.part is not None:
         ready = with_required(ready, given.part, tolerance=request.tolerance_mm)
+    else:
+        ready = with_own_part(ready, tolerance=request.tolerance_mm)
     with log_file(log, tell=tell) as (path, name):
         return verified(path, ready, request, name=name, tell=tell)
 
@@ -222,6 +225,7 @@ def verified(
         bent=bent,
         findings=(
             *findings,
+            *program.findings,
             *(Finding(severity=Severity.NOTE, message=text) for text in found.notes),
             *_findings(file, found.facts, tools),
         ),
