@@ -84,7 +84,7 @@ def body_triangles(file: Part21File, representation: int, *, tolerance: float) -
     """
     from service.brep.solid import SolidPlace, solid_triangles  # noqa: PLC0415 (numpy)
 
-    name = f"{file.name}: {file.label(representation)}"
+    name = f"{file.name}: {file.label(int(representation))}"
     root = representation
     if isinstance(file, AimView):
         root, file = file.origins[representation].origin, file.source

@@ -9,7 +9,7 @@ from service.brep.exchange import Exchange, exchange_below, whole_exchange
 from service.brep.tessellation import ALL, Choice, Tessellation, tessellate
 from simulator.motion.segments import Floats
 from simulator.verification.mesh import edges_of
-from stepnc_model.errors import StepNcError
+from stepnc_model.errors import Part21Error, StepNcError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref, Value
 
@@ -61,8 +61,11 @@ def solid_triangles(place: SolidPlace, *, tolerance: float) -> Floats:
         when its triangles are not closed, or have another volume.
     """
     file = place.file
-    taken = whole_exchange(file) if place.root is None else exchange_below(file, place.root)
-    names = _names(file, taken)
+    try:
+        taken = whole_exchange(file) if place.root is None else exchange_below(file, place.root)
+        names = _names(file, taken)
+    except Part21Error as error:
+        raise StepNcError(f"{place.name}: {error}") from error
     sag = tolerance / PARTS
     found = tessellate(
         taken.data,

@@ -226,7 +226,7 @@ def with_own_part(program: PreparedProgram, *, tolerance: float) -> PreparedProg
     try:
         triangles = body_triangles(source.file, body, tolerance=tolerance)
     except StepNcError as error:
-        text = f"the part of the program is not compared, its features are: {error}"
+        text = f"the features are compared in place of this body: {error}"
         warning = source.finding(Severity.WARNING, text, body)
         return replace(program, findings=(*program.findings, warning))
     frame = workpiece_frame(source, source.workingsteps[0].setup)
