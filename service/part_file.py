@@ -3,9 +3,11 @@
 The content tells which, not the name.
 """
 
+from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 
-from service.brep.solid import SolidPlace, require_solids, solid_triangles
+from service.brep.solid import SolidPlace, require_solids, sag_within, solid_triangles
 from service.files import read_bytes
 from service.program_kind import PART21
 from service.stl import is_binary_stl, stl_triangles
@@ -21,6 +23,16 @@ LOOKED_AT = 1 << 16
 
 CHOICE = "#"
 """Separates the name of a file from that of one of its solids."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PartMesh:
+    """Triangles of a part."""
+
+    triangles: Floats
+    """(T, 3, 3), mm."""
+    sag: float = inf
+    """Greatest distance of the triangles from the surface, mm; infinite: not known."""
 
 
 def part_place(text: str) -> tuple[Path, str]:
@@ -39,7 +51,7 @@ def part_place(text: str) -> tuple[Path, str]:
     return Path(name), solid
 
 
-def read_part(path: Path, *, solid: str = "", tolerance: float) -> Floats:
+def read_part(path: Path, *, solid: str = "", tolerance: float) -> PartMesh:
     """Read the triangles of a part.
 
     Parameters
@@ -51,10 +63,6 @@ def read_part(path: Path, *, solid: str = "", tolerance: float) -> Floats:
         Size of the deviations that are to be seen; the triangles of a solid lie within a fifth
         of it of its surface.
 
-    Returns
-    -------
-    (T, 3, 3) array, mm
-
     Raises
     ------
     StepNcError
@@ -62,8 +70,9 @@ def read_part(path: Path, *, solid: str = "", tolerance: float) -> Floats:
     """
     content = read_bytes(path)
     if not _is_step(content):
-        return stl_triangles(content, path)
-    return solid_triangles(_solids(content, path, solid), tolerance=tolerance)
+        return PartMesh(triangles=stl_triangles(content, path))
+    triangles = solid_triangles(_solids(content, path, solid), tolerance=tolerance)
+    return PartMesh(triangles=triangles, sag=sag_within(tolerance))
 
 
 def require_part(path: Path) -> None:

@@ -83,7 +83,7 @@ def raw_stock_of(text: str) -> GivenStock:
         return GivenStock(bounds=bounds, kept=kept, name=str(path))
     if path is not None:
         solid = part_place(text.strip())[1]
-        triangles = read_part(path, solid=solid, tolerance=USUAL_TOLERANCE)
+        triangles = read_part(path, solid=solid, tolerance=USUAL_TOLERANCE).triangles
         raw = GivenStock(bounds=bounds_of(triangles), triangles=triangles, name=str(path))
         _require_size(raw)
         return raw

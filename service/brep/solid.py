@@ -39,6 +39,11 @@ class SolidPlace:
     """Name of the solid, or its place in the list of a message; empty: the only one."""
 
 
+def sag_within(tolerance: float) -> float:
+    """Greatest distance of triangles from the surface by which a tolerance is seen, mm."""
+    return tolerance / PARTS
+
+
 def solid_triangles(place: SolidPlace, *, tolerance: float) -> Floats:
     """Triangles of a solid.
 
@@ -66,7 +71,7 @@ def solid_triangles(place: SolidPlace, *, tolerance: float) -> Floats:
         names = _names(file, taken)
     except Part21Error as error:
         raise StepNcError(f"{place.name}: {error}") from error
-    sag = tolerance / PARTS
+    sag = sag_within(tolerance)
     found = tessellate(
         taken.data,
         name=place.name,

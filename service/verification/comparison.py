@@ -137,7 +137,8 @@ def _required_profile(program: PreparedProgram, cell: float | None) -> RequiredB
 def _milled_required(
     setup: RequiredSetup, file: LogFile, cell: float | None, tell: Tell
 ) -> ComparedParts:
-    part = required_part(setup.required, setup.stock, cell=cell)
+    mesh = setup.required
+    part = required_part(mesh.triangles, setup.stock, cell=cell, most_sag=mesh.sag)
     left = LoggedPart(part, setup.stock, _rotating(setup.cutters))
     for piece in _told(file, left, tell):
         left.add(piece)
@@ -164,7 +165,7 @@ def _milled_required(
 def _turned_required(
     setup: RequiredSetup, file: LogFile, cell: float | None, tell: Tell
 ) -> ComparedParts:
-    part = required_bar(setup.required, setup.stock, cell=cell)
+    part = required_bar(setup.required.triangles, setup.stock, cell=cell)
     left = LoggedBar(part.bar, setup.stock, setup.cutters)
     for piece in _told(file, left, tell):
         left.add(piece)

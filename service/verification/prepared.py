@@ -8,7 +8,7 @@ import numpy as np
 from service.brep.bodies import body_triangles
 from service.chosen import machine_for, material_for
 from service.numbers import stock_in
-from service.part_file import read_part
+from service.part_file import PartMesh, read_part
 from service.raw_stock import placed_triangles
 from service.reading import Tell, read_program, silent
 from service.requests.verification import VerificationRequest
@@ -99,8 +99,7 @@ class RequiredSetup:
     stock: Stock
     cutters: dict[int, Cutter | Insert | None]
     """Shapes of the tools by number."""
-    required: Floats
-    """Triangles of the required part, (T, 3, 3), mm."""
+    required: PartMesh
 
     @property
     def is_turned(self) -> bool:
@@ -180,7 +179,7 @@ def required_setup(
         machine=machine,
         stock=stock,
         cutters={tool.number: tool.shape for tool in table},
-        required=required_triangles(required, stock, tolerance=request.tolerance_mm),
+        required=required_mesh(required, stock, tolerance=request.tolerance_mm),
     )
 
 
@@ -203,7 +202,7 @@ def with_required(
     """
     return replace(
         program,
-        required=required_triangles(file, program.stock, tolerance=tolerance),
+        required=required_mesh(file, program.stock, tolerance=tolerance).triangles,
         required_name=str(file.path),
     )
 
@@ -239,8 +238,8 @@ def with_own_part(program: PreparedProgram, *, tolerance: float) -> PreparedProg
     )
 
 
-def required_triangles(file: RequiredFile, stock: Stock, *, tolerance: float) -> Floats:
-    """Read a required part that lies in a stock, (T, 3, 3), mm.
+def required_mesh(file: RequiredFile, stock: Stock, *, tolerance: float) -> PartMesh:
+    """Read a required part that lies in a stock.
 
     Parameters
     ----------
@@ -255,8 +254,8 @@ def required_triangles(file: RequiredFile, stock: Stock, *, tolerance: float) ->
         When the file is invalid, or the part is in inches or lies elsewhere.
     """
     path = file.path
-    triangles = read_part(path, solid=file.solid, tolerance=tolerance)
-    corners = triangles.reshape(-1, 3)
+    mesh = read_part(path, solid=file.solid, tolerance=tolerance)
+    corners = mesh.triangles.reshape(-1, 3)
     low, high = corners.min(axis=0), corners.max(axis=0)
     stock_low, stock_high = np.array(stock.low), np.array(stock.high)
     shown = f"{_box(low, high)}; the stock spans {_box(stock_low, stock_high)}"
@@ -272,7 +271,7 @@ def required_triangles(file: RequiredFile, stock: Stock, *, tolerance: float) ->
             f"{path}: the part spans {shown}: they do not overlap: is it in coordinates of the "
             "setup?"
         )
-    return triangles
+    return mesh
 
 
 def _box(low: Floats, high: Floats) -> str:

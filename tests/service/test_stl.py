@@ -26,13 +26,13 @@ def text_of(triangles: np.ndarray) -> str:
 def test_text_is_read(tmp_path: Path) -> None:
     path = tmp_path / "box.stl"
     path.write_text(text_of(BOX), encoding="utf-8")
-    assert np.array_equal(read_part(path, tolerance=1.0), BOX)
+    assert np.array_equal(read_part(path, tolerance=1.0).triangles, BOX)
 
 
 def test_binary_is_read(tmp_path: Path) -> None:
     path = tmp_path / "box.stl"
     write_stl(path, BOX)
-    assert np.array_equal(read_part(path, tolerance=1.0), BOX)
+    assert np.array_equal(read_part(path, tolerance=1.0).triangles, BOX)
 
 
 @pytest.mark.parametrize(

@@ -75,7 +75,7 @@ def test_a_milled_part_has_its_size_and_volume(
     text = path.read_text("latin-1")
     assert named in text
     assert ("'INCH'" in text) == (unit == "INCH")
-    triangles = read_part(path, tolerance=TOLERANCE)
+    triangles = read_part(path, tolerance=TOLERANCE).triangles
     assert triangles.min(axis=(0, 1)) == pytest.approx((0.0, 0.0, -20.0), abs=1e-6)
     assert triangles.max(axis=(0, 1)) == pytest.approx((60.0, 40.0, 0.0), abs=1e-6)
     curved = 2.0 * pi * 3.0 * 5.0 + 2.0 * pi * 4.0 * 14.0
@@ -85,7 +85,7 @@ def test_a_milled_part_has_its_size_and_volume(
 def test_triangles_lie_within_a_fifth_of_the_tolerance(tmp_path: Path) -> None:
     path = write_step(tmp_path / "turned.step", revolved(PROFILE))
     for tolerance in (0.2, 0.02):
-        triangles = read_part(path, tolerance=tolerance)
+        triangles = read_part(path, tolerance=tolerance).triangles
         z, r = triangles[:, :, 2], np.hypot(triangles[:, :, 0], triangles[:, :, 1])
         is_side = (np.abs(r - 15.0) < 1e-6).all(axis=1) & (np.ptp(z, axis=1) > 1.0)
         middles = 0.5 * (triangles + triangles[:, [1, 2, 0]])[is_side]
@@ -102,7 +102,7 @@ def test_a_void_is_no_material(tmp_path: Path) -> None:
         tmp_path / "void.step", without(whole, bore((10, 10, 15), radius=5, depth=10))
     )
     assert "BREP_WITH_VOIDS" in path.read_text("latin-1")
-    triangles = read_part(path, tolerance=TOLERANCE)
+    triangles = read_part(path, tolerance=TOLERANCE).triangles
     assert volume(triangles) == pytest.approx(8000.0 - 250.0 * pi, abs=SAG * 100.0 * pi)
 
 
@@ -118,8 +118,12 @@ def test_one_of_several_solids_is_chosen(tmp_path: Path) -> None:
         r"10 x 20 x 30 mm, 2 'HOUSING( \d+)?' \(#\d+\) of 36 x 36 x 45 mm",
         told,
     )
-    assert read_part(path, solid="BOX", tolerance=TOLERANCE).max() == pytest.approx(30.0)
-    assert read_part(path, solid="2", tolerance=TOLERANCE).min() == pytest.approx(-45.0)
+    assert read_part(path, solid="BOX", tolerance=TOLERANCE).triangles.max() == pytest.approx(
+        30.0
+    )
+    assert read_part(path, solid="2", tolerance=TOLERANCE).triangles.min() == pytest.approx(
+        -45.0
+    )
     with pytest.raises(StepNcError, match="no solid 'LID', or several: choose one"):
         read_part(path, solid="LID", tolerance=TOLERANCE)
     require_part(path)
@@ -130,7 +134,7 @@ def test_packed_files_and_comments_are_read(tmp_path: Path) -> None:
     edit(path, r"(#\d+ = )", r"/* #1 = 'a; */ \1/* ' */")
     packed = tmp_path / "part.stl"
     packed.write_bytes(gzip.compress(path.read_bytes()))
-    assert volume(read_part(packed, tolerance=TOLERANCE)) == pytest.approx(6.0)
+    assert volume(read_part(packed, tolerance=TOLERANCE).triangles) == pytest.approx(6.0)
 
 
 def test_facets_are_a_solid(tmp_path: Path) -> None:
@@ -164,7 +168,7 @@ def test_facets_are_a_solid(tmp_path: Path) -> None:
     path = tmp_path / "facets.step"
     head = "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n"
     path.write_text(head + "\n".join(lines) + "\nENDSEC;\nEND-ISO-10303-21;\n", "ascii")
-    triangles = read_part(path, tolerance=TOLERANCE)
+    triangles = read_part(path, tolerance=TOLERANCE).triangles
     assert len(triangles) == 4
     assert volume(triangles) == pytest.approx(36_000.0)
 

@@ -55,6 +55,11 @@ def test_an_offset_is_found_against_a_milled_solid(tmp_path: Path) -> None:
         is_straight = np.abs(y - 15.0) < 4.0
         for side, sign in ((x > 20.0, -1.0), (x < 20.0, 1.0)):
             assert walls.deviation[side & is_straight] == pytest.approx(sign * OFFSET, abs=1e-3)
+    # Straight walls that end in arcs are as certain as the solid's triangles.
+    walls = solid.places[
+        solid.places.is_wall & (np.abs(solid.places.position[:, 1] - 15.0) < 4.0)
+    ]
+    assert walls.uncertainty.max() < 0.002 + MILL.tolerance_mm / 5.0
     assert solid.volumes.gouge == pytest.approx(mesh.volumes.gouge, rel=0.01)
     assert solid.volumes.excess == pytest.approx(mesh.volumes.excess, rel=0.01)
     worst = [np.abs(found.places.deviation).max() for found in (mesh, solid)]
