@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from service.brep.bodies import USUAL_TOLERANCE
+from service.brep.bodies import USUAL_TOLERANCE, ProgramBodies
 from service.file_names import PROGRAMS
 from service.files import read_bytes
 from service.numbers import require_size, stock_in
@@ -22,9 +22,12 @@ from simulator.removal.lathe import TurningStock
 from simulator.removal.stock_file import kept_stock
 from simulator.spec import Machine, MachineKind
 from simulator.verification.mesh_stock import bounds_of, milling_stock_of, turning_stock_of
+from stepnc_model.entities.executables import Setup
 from stepnc_model.errors import StepNcError
-from stepnc_model.program import Stock
-from stepnc_model.toolpath.frame import Frame
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Program, Stock
+from stepnc_model.toolpath.frame import Frame, workpiece_frame
+from stepnc_model.toolpath.task import raw_body
 
 KEPT_SUFFIX = ".npz"
 """Ending of a file that keeps a stock."""
@@ -140,6 +143,18 @@ def larger_stock_map(machine: Machine, raw: GivenStock, margin: float) -> StockM
     if isinstance(drawn, MillingStock):
         return grown_milling_stock(drawn, margin)
     return drawn
+
+
+def raw_triangles(program: Program, setup: Ref[Setup] | None) -> Floats | None:
+    """Triangles of the raw part of a program, (T, 3, 3), mm, in coordinates of a setup.
+
+    None if the program has no B-rep body of it, or that cannot be read, which is told.
+    """
+    body, bodies = raw_body(program), program.bodies
+    if body is None or not isinstance(bodies, ProgramBodies):
+        return None
+    mesh = bodies.raw(program.file, body)
+    return None if mesh is None else placed_triangles(mesh, workpiece_frame(program, setup))
 
 
 def placed_triangles(triangles: Floats, frame: Frame) -> Floats:

@@ -5,15 +5,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, TypeVar
 
-from service.brep.bodies import ProgramBodies
 from service.chosen import load_material_named, machine_for, material_for
 from service.files import open_lines
 from service.paths.toolpaths import paths_of, with_feeds
 from service.raw_stock import (
     GivenStock,
     larger_stock_map,
-    placed_triangles,
     raw_stock_of,
+    raw_triangles,
     stock_map,
 )
 from service.reading import Tell, one_of, read_program
@@ -34,8 +33,7 @@ from stepnc_model.post.dialect import SUFFIXES, Dialect
 from stepnc_model.post.dialects import read_blocks
 from stepnc_model.post.neutral import blocks_of, tool_numbers
 from stepnc_model.program import Program, Stock
-from stepnc_model.toolpath.frame import workpiece_frame
-from stepnc_model.toolpath.task import raw_body, stock_of
+from stepnc_model.toolpath.task import stock_of
 
 T = TypeVar("T")
 
@@ -260,14 +258,10 @@ class _Clamped:
 
     def _map(self, bounds: Stock, setup: Ref[Setup] | None) -> StockMap:
         """Map of a raw part, which is a mesh if the file has a B-rep body of it."""
-        body, bodies = raw_body(self._program), self._program.bodies
-        mesh = None
-        if body is not None and isinstance(bodies, ProgramBodies):
-            mesh = bodies.raw(self._program.file, body)
+        mesh = raw_triangles(self._program, setup)
         if mesh is None:
             return stock_map(self._machine, GivenStock(bounds=bounds.grown(self._margin)))
-        placed = placed_triangles(mesh, workpiece_frame(self._program, setup))
-        raw = GivenStock(bounds=bounds, triangles=placed, name=self._program.name)
+        raw = GivenStock(bounds=bounds, triangles=mesh, name=self._program.name)
         if self._margin > 0.0:
             return larger_stock_map(self._machine, raw, self._margin)
         return stock_map(self._machine, raw)

@@ -9,7 +9,7 @@ from service.brep.bodies import body_triangles
 from service.chosen import machine_for, material_for
 from service.numbers import stock_in
 from service.part_file import PartMesh, read_part
-from service.raw_stock import placed_triangles
+from service.raw_stock import placed_triangles, raw_triangles
 from service.reading import Tell, read_program, silent
 from service.requests.verification import VerificationRequest
 from service.simulation.setup import PreparedRun, prepared_program
@@ -62,6 +62,8 @@ class PreparedProgram:
     machine: Machine
     material: MaterialMatch
     stock: Stock
+    raw: Floats | None = None
+    """Triangles of a raw part that is a B-rep body, (T, 3, 3), mm; None: it fills the stock."""
     path: ProgrammedPath
     steps: tuple[StepName, ...]
     cutters: dict[int, Cutter | Insert | None]
@@ -134,6 +136,7 @@ def prepared(
         machine=run.machine,
         material=run.material,
         stock=run.raw,
+        raw=raw_triangles(run.program, run.program.workingsteps[0].setup),
         path=programmed_path(runs),
         steps=tuple(
             StepName(workingstep=name, feature=features[name], tool=tools.get(row, 0))

@@ -69,7 +69,13 @@ class TurnedPart:
     """Way along the path to that place, (C,), mm."""
 
 
-def turned_part(path: ProgrammedPath, stock: Stock, *, cell: float | None = None) -> TurnedPart:
+def turned_part(
+    path: ProgrammedPath,
+    stock: Stock,
+    *,
+    cell: float | None = None,
+    raw: TurningStock | None = None,
+) -> TurnedPart:
     """Cut a bar along a programmed path.
 
     Parameters
@@ -78,13 +84,15 @@ def turned_part(path: ProgrammedPath, stock: Stock, *, cell: float | None = None
     stock : Stock
     cell : float, mm
         Length of a cell along the axis.
+    raw : TurningStock
+        Raw part in the stock, with cells of that length; without it a bar fills the stock.
 
     Raises
     ------
     ValueError
         If the stock has no radius, or needs too many cells.
     """
-    bar = TurningStock(stock, CELL if cell is None else cell)
+    bar = _raw_bar(stock, CELL if cell is None else cell, raw)
     chord = np.full(len(bar.outer), -1, dtype=np.int64)
     station = np.zeros(len(bar.outer))
     first = 0
@@ -97,6 +105,14 @@ def turned_part(path: ProgrammedPath, stock: Stock, *, cell: float | None = None
             station[cut] = path.chord_station[chord[cut]] + along[nearest]
         first += len(points) - 1
     return TurnedPart(path=path, bar=bar, chord=chord, station=station)
+
+
+def _raw_bar(stock: Stock, cell: float, raw: TurningStock | None) -> TurningStock:
+    """Bar that fills a stock, or a copy of the raw part in it."""
+    bar = TurningStock(stock, cell)
+    if raw is not None:
+        bar.outer[:], bar.inner[:] = raw.outer, raw.inner
+    return bar
 
 
 class LoggedFaces:
@@ -153,15 +169,24 @@ class LoggedBar:
     stock : Stock
     shapes : mapping
         Shapes of tools by number; other tools remove nothing.
+    raw : TurningStock
+        Raw part in the stock, with the cells of the bar; without it a bar fills the stock.
     """
 
     def __init__(
-        self, reference: TurningStock, stock: Stock, shapes: Mapping[int, Shape | None]
+        self,
+        reference: TurningStock,
+        stock: Stock,
+        shapes: Mapping[int, Shape | None],
+        *,
+        raw: TurningStock | None = None,
     ) -> None:
-        self.bar = TurningStock(stock, reference.cell)
-        self.possible = TurningStock(stock, reference.cell)
+        self.raw = _raw_bar(stock, reference.cell, raw)
+        """Raw part."""
+        self.bar = _raw_bar(stock, reference.cell, raw)
+        self.possible = _raw_bar(stock, reference.cell, raw)
         """What is left if the tool went everywhere that it may have gone unseen."""
-        self.certain = TurningStock(stock, reference.cell)
+        self.certain = _raw_bar(stock, reference.cell, raw)
         """What is left if the tool cut only where samples show it, near corners of the log."""
         self._shapes = shapes
         self._steps = SampleSteps(stock.high[2])
@@ -228,22 +253,21 @@ def turned_places(part: TurnedPart, logged: LoggedBar) -> SurfacePlaces:
 
 
 def turned_volumes(
-    bar: TurningStock, logged: LoggedBar, stock: Stock, *, low: float = -inf
+    bar: TurningStock, logged: LoggedBar, *, low: float = -inf
 ) -> ComparedVolumes:
-    """Compare the volumes that are removed from a stock, in the log and in the other part.
+    """Compare the volumes that are removed from the raw part, in the log and in the other one.
 
     Parameters
     ----------
     bar : TurningStock
     logged : LoggedBar
-    stock : Stock
     low : float, mm
         Only what lies before this z counts.
     """
     is_before = bar.z > low
     raw, area, other = (
         np.maximum(each.outer**2 - each.inner**2, 0.0)[is_before]
-        for each in (TurningStock(stock, bar.cell), bar, logged.bar)
+        for each in (logged.raw, bar, logged.bar)
     )
     disc = pi * bar.cell
     more = disc * (other - area)

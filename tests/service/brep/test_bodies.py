@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.verification import FAST, run_log
+from benchmarks.verification import FAST, SHAFT_REQUEST, run_log
 from service.brep.bodies import ProgramBodies, body_triangles
 from service.chosen import material_for
 from service.conversion import Standard, convert_to
@@ -141,23 +141,51 @@ def test_the_raw_part_of_a_program_is_its_stock(
     assert "pip install 'stepnc-optimiser[brep]'" in text
 
 
+def test_volumes_are_removed_from_the_raw_part(tmp_path: Path) -> None:
+    """Half of the slot is cast: milling it removes the other half."""
+    casting = without(block(*PLATE), block((-1.0, 46.8, -6.0), (50.8, 54.8, 1.0)))
+    program = cast(tmp_path, casting, SLOT, "0.1,$,$,#13,", "0.1,#99000,$,$,")
+    ready = prepared(program, REQUEST)
+    log = run_log(ready, rate=10.0, feed=lambda speed: np.full_like(speed, FAST))
+    found = verify(log.write(tmp_path / "log.parquet", ready), program, REQUEST)
+    assert not found.has_errors
+    half = 50.8 * 8.0 * 6.0
+    assert found.volumes.programmed == pytest.approx(half, rel=0.01)
+    assert found.volumes.logged == pytest.approx(half, rel=0.01)
+
+
 def test_a_turned_casting_is_a_bar(tmp_path: Path) -> None:
-    profile = ((3.0, 0.0), (3.0, 30.0), (-170.0, 30.0), (-170.0, 0.0))
-    path = PARTS / "shaft.stpnc"
-    line = next(each for each in path.read_text("utf-8").splitlines() if "=WORKPIECE(" in each)
-    fields = line.split(",")
-    fields[3:6] = ["#99000", "$", "$"]
-    path = cast(tmp_path, revolved(profile), path, line, ",".join(fields))
+    """A bar of 60 mm as in the program, with a neck of 58 mm over its first 40 mm."""
+    bar = PARTS / "shaft.stpnc"
+    profile = (
+        (2.0, 0.0),
+        (2.0, 29.0),
+        (-40.0, 29.0),
+        (-40.0, 30.0),
+        (-150.0, 30.0),
+        (-150.0, 0.0),
+    )
+    path = cast(tmp_path, revolved(profile), bar, "0.02,$,$,#33,", "0.02,#99000,$,$,")
     program = read_program(path, units="iso")
     setup = program.workingsteps[0].setup
     around = stock_of(program, setup)
     assert around is not None
     assert around.radius == pytest.approx(30.0, abs=0.01)
-    lathe = load_machine("lathe22")
-    run = prepared_program(program, lathe, material_for("c45", program), tell=silent)
+    run = prepared_program(
+        program, load_machine("lathe22"), material_for("c45", program), tell=silent
+    )
     stock = run.stock(program.workingsteps[0].id)
     assert isinstance(stock, TurningStock)
+    front = stock.outer[(stock.z > -39.9) & (stock.z < 1.9)]
+    assert front == pytest.approx(29.0, abs=1e-3)
     assert stock.outer.max() == pytest.approx(30.0, abs=1e-3)
+    ready = prepared(bar, SHAFT_REQUEST)
+    log = run_log(ready, rate=10.0, feed=lambda speed: np.full_like(speed, FAST))
+    place = log.write(tmp_path / "log.parquet", ready)
+    whole, less = (verify(place, each, SHAFT_REQUEST).volumes for each in (bar, path))
+    ring = np.pi * (30.0**2 - 29.0**2) * 42.0
+    assert whole.programmed - less.programmed == pytest.approx(ring, rel=1e-3)
+    assert whole.logged - less.logged == pytest.approx(ring, rel=1e-3)
 
 
 def test_a_program_without_bodies_asks_for_nothing() -> None:
