@@ -194,6 +194,14 @@ def test_a_program_without_bodies_asks_for_nothing() -> None:
     assert isinstance(program.bodies, ProgramBodies)
 
 
+def test_a_body_is_left_out_of_a_conversion_and_told(tmp_path: Path) -> None:
+    path = finished(tmp_path, slotted())
+    output = tmp_path / "slot.238"
+    told = convert_to(path, standard=Standard.AP238, output=output)
+    assert ("items", 87) in {(each.attribute, each.line) for each in told}
+    assert read_program(output, units="iso").workingsteps[0].id == "MILL SLOT"
+
+
 def test_a_damaged_body_is_told(tmp_path: Path) -> None:
     path = finished(tmp_path, slotted())
     text = path.read_text("utf-8").replace("CLOSED_SHELL('',(", "CLOSED_SHELL('',(#7")
