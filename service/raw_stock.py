@@ -7,9 +7,13 @@ tools cut.
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
+from service.brep.bodies import USUAL_TOLERANCE, ProgramBodies
+from service.file_names import PROGRAMS
 from service.files import read_bytes
 from service.numbers import require_size, stock_in
-from service.stl import read_stl
+from service.part_file import part_place, read_part
 from simulator.machine.virtual import StockMap
 from simulator.motion.segments import Floats
 from simulator.removal.engage import MillingStock
@@ -18,13 +22,20 @@ from simulator.removal.lathe import TurningStock
 from simulator.removal.stock_file import kept_stock
 from simulator.spec import Machine, MachineKind
 from simulator.verification.mesh_stock import bounds_of, milling_stock_of, turning_stock_of
+from stepnc_model.entities.executables import Setup
 from stepnc_model.errors import StepNcError
-from stepnc_model.program import Stock
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Program, Stock
+from stepnc_model.toolpath.frame import Frame, workpiece_frame
+from stepnc_model.toolpath.task import raw_body
 
 KEPT_SUFFIX = ".npz"
 """Ending of a file that keeps a stock."""
 
 MESH_SUFFIX = ".stl"
+
+PART_SUFFIXES = frozenset({MESH_SUFFIX, ".step"}) | PROGRAMS
+"""Usual endings of files that have a part; their content tells how they are read."""
 
 OFF_AXIS = 1e-6
 """Greatest distance of a bar's axis from that of a lathe, mm."""
@@ -37,7 +48,7 @@ class GivenStock:
     bounds: Stock
     """Its box or bar, or the box around it."""
     triangles: Floats | None = None
-    """Triangles of a mesh, (T, 3, 3), mm; None: it is no mesh."""
+    """Triangles of a mesh or a solid, (T, 3, 3), mm; None: it is neither."""
     kept: MillingStock | TurningStock | None = None
     """Stock that an earlier run left; it is cut further, so it serves one run."""
     name: str = ""
@@ -46,8 +57,10 @@ class GivenStock:
 
 def file_of_stock(text: str) -> Path | None:
     """Path of the file that a stock is read from; None for numbers."""
-    path = Path(text.strip())
-    return path if path.suffix.lower() in {KEPT_SUFFIX, MESH_SUFFIX} else None
+    path = part_place(text.strip())[0]
+    if path.suffix.lower() == KEPT_SUFFIX or path.suffix.lower() in PART_SUFFIXES:
+        return path
+    return path if "," not in text and path.is_file() else None
 
 
 def raw_stock_of(text: str) -> GivenStock:
@@ -58,8 +71,9 @@ def raw_stock_of(text: str) -> GivenStock:
     text : str
         Numbers in mm: ``x0,y0,z0,x1,y1,z1`` of a box, ``diameter,z0,z1`` of a bar about zero,
         ``diameter,length`` of a bar that ends at z = 0, or ``x,y,diameter,z0,z1`` of an upright
-        bar elsewhere. Otherwise the path of an STL file in mm (``.stl``), or of a stock that a
-        run kept (``.npz``).
+        bar elsewhere. Otherwise the path of an STL file in mm, of a STEP file with a solid
+        (``part.step``, or ``part.step#SOLID`` where it has several), or of a stock that a run
+        kept (``.npz``).
 
     Raises
     ------
@@ -71,14 +85,15 @@ def raw_stock_of(text: str) -> GivenStock:
         bounds, kept = kept_stock(read_bytes(path), str(path))
         return GivenStock(bounds=bounds, kept=kept, name=str(path))
     if path is not None:
-        triangles = read_stl(path)
+        solid = part_place(text.strip())[1]
+        triangles = read_part(path, solid=solid, tolerance=USUAL_TOLERANCE).triangles
         raw = GivenStock(bounds=bounds_of(triangles), triangles=triangles, name=str(path))
         _require_size(raw)
         return raw
     if "," not in text:
         raise StepNcError(
             f"stock '{text}': expected numbers separated by commas, an STL file "
-            f"({MESH_SUFFIX}) or a kept stock ({KEPT_SUFFIX})"
+            f"({MESH_SUFFIX}), a STEP file (.step) or a kept stock ({KEPT_SUFFIX})"
         )
     return GivenStock(bounds=stock_in(text))
 
@@ -128,6 +143,24 @@ def larger_stock_map(machine: Machine, raw: GivenStock, margin: float) -> StockM
     if isinstance(drawn, MillingStock):
         return grown_milling_stock(drawn, margin)
     return drawn
+
+
+def raw_triangles(program: Program, setup: Ref[Setup] | None) -> Floats | None:
+    """Triangles of the raw part of a program, (T, 3, 3), mm, in coordinates of a setup.
+
+    None if the program has no B-rep body of it, or that cannot be read, which is told.
+    """
+    body, bodies = raw_body(program), program.bodies
+    if body is None or not isinstance(bodies, ProgramBodies):
+        return None
+    mesh = bodies.raw(program.file, body)
+    return None if mesh is None else placed_triangles(mesh, workpiece_frame(program, setup))
+
+
+def placed_triangles(triangles: Floats, frame: Frame) -> Floats:
+    """Triangles, (T, 3, 3) in mm, of a part that lies in a frame."""
+    axes = np.array([frame.x, frame.y, frame.z])
+    return np.asarray(triangles @ axes + np.array(frame.origin))
 
 
 def _require_size(raw: GivenStock) -> None:

@@ -5,6 +5,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TypeVar
 
+from service.brep.bodies import ProgramBodies
 from service.files import read_bytes
 from service.numbers import stock_in
 from stepnc_model.errors import StepNcError
@@ -65,14 +66,16 @@ def program_in(
     StepNcError
         When the units are unknown or, for ``auto``, not shown by the numbers.
     """
+    bodies = ProgramBodies(tell)
     if units != AUTO:
-        return Program(file, units=unit_profile(units), name=name, stock=stock)
-    program = Program(file, name=name, stock=stock)
+        profile = unit_profile(units)
+        return Program(file, units=profile, name=name, stock=stock, bodies=bodies)
+    program = Program(file, name=name, stock=stock, bodies=bodies)
     profile, evidence = units_by_numbers(program, program.workingsteps)
     tell(f"units: {profile.name}, the only ones that make all numbers plausible")
     for each in evidence:
         tell(f"  line {each.line}: {each.entity}: {each.message}")
-    return Program(file, units=profile, name=name, stock=stock)
+    return Program(file, units=profile, name=name, stock=stock, bodies=bodies)
 
 
 def unit_profile(name: str) -> UnitProfile:

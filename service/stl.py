@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from service.files import read_bytes
 from simulator.motion.segments import Floats
 from stepnc_model.errors import StepNcError
 
@@ -17,16 +16,21 @@ MOST_TRIANGLES = 200_000
 VERTEX = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)")
 
 
-def read_stl(path: Path) -> Floats:
-    """Read the corners of the triangles, (T, 3, 3), mm.
+def stl_triangles(content: bytes, path: Path) -> Floats:
+    """Corners of the triangles of a file, (T, 3, 3), mm.
+
+    Parameters
+    ----------
+    content : bytes
+    path : Path
+        Path of the file, for messages.
 
     Raises
     ------
     StepNcError
-        When the file cannot be read, is damaged, or has too many triangles.
+        When the file is damaged, or has too many triangles.
     """
-    content = read_bytes(path)
-    triangles = _binary(content) if _is_binary(content) else _text(path, content)
+    triangles = _binary(content) if is_binary_stl(content) else _text(path, content)
     if not len(triangles) and len(content) >= HEADER:
         count = int.from_bytes(content[HEADER - 4 : HEADER], "little")
         raise StepNcError(
@@ -34,7 +38,7 @@ def read_stl(path: Path) -> Floats:
             f"{HEADER + RECORD * count} bytes; it has {len(content)}: is it cut off?"
         )
     if not len(triangles):
-        raise StepNcError(f"{path}: no triangles: expected an STL file")
+        raise StepNcError(f"{path}: no triangles: expected an STL or STEP file")
     _require_few(path, len(triangles))
     if not np.isfinite(triangles).all():
         raise StepNcError(f"{path}: a corner of a triangle is not finite")
@@ -46,7 +50,8 @@ def _require_few(path: Path, count: int) -> None:
         raise StepNcError(f"{path}: {count} triangles; at most {MOST_TRIANGLES} are accepted")
 
 
-def _is_binary(content: bytes) -> bool:
+def is_binary_stl(content: bytes) -> bool:
+    """Whether a file has the size of as many triangles as it says."""
     if len(content) < HEADER:
         return False
     count = int.from_bytes(content[HEADER - 4 : HEADER], "little")

@@ -395,7 +395,13 @@ def _nc_code(
 def _read_again(program: Program, data: bytes) -> Program:
     """Parse a program again from its changed bytes."""
     file = Part21File.from_bytes(data, name=program.name)
-    return Program(file, units=program.units, name=program.name, stock=program.stock)
+    return Program(
+        file,
+        units=program.units,
+        name=program.name,
+        stock=program.stock,
+        bodies=program.bodies,
+    )
 
 
 def _with_file_findings(

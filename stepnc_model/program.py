@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from stepnc_model.ap238.view import AimView, is_aim
 from stepnc_model.binding import Model
@@ -55,6 +55,22 @@ class Stock:
             high=(right + margin, back + margin, top + margin),
             radius=None if self.radius is None else self.radius + margin,
         )
+
+
+class Bodies(Protocol):
+    """Reader of B-rep bodies, whose geometry this package does not know."""
+
+    def box(self, file: Part21File, representation: int) -> Stock | None:
+        """Box or bar around a body in coordinates of its workpiece; None: it is not known.
+
+        Parameters
+        ----------
+        file : Part21File
+            Instances of ISO 14649 of a program.
+        representation : int
+            Instance of the shape representation.
+        """
+        ...
 
 
 T = TypeVar("T")
@@ -113,6 +129,8 @@ class Program:
         File name, for messages.
     stock : Stock, optional
         Raw part to use if the file does not describe one.
+    bodies : Bodies, optional
+        Reader of raw parts that are B-rep bodies; without one they are not known.
     """
 
     def __init__(
@@ -122,8 +140,10 @@ class Program:
         units: UnitProfile = ISO,
         name: str = "",
         stock: Stock | None = None,
+        bodies: Bodies | None = None,
     ) -> None:
         self.name = name
+        self.bodies = bodies
         self.stock = stock
         """Raw part given by the user, for a file that does not describe one."""
         self.units = units

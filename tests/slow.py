@@ -25,6 +25,7 @@ SLOW = (
     "properties",
     "service/agent/test_run.py",
     "service/along_path/test_of_code.py",
+    "service/brep",
     "service/calibration/test_run.py",
     "service/cli/test_kbe_verbs.py",
     "service/cli/test_main.py",

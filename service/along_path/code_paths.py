@@ -14,7 +14,7 @@ from re import IGNORECASE, compile
 import numpy as np
 
 from service.along_path.plan_run import BRIDGE
-from service.raw_stock import larger_stock_map, raw_stock_of, stock_map
+from service.raw_stock import GivenStock, larger_stock_map, raw_stock_of, stock_map
 from service.simulation.setup import CountedIterator, PreparedRun
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import table_tool
@@ -87,6 +87,8 @@ class CodePaths:
     ) -> None:
         self.program, self.machine, self.material = program, machine, material
         self.name, self.tools, self.stock = name, tools, stock
+        self._mesh: GivenStock | None = None
+        """Stock that serves several runs: only its map is cut."""
         moves = program.moves
         is_fed = np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC, MoveKind.THREAD))
         fed = np.flatnonzero(moves.is_advisable)
@@ -142,7 +144,9 @@ class CodePaths:
         StepNcError
             When the stock is invalid.
         """
-        raw = raw_stock_of(self.stock)
+        raw = self._mesh or raw_stock_of(self.stock)
+        if raw.triangles is not None:
+            self._mesh = raw
         if margin > 0.0:
             clamped = larger_stock_map(self.machine, raw, margin)
         else:

@@ -45,7 +45,7 @@ def add_code(parser: argparse.ArgumentParser) -> None:
         metavar="STOCK",
         help="stock for NC code without a program, in mm: x0,y0,z0,x1,y1,z1 of a box, "
         "diameter,z0,z1 or diameter,length of a bar, x,y,diameter,z0,z1 of an upright bar, an "
-        "STL file, or an .npz file of --keep-stock",
+        "STL or STEP file (part.step#SOLID), or an .npz file of --keep-stock",
     )
 
 

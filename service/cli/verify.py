@@ -44,9 +44,11 @@ def _verify_options(parser: argparse.ArgumentParser) -> None:
     )
     add(
         "--required",
-        type=Path,
-        metavar="STL",
-        help="required part in coordinates of the setup, mm, in place of the features",
+        "--part",
+        default="",
+        metavar="FILE",
+        help="required part in coordinates of the setup, in place of the features: an STL file "
+        "in mm, or a STEP file, part.step#SOLID where it has several solids",
     )
     add(
         "-o",
@@ -64,6 +66,7 @@ def _verify(options: argparse.Namespace) -> int:
     """``stepnc verify``."""
     from service.cli.machine import interruptible
     from service.files import require_place, write_atomically
+    from service.part_file import part_place
     from service.requests.fields import from_options
     from service.requests.verification import VerificationRequest
     from service.run_file import require_suffix
@@ -71,6 +74,7 @@ def _verify(options: argparse.Namespace) -> int:
     from service.verification.run import VerificationInputs, verify
 
     request = from_options(VerificationRequest, options)
+    required, solid = part_place(options.required) if options.required else (None, "")
     outputs = [each for each in (options.output, options.report) if each is not None]
     for each in outputs:
         require_place(each, apart_from=Path(options.log))
@@ -83,7 +87,7 @@ def _verify(options: argparse.Namespace) -> int:
             options.log,
             options.program,
             request,
-            inputs=VerificationInputs(tools=options.tools, required=options.required),
+            inputs=VerificationInputs(tools=options.tools, required=required, solid=solid),
             tell=tell,
         )
     if options.report is not None:

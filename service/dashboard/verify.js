@@ -14,8 +14,8 @@ const log = logChoice(ready);
 const choice = programChoice((chosen, contents) => { program = chosen && contents.is_usable ? chosen : null; ready(); });
 tools = new FileField(byId("tools-place"), { id: "tools-file", kind: "tools", accept: TOOL_FILES,
   title: "Measured tools", hint: "tool table: TOML, CSV or of CAM", changed: ready });
-required = new FileField(byId("required-place"), { id: "required-file", kind: "required-part", accept: ".stl",
-  title: "Required part", hint: ".stl, mm; else the features", changed: ready });
+required = new FileField(byId("required-place"), { id: "required-file", kind: "required-part", accept: ".stl,.step,.stp",
+  title: "Required part", hint: ".stl in mm, or .step; else the features", changed: ready });
 for (const name of ["stock", "machine"]) byId(name).addEventListener("input", ready);
 
 byId("units").addEventListener("change", () => choice.again(program?.id));
@@ -53,7 +53,7 @@ function wish() {
     machine: byId("machine").value, material: byId("material").value, units: byId("units").value, stock: byId("stock").value.trim(),
     tolerance_mm: byId("tolerance").valueAsNumber, zero: how === "given" ? byId("zero").value.trim() : how,
     cell_mm: cell.value === "" ? null : cell.valueAsNumber, has_deflection: byId("deflection").checked,
-    tools_id: tools.id, required_id: required.id };
+    tools_id: tools.id, required_id: required.id, required_solid: byId("required-solid").value.trim() };
 }
 
 /** Fill the form from the request of a job. */
@@ -62,6 +62,7 @@ async function recall({ request, program_id: id }) {
   byId("tolerance").value = request.tolerance_mm;
   byId("cell").value = request.cell_mm ?? "";
   byId("stock").value = request.stock ?? "";
+  byId("required-solid").value = request.required_solid ?? "";
   byId("zero-how").value = ["", "fit"].includes(request.zero) ? request.zero : "given";
   byId("zero").value = byId("zero-how").value === "given" ? request.zero : "";
   byId("deflection").checked = request.has_deflection;

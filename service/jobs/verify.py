@@ -42,7 +42,9 @@ def run(task: RunningJob) -> None:
             log.path,
             program,
             task.named(request),
-            inputs=VerificationInputs(tools=tools, required=required),
+            inputs=VerificationInputs(
+                tools=tools, required=required, solid=request.required_solid
+            ),
             tell=lambda message: told(task, with_names(message, names)),
         )
     findings = (

@@ -5,6 +5,7 @@ from typing import Annotated
 
 from annotated_types import MaxLen
 
+from service.requests.advice import Name
 from service.requests.fields import LONGEST_NAME, About
 from service.requests.runs import OptionalId
 from service.requests.verification import VerificationRequest
@@ -36,6 +37,12 @@ class StoredVerificationRequest(VerificationRequest):
     required_id: Annotated[
         OptionalId, About("an uploaded required part, in place of the features")
     ] = None
+    required_solid: Annotated[
+        Name,
+        About(
+            "the solid of a required part with several, by its name or its place in the file"
+        ),
+    ] = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

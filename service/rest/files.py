@@ -66,7 +66,7 @@ async def upload(
     """Store a log, a tool table or a required part.
 
     Logs: .parquet, .csv, .xml, .shdr. Tool tables: .toml, .csv, LinuxCNC's .tbl, libraries of
-    Fusion (.json, .tools) and HSMWorks (.hsmlib). Required parts: .stl.
+    Fusion (.json, .tools) and HSMWorks (.hsmlib). Required parts: .stl, .step, .stp.
     """
     bound = LARGEST_TOOLS if kind is FileKind.TOOLS else settings_of(request).upload_bytes
     with FileUpload(data_folder, kind, name) as taken:

@@ -8,7 +8,13 @@ from typing import Generic, TypeVar
 from service.chosen import load_material_named, machine_for, material_for
 from service.files import open_lines
 from service.paths.toolpaths import paths_of, with_feeds
-from service.raw_stock import GivenStock, raw_stock_of, stock_map
+from service.raw_stock import (
+    GivenStock,
+    larger_stock_map,
+    raw_stock_of,
+    raw_triangles,
+    stock_map,
+)
 from service.reading import Tell, one_of, read_program
 from simulator.library import load_machine
 from simulator.machine.interpreter import Numbered
@@ -18,6 +24,7 @@ from simulator.spec import Machine, MachineKind, MaterialMatch
 from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.read import read_tools
 from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.executables import Setup
 from stepnc_model.errors import Finding, PostError, Severity, StepNcError
 from stepnc_model.part21.values import Ref
 from stepnc_model.plausibility import refusal
@@ -246,9 +253,18 @@ class _Clamped:
         setup = self._setups[workingstep]
         if setup not in self._maps:
             raw = stock_of(self._program, setup)
-            drawn = None if raw is None else GivenStock(bounds=raw.grown(self._margin))
-            self._maps[setup] = None if drawn is None else stock_map(self._machine, drawn)
+            self._maps[setup] = None if raw is None else self._map(raw, setup)
         return self._maps[setup]
+
+    def _map(self, bounds: Stock, setup: Ref[Setup] | None) -> StockMap:
+        """Map of a raw part, which is a mesh if the file has a B-rep body of it."""
+        mesh = raw_triangles(self._program, setup)
+        if mesh is None:
+            return stock_map(self._machine, GivenStock(bounds=bounds.grown(self._margin)))
+        raw = GivenStock(bounds=bounds, triangles=mesh, name=self._program.name)
+        if self._margin > 0.0:
+            return larger_stock_map(self._machine, raw, self._margin)
+        return stock_map(self._machine, raw)
 
 
 def _tools(

@@ -30,6 +30,10 @@ TOOL_TABLES = frozenset({".toml", ".csv", ".tbl", ".json", ".tools", ".hsmlib"})
 """Suffixes of tool tables; the content tells the format."""
 
 
+PARTS = frozenset({".stl", ".step", ".stp"})
+"""Suffixes of required parts; the content tells the format."""
+
+
 class FileKind(StrEnum):
     """Kind of an uploaded file."""
 
@@ -38,14 +42,14 @@ class FileKind(StrEnum):
     TOOLS = "tools"
     """Tool table: TOML, CSV, LinuxCNC's, or a library of Fusion or HSMWorks."""
     REQUIRED_PART = "required-part"
-    """Required part (STL)."""
+    """Required part: an STL file, or solids of a STEP file."""
 
     @property
     def suffixes(self) -> frozenset[str]:
         """Suffixes of file names, which tell how the content is read."""
         if self is FileKind.LOG:
             return LOGS
-        return TOOL_TABLES if self is FileKind.TOOLS else frozenset({".stl"})
+        return TOOL_TABLES if self is FileKind.TOOLS else PARTS
 
     @property
     def words(self) -> str:

@@ -82,8 +82,9 @@ def compared_with_required(
 def _milled(
     program: PreparedProgram, file: LogFile, cell: float | None, tell: Tell
 ) -> ComparedParts:
-    part = programmed_part(program.path, program.stock, cell=cell)
-    left = LoggedPart(part, program.stock, _rotating(program.cutters))
+    raw = program.raw
+    part = programmed_part(program.path, program.stock, cell=cell, raw=raw)
+    left = LoggedPart(part, program.stock, _rotating(program.cutters), raw=raw)
     for piece in _told(file, left, tell):
         left.add(piece)
     places = surface_places(part, left)
@@ -104,9 +105,12 @@ def _milled(
 def _turned(
     program: PreparedProgram, file: LogFile, cell: float | None, tell: Tell
 ) -> ComparedParts:
-    part = turned_part(program.path, program.stock, cell=cell)
+    raw = None
+    if program.raw is not None:
+        raw = required_bar(program.raw, program.stock, cell=cell).bar
+    part = turned_part(program.path, program.stock, cell=cell, raw=raw)
     required = _required_profile(program, cell)
-    left = LoggedBar(part.bar, program.stock, program.cutters)
+    left = LoggedBar(part.bar, program.stock, program.cutters, raw=raw)
     for piece in _told(file, left, tell):
         left.add(piece)
     places = turned_places(part, left)
@@ -117,7 +121,7 @@ def _turned(
             if required is None
             else required_profile_deviation(required, part.bar, places)
         ),
-        volumes=turned_volumes(part.bar, left, program.stock),
+        volumes=turned_volumes(part.bar, left),
         facts=left.facts,
         step=_usual(left.nearest),
         cell=part.bar.cell,
@@ -137,7 +141,8 @@ def _required_profile(program: PreparedProgram, cell: float | None) -> RequiredB
 def _milled_required(
     setup: RequiredSetup, file: LogFile, cell: float | None, tell: Tell
 ) -> ComparedParts:
-    part = required_part(setup.required, setup.stock, cell=cell)
+    mesh = setup.required
+    part = required_part(mesh.triangles, setup.stock, cell=cell, most_sag=mesh.sag)
     left = LoggedPart(part, setup.stock, _rotating(setup.cutters))
     for piece in _told(file, left, tell):
         left.add(piece)
@@ -164,7 +169,7 @@ def _milled_required(
 def _turned_required(
     setup: RequiredSetup, file: LogFile, cell: float | None, tell: Tell
 ) -> ComparedParts:
-    part = required_bar(setup.required, setup.stock, cell=cell)
+    part = required_bar(setup.required.triangles, setup.stock, cell=cell)
     left = LoggedBar(part.bar, setup.stock, setup.cutters)
     for piece in _told(file, left, tell):
         left.add(piece)
@@ -172,7 +177,7 @@ def _turned_required(
     found = ComparedParts(
         places=places,
         nominal=np.full(len(places), np.nan),
-        volumes=turned_volumes(part.bar, left, setup.stock, low=part.low),
+        volumes=turned_volumes(part.bar, left, low=part.low),
         facts=left.facts,
         step=_usual(left.nearest),
         cell=part.bar.cell,

@@ -8,9 +8,9 @@ from xml.parsers import expat
 from pyarrow import parquet
 
 from service.agent.replay import LONGEST_LINE
+from service.part_file import require_part
 from service.recording.signals import POSITIONS
 from service.recording.table import TABLES, headings
-from service.stl import read_stl
 from service.storage.files import FileKind
 from simulator.client.columns import TIME
 from simulator.tool_files.read import ToolFormat, read_tools
@@ -117,7 +117,7 @@ def _require_tools(path: Path) -> None:
 
 
 def _require_part(path: Path) -> None:
-    read_stl(path)
+    require_part(path)
 
 
 _CHECKS: Mapping[FileKind, Callable[[Path], None]] = {

@@ -5,12 +5,14 @@ from pathlib import Path
 
 import numpy as np
 
+from service.brep.bodies import body_triangles
 from service.chosen import machine_for, material_for
 from service.numbers import stock_in
+from service.part_file import PartMesh, read_part
+from service.raw_stock import placed_triangles, raw_triangles
 from service.reading import Tell, read_program, silent
 from service.requests.verification import VerificationRequest
 from service.simulation.setup import PreparedRun, prepared_program
-from service.stl import read_stl
 from service.verification.log import ProgramNames
 from simulator.library import load_machine
 from simulator.machine.acts import MoveStretch, ToolTo, WorkingstepTo
@@ -20,13 +22,25 @@ from simulator.removal.cutter import Cutter, Insert
 from simulator.spec import Machine, MachineKind, MaterialMatch
 from simulator.tool_files.read import read_tools
 from simulator.verification.path import ProgrammedPath, ProgrammedRun, programmed_path
-from stepnc_model.errors import StepNcError
+from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.program import Program, Stock
+from stepnc_model.toolpath.frame import workpiece_frame
+from stepnc_model.toolpath.task import finished_body
 
 MM_PER_INCH = 25.4
 
 LIKE = 0.1
 """Relative difference of sizes that count as the same."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RequiredFile:
+    """File of a required part, in coordinates of the setup."""
+
+    path: Path
+    """STL or STEP file."""
+    solid: str = ""
+    """Solid of a STEP file, by its name or its place; empty: the only one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,6 +62,8 @@ class PreparedProgram:
     machine: Machine
     material: MaterialMatch
     stock: Stock
+    raw: Floats | None = None
+    """Triangles of a raw part that is a B-rep body, (T, 3, 3), mm; None: it fills the stock."""
     path: ProgrammedPath
     steps: tuple[StepName, ...]
     cutters: dict[int, Cutter | Insert | None]
@@ -56,6 +72,8 @@ class PreparedProgram:
     """Triangles of the required part, (T, 3, 3), mm; None: the nominal features count."""
     required_name: str = ""
     """File of the required part, for messages."""
+    findings: tuple[Finding, ...] = ()
+    """What is to be known of the required part in the program."""
 
     @property
     def is_turned(self) -> bool:
@@ -83,8 +101,7 @@ class RequiredSetup:
     stock: Stock
     cutters: dict[int, Cutter | Insert | None]
     """Shapes of the tools by number."""
-    required: Floats
-    """Triangles of the required part, (T, 3, 3), mm."""
+    required: PartMesh
 
     @property
     def is_turned(self) -> bool:
@@ -102,7 +119,7 @@ def prepared(
     StepNcError
         When the program cannot be run, has several setups, or has no stock.
     """
-    read = read_program(program, units=request.units, stock=request.stock)
+    read = read_program(program, units=request.units, stock=request.stock, tell=tell)
     match = material_for(request.material, read)
     tell(f"material: {match.reason}")
     run = prepared_program(read, machine_for(request.machine, read), match, tell=tell)
@@ -119,6 +136,7 @@ def prepared(
         machine=run.machine,
         material=run.material,
         stock=run.raw,
+        raw=raw_triangles(run.program, run.program.workingsteps[0].setup),
         path=programmed_path(runs),
         steps=tuple(
             StepName(workingstep=name, feature=features[name], tool=tools.get(row, 0))
@@ -129,7 +147,7 @@ def prepared(
 
 
 def required_setup(
-    request: VerificationRequest, tools: Path | None, required: Path | None
+    request: VerificationRequest, tools: Path | None, required: RequiredFile | None
 ) -> RequiredSetup:
     """Prepare a verification without a program.
 
@@ -139,7 +157,7 @@ def required_setup(
         When something is not given that a program would tell, or a file is invalid.
     """
     given = {
-        "--required STL": required,
+        "--required FILE": required,
         "--tools TABLE": tools,
         "--stock NUMBERS": request.stock,
         "--machine NAME": request.machine,
@@ -160,16 +178,25 @@ def required_setup(
         raise StepNcError(f"{tools}: no tool {what}: {machine.name} needs one")
     stock = stock_in(request.stock)
     return RequiredSetup(
-        name=required.name,
+        name=required.path.name,
         machine=machine,
         stock=stock,
         cutters={tool.number: tool.shape for tool in table},
-        required=required_triangles(required, stock),
+        required=required_mesh(required, stock, tolerance=request.tolerance_mm),
     )
 
 
-def with_required(program: PreparedProgram, path: Path) -> PreparedProgram:
-    """Compare the programmed part with an STL file in place of the features.
+def with_required(
+    program: PreparedProgram, file: RequiredFile, *, tolerance: float
+) -> PreparedProgram:
+    """Compare the programmed part with an STL or STEP file in place of the features.
+
+    Parameters
+    ----------
+    program : PreparedProgram
+    file : RequiredFile
+    tolerance : float, mm
+        Deviation that is an error.
 
     Raises
     ------
@@ -177,20 +204,61 @@ def with_required(program: PreparedProgram, path: Path) -> PreparedProgram:
         When the file is invalid, or has another part.
     """
     return replace(
-        program, required=required_triangles(path, program.stock), required_name=str(path)
+        program,
+        required=required_mesh(file, program.stock, tolerance=tolerance).triangles,
+        required_name=str(file.path),
     )
 
 
-def required_triangles(path: Path, stock: Stock) -> Floats:
-    """Read a required part that lies in a stock, (T, 3, 3), mm.
+def with_own_part(program: PreparedProgram, *, tolerance: float) -> PreparedProgram:
+    """Compare the programmed part with the B-rep body of the finished part, if there is one.
+
+    Where it cannot be read, the features count, which a finding says.
+
+    Parameters
+    ----------
+    program : PreparedProgram
+    tolerance : float, mm
+        Deviation that is an error.
+    """
+    source = program.program
+    body = finished_body(source)
+    if body is None:
+        return program
+    try:
+        triangles = body_triangles(source.file, body, tolerance=tolerance)
+    except StepNcError as error:
+        text = f"the features are compared in place of this body: {error}"
+        warning = source.finding(Severity.WARNING, text, body)
+        return replace(program, findings=(*program.findings, warning))
+    frame = workpiece_frame(source, source.workingsteps[0].setup)
+    note = source.finding(Severity.NOTE, "is the required part, in place of the features", body)
+    return replace(
+        program,
+        required=placed_triangles(triangles, frame),
+        required_name=program.name,
+        findings=(*program.findings, note),
+    )
+
+
+def required_mesh(file: RequiredFile, stock: Stock, *, tolerance: float) -> PartMesh:
+    """Read a required part that lies in a stock.
+
+    Parameters
+    ----------
+    file : RequiredFile
+    stock : Stock
+    tolerance : float, mm
+        Deviation that is an error.
 
     Raises
     ------
     StepNcError
         When the file is invalid, or the part is in inches or lies elsewhere.
     """
-    triangles = read_stl(path)
-    corners = triangles.reshape(-1, 3)
+    path = file.path
+    mesh = read_part(path, solid=file.solid, tolerance=tolerance)
+    corners = mesh.triangles.reshape(-1, 3)
     low, high = corners.min(axis=0), corners.max(axis=0)
     stock_low, stock_high = np.array(stock.low), np.array(stock.high)
     shown = f"{_box(low, high)}; the stock spans {_box(stock_low, stock_high)}"
@@ -206,7 +274,7 @@ def required_triangles(path: Path, stock: Stock) -> Floats:
             f"{path}: the part spans {shown}: they do not overlap: is it in coordinates of the "
             "setup?"
         )
-    return triangles
+    return mesh
 
 
 def _box(low: Floats, high: Floats) -> str:

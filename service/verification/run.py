@@ -20,10 +20,12 @@ from service.verification.prepared import (
     LIKE,
     MM_PER_INCH,
     PreparedProgram,
+    RequiredFile,
     RequiredSetup,
     StepName,
     prepared,
     required_setup,
+    with_own_part,
     with_required,
     with_tools,
 )
@@ -97,7 +99,16 @@ class VerificationInputs:
     tools: Path | None = None
     """Tool table with measured tools."""
     required: Path | None = None
-    """STL file of the required part, in the coordinates of the setup."""
+    """STL or STEP file of the required part, in the coordinates of the setup."""
+    solid: str = ""
+    """Solid of a STEP file, by its name or its place; empty: the only one."""
+
+    @property
+    def part(self) -> RequiredFile | None:
+        """Required part; None: none is given."""
+        if self.required is None:
+            return None
+        return RequiredFile(path=self.required, solid=self.solid)
 
 
 def verify(
@@ -131,14 +142,16 @@ def verify(
     require_bounds(request)
     given = inputs or VerificationInputs()
     if program is None:
-        setup = required_setup(request, given.tools, given.required)
+        setup = required_setup(request, given.tools, given.part)
         with log_file(log, tell=tell) as (path, name):
             return verified_without_program(path, setup, request, name=name, tell=tell)
     ready = prepared(program, request, tell=tell)
     if given.tools is not None:
         ready = with_tools(ready, given.tools)
-    if given.required is not None:
-        ready = with_required(ready, given.required)
+    if given.part is not None:
+        ready = with_required(ready, given.part, tolerance=request.tolerance_mm)
+    else:
+        ready = with_own_part(ready, tolerance=request.tolerance_mm)
     with log_file(log, tell=tell) as (path, name):
         return verified(path, ready, request, name=name, tell=tell)
 
@@ -212,6 +225,7 @@ def verified(
         bent=bent,
         findings=(
             *findings,
+            *program.findings,
             *(Finding(severity=Severity.NOTE, message=text) for text in found.notes),
             *_findings(file, found.facts, tools),
         ),

@@ -132,10 +132,9 @@ def compared_volumes(part: ReferencePart, logged: LoggedPart) -> ComparedVolumes
     grid = part.map.grid
     cell = grid.dx * grid.dy
     more = (logged.map.grid.heights - grid.heights) * cell
-    raw = float(np.sum(np.where(grid.owner == OUTSIDE, 0.0, grid.top - grid.bottom))) * cell
     return ComparedVolumes(
-        programmed=raw - part.map.volume,
-        logged=raw - logged.map.volume,
+        programmed=logged.raw_volume - part.map.volume,
+        logged=logged.raw_volume - logged.map.volume,
         gouge=float(np.maximum(-more, 0.0).sum()),
         excess=float(np.maximum(more, 0.0).sum()),
     )

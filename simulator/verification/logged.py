@@ -289,17 +289,26 @@ class LoggedPart:
     stock : Stock
     cutters : mapping
         Shapes of tools by number; other tools remove nothing.
+    raw : (T, 3, 3) array, mm
+        Triangles of the raw part in the stock; without them it fills the stock.
     """
 
     def __init__(
-        self, part: ReferencePart, stock: Stock, cutters: Mapping[int, Cutter | None]
+        self,
+        part: ReferencePart,
+        stock: Stock,
+        cutters: Mapping[int, Cutter | None],
+        *,
+        raw: Floats | None = None,
     ) -> None:
         self.targets = renewed(part.targets)
         self.possible = renewed(part.targets)
         """The same points, as the tool may have approached them where samples are missing."""
         self.possible_heights = np.full(part.map.grid.heights.shape, np.inf)
         """Heights to which it may have cut there."""
-        self._left = PartSweep(stock, cell=part.map.cell)
+        self._left = PartSweep(stock, cell=part.map.cell, raw=raw)
+        self.raw_volume = self._left.map.volume
+        """Volume of the raw part, mm³."""
         self._cutters = cutters
         self._steps = SampleSteps(stock.high[2])
         self._walls = unmet(self.targets.away.shape)

@@ -35,6 +35,14 @@ BOX = 5
 Shape = Cutter | Insert
 
 
+def raw_bar(stock: Stock, cell: float, raw: TurningStock | None) -> TurningStock:
+    """Bar that fills a stock, or a copy of the raw part in it."""
+    bar = TurningStock(stock, cell)
+    if raw is not None:
+        bar.outer[:], bar.inner[:] = raw.outer, raw.inner
+    return bar
+
+
 class LoggedFaces:
     """Which samples made the faces of one profile. Running state.
 
@@ -89,19 +97,28 @@ class LoggedBar:
     stock : Stock
     shapes : mapping
         Shapes of tools by number; other tools remove nothing.
+    raw : TurningStock
+        Raw part in the stock, with the cells of the bar; without it a bar fills the stock.
     """
 
     def __init__(
-        self, reference: TurningStock, stock: Stock, shapes: Mapping[int, Shape | None]
+        self,
+        reference: TurningStock,
+        stock: Stock,
+        shapes: Mapping[int, Shape | None],
+        *,
+        raw: TurningStock | None = None,
     ) -> None:
-        self.bar = TurningStock(stock, reference.cell)
-        self.possible = TurningStock(stock, reference.cell)
+        self.raw = raw_bar(stock, reference.cell, raw)
+        """Raw part."""
+        self.bar = raw_bar(stock, reference.cell, raw)
+        self.possible = raw_bar(stock, reference.cell, raw)
         """What is left if the tool went everywhere that it may have gone unseen."""
-        self.reached = TurningStock(stock, reference.cell)
+        self.reached = raw_bar(stock, reference.cell, raw)
         """What is left if the tool went as far between samples as its way there may be long."""
-        self.doubtful = TurningStock(stock, reference.cell)
+        self.doubtful = raw_bar(stock, reference.cell, raw)
         """What is left by lines between samples on which it may have gone any way."""
-        self.certain = TurningStock(stock, reference.cell)
+        self.certain = raw_bar(stock, reference.cell, raw)
         """What is left if the tool cut only where samples show it, near corners of the log."""
         self._shapes = shapes
         self._steps = SampleSteps(stock.high[2])

@@ -6,6 +6,7 @@ the lines between these. Units mm.
 """
 
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -56,7 +57,7 @@ class RequiredPart:
 
 
 def required_part(
-    triangles: Floats, stock: Stock, *, cell: float | None = None
+    triangles: Floats, stock: Stock, *, cell: float | None = None, most_sag: float = inf
 ) -> RequiredPart:
     """Prepare a required part for comparison.
 
@@ -67,6 +68,8 @@ def required_part(
     stock : Stock
     cell : float, mm
         Size of the cells of the height map; by default chosen from the stock.
+    most_sag : float, mm
+        Greatest distance of the triangles from the surface, where it is known.
 
     Raises
     ------
@@ -91,8 +94,8 @@ def required_part(
         raise ValueError("the required part has no wall within the stock")
     targets, order = targets_at(points)
     return RequiredPart(
-        map=whole, targets=targets, area=area[order], sag=sag[order], is_wall=is_wall,
-        is_part=is_part,
+        map=whole, targets=targets, area=area[order],
+        sag=np.minimum(sag[order], most_sag), is_wall=is_wall, is_part=is_part,
         open=edges.open,
     )  # fmt: skip
 

@@ -13,6 +13,7 @@ from simulator.motion.segments import Bools, Floats, Ints
 from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.profile import CutterProfile, profile_of
 from simulator.removal.zmap import ZMap, cell_size, zmap_of
+from simulator.verification.mesh import raise_to
 from simulator.verification.path import ProgrammedPath, rows_between
 from simulator.verification.sweep import (
     WallTargets,
@@ -86,8 +87,11 @@ class WallCells:
 class PartSweep:
     """Stock from which tools that run along lines remove their sweep. Running state."""
 
-    def __init__(self, stock: Stock, *, cell: float) -> None:
+    def __init__(self, stock: Stock, *, cell: float, raw: Floats | None = None) -> None:
         self.map = zmap_of(stock, cell=cell)
+        if raw is not None:
+            self.map.grid.heights[:] = self.map.grid.bottom
+            raise_to(self.map.grid, np.ascontiguousarray(raw))
         self.number = 0
         """Number of the next row."""
 
@@ -104,7 +108,7 @@ class PartSweep:
 
 
 def programmed_part(
-    path: ProgrammedPath, stock: Stock, *, cell: float | None = None
+    path: ProgrammedPath, stock: Stock, *, cell: float | None = None, raw: Floats | None = None
 ) -> ProgrammedPart:
     """Remove the sweep of a programmed path from a stock.
 
@@ -114,13 +118,15 @@ def programmed_part(
     stock : Stock
     cell : float, mm
         Size of the cells of the height map; by default chosen from the stock.
+    raw : (T, 3, 3) array, mm
+        Triangles of the raw part in the stock; without them it fills the stock.
 
     Raises
     ------
     ValueError
         If the stock has no volume, a tool is impossible, or the path leaves no wall.
     """
-    left = PartSweep(stock, cell=cell_size(stock) if cell is None else cell)
+    left = PartSweep(stock, cell=cell_size(stock) if cell is None else cell, raw=raw)
     for run, points in zip(path.runs, path.chords, strict=True):
         left.cut(run.cutter, points)
     found, is_wall = wall_cells(left.map)

@@ -29,6 +29,7 @@ from simulator.verification.logged_bar import (
     LoggedBar,
     cut_bar,
     nearest_points,
+    raw_bar,
 )
 from simulator.verification.path import ProgrammedPath, pieces_of
 from simulator.verification.profile import (
@@ -60,7 +61,13 @@ class TurnedPart:
     """Way along the path to that place, (C,), mm."""
 
 
-def turned_part(path: ProgrammedPath, stock: Stock, *, cell: float | None = None) -> TurnedPart:
+def turned_part(
+    path: ProgrammedPath,
+    stock: Stock,
+    *,
+    cell: float | None = None,
+    raw: TurningStock | None = None,
+) -> TurnedPart:
     """Cut a bar along a programmed path.
 
     Parameters
@@ -69,13 +76,15 @@ def turned_part(path: ProgrammedPath, stock: Stock, *, cell: float | None = None
     stock : Stock
     cell : float, mm
         Length of a cell along the axis.
+    raw : TurningStock
+        Raw part in the stock, with cells of that length; without it a bar fills the stock.
 
     Raises
     ------
     ValueError
         If the stock has no radius, or needs too many cells.
     """
-    bar = TurningStock(stock, CELL if cell is None else cell)
+    bar = raw_bar(stock, CELL if cell is None else cell, raw)
     chord = np.full(len(bar.outer), -1, dtype=np.int64)
     station = np.zeros(len(bar.outer))
     first = 0
@@ -99,22 +108,21 @@ def turned_places(part: TurnedPart, logged: LoggedBar) -> SurfacePlaces:
 
 
 def turned_volumes(
-    bar: TurningStock, logged: LoggedBar, stock: Stock, *, low: float = -inf
+    bar: TurningStock, logged: LoggedBar, *, low: float = -inf
 ) -> ComparedVolumes:
-    """Compare the volumes that are removed from a stock, in the log and in the other part.
+    """Compare the volumes that are removed from the raw part, in the log and in the other one.
 
     Parameters
     ----------
     bar : TurningStock
     logged : LoggedBar
-    stock : Stock
     low : float, mm
         Only what lies before this z counts.
     """
     is_before = bar.z > low
     raw, area, other = (
         np.maximum(each.outer**2 - each.inner**2, 0.0)[is_before]
-        for each in (TurningStock(stock, bar.cell), bar, logged.bar)
+        for each in (logged.raw, bar, logged.bar)
     )
     disc = pi * bar.cell
     more = disc * (other - area)

@@ -29,8 +29,8 @@ def loose_numbers(file: Part21File, numbers: Iterable[int]) -> list[int]:
     used = {
         int(ref)
         for number in file.ids()
-        for value in file.parameters(number)
-        for ref in _references(value)
+        for _, values in file.parts(number)
+        for ref in _references(values)
     }
     return [number for number in wanted if number not in used]
 

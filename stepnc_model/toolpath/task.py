@@ -164,7 +164,7 @@ def drawn_stock(program: Program, setup: Ref[Setup] | None) -> Stock | None:
 def unused_stock(program: Program, setup: Ref[Setup] | None) -> Finding | None:
     """Warning about a raw part that holds none of the features, and is not used."""
     stock = _described_stock(program, setup)
-    body = _bounding_geometry(program)
+    body = _bounding_geometry(program) or raw_body(program)
     if stock is None or body is None or not _is_off(program, setup, stock):
         return None
     text = (
@@ -186,14 +186,14 @@ def _bounding_geometry(program: Program) -> Ref[Entity] | None:
 def _described_stock(program: Program, setup: Ref[Setup] | None) -> Stock | None:
     """Raw part as a file describes it, in the coordinates of a setup."""
     reference = _bounding_geometry(program)
-    if reference is None:
-        return None
+    if reference is None or is_body(program, reference):
+        return _around_body(program, setup)
     shape = program.get(reference)
     if not isinstance(shape, (Block, RightCircularCylinder)):
         return None
     frame = workpiece_frame(program, setup).inner(frame_of(program, shape.position))
     with program.using(reference):
-        return _placed(shape, frame)
+        return _placed(_bounds(shape), frame)
 
 
 def _is_off(program: Program, setup: Ref[Setup] | None, stock: Stock) -> bool:
@@ -229,15 +229,55 @@ def _span(
     return min(floor, frame.origin[2]), max(floor, frame.origin[2])
 
 
-def _placed(shape: Block | RightCircularCylinder, frame: Frame) -> Stock:
-    """Bounding box of a body placed in a frame."""
-    radius = None
+def is_body(program: Program, representation: Ref[Entity]) -> bool:
+    """Whether a shape representation is that of a B-rep body."""
+    return program.file.keyword(representation).endswith("BREP_SHAPE_REPRESENTATION")
+
+
+def raw_body(program: Program) -> Ref[Entity] | None:
+    """Representation of the raw part as a B-rep body; None if the file has none."""
+    workpiece = program.workpiece()
+    if workpiece is None:
+        return None
+    raw = program.get(workpiece.its_rawpiece) if workpiece.its_rawpiece else workpiece
+    # The geometry of the workpiece itself is that of the finished part.
+    shapes = (None if raw is workpiece else raw.its_geometry, raw.its_bounding_geometry)
+    return next((each for each in shapes if each and is_body(program, each)), None)
+
+
+def finished_body(program: Program) -> Ref[Entity] | None:
+    """Representation of the finished part as a B-rep body; None if the file has none."""
+    workpiece = program.workpiece()
+    shape = None if workpiece is None else workpiece.its_geometry
+    return shape if shape and is_body(program, shape) else None
+
+
+def _around_body(program: Program, setup: Ref[Setup] | None) -> Stock | None:
+    """Box or bar around the body of the raw part."""
+    body = raw_body(program)
+    if body is None or program.bodies is None:
+        return None
+    around = program.bodies.box(program.file, body)
+    if around is None:
+        return None
+    with program.using(body):
+        return _placed(around, workpiece_frame(program, setup))
+
+
+def _bounds(shape: Block | RightCircularCylinder) -> Stock:
+    """Box or bar in its own coordinates."""
     if isinstance(shape, Block):
-        low, high = (0.0, 0.0, 0.0), (shape.x, shape.y, shape.z)
-    else:
-        low = (-shape.radius, -shape.radius, 0.0)
-        high = (shape.radius, shape.radius, shape.height)
-        radius = shape.radius
+        return Stock(low=(0.0, 0.0, 0.0), high=(shape.x, shape.y, shape.z))
+    return Stock(
+        low=(-shape.radius, -shape.radius, 0.0),
+        high=(shape.radius, shape.radius, shape.height),
+        radius=shape.radius,
+    )
+
+
+def _placed(shape: Stock, frame: Frame) -> Stock:
+    """Bounding box of a body placed in a frame."""
+    low, high = shape.low, shape.high
     if max(map(abs, (*low, *high))) > FARTHEST:
         raise ValueError(f"the stock is larger than {FARTHEST:g} mm")
     corners = [
@@ -250,7 +290,7 @@ def _placed(shape: Block | RightCircularCylinder, frame: Frame) -> Stock:
     return Stock(
         low=(min(columns[0]), min(columns[1]), min(columns[2])),
         high=(max(columns[0]), max(columns[1]), max(columns[2])),
-        radius=radius,
+        radius=shape.radius,
     )
 
 

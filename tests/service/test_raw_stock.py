@@ -87,7 +87,7 @@ def test_a_bar_beside_the_axis_stands_on_a_mill_only() -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("raw", "stock 'raw': expected numbers separated by commas, an STL file (.stl) or a"),
+        ("raw", "stock 'raw': expected numbers separated by commas, an STL file (.stl), a "),
         ("1,2,3,4", "stock '1,2,3,4': expected 2, 3, 5 or 6 numbers separated by commas"),
         ("0,0,0,10,0,5", "stock: y from 0 to 0 mm: must span at least 0.01 mm"),
         ("missing.stl", "missing.stl: No such file or directory"),

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from service.stl import read_stl
+from service.part_file import read_part
 from stepnc_model.errors import StepNcError
 from tests.service.verification.files import write_stl
 from tests.simulator.verification.box import box
@@ -26,13 +26,13 @@ def text_of(triangles: np.ndarray) -> str:
 def test_text_is_read(tmp_path: Path) -> None:
     path = tmp_path / "box.stl"
     path.write_text(text_of(BOX), encoding="utf-8")
-    assert np.array_equal(read_stl(path), BOX)
+    assert np.array_equal(read_part(path, tolerance=1.0).triangles, BOX)
 
 
 def test_binary_is_read(tmp_path: Path) -> None:
     path = tmp_path / "box.stl"
     write_stl(path, BOX)
-    assert np.array_equal(read_stl(path), BOX)
+    assert np.array_equal(read_part(path, tolerance=1.0).triangles, BOX)
 
 
 @pytest.mark.parametrize(
@@ -48,11 +48,11 @@ def test_damaged_files_are_refused(tmp_path: Path, text: str, message: str) -> N
     path = tmp_path / "box.stl"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(StepNcError, match=message):
-        read_stl(path)
+        read_part(path, tolerance=1.0)
 
 
 def test_a_file_that_is_cut_off_says_what_it_lacks(tmp_path: Path) -> None:
     path = write_stl(tmp_path / "box.stl", BOX)
     path.write_bytes(path.read_bytes()[:300])
     with pytest.raises(StepNcError, match="its 12 triangles need 684 bytes; it has 300"):
-        read_stl(path)
+        read_part(path, tolerance=1.0)

@@ -12,12 +12,21 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.service.agent.test_run import run_of
+from tests.service.brep.shapes import block, write_step
 from tests.service.dashboard.conftest import inside, keep, opened_page
 from tests.service.monitor.played import PlayedAgent
 from tests.service.rest.samples import SLOT
 from tests.service.rest.server import Server, made, over
+from tests.service.verification.files import write_log
 from tests.service.verification.logs import SLOT_MACHINE, slot_log
 from tests.service.verification.runs import fast_log, program
+from tests.service.verification.test_step_parts import POCKETED
+from tests.service.verification.test_without_program import (
+    MILL,
+    OFFSET,
+    POCKET,
+    pocket_inputs,
+)
 from tests.service.waiting import until
 
 PAGE = "/dashboard/verify.html"
@@ -230,6 +239,32 @@ def test_a_file_that_is_no_log_is_refused_in_words(page: Page, tmp_path: Path) -
     expect(page.locator("#tools-place [role=alert]")).to_contain_text(
         "none of the known formats"
     )
+
+
+def test_one_solid_of_a_step_file_takes_the_place_of_a_program(
+    page: Page, tmp_path: Path
+) -> None:
+    lid = block((0.0, 0.0, 5.0), (40.0, 30.0, 9.0))
+    tools = pocket_inputs(tmp_path).tools
+    assert tools is not None
+    page.goto(PAGE)
+    page.locator("#log-file").set_input_files(write_log(tmp_path / "log.csv", POCKET + OFFSET))
+    page.locator("#machine").select_option("vmc15")
+    page.locator("#more-options summary").click()
+    page.locator("#cell").fill("0.2")
+    page.locator("#stock").fill(MILL.stock)
+    page.locator("#tools-file").set_input_files(tools)
+    expect(page.locator("#tools-place")).to_contain_text("tools.toml")
+    part = write_step(tmp_path / "part.step", lid, POCKETED)
+    page.locator("#required-file").set_input_files(part)
+    expect(page.locator("#required-place")).to_contain_text("part.step", timeout=LATE)
+    page.locator("#verify").click()
+    alert = page.locator("#verify-problem [role=alert]")
+    expect(alert).to_contain_text("part.step: 2 solids: choose one", timeout=LATE)
+    page.locator("#required-solid").fill("2")
+    page.locator("#verify").click()
+    expect(page.locator("#lamp")).to_have_text("ERROR", timeout=LATE)
+    keep(page, "verify-solid")
 
 
 def test_a_log_of_another_program_is_told_and_another_try_is_possible(

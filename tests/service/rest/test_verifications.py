@@ -12,12 +12,14 @@ from pyarrow import csv, parquet
 
 from service.rest.verification_views import SurfaceMapView, VerificationView
 from tests.service.agent.test_run import run_of
+from tests.service.brep.shapes import block, first_face, write_step
 from tests.service.monitor.played import PlayedAgent
 from tests.service.rest.conftest import Done
 from tests.service.rest.samples import SLOT
 from tests.service.rest.server import Server, create_key, is_problem, made, over
 from tests.service.verification.files import write_log
 from tests.service.verification.logs import SLOT_MACHINE, slot_log
+from tests.service.verification.test_step_parts import POCKETED
 from tests.service.verification.test_without_program import (
     MILL,
     OFFSET,
@@ -154,6 +156,40 @@ def test_a_required_part_takes_the_place_of_a_program(
         less = {key: value for key, value in body.items() if key != name}
         refused = is_problem(client.post(PATH, json=less), 400, "unreadable")
         assert name in refused["detail"]
+
+
+def test_a_solid_of_a_step_file_is_the_required_part(
+    client: httpx.Client, tmp_path: Path
+) -> None:
+    tools = pocket_inputs(tmp_path).tools
+    assert tools is not None
+    lid = block((0.0, 0.0, 5.0), (40.0, 30.0, 9.0))
+    files = {
+        "log_id": ("log", write_log(tmp_path / "log.csv", POCKET + OFFSET)),
+        "tools_id": ("tools", tools),
+        "required_id": ("required-part", write_step(tmp_path / "part.step", lid, POCKETED)),
+    }
+    ids = {
+        name: made(
+            client.post(f"/v1/files?kind={kind}&name={path.name}", content=path.read_bytes()),
+            201,
+        )
+        for name, (kind, path) in files.items()
+    }
+    body = {**ids, "machine": MILL.machine, "stock": MILL.stock, "cell_mm": MILL.cell_mm}
+    refused = over(client, made(client.post(PATH, json=body)))
+    assert refused["state"] == "failed"
+    assert (
+        "part.step: 2 solids: choose one by its place or name" in refused["problem"]["detail"]
+    )
+    job = over(client, made(client.post(PATH, json={**body, "required_solid": "2"})))
+    assert job["state"] == "succeeded", job
+    found = client.get(f"{PATH}/{job['id']}").json()
+    assert (found["program"], found["has_errors"]) == ("part.step", True)
+    surface = write_step(tmp_path / "surface.step", first_face(lid))
+    path = "/v1/files?kind=required-part&name=surface.step"
+    told = is_problem(client.post(path, content=surface.read_bytes()), 422)
+    assert told["detail"].startswith("surface.step: no closed solid")
 
 
 def test_what_cannot_be_verified_is_refused_before_there_is_a_job(

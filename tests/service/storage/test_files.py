@@ -58,7 +58,7 @@ def test_what_could_not_be_listed_leaves_no_file(data_folder: DataFolder) -> Non
     ("kind", "name"),
     [
         (FileKind.LOG, "run"), (FileKind.LOG, "run.toml"), (FileKind.LOG, "../.csv/"),
-        (FileKind.TOOLS, "tools.xlsx"), (FileKind.REQUIRED_PART, "part.step"),
+        (FileKind.TOOLS, "tools.xlsx"), (FileKind.REQUIRED_PART, "part.obj"),
     ],
 )  # fmt: skip
 def test_a_suffix_of_another_kind_is_refused(

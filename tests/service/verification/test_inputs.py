@@ -50,7 +50,8 @@ def test_good_files_are_accepted(kind: FileKind, name: str, text: str, tmp_path:
         (FileKind.LOG, "run.shdr", "yesterday|x|1\n", "no line of SHDR"),
         (FileKind.LOG, "run.log", "x" * 200_000, "no line of SHDR"),
         (FileKind.TOOLS, "tools.toml", "[[tool]]\nnumber = -1\n", "number"),
-        (FileKind.REQUIRED_PART, "part.stl", "ISO-10303-21;", "no triangles"),
+        (FileKind.REQUIRED_PART, "part.stl", "solid a\nendsolid\n", "no triangles"),
+        (FileKind.REQUIRED_PART, "part.stl", "ISO-10303-21;", "part.stl: .*no DATA section"),
     ],
 )
 def test_other_files_are_refused(

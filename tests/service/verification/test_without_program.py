@@ -120,7 +120,7 @@ def test_what_is_missing_is_said(capsys: pytest.CaptureFixture[str]) -> None:
         main(["verify", "log.csv", "--stock", "40,-50,0"])
     assert ended.value.code == BAD_INPUT
     message = capsys.readouterr().err
-    assert "missing: --required STL, --tools TABLE, --machine NAME" in message
+    assert "missing: --required FILE, --tools TABLE, --machine NAME" in message
 
 
 @pytest.mark.parametrize(

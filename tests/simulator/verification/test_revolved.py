@@ -76,7 +76,7 @@ def test_what_lies_behind_the_part_does_not_count() -> None:
     part = required()
     left = LoggedBar(part.bar, BAR, {1: INSERT})
     left.add(samples_at(sampled(WAY, 0.1)))
-    found = turned_volumes(part.bar, left, BAR, low=part.low)
+    found = turned_volumes(part.bar, left, low=part.low)
     assert found.excess == pytest.approx(0.0, abs=1.0)
     assert found.programmed == pytest.approx(found.logged, rel=1e-4)
 

@@ -109,7 +109,7 @@ def test_a_face_is_known_between_its_ends_however_far_the_tool_moves_there() -> 
 
 
 def test_volumes_are_those_of_rings() -> None:
-    found = turned_volumes(PART.bar, logged(sampled(WAY, 0.4) + np.array([0.5, 0.0, 0.0])), BAR)
+    found = turned_volumes(PART.bar, logged(sampled(WAY, 0.4) + np.array([0.5, 0.0, 0.0])))
     assert found.programmed == pytest.approx(pi * (20.0**2 - 15.0**2) * 30.0, rel=1e-6)
     ring = pi * (15.5**2 - 15.0**2) * 30.0
     assert found.excess == pytest.approx(ring, rel=1e-3)

@@ -1,0 +1,1 @@
+"""Solids of STEP files: B-rep that Open CASCADE turns into triangles."""

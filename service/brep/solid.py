@@ -1,0 +1,200 @@
+"""Solid of a STEP file as triangles: chosen among several, closed, and of the right volume."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.brep.exchange import Exchange, exchange_below, whole_exchange
+from service.brep.tessellation import ALL, Choice, Tessellation, tessellate
+from simulator.motion.segments import Floats
+from simulator.verification.mesh import edges_of
+from stepnc_model.errors import Part21Error, StepNcError
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.values import Ref, Value
+
+PARTS = 5.0
+"""Share of the tolerance by which triangles may lie beside the surface is one in this many."""
+
+ROUNDING = 1e-6
+"""Relative difference of volumes that rounding explains."""
+
+SOLIDS = ("MANIFOLD_SOLID_BREP", "FACETED_BREP", "BREP_WITH_VOIDS")
+"""Entities of solids."""
+
+MOST_NAMED = 12
+"""Most solids that a message lists."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SolidPlace:
+    """Where a solid is in a file."""
+
+    file: Part21File
+    name: str
+    """Name of the file in messages."""
+    root: int | None = None
+    """Instance of its geometry; None: anywhere in the file."""
+    solid: str = ""
+    """Name of the solid, or its place in the list of a message; empty: the only one."""
+
+
+def sag_within(tolerance: float) -> float:
+    """Greatest distance of triangles from the surface by which a tolerance is seen, mm."""
+    return tolerance / PARTS
+
+
+def solid_triangles(place: SolidPlace, *, tolerance: float) -> Floats:
+    """Triangles of a solid.
+
+    Parameters
+    ----------
+    place : SolidPlace
+    tolerance : float, mm
+        Size of the deviations that are to be seen: triangles lie within a fifth of it of the
+        surface.
+
+    Returns
+    -------
+    (T, 3, 3) array, mm
+        Closed, and counter-clockwise as seen from outside.
+
+    Raises
+    ------
+    StepNcError
+        When there is no such solid, or several, or Open CASCADE is missing or cannot read it;
+        when its triangles are not closed, or have another volume.
+    """
+    file = place.file
+    try:
+        taken = whole_exchange(file) if place.root is None else exchange_below(file, place.root)
+        names = _names(file, taken)
+    except Part21Error as error:
+        raise StepNcError(f"{place.name}: {error}") from error
+    sag = sag_within(tolerance)
+    found = tessellate(
+        taken.data,
+        name=place.name,
+        sag=sag,
+        choice=_choice(place, taken, names),
+    )
+    if found.chosen < 0:
+        raise _not_one(place, found, taken, names)
+    _require_true(place.name, found, sag)
+    return found.triangles
+
+
+def require_solids(place: SolidPlace) -> None:
+    """Refuse a file that has no solid.
+
+    Raises
+    ------
+    StepNcError
+        When there is none, or Open CASCADE is missing or cannot read the file.
+    """
+    taken = whole_exchange(place.file)
+    # No instance has the number 0: nothing is tessellated.
+    found = tessellate(taken.data, name=place.name, sag=1.0, choice=Choice(wanted=(0,)))
+    if not len(found.number):
+        raise _not_one(place, found, taken, {})
+
+
+def _choice(place: SolidPlace, taken: Exchange, names: dict[int, str]) -> Choice:
+    """Solid of a name, or of a place among all."""
+    solid = place.solid
+    root = ALL if place.root is None else taken.ids.index(place.root) + 1
+    solids = tuple(names)
+    wanted = tuple(number for number, name in names.items() if name == solid) if solid else ()
+    if solid and not wanted and solid.isdecimal() and int(solid):
+        return Choice(root=root, solids=solids, place=int(solid))
+    # No instance has the number 0: a name that none has chooses none.
+    return Choice(root=root, solids=solids, wanted=wanted or ((0,) if solid else ()))
+
+
+def _not_one(
+    place: SolidPlace, found: Tessellation, taken: Exchange, names: dict[int, str]
+) -> StepNcError:
+    """Error of a file without a solid, with several, or without the one that was named."""
+    if not len(found.number):
+        shells = f"; {found.shells} open shells or surfaces" if found.shells else ""
+        return StepNcError(
+            f"{place.name}: no closed solid (such as MANIFOLD_SOLID_BREP){shells}"
+        )
+    rows = []
+    for row, number in enumerate(found.number.tolist()[:MOST_NAMED]):
+        size = " x ".join(f"{each:.4g}" for each in (found.high[row] - found.low[row]).tolist())
+        id = f" (#{taken.ids[number - 1]})" if number else ""
+        rows.append(f"{row + 1} '{names.get(number, '')}'{id} of {size} mm")
+    more = len(found.number) - len(rows)
+    listed = ", ".join(rows) + (f", and {more} more" if more > 0 else "")
+    count = len(found.number)
+    what = f"no solid '{place.solid}', or several" if place.solid else f"{count} solids"
+    return StepNcError(f"{place.name}: {what}: choose one by its place or name: {listed}")
+
+
+def _require_true(name: str, found: Tessellation, sag: float) -> None:
+    """Refuse triangles that are not closed, or have another volume than the solid."""
+    triangles = found.triangles
+    edges = edges_of(triangles)
+    if edges.open or edges.unlike:
+        raise StepNcError(
+            f"{name}: the solid is not closed: {edges.open} edges of its triangles do not "
+            f"belong to two, and {edges.unlike} triangles face the other way than a neighbour"
+        )
+    normal = np.cross(triangles[:, 1], triangles[:, 2])
+    volume = float(np.einsum("ij,ij->i", triangles[:, 0], normal).sum()) / 6.0
+    exact = float(found.volume[found.chosen])
+    bound = sag * float(found.area[found.chosen]) + ROUNDING * abs(exact)
+    if not exact > 0.0 or abs(volume - exact) > bound:
+        raise StepNcError(
+            f"{name}: its triangles have {volume:.6g} mm³, the solid {exact:.6g} mm³; they may "
+            f"differ by {bound:.3g} mm³ at {sag:g} mm of its surface: is it damaged?"
+        )
+
+
+def _names(file: Part21File, taken: Exchange) -> dict[int, str]:
+    """Names of the solids of a file by their numbers: their own, or those of their products."""
+    number = {id: row + 1 for row, id in enumerate(taken.ids)}
+    ids = [id for keyword in SOLIDS for id in file.ids_of(keyword) if id in number]
+    products = _product_names(file)
+    return {number[id]: _text(file.parameters(id)) or products.get(id, "") for id in ids}
+
+
+def _product_names(file: Part21File) -> dict[int, str]:
+    """Names of products by the instances of their shape representations."""
+    shown: dict[int, str] = {}
+    for definition in file.ids_of("SHAPE_DEFINITION_REPRESENTATION"):
+        shape, representation = file.parameters(definition)[:2]
+        name = ""
+        # From the shape to the product definition, its formation, and the product.
+        for position in (2, 2, 2):
+            shape = _reference(file, shape, position)
+        if isinstance(shape, Ref) and shape in file:
+            name = _text(file.parameters(shape)[1:])
+        if isinstance(representation, Ref):
+            shown[int(representation)] = name
+    for relation in file.ids_of("SHAPE_REPRESENTATION_RELATIONSHIP"):
+        one, other = file.parameters(relation)[2:4]
+        for this, that in ((one, other), (other, one)):
+            if isinstance(this, Ref) and isinstance(that, Ref) and int(this) in shown:
+                shown.setdefault(int(that), shown[int(this)])
+    names: dict[int, str] = {}
+    for id, name in shown.items():
+        items = file.parameters(id)[1] if id in file and file.keyword(id) else ()
+        for item in items if isinstance(items, tuple) else ():
+            if isinstance(item, Ref):
+                names[int(item)] = name
+    return names
+
+
+def _reference(file: Part21File, ref: Value, position: int) -> Value:
+    """Attribute of an instance; None where there is none."""
+    if not isinstance(ref, Ref) or ref not in file or not file.keyword(ref):
+        return None
+    values = file.parameters(ref)
+    return values[position] if len(values) > position else None
+
+
+def _text(values: Sequence[Value]) -> str:
+    """First of some values, if it is a text."""
+    return values[0] if values and isinstance(values[0], str) else ""

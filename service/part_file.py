@@ -1,0 +1,104 @@
+"""Shape of a part from a file: an STL file, or a solid of a STEP file.
+
+The content tells which, not the name.
+"""
+
+from dataclasses import dataclass
+from math import inf
+from pathlib import Path
+
+from service.brep.solid import SolidPlace, require_solids, sag_within, solid_triangles
+from service.files import read_bytes
+from service.program_kind import PART21
+from service.stl import is_binary_stl, stl_triangles
+from simulator.motion.segments import Floats
+from stepnc_model.errors import Part21Error, StepNcError
+from stepnc_model.part21.reader import Part21File
+
+PACKED = (b"PK\x03\x04", b"\x1f\x8b")
+"""Beginning of a ZIP archive and of a gzip stream, in which STEP files come."""
+
+LOOKED_AT = 1 << 16
+"""Bytes at the beginning of a file that tell what it is."""
+
+CHOICE = "#"
+"""Separates the name of a file from that of one of its solids."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PartMesh:
+    """Triangles of a part."""
+
+    triangles: Floats
+    """(T, 3, 3), mm."""
+    sag: float = inf
+    """Greatest distance of the triangles from the surface, mm; infinite: not known."""
+
+
+def part_place(text: str) -> tuple[Path, str]:
+    """Split ``part.step#SOLID`` into the file and the solid; a file of that name comes first.
+
+    Examples
+    --------
+    >>> part_place("part.step#2")
+    (PosixPath('part.step'), '2')
+    >>> part_place("part.stl")
+    (PosixPath('part.stl'), '')
+    """
+    name, mark, solid = text.rpartition(CHOICE)
+    if not mark or not name or Path(text).is_file():
+        return Path(text), ""
+    return Path(name), solid
+
+
+def read_part(path: Path, *, solid: str = "", tolerance: float) -> PartMesh:
+    """Read the triangles of a part.
+
+    Parameters
+    ----------
+    path : Path
+    solid : str
+        Solid of a STEP file, by its name or its place in the file; empty: its only one.
+    tolerance : float, mm
+        Size of the deviations that are to be seen; the triangles of a solid lie within a fifth
+        of it of its surface.
+
+    Raises
+    ------
+    StepNcError
+        When the file cannot be read, or has no such part.
+    """
+    content = read_bytes(path)
+    if not _is_step(content):
+        return PartMesh(triangles=stl_triangles(content, path))
+    triangles = solid_triangles(_solids(content, path, solid), tolerance=tolerance)
+    return PartMesh(triangles=triangles, sag=sag_within(tolerance))
+
+
+def require_part(path: Path) -> None:
+    """Refuse a file without the triangles of a part and without a solid.
+
+    Raises
+    ------
+    StepNcError
+        As :func:`read_part`; several solids are allowed.
+    """
+    content = read_bytes(path)
+    if _is_step(content):
+        require_solids(_solids(content, path))
+    else:
+        stl_triangles(content, path)
+
+
+def _solids(content: bytes, path: Path, solid: str = "") -> SolidPlace:
+    try:
+        file = Part21File.from_bytes(content, name=path.name)
+    except Part21Error as error:
+        raise StepNcError(f"{path}: {error}") from error
+    return SolidPlace(file=file, name=str(path), solid=solid)
+
+
+def _is_step(content: bytes) -> bool:
+    if is_binary_stl(content):
+        return False
+    return content.startswith(PACKED) or PART21.search(content[:LOOKED_AT]) is not None
