@@ -8,7 +8,7 @@ from math import isnan, nan
 
 from stepnc_model.nc import iso_codes
 from stepnc_model.nc.block_words import BlockWords
-from stepnc_model.nc.moves import FeedMode, MoveFlag
+from stepnc_model.nc.moves import CompensationSide, FeedMode, MoveFlag
 from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
@@ -208,7 +208,7 @@ class IsoModes:
                 table[code] = partial(self._take_transform, is_on)
         table |= {
             **{code: partial(self._take_mode, mode) for code, mode in MODES.items()},
-            **{code: partial(self._compensate, code != 400) for code in (400, 410, 420)},
+            **{code: partial(self._compensate, code) for code in (400, 410, 420)},
             200: partial(self._take, "scale", INCH),
             210: partial(self._take, "scale", 1.0),
             900: partial(self._take, "is_absolute", True),
@@ -251,6 +251,8 @@ class IsoModes:
             70: partial(self._take, "is_diameter", True),
             80: partial(self._take, "is_diameter", False),
             331: partial(self._take_motion, ModalMotion.THREAD),
+            411: partial(self._compensate, 411),
+            421: partial(self._compensate, 421),
             901: partial(self._take, "is_centre_absolute", True),
             911: partial(self._take, "is_centre_absolute", False),
             921: partial(self._take_shift, 0.0),
@@ -306,11 +308,27 @@ class IsoModes:
         self.recorder.setting = replace(self.recorder.setting, mode=mode)
         self.recorder.word, self.recorder.fed_by = nan, -1
 
-    def _compensate(self, is_on: bool, _: BlockWords) -> None:
+    def _compensate(self, code: int, words: BlockWords) -> None:
+        """Begin compensation to the left or right of the contour, or end it (G40)."""
+        side = None
+        if code != 400:
+            own = code % 10 == 1
+            given = words.values.get("D")
+            side = CompensationSide(
+                is_left=code < 420,
+                plane=self.plane or ArcPlane.XY,
+                number=None if given is None or own else int(given),
+                diameter=self.scale * (nan if given is None else given) if own else None,
+            )
+        self.compensate(side)
+
+    def compensate(self, side: CompensationSide | None) -> None:
+        """Begin or end cutter radius compensation."""
         was_on = bool(self.recorder.standing & MoveFlag.COMPENSATED)
-        self.stand(MoveFlag.COMPENSATED, is_on)
+        self.stand(MoveFlag.COMPENSATED, side is not None)
+        self.recorder.setting = replace(self.recorder.setting, side=side)
         # The move after G40 begins beside its commanded start.
-        if was_on and not is_on:
+        if was_on and side is None:
             self.recorder.carry(MoveFlag.COMPENSATED)
 
     def transform(self, is_on: bool) -> None:
