@@ -79,6 +79,8 @@ class IsoModes:
         self.is_centre_absolute: bool | None = False
         self.scale = 1.0
         """Length of one unit of the program, mm."""
+        self.has_unit = False
+        """Whether the program has stated its unit."""
         self.is_diameter = self.is_lathe and dialect is not Dialect.LINUXCNC
         self.returns_to_start = True
         self.shift = [0.0, 0.0, 0.0]
@@ -173,6 +175,9 @@ class IsoModes:
             self.recorder.fed_by = self.recorder.block
         elif value is not None:
             self.set_feed(value, unit)
+            if "F" in words.evaluated:
+                # Its number is known, but no word of the program says it.
+                self.recorder.standing |= MoveFlag.MACRO_FEED.value
 
     def set_feed(self, value: float, unit: float) -> None:
         """Put the number of an F word in force, in units of a length in mm."""
@@ -209,8 +214,8 @@ class IsoModes:
         table |= {
             **{code: partial(self._take_mode, mode) for code, mode in MODES.items()},
             **{code: partial(self._compensate, code) for code in (400, 410, 420)},
-            200: partial(self._take, "scale", INCH),
-            210: partial(self._take, "scale", 1.0),
+            200: partial(self._take_unit, INCH),
+            210: partial(self._take_unit, 1.0),
             900: partial(self._take, "is_absolute", True),
             910: partial(self._take, "is_absolute", False),
             960: self._surface_speed,
@@ -263,6 +268,9 @@ class IsoModes:
     def _take(self, name: str, value: object, _: BlockWords) -> None:
         """Set one part of the modal state."""
         setattr(self, name, value)
+
+    def _take_unit(self, scale: float, _: BlockWords) -> None:
+        self.scale, self.has_unit = scale, True
 
     def _take_motion(self, motion: ModalMotion | CycleKind, _: BlockWords) -> None:
         self.to_motion(motion)
