@@ -18,7 +18,7 @@ import numpy as np
 
 from optimiser.along_path.caps import NAMES, CapName
 from optimiser.along_path.carried import excess
-from optimiser.along_path.free import FreeProfile, free_profile
+from optimiser.along_path.free import FASTEST_ALONE, FreeProfile, FreeTask, free_profile
 from optimiser.along_path.pieces import (
     FeedPieces,
     PieceRules,
@@ -56,8 +56,8 @@ class FeedTask:
     rules: PieceRules
     levels: int | None = None
     """Largest number of feeds in each part of the program; None: any."""
-    has_jerk: bool = False
-    """Whether the free profile with limited jerk is computed too."""
+    free: FreeTask = FASTEST_ALONE
+    """Further free profiles that are computed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -135,8 +135,7 @@ class FeedPlanner:
         self._pieces.setdefault(name, []).append(pieces)
         self._locked += commands.greatest_locked.tolist()
         self._bounds[name] = self._bounds.get(name, 0.0) + self._least_time(stretch, places)
-        has_jerk = self.task.has_jerk
-        free = free_profile(stretch, places, machine, has_jerk=has_jerk)
+        free = free_profile(stretch, places, machine, self.task.free)
         self._free[name] = self._free.get(name, FreeProfile()).plus(free)
         most = float(excess(stretch, machine).max(initial=0.0))
         self._excess[name] = max(most, self._excess.get(name, 0.0))

@@ -7,7 +7,7 @@ more than the whole block did, its feed is lowered, and the plan runs once more.
 
 from dataclasses import dataclass
 
-from optimiser.along_path.free import FreeProfile
+from optimiser.along_path.free import FASTEST_ALONE, FreeProfile, FreeTask
 from optimiser.along_path.pieces import PieceRules
 from optimiser.along_path.plan import (
     BlockFeeds,
@@ -51,8 +51,8 @@ class AlongPathTask:
     """Greatest feed that the user permits, mm/s; None: that of the machine."""
     keeps_idle: bool = False
     """Whether parts of the program that meet no stock keep their feeds."""
-    has_jerk: bool = False
-    """Whether the free profile with limited jerk is computed too."""
+    free: FreeTask = FASTEST_ALONE
+    """Further free profiles that are computed."""
     keeps_traces: bool = False
     """Whether feed, force and power of both runs are kept for plots."""
 
@@ -223,5 +223,5 @@ def feed_task(machine: Machine, task: AlongPathTask) -> FeedTask:
         ),
         rules=_rules(machine, limits.block_time),
         levels=task.levels,
-        has_jerk=task.has_jerk,
+        free=task.free,
     )
