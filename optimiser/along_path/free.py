@@ -9,6 +9,7 @@ Units: mm, mm/s, s.
 """
 
 from dataclasses import dataclass
+from functools import reduce
 from itertools import pairwise
 
 import numpy as np
@@ -43,6 +44,47 @@ GREATEST = 1e12
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SmoothestRuns:
+    """Smoothest profiles of some runs, beside the fastest at the same stations."""
+
+    time: float
+    """Time of the smoothest profiles, s."""
+    fastest_time: float
+    """Time of the fastest profiles, s."""
+    unevenness: float
+    """Sum of squared changes of the acceleration over the distance between them, mm/s⁴."""
+    fastest_unevenness: float
+    """The same sum of the fastest profiles, mm/s⁴."""
+
+    @property
+    def ratio(self) -> float:
+        """Unevenness over that of the fastest profiles; 1 where these are even."""
+        return self.unevenness / self.fastest_unevenness if self.fastest_unevenness else 1.0
+
+    def plus(self, other: "SmoothestRuns") -> "SmoothestRuns":
+        """Runs of both."""
+        return SmoothestRuns(
+            time=self.time + other.time,
+            fastest_time=self.fastest_time + other.fastest_time,
+            unevenness=self.unevenness + other.unevenness,
+            fastest_unevenness=self.fastest_unevenness + other.fastest_unevenness,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FreeTask:
+    """Further profiles that are computed beside the fastest one."""
+
+    has_jerk: bool = False
+    """Whether the profile with limited jerk is computed."""
+    smooth_share: float | None = None
+    """Time that the smoothest profile may add, over the fastest time; None: not computed."""
+
+
+FASTEST_ALONE = FreeTask()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class FreeProfile:
     """Times of the free profile over some runs."""
 
@@ -52,6 +94,8 @@ class FreeProfile:
     """Lower bound of its time, s."""
     jerk_time: float | None = None
     """Time of the profile with limited jerk, s; None unless it was asked for."""
+    smoothest: SmoothestRuns | None = None
+    """Smoothest profile within a time budget; None unless it was asked for."""
     worst: LimitExcess | None = None
     """Greatest relative excess over a limit, recomputed from the profile."""
 
@@ -59,16 +103,18 @@ class FreeProfile:
         """Profiles of both, one after the other."""
         known = [each for each in (self.worst, other.worst) if each is not None]
         jerk = [each for each in (self.jerk_time, other.jerk_time) if each is not None]
+        smooth = [each for each in (self.smoothest, other.smoothest) if each is not None]
         return FreeProfile(
             time=self.time + other.time,
             bound=self.bound + other.bound,
             jerk_time=sum(jerk) if jerk else None,
+            smoothest=reduce(SmoothestRuns.plus, smooth) if smooth else None,
             worst=max(known, key=lambda each: each.excess, default=None),
         )
 
 
 def free_profile(
-    stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds, *, has_jerk: bool
+    stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds, task: FreeTask
 ) -> FreeProfile:
     """Free profile of the feed moves of a stretch.
 
@@ -78,8 +124,7 @@ def free_profile(
     places : PlaceCaps
         Process limits along it.
     machine : MachineFeeds
-    has_jerk : bool
-        Whether the profile with limited jerk is computed too.
+    task : FreeTask
     """
     segments = stretch.segments
     offsets = np.concatenate(([0.0], np.cumsum(segments.length)))
@@ -91,7 +136,7 @@ def free_profile(
         if segments.is_rapid[first] or not len(rows):
             continue
         run = _RunCaps(segments[rows], offsets[rows], places, caps, machine)
-        found = found.plus(run.profile(has_jerk=has_jerk))
+        found = found.plus(run.profile(task))
     return found
 
 
@@ -125,16 +170,21 @@ class _RunCaps:
         self.segments, self.offsets = segments, offsets
         self.places, self.caps, self.machine = places, caps, machine
 
-    def profile(self, *, has_jerk: bool) -> FreeProfile:
+    def profile(self, task: FreeTask) -> FreeProfile:
         """Free profile of the run."""
         fine = float(self.segments.length.sum()) / MOST_STATIONS
         grid, problem, named = self._problem(max(STEP, fine))
         limit = grid.axis_limit(self._acceleration())
         profile = sweep_axes(problem, limit)
         proof = certify(problem, profile, caps=named, limit=limit)
-        jerk_time = self._jerk_time(max(JERK_STEP, fine)) if has_jerk else None
+        jerk_time = self._jerk_time(max(JERK_STEP, fine)) if task.has_jerk else None
+        share = task.smooth_share
         return FreeProfile(
-            time=profile.time, bound=proof.bound, jerk_time=jerk_time, worst=proof.worst
+            time=profile.time,
+            bound=proof.bound,
+            jerk_time=jerk_time,
+            smoothest=None if share is None else self._smoothest(share),
+            worst=proof.worst,
         )
 
     def _jerk_time(self, step: float) -> float:
@@ -146,6 +196,32 @@ class _RunCaps:
         grid, problem, _ = self._problem(step)
         limit = grid.axis_limit(self._acceleration())
         return jerk_limited_profile(problem, limit, jerk=float(known.min())).time
+
+    def _smoothest(self, share: float) -> SmoothestRuns:
+        """Smoothest profile that takes a share of time more than the fastest one.
+
+        A run of too many stations for the solver keeps its fastest profile.
+        """
+        from optimiser import profile_program as programs  # noqa: PLC0415 (cvxpy)
+
+        most = programs.MOST_STATIONS
+        fine = 2.0 * float(self.segments.length.sum()) / most
+        grid, problem, _ = self._problem(max(JERK_STEP, fine))
+        limit = grid.axis_limit(self._acceleration())
+        fastest = sweep_axes(problem, limit)
+        least = uneven = programs.unevenness(problem.lengths, fastest.squares)
+        time = fastest.time
+        if len(problem) <= most:
+            found = programs.smoothest_profile(
+                problem, limit, budget=(1.0 + share) * fastest.time
+            )
+            least, time = found.unevenness, found.profile.time
+        return SmoothestRuns(
+            time=time,
+            fastest_time=fastest.time,
+            unevenness=least,
+            fastest_unevenness=uneven,
+        )
 
     def _acceleration(self) -> Floats:
         limits = self.machine.limits.acceleration

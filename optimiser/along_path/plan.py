@@ -12,11 +12,13 @@ Units: mm, mm/s, s.
 
 from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from optimiser.along_path.caps import NAMES, CapName
-from optimiser.along_path.free import FreeProfile, free_profile
+from optimiser.along_path.carried import excess
+from optimiser.along_path.free import FASTEST_ALONE, FreeProfile, FreeTask, free_profile
 from optimiser.along_path.pieces import (
     FeedPieces,
     PieceRules,
@@ -24,7 +26,7 @@ from optimiser.along_path.pieces import (
     without_small_changes,
 )
 from optimiser.along_path.runs import MachineFeeds, commands_of, own_caps
-from optimiser.along_path.stretch import PathStretch, PlaceCaps, excess, place_caps
+from optimiser.along_path.stretch import PathStretch, PlaceCaps, place_caps
 from optimiser.levels import best_levels
 from simulator.motion.segments import Bools, Floats, Ints
 from simulator.motion.smoothing import smoothing_of
@@ -54,8 +56,8 @@ class FeedTask:
     rules: PieceRules
     levels: int | None = None
     """Largest number of feeds in each part of the program; None: any."""
-    has_jerk: bool = False
-    """Whether the free profile with limited jerk is computed too."""
+    free: FreeTask = FASTEST_ALONE
+    """Further free profiles that are computed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,18 +127,17 @@ class FeedPlanner:
         ValueError
             When an engagement is not a number.
         """
-        places = place_caps(stretch)
-        commands = commands_of(stretch, places, self.task.machine)
+        machine, places = self.task.machine, place_caps(stretch)
+        commands = commands_of(stretch, places, machine)
         name = stretch.workingstep
         pieces = pieces_of(stretch, commands, self.task.rules)
         pieces = replace(pieces, run=pieces.run + len(self._locked))
         self._pieces.setdefault(name, []).append(pieces)
         self._locked += commands.greatest_locked.tolist()
         self._bounds[name] = self._bounds.get(name, 0.0) + self._least_time(stretch, places)
-        machine, has_jerk = self.task.machine, self.task.has_jerk
-        free = free_profile(stretch, places, machine, has_jerk=has_jerk)
+        free = free_profile(stretch, places, machine, self.task.free)
         self._free[name] = self._free.get(name, FreeProfile()).plus(free)
-        most = float(excess(stretch).max(initial=0.0))
+        most = float(excess(stretch, machine).max(initial=0.0))
         self._excess[name] = max(most, self._excess.get(name, 0.0))
         given = self._given_windows.get(name, 0.0)
         self._given_windows[name] = given + commands.given_window
@@ -281,8 +282,62 @@ def rounded_down(rate: Floats, programmed: Floats, is_per_revolution: Bools) -> 
     return np.where(rate == programmed, rate, np.maximum(rounded, 0.1 * step))
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SlowerPart:
+    """Part of a planned block that is too fast, with the feeds that it may have."""
+
+    parts: tuple[BlockPart, ...]
+    """Slower feeds over the length of the part, 0 to 1."""
+    excess: float
+    """Its feed over the least of them."""
+
+    def or_slower(self, other: "SlowerPart | None") -> "SlowerPart":
+        """Feeds that two executions of the part permit; it is not divided then."""
+        if other is None:
+            return self
+        slowest = min(self.parts + other.parts, key=lambda part: part.rate)
+        most = max(self.excess, other.excess)
+        return SlowerPart(parts=(replace(slowest, end=1.0),), excess=most)
+
+
+def slower_parts(pieces: FeedPieces) -> Iterator[tuple[int, SlowerPart]]:
+    """Yield slower feeds by block number, once for each execution of a block."""
+    starts = np.flatnonzero(np.diff(pieces.block, prepend=-1))
+    rates = rounded_down(pieces.rate, pieces.programmed, pieces.is_per_revolution)
+    for first, last in pairwise([*starts.tolist(), len(pieces)]):
+        rows = slice(first, last)
+        yield (
+            int(pieces.block[first]),
+            SlowerPart(
+                parts=_parts_of(pieces, rows, rates[rows]),
+                excess=float((pieces.programmed[rows] / pieces.rate[rows]).max()),
+            ),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunBlock:
+    """Block as it was run, all of its executions together."""
+
+    name: str
+    """Part of the program."""
+    weight: float
+    """Time at a feed of 1 in its unit."""
+    rate: float
+    """Feed in its unit; of one of its parts where it has several."""
+    is_per_revolution: bool = False
+
+    def plus(self, other: "RunBlock | None") -> "RunBlock":
+        """The block with another execution."""
+        return self if other is None else replace(self, weight=self.weight + other.weight)
+
+
 def lowered(
-    feeds: BlockFeeds, excess: Mapping[tuple[int, int], float], *, keeps_levels: bool
+    feeds: BlockFeeds,
+    slower: Mapping[tuple[int, int], SlowerPart],
+    *,
+    blocks: Mapping[int, RunBlock],
+    levels: int | None,
 ) -> BlockFeeds:
     """Feeds in which each part that is too fast is slower.
 
@@ -290,28 +345,66 @@ def lowered(
     ----------
     feeds : mapping
         Parts of the changed blocks by block number.
-    excess : mapping
-        Feed over the permitted feed, by block and row of the part.
-    keeps_levels : bool
-        Whether parts of equal feed stay equal, so that their number does not grow.
+    slower : mapping
+        Slower feeds by block and row of the part; a block without an entry in ``feeds`` has one
+        part.
+    blocks : mapping
+        All blocks whose feeds may change, as they were run; needed with ``levels``.
+    levels : int or None
+        Largest number of feeds in each part of the program; None: any.
     """
-    factors: dict[float, float] = {}
-    for (block, row), ratio in excess.items():
-        rate = feeds[block][row].rate
-        factors[rate] = max(ratio, factors.get(rate, 1.0))
+    found = dict(feeds)
+    for block in dict.fromkeys(block for block, _ in slower):
+        whole = feeds.get(block) or (replace(slower[block, 0].parts[0], end=1.0),)
+        found[block] = tuple(_divided(block, whole, slower))
+    return found if levels is None else _in_levels(found, blocks, levels)
 
-    def slower(block: int, row: int, part: BlockPart) -> BlockPart:
-        ratio = factors.get(part.rate, 1.0) if keeps_levels else excess.get((block, row), 1.0)
-        if ratio == 1.0:
-            return part
-        rate = np.array([part.rate / ratio])
-        rounded = rounded_down(rate, np.zeros(1), np.array([part.is_per_revolution]))
-        return replace(part, rate=float(rounded[0]))
 
-    return {
-        block: tuple(slower(block, row, part) for row, part in enumerate(parts))
-        for block, parts in feeds.items()
-    }
+def _in_levels(feeds: BlockFeeds, blocks: Mapping[int, RunBlock], levels: int) -> BlockFeeds:
+    """Feeds of all blocks, at most some number of them in each part of the program."""
+    rows: dict[tuple[str, bool], list[tuple[int, BlockPart, float]]] = {}
+    for block, run in blocks.items():
+        whole = BlockPart(end=1.0, rate=run.rate, is_per_revolution=run.is_per_revolution)
+        begin = 0.0
+        for part in feeds.get(block, (whole,)):
+            group = rows.setdefault((run.name, part.is_per_revolution), [])
+            group.append((block, part, run.weight * (part.end - begin)))
+            begin = part.end
+    found: dict[int, list[BlockPart]] = {}
+    for group in rows.values():
+        weight, rate = np.array([(weight, part.rate) for _, part, weight in group]).T
+        chosen = best_levels(weight, rate, count=levels).feeds.tolist()
+        for (block, part, _), feed in zip(group, chosen, strict=True):
+            if block in feeds or feed != part.rate:
+                found.setdefault(block, []).append(replace(part, rate=feed))
+    return {block: _joined(parts) for block, parts in found.items()}
+
+
+def _divided(
+    block: int,
+    whole: tuple[BlockPart, ...],
+    slower: Mapping[tuple[int, int], SlowerPart],
+) -> Iterator[BlockPart]:
+    """Parts of a block, those that are too fast divided into slower ones."""
+    begin = 0.0
+    for row, part in enumerate(whole):
+        given = slower.get((block, row))
+        for each in (part,) if given is None else given.parts:
+            end = part.end
+            if given is not None and each is not given.parts[-1]:
+                end = begin + each.end * (part.end - begin)
+            yield replace(each, end=end)
+        begin = part.end
+
+
+def _joined(parts: Iterable[BlockPart]) -> tuple[BlockPart, ...]:
+    """Parts of a block; neighbours of equal feed are one."""
+    found: list[BlockPart] = []
+    for part in parts:
+        if found and found[-1].rate == part.rate:
+            found.pop()
+        found.append(part)
+    return tuple(found)
 
 
 def block_feeds(plan: FeedPlan) -> Iterator[tuple[int, tuple[BlockPart, ...]]]:
@@ -325,17 +418,19 @@ def block_feeds(plan: FeedPlan) -> Iterator[tuple[int, tuple[BlockPart, ...]]]:
         rates = pieces.rate[first:last]
         if (rates == pieces.programmed[first:last]).all():
             continue
-        ends = pieces.begin[first:last] + pieces.length[first:last]
-        kept = np.append(np.flatnonzero(np.diff(rates)), last - first - 1)
-        yield (
-            int(pieces.block[first]),
-            tuple(
-                BlockPart(
-                    end=1.0 if row == last - first - 1 else float(ends[row] / ends[-1]),
-                    rate=float(rates[row]),
-                    is_per_revolution=bool(pieces.is_per_revolution[first]),
-                    reason=NAMES[pieces.name[first + row]].words,
-                )
-                for row in kept
-            ),
+        yield int(pieces.block[first]), _parts_of(pieces, slice(first, last), rates)
+
+
+def _parts_of(pieces: FeedPieces, rows: slice, rates: Floats) -> tuple[BlockPart, ...]:
+    """Parts of one block at given feeds."""
+    ends = pieces.begin[rows] + pieces.length[rows]
+    kept = np.append(np.flatnonzero(np.diff(rates)), len(rates) - 1)
+    return tuple(
+        BlockPart(
+            end=1.0 if row == len(rates) - 1 else float(ends[row] / ends[-1]),
+            rate=float(rates[row]),
+            is_per_revolution=bool(pieces.is_per_revolution[rows.start]),
+            reason=NAMES[pieces.name[rows.start + row]].words,
         )
+        for row in kept.tolist()
+    )

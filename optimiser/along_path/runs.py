@@ -22,7 +22,7 @@ from optimiser.along_path.stretch import (
     segment_caps,
 )
 from simulator.motion.path_limits import corners
-from simulator.motion.segments import AxisLimits, ControlModel, Floats, Ints, Segments
+from simulator.motion.segments import AxisLimits, ControlModel, Floats, Ints
 from simulator.motion.smoothing import Smoothing, smoothing_of
 
 TRIALS, ROUNDS = 16, 2
@@ -110,13 +110,9 @@ def commands_of(stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds) 
             continue
         within = caps.at(rows)
         run = _FeedRun(
-            segments[first:last],
-            offsets[first : last + 1],
-            places.ends[rows],
-            within,
-            machine,
-            clearance_of(stretch),
-        )
+            stretch, slice(first, last), offsets[first : last + 1],
+            ends=places.ends[rows], caps=within, machine=machine,
+        )  # fmt: skip
         found.append(run.fastest())
         runs.append(np.full(len(found[-1].ends), len(locked)))
         locked.append(run.greatest_locked)
@@ -181,14 +177,19 @@ class _FeedRun:
 
     def __init__(
         self,
-        segments: Segments,
+        stretch: PathStretch,
+        rows: slice,
         offsets: Floats,
+        *,
         ends: Floats,
         caps: Caps,
         machine: MachineFeeds,
-        clearance: float,
     ) -> None:
-        self.clearance = clearance
+        segments = stretch.segments[rows]
+        self.clearance = clearance_of(stretch)
+        _, block = np.unique(segments.block, return_inverse=True)
+        self.whole = np.where(stretch.can_split[rows], -1, block)
+        """Block of each segment that stays in one piece, counted from 0; -1 for others."""
         self.segments, self.offsets, self.machine = segments, offsets, machine
         self.ends, self.caps = ends, caps
         self.begins = np.concatenate((offsets[:1], ends[:-1]))
@@ -215,6 +216,9 @@ class _FeedRun:
         best = self._smoothed(top)
         if self.given.window == 0.0:
             return best
+        as_given = self._smoothed(float(self.segments.speed.max()))
+        if as_given.time < best.time:
+            best = as_given
         ratio = (top / low) ** (1.0 / TRIALS)
         for _ in range(ROUNDS):
             # Between two trials the time has no other minimum that matters.
@@ -271,7 +275,14 @@ class _FeedRun:
 
     def _timed(self, ends: Floats, caps: Caps, smoothing: Smoothing) -> _Smoothed:
         lengths = np.diff(ends, prepend=self.offsets[0])
-        time = float((lengths / caps.feed).sum()) + smoothing.window
+        feed = caps.feed
+        if (self.whole >= 0).any():
+            # A block in one piece has the least feed of its places.
+            of = self.whole[np.searchsorted(self.offsets[1:], ends - 0.5 * lengths)]
+            least = np.full(int(of.max()) + 2, np.inf)
+            np.minimum.at(least, of, feed)
+            feed = np.where(of >= 0, least[of], feed)
+        time = float((lengths / feed).sum()) + smoothing.window
         return _Smoothed(ends=ends, caps=caps, time=time)
 
 

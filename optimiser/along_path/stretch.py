@@ -190,19 +190,17 @@ def _entries(ends: Floats, is_cut: Bools) -> Floats:
     return np.concatenate(([0.0], ends[:-1]))[begins]
 
 
-def excess(stretch: PathStretch) -> Floats:
-    """Programmed feed over the greatest that the process permits, by segment, (N,).
+def met_caps(stretch: PathStretch) -> Caps:
+    """Process limits at the stations of a stretch, without a reduced chip on the way in, (M,).
 
-    0 in air, on rapids and where the feed may not be chosen.
+    Raises
+    ------
+    ValueError
+        When an engagement is not a number; with its place.
     """
-    found = np.zeros(len(stretch.segments))
     if stretch.bounds is None:
-        return found
-    segment = stretch.met.segment
-    caps = _caps_of(stretch, stretch.met, stretch.bounds).caps
-    speed = np.where(stretch.is_free, stretch.segments.speed, 0.0)[segment]
-    np.maximum.at(found, segment, speed / caps.feed)
-    return found
+        return unbounded(len(stretch.met))
+    return _caps_of(stretch, stretch.met, stretch.bounds).caps
 
 
 def _caps_of(stretch: PathStretch, stations: Stations, bounds: CutBounds) -> StationCaps:

@@ -19,17 +19,27 @@ from service.simulation.setup import CountedIterator, PreparedRun
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import table_tool
 from simulator.motion.segments import Bools, Ints
-from simulator.removal.cutter import Insert
+from simulator.removal.cutter import Cutter, Insert
 from simulator.spec import Machine, MachineKind, MaterialMatch
 from simulator.tool_table import TableTool
 from stepnc_model.errors import Finding, Severity
-from stepnc_model.nc.moves import REASONS, UNADVISED, MoveFlag, MoveKind, NcMoves
+from stepnc_model.nc.compensation import tool_moves
+from stepnc_model.nc.moves import (
+    REASONS,
+    UNADVISED,
+    ModalSetting,
+    MoveFlag,
+    MoveKind,
+    NcMoves,
+)
 from stepnc_model.nc.neutral_blocks import neutral_blocks
 from stepnc_model.nc.program import NcProgram
+from stepnc_model.nc.rewrite import DEFINED_CYCLES, cycle_feed_blocks
 from stepnc_model.post.blocks import (
     Circular,
     Comment,
     Linear,
+    MachineType,
     Rapid,
     ToolChange,
 )
@@ -49,9 +59,6 @@ NOT_PLACED = (
     | MoveFlag.SKIPPABLE
 )
 """Flags of moves whose place over the stock is not known, or that may not be executed."""
-
-DEFINED_CYCLES = {Dialect.HEIDENHAIN, Dialect.SINUMERIK}
-"""Controls whose drilling cycles have no feed in the block that executes them."""
 
 CLEARANCE = 5.0
 """Distance from the stock at which the tool goes around moves that are left out, mm."""
@@ -85,11 +92,16 @@ class CodePaths:
         tools: dict[int, TableTool],
         stock: str,
     ) -> None:
-        self.program, self.machine, self.material = program, machine, material
+        self.machine, self.material = machine, material
         self.name, self.tools, self.stock = name, tools, stock
         self._mesh: GivenStock | None = None
         """Stock that serves several runs: only its map is cut."""
+        self._is_linuxcnc = program.dialect is Dialect.LINUXCNC
         moves = program.moves
+        if program.machine is MachineType.MILL:
+            moves = tool_moves(moves, self._radius, is_square=self._is_linuxcnc)
+        moves = _defined(moves, program.dialect)
+        self.program = replace(program, moves=moves)
         is_fed = np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC, MoveKind.THREAD))
         fed = np.flatnonzero(moves.is_advisable)
         frame = int(moves.frame[fed[0]]) if len(fed) else 0
@@ -105,9 +117,9 @@ class CodePaths:
         """Parts in the order of execution."""
         lines = program.text.lines[moves.block]
         size = int(program.text.lines.max(initial=0)) + 2
-        is_defined = ((moves.flags & int(MoveFlag.CYCLE)) != 0) & (
-            program.dialect in DEFINED_CYCLES
-        )
+        feeding = cycle_feed_blocks(moves, program.dialect)
+        is_defined = (moves.flags & int(MoveFlag.CYCLE)) != 0
+        is_defined &= ~np.isin(moves.fed_by, feeding) & (program.dialect in DEFINED_CYCLES)
         chosen = is_fed & self._is_run & moves.is_advisable & ~is_defined
         chosen &= ~np.isnan(moves.spindle)
         self.can_change = np.zeros(size, dtype=np.bool_)
@@ -124,7 +136,7 @@ class CodePaths:
             f"the stock stands in {self.frame}, not in their frame": ~is_here,
             "the operator may skip them": (moves.flags & int(MoveFlag.SKIPPABLE)) != 0,
             "they begin where moves end that the operator may skip": ~is_sure,
-            "the feed of a cycle stands in its definition, or before its call": is_defined,
+            "the feed of a cycle serves other moves as well": is_defined,
             "their feed is the lead of a thread": moves.kind == MoveKind.THREAD,
             "the spindle speed is not known": np.isnan(moves.spindle),
             "their start or end is not known": ~moves.is_known,
@@ -133,8 +145,34 @@ class CodePaths:
             for flag, name in REASONS.items()
             if flag & (NOT_PLACED | UNADVISED)
         }
-        self.findings = tuple(self._findings(is_fed & ~chosen, reasons))
+        self.findings = (*self._findings(is_fed & ~chosen, reasons), *self._beside())
         """Lines whose feeds stay as they are, and why."""
+
+    def _radius(self, setting: ModalSetting) -> float | None:
+        """Radius by which a contour is offset, mm; None if it is not known."""
+        side = setting.side
+        if side is not None and side.diameter is not None:
+            return 0.5 * side.diameter
+        number = setting.tool
+        if side is not None and side.number and self._is_linuxcnc:
+            number = side.number
+        tool = None if number is None else self.tools.get(number)
+        shape = None if tool is None else tool.shape
+        return 0.5 * shape.diameter if isinstance(shape, Cutter) else None
+
+    def _beside(self) -> Iterator[Finding]:
+        """Lines at which the tool goes beside a compensated contour."""
+        moves, text = self.program.moves, self.program.text
+        is_beside = (moves.flags & int(MoveFlag.BESIDE)) != 0
+        rows = np.flatnonzero(is_beside & np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC)))
+        if len(rows):
+            lines = np.unique(text.lines[moves.block[rows]])
+            yield Finding(
+                severity=Severity.WARNING,
+                message=f"{_spans(lines)}: the tool goes beside the compensated contour by its "
+                "radius in the tool table; is this the radius in the control?",
+                line=int(lines[0]),
+            )
 
     def prepared(self, margin: float) -> PreparedRun:
         """Program prepared anew, in a stock that is larger by a margin, mm.
@@ -263,6 +301,18 @@ class CodePaths:
                 message=f"the feeds of {_spans(lines)} stay as programmed: {reason}",
                 line=int(lines[0]),
             )
+
+
+def _defined(moves: NcMoves, dialect: Dialect) -> NcMoves:
+    """Moves in which those of defined cycles belong to the blocks that hold their feed."""
+    feeding = cycle_feed_blocks(moves, dialect)
+    is_fed = np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC))
+    rows = np.flatnonzero(is_fed & np.isin(moves.fed_by, feeding))
+    if not len(rows):
+        return moves
+    table = moves.rows.copy()
+    table["block"][rows] = table["fed_by"][rows]
+    return replace(moves, rows=table)
 
 
 def _is_uncertain(moves: NcMoves) -> Bools:

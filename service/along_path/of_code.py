@@ -13,9 +13,9 @@ from optimiser.modes import Mode
 from service.along_path.code_paths import CodeBlocks, CodePaths
 from service.along_path.course import PathSource
 from service.along_path.plan_run import PartTotals
-from service.along_path.run import AlongPathTask, FeedsAlongPath, along_path
+from service.along_path.run import FeedsAlongPath, along_path, feed_task
 from service.along_path.task import task_of
-from service.along_path.written_code import slowed
+from service.along_path.written_code import block_advice, settled
 from service.chosen import (
     DEFAULT_LATHE,
     DEFAULT_MILL,
@@ -39,10 +39,9 @@ from simulator.spec import Machine, MaterialMatch
 from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.read import read_tools
 from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
-from stepnc_model.nc.advice import BlockAdvice, RewrittenCode
+from stepnc_model.nc.advice import RewrittenCode
 from stepnc_model.nc.program import NcProgram, read_program
 from stepnc_model.nc.rewrite import rewrite
-from stepnc_model.post.block_feeds import BlockPart
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.units import mm_from_um
 
@@ -119,22 +118,35 @@ def optimise_code(
         )
 
     code = paths_of(program)
-    bounds = _bounds(code, request)
-    source = PathSource(
-        prepare=code.prepared,
-        bounds=lambda part: bounds.get(part.name),
-        numbered=lambda run: CodeBlocks(run.blocks, code),
-    )
+
+    def source_of(code: CodePaths) -> PathSource:
+        bounds = _bounds(code, request)
+        return PathSource(
+            prepare=code.prepared,
+            bounds=lambda part: bounds.get(part.name),
+            numbered=lambda run: CodeBlocks(run.blocks, code),
+        )
+
     task = replace(
         task_of(request, machine), keeps_traces=files.report is not None, keeps_idle=True
     )
-    along = along_path(source, task, tell=tell)
-    advice = (_advice(code, line, parts) for line, parts in along.feeds.items())
+    along = along_path(source_of(code), task, tell=tell)
+    advice = (block_advice(code, line, parts) for line, parts in along.feeds.items())
     rewritten = rewrite(program, advice, mark=request.is_marked)
     if rewritten.changed:
-        again = read_program(rewritten.data, dialect=program.dialect, machine=program.machine)
-        rewritten = replace(
-            rewritten, data=_slowed(paths_of(again), request, task, along.time_after, tell)
+        whole = along.time_after
+        rewritten = settled(
+            rewritten,
+            program,
+            source_of=source_of,
+            paths_of=paths_of,
+            task=feed_task(machine, task),
+            totals=PartTotals(
+                Ticker(tell),
+                "checking the written program",
+                share=lambda now: min(now / whole, 1.0),
+                keeps_trace=False,
+            ),
         )
     found = CodeAdvice(
         program=name,
@@ -196,37 +208,6 @@ def _bounds(code: CodePaths, request: AdviceRequest) -> dict[str, CutBounds]:
         if bounds is not None:
             found[part.name] = bounds
     return found
-
-
-def _advice(code: CodePaths, line: int, parts: tuple[BlockPart, ...]) -> BlockAdvice:
-    """Advice for a block of the file; feeds per revolution at its greatest speed."""
-    block = code.block_at(line)
-    fastest = code.fastest(block) if parts[0].is_per_revolution else 1.0
-    reasons = dict.fromkeys(part.reason for part in parts)
-    return BlockAdvice(
-        block=block,
-        ends=tuple(part.end for part in parts),
-        feeds=tuple(part.rate * fastest for part in parts),
-        reason=", ".join(reasons),
-    )
-
-
-def _slowed(
-    code: CodePaths, request: AdviceRequest, task: AlongPathTask, whole: float, tell: Tell
-) -> bytes:
-    """Bytes of a rewritten program whose blocks are nowhere too fast."""
-    bounds = _bounds(code, request)
-    what = "checking the written program"
-    totals = PartTotals(
-        Ticker(tell), what, share=lambda now: min(now / whole, 1.0), keeps_trace=False
-    )
-    slower = slowed(
-        code,
-        bounds=lambda part: bounds.get(part.name),
-        control=task.control,
-        watch=totals.add,
-    )
-    return rewrite(code.program, slower).data
 
 
 def _idle(code: CodePaths, along: FeedsAlongPath) -> Iterator[Finding]:

@@ -88,6 +88,13 @@ def free_words(along: FeedsAlongPath) -> str:
         text += f"; greatest excess {free.worst.excess:.1e}, {free.worst.limit}"
     if free.jerk_time is not None:
         text += f"; {free.jerk_time:.1f} s with limited jerk"
+    if free.smoothest is not None:
+        smooth = free.smoothest
+        text += (
+            f"; {smooth.time:.1f} s as the smoothest profile, whose squared changes of the "
+            f"acceleration are {smooth.ratio:.3g} times those of the fastest, "
+            f"{smooth.fastest_time:.1f} s"
+        )
     return text + ")"
 
 
@@ -117,11 +124,18 @@ def along_path_record(along: FeedsAlongPath) -> dict[str, Any]:
 
 def _free(along: FeedsAlongPath) -> dict[str, Any]:
     free = along.free
-    worst = free.worst
+    worst, smooth = free.worst, free.smoothest
     return {
         "time_s": free.time,
         "bound_s": free.bound,
         "jerk_limited_time_s": free.jerk_time,
+        "smoothest": None
+        if smooth is None
+        else {
+            "time_s": smooth.time,
+            "fastest_time_s": smooth.fastest_time,
+            "unevenness_ratio": smooth.ratio,
+        },
         "greatest_excess": None if worst is None else worst.excess,
         "greatest_excess_limit": None if worst is None else worst.limit,
     }

@@ -5,21 +5,26 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from optimiser.along_path.plan import BlockFeeds
-from optimiser.along_path.stretch import PathStretch, excess
+from optimiser.along_path.carried import slower_pieces
+from optimiser.along_path.plan import (
+    PERMITTED,
+    BlockFeeds,
+    FeedTask,
+    RunBlock,
+    SlowerPart,
+    slower_parts,
+)
+from optimiser.along_path.stretch import PathStretch
 from service.along_path.course import NumberedBlocks, PathSource, stretches_of
 from service.along_path.trace import PathTrace, PathTraceKeeper
 from service.progress import Ticker, bar
 from simulator.machine.samples import Episode
 from simulator.machine.totals import Total, added
 from simulator.machine.virtual import VirtualMachine
-from simulator.motion.segments import Bools, ControlModel, Ints
+from simulator.motion.segments import Bools, Ints
 from stepnc_model.errors import Finding
 from stepnc_model.post.block_feeds import with_feeds
 from stepnc_model.post.blocks import Block
-
-EXCESS = 1.002
-"""Feed over the permitted feed above which a part is lowered."""
 
 BRIDGE = 0
 """Line of moves that stand for those that are left out: what they meet is no fault."""
@@ -95,8 +100,10 @@ class PlanRun:
     """Run of a plan on the virtual machine."""
 
     totals: PartTotals
-    excess: dict[tuple[int, int], float]
-    """Feed over the permitted feed of parts that are too fast, by block and row."""
+    slower: dict[tuple[int, int], SlowerPart]
+    """Slower feeds of parts that are too fast, by block and row."""
+    blocks: dict[int, RunBlock]
+    """Blocks whose feeds may change, if the number of feeds is bound."""
     limits: tuple[LimitStretch, ...]
     """Active limits along the path; empty unless signals were kept."""
 
@@ -105,7 +112,8 @@ def run_plan(
     source: PathSource,
     feeds: BlockFeeds,
     *,
-    control: ControlModel,
+    task: FeedTask,
+    splits: bool,
     totals: PartTotals,
 ) -> PlanRun:
     """Run a plan and compare its feeds with those that each place permits.
@@ -114,7 +122,9 @@ def run_plan(
     ----------
     source : PathSource
     feeds : BlockFeeds
-    control : ControlModel
+    task : FeedTask
+    splits : bool
+        Whether parts that are too fast may be divided.
     totals : PartTotals
         Receives the run.
 
@@ -126,28 +136,62 @@ def run_plan(
     prepared = source.prepare(0.0)
     emitted = _EmittedBlocks(source.numbered(prepared), feeds)
     strip = _LimitStrip(emitted, feeds)
-    ratios: dict[tuple[int, int], float] = {}
+    slower: dict[tuple[int, int], SlowerPart] = {}
+    blocks: dict[int, RunBlock] = {}
     for stretch in stretches_of(
         prepared,
         None,
-        control=control,
+        control=task.machine.control,
         bounds=source.bounds,
         log=emitted,
         watch=totals.add,
     ):
         strip.add(stretch)
-        found = excess(stretch)
-        for row in np.flatnonzero(found > EXCESS).tolist():
-            origin = emitted.origin[int(stretch.segments.block[row])]
-            if origin[0] in feeds:
-                ratios[origin] = max(float(found[row]), ratios.get(origin, 1.0))
+        if task.levels is not None:
+            for number, block in _run_blocks(stretch):
+                source_number = emitted.origin[number][0]
+                blocks[source_number] = block.plus(blocks.get(source_number))
+        judged = replace(stretch, can_split=stretch.can_split & splits)
+        pieces = slower_pieces(judged, task.machine, task.rules)
+        if pieces is None:
+            continue
+        for number, part in slower_parts(pieces):
+            origin = emitted.origin[number]
+            # A feed that the plan kept as programmed is permitted a little more.
+            if origin[0] in feeds or part.excess > PERMITTED:
+                slower[origin] = part.or_slower(slower.get(origin))
     totals.findings = [
         replace(finding, line=line)
         for finding in totals.findings
         for line in (emitted.line(finding.line),)
         if line != BRIDGE or finding.line == 0
     ]
-    return PlanRun(totals=totals, excess=ratios, limits=tuple(strip.rows))
+    return PlanRun(totals=totals, slower=slower, blocks=blocks, limits=tuple(strip.rows))
+
+
+def _run_blocks(stretch: PathStretch) -> Iterator[tuple[int, RunBlock]]:
+    """Yield the blocks of a stretch whose feeds may change."""
+    segments = stretch.segments
+    rows = np.flatnonzero(stretch.is_free & (segments.length > 0.0))
+    is_own = ~np.isnan(stretch.per_revolution[rows])
+    weight = segments.length[rows] / np.where(is_own, stretch.spindle[rows], 1.0)
+    rate = np.where(is_own, stretch.per_revolution[rows], segments.speed[rows])
+    numbers, first, which = np.unique(
+        segments.block[rows], return_index=True, return_inverse=True
+    )
+    whole = np.bincount(which, weights=weight)
+    for number, row, total in zip(
+        numbers.tolist(), first.tolist(), whole.tolist(), strict=True
+    ):
+        yield (
+            number,
+            RunBlock(
+                name=stretch.workingstep,
+                weight=total,
+                rate=float(rate[row]),
+                is_per_revolution=bool(is_own[row]),
+            ),
+        )
 
 
 class _EmittedBlocks:

@@ -7,7 +7,7 @@ more than the whole block did, its feed is lowered, and the plan runs once more.
 
 from dataclasses import dataclass
 
-from optimiser.along_path.free import FreeProfile
+from optimiser.along_path.free import FASTEST_ALONE, FreeProfile, FreeTask
 from optimiser.along_path.pieces import PieceRules
 from optimiser.along_path.plan import (
     BlockFeeds,
@@ -28,8 +28,12 @@ from simulator.motion.segments import ControlModel, axis_limits
 from simulator.spec import Machine
 from stepnc_model.errors import Finding
 
-MOST_ROUNDS = 4
+MOST_ROUNDS = 6
 """Greatest number of runs of a plan."""
+
+UNSPLIT_ROUNDS = 3
+"""Number of the last runs after which parts are slower as a whole: the path, and with it what
+the tools meet, is then the same in all of them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,8 +51,8 @@ class AlongPathTask:
     """Greatest feed that the user permits, mm/s; None: that of the machine."""
     keeps_idle: bool = False
     """Whether parts of the program that meet no stock keep their feeds."""
-    has_jerk: bool = False
-    """Whether the free profile with limited jerk is computed too."""
+    free: FreeTask = FASTEST_ALONE
+    """Further free profiles that are computed."""
     keeps_traces: bool = False
     """Whether feed, force and power of both runs are kept for plots."""
 
@@ -144,7 +148,7 @@ def along_path(
     """
     ticker = Ticker(tell)
     given = source.prepare(0.0)
-    planner = FeedPlanner(_feed_task(given.machine, task))
+    planner = FeedPlanner(feed_task(given.machine, task))
     before = PartTotals(
         ticker, "planning", share=lambda _: given.done(), keeps_trace=task.keeps_traces
     )
@@ -161,17 +165,18 @@ def along_path(
     plan = planner.plan(kept=idle)
     feeds: BlockFeeds = dict(block_feeds(plan))
     whole = max(sum(total.duration for _, total in before.rows()), 1.0)
-    for _ in range(MOST_ROUNDS):
+    for left in reversed(range(MOST_ROUNDS)):
         after = PartTotals(
             ticker,
             "running the plan",
             share=lambda now: min(now / whole, 1.0),
             keeps_trace=task.keeps_traces,
         )
-        run = run_plan(source, feeds, control=task.control, totals=after)
-        if not run.excess:
+        splits = left >= UNSPLIT_ROUNDS
+        run = run_plan(source, feeds, task=planner.task, splits=splits, totals=after)
+        if not run.slower or not left:
             break
-        feeds = lowered(feeds, run.excess, keeps_levels=task.levels is not None)
+        feeds = lowered(feeds, run.slower, blocks=run.blocks, levels=task.levels)
     parts = {part.name: part for part in plan.parts}
     return FeedsAlongPath(
         feeds=feeds,
@@ -203,8 +208,8 @@ def _rules(machine: Machine, block_time: float) -> PieceRules:
     )
 
 
-def _feed_task(machine: Machine, task: AlongPathTask) -> FeedTask:
-    """Task of the optimiser for a machine."""
+def feed_task(machine: Machine, task: AlongPathTask) -> FeedTask:
+    """Task of the optimiser for a machine, with its limits and its control."""
     limits = axis_limits(machine)
     return FeedTask(
         machine=MachineFeeds(
@@ -218,5 +223,5 @@ def _feed_task(machine: Machine, task: AlongPathTask) -> FeedTask:
         ),
         rules=_rules(machine, limits.block_time),
         levels=task.levels,
-        has_jerk=task.has_jerk,
+        free=task.free,
     )

@@ -1,5 +1,6 @@
 """Task of planning feeds along paths, from a request."""
 
+from optimiser.along_path.free import FreeTask
 from service.along_path.run import AlongPathTask
 from service.requests.advice import AdviceRequest
 from simulator.motion.control import control_model
@@ -28,7 +29,7 @@ def task_of(request: AdviceRequest, machine: Machine) -> AlongPathTask:
         control=control,
         greatest=None if greatest is None else speed_from_mm_min(greatest),
         levels=request.levels,
-        has_jerk=request.is_jerk_limited,
+        free=FreeTask(has_jerk=request.is_jerk_limited, smooth_share=request.smooth_share),
         margin=request.stock_margin_mm,
         tolerance=request.corner_tolerance_mm,
     )

@@ -5,78 +5,61 @@ for stretches that depend on how the path is cut into blocks. So what is written
 and a block that is too fast is slowed down. Its path stays, so one run is enough.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
+from dataclasses import replace
 
-import numpy as np
-
-from optimiser.along_path.caps import CutBounds
-from optimiser.along_path.plan import PERMITTED
-from optimiser.along_path.stretch import excess
-from service.along_path.code_paths import CodeBlocks, CodePaths
-from service.along_path.course import Part, stretches_of
-from simulator.machine.samples import Episode
-from simulator.machine.virtual import VirtualMachine
-from simulator.motion.segments import ControlModel
-from stepnc_model.nc.advice import BlockAdvice
-from stepnc_model.nc.moves import FeedMode
+from optimiser.along_path.plan import FeedTask
+from service.along_path.code_paths import CodePaths
+from service.along_path.course import PathSource
+from service.along_path.plan_run import PartTotals, run_plan
+from stepnc_model.nc.advice import BlockAdvice, RewrittenCode
+from stepnc_model.nc.program import NcProgram, read_program
+from stepnc_model.nc.rewrite import rewrite
+from stepnc_model.post.block_feeds import BlockPart
 
 
-def slowed(
-    code: CodePaths,
+def settled(
+    rewritten: RewrittenCode,
+    program: NcProgram,
     *,
-    bounds: Callable[[Part], CutBounds | None],
-    control: ControlModel,
-    watch: Callable[[Episode, VirtualMachine], None],
-) -> Iterator[BlockAdvice]:
-    """Yield lower feeds for the blocks of a program that are too fast.
+    source_of: Callable[[CodePaths], PathSource],
+    paths_of: Callable[[NcProgram], CodePaths],
+    task: FeedTask,
+    totals: PartTotals,
+) -> RewrittenCode:
+    """Rewritten code in which no block is too fast.
 
     Parameters
     ----------
-    code : CodePaths
-        Program as it is written.
-    bounds : callable
-        Bounds of a part of the program; None if its feed may not be chosen.
-    control : ControlModel
-    watch : callable
-        Receives all episodes of the run.
+    rewritten : RewrittenCode
+    program : NcProgram
+        Program that was rewritten.
+    source_of, paths_of : callable
+        Functions that prepare a program for runs.
+    task : FeedTask
+    totals : PartTotals
+        Receives the run.
 
     Raises
     ------
-    SimulationError
+    StepNcError
         When the machine cannot run the program.
     """
-    for line, ratio in _ratios(code, bounds, control, watch).items():
-        block = code.block_at(line)
-        yield BlockAdvice(block=block, ends=(1.0,), feeds=(_feed(code, block) / ratio,))
+    again = read_program(rewritten.data, dialect=program.dialect, machine=program.machine)
+    code = paths_of(again)
+    run = run_plan(source_of(code), {}, task=task, splits=False, totals=totals)
+    slower = (block_advice(code, line, each.parts) for (line, _), each in run.slower.items())
+    return replace(rewritten, data=rewrite(again, slower).data)
 
 
-def _ratios(
-    code: CodePaths,
-    bounds: Callable[[Part], CutBounds | None],
-    control: ControlModel,
-    watch: Callable[[Episode, VirtualMachine], None],
-) -> Mapping[int, float]:
-    """Feed over the permitted feed of lines that are too fast."""
-    run = code.prepared(0.0)
-    found: dict[int, float] = {}
-    for stretch in stretches_of(
-        run,
-        None,
-        control=control,
-        bounds=bounds,
-        log=CodeBlocks(run.blocks, code),
-        watch=watch,
-    ):
-        ratio = excess(stretch)
-        for row in np.flatnonzero(ratio > PERMITTED).tolist():
-            line = int(stretch.segments.block[row])
-            found[line] = max(float(ratio[row]), found.get(line, 1.0))
-    return found
-
-
-def _feed(code: CodePaths, block: int) -> float:
-    """Least feed at which a block is executed, mm/s; per revolution at its greatest speed."""
-    moves, rows = code.program.moves, code.rows_of(block)
-    if moves.settings[int(moves.rows["setting"][rows[0]])].mode is FeedMode.PER_REVOLUTION:
-        return float(moves.word[rows].min()) * moves.fastest(rows)
-    return float(moves.feed[rows].min())
+def block_advice(code: CodePaths, line: int, parts: tuple[BlockPart, ...]) -> BlockAdvice:
+    """Advice for a line of the file; feeds per revolution at its greatest speed."""
+    block = code.block_at(line)
+    fastest = code.fastest(block) if parts[0].is_per_revolution else 1.0
+    reasons = dict.fromkeys(part.reason for part in parts)
+    return BlockAdvice(
+        block=block,
+        ends=tuple(part.end for part in parts),
+        feeds=tuple(part.rate * fastest for part in parts),
+        reason=", ".join(reasons),
+    )

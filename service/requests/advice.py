@@ -225,6 +225,15 @@ class AdviceRequest(Request):
             flag="--jerk",
         ),
     ] = False
+    smooth_share: Annotated[
+        float | None,
+        Interval(gt=0.0, le=1.0),
+        About(
+            "also compute the smoothest profile along the path that takes at most this share "
+            "of time more than the fastest",
+            flag="--smooth", metavar="SHARE",
+        ),
+    ] = None  # fmt: skip
     writes_toolpaths: Annotated[
         bool,
         About(

@@ -177,6 +177,16 @@ class AlongPathPartView(View):
     active_limits: dict[str, LimitShareView]
 
 
+class SmoothestView(View):
+    """Smoothest feeds of a cut within a share of time above the fastest."""
+
+    time_s: float
+    fastest_time_s: float = Field(description="time of the fastest feeds at the same places")
+    unevenness_ratio: float = Field(
+        description="squared changes of the acceleration over those of the fastest feeds"
+    )
+
+
 class FreeProfileView(View):
     """Feeds of a cut without the steps of a control, within the accelerations of the axes."""
 
@@ -184,6 +194,9 @@ class FreeProfileView(View):
     bound_s: float = Field(description="least time of any feeds")
     jerk_limited_time_s: float | None = Field(
         description="time with limited jerk; null: not requested"
+    )
+    smoothest: SmoothestView | None = Field(
+        description="smoothest feeds within a time budget; null: not requested"
     )
     greatest_excess: float | None = Field(description="greatest excess over a limit, share")
     greatest_excess_limit: str | None

@@ -234,7 +234,10 @@ class EpisodeCourse:
         """Index of the station that applies at each of the given times."""
         along = self.offsets[kinematics.segment] + kinematics.station
         rows = np.searchsorted(self.station_ends, along, side="left")
-        return np.minimum(rows, len(self.stations) - 1)
+        # A segment waits at its start for the control's filter; the station there is the last
+        # one of the segment before, which may be a rapid.
+        first = self._first_stations
+        return np.clip(rows, first[kinematics.segment], first[kinematics.segment + 1] - 1)
 
     def beyond(self, kinematics: Kinematics, rows: Ints) -> Floats:
         """Relative positions within stretches: -1/2 at the beginning, 1/2 at the end."""
@@ -243,6 +246,11 @@ class EpisodeCourse:
         left = (ends - kinematics.station) / np.where(lengths > 0.0, lengths, 1.0)
         place: Floats = np.clip(0.5 - left, -0.5, 0.5)
         return place
+
+    @cached_property
+    def _first_stations(self) -> Ints:
+        """Index of the first station of each segment, and the number of stations, (N + 1,)."""
+        return np.searchsorted(self.stations.segment, np.arange(len(self.segments) + 1))
 
     @cached_property
     def _stretches(self) -> Floats:

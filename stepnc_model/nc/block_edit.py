@@ -5,6 +5,7 @@ comments, and the words that act before the move; the last piece gets the functi
 after it.
 """
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
@@ -12,7 +13,7 @@ from decimal import Decimal
 from stepnc_model.nc import iso_codes
 from stepnc_model.nc.number_style import NumberStyle
 from stepnc_model.nc.split import MovePiece, WordScale
-from stepnc_model.nc.token import Token, TokenKind, tokens
+from stepnc_model.nc.token import NUMBER, Token, TokenKind, tokens
 from stepnc_model.post.dialect import Dialect
 
 AXES = {"X": 0, "Y": 1, "Z": 2, "U": 0, "W": 2, "IX": 0, "IY": 1, "IZ": 2}
@@ -46,6 +47,36 @@ def feed_token(text: str, dialect: Dialect) -> Token | None:
         if token.name in FEEDS and token.kind in {TokenKind.WORD, TokenKind.MACRO}:
             return token
     return None
+
+
+CYCLE_FEED = "Q206"
+"""Parameter of a Klartext cycle that holds its feed."""
+
+
+def cycle_feed_token(text: str, dialect: Dialect) -> Token | None:
+    """Word of a block that gives a defined cycle its feed, or None without a number there."""
+    if dialect is not Dialect.HEIDENHAIN:
+        token = feed_token(text, dialect)
+        return token if token is not None and token.kind is TokenKind.WORD else None
+    for token in tokens(text, dialect):
+        is_feed = token.kind is TokenKind.ASSIGNMENT and token.name == CYCLE_FEED
+        if is_feed and re.fullmatch(NUMBER, token.value):
+            return token
+    return None
+
+
+def with_cycle_feed(text: str, feed: str, *, dialect: Dialect) -> str:
+    """Block with another feed of the cycle that it defines, or that is called after it.
+
+    Examples
+    --------
+    >>> with_cycle_feed("CYCL DEF 200 Q206=+150 ~", "80", dialect=Dialect.HEIDENHAIN)
+    'CYCL DEF 200 Q206=80 ~'
+    """
+    token = cycle_feed_token(text, dialect)
+    if token is None:
+        return text
+    return text[: token.end - len(token.value)] + feed + text[token.end :]
 
 
 def with_feed(text: str, feed: str, *, dialect: Dialect, gap: str) -> str:

@@ -37,8 +37,10 @@ class BlockWords:
     """Block number N."""
     label: str = ""
     is_skippable: bool = False
-    assigns: bool = False
-    """Whether the block gives a value to a variable."""
+    assignments: list[str] = field(default_factory=list)
+    """Values given to variables, as written."""
+    evaluated: set[str] = field(default_factory=set)
+    """Addresses whose value was computed from variables."""
     is_percent: bool = False
 
     @property
@@ -82,7 +84,7 @@ def words_of(text: str, dialect: Dialect) -> BlockWords:
         elif kind is TokenKind.SKIP:
             words.is_skippable = True
         elif kind is TokenKind.ASSIGNMENT:
-            words.assigns = True
+            words.assignments.append(value)
         elif kind is TokenKind.PERCENT:
             words.is_percent = True
         elif kind in {TokenKind.OTHER, TokenKind.TEXT}:
@@ -96,6 +98,15 @@ def _take(words: BlockWords, name: str, value: str) -> None:
     if not abs(number) <= LARGEST:
         words.strange.append(f"{name}{value[:20]}")
         return
+    if name in words.values and name not in {"G", "M", "N"}:
+        words.strange.append(f"{name}{value}")
+    take_word(words, name, number)
+    if "." not in value and name not in {"G", "M"}:
+        words.pointless.add(name)
+
+
+def take_word(words: BlockWords, name: str, number: float) -> None:
+    """Sort in a word by its address and its number."""
     if name == "G":
         words.codes.append(round(10.0 * number))
     elif name == "M":
@@ -103,8 +114,4 @@ def _take(words: BlockWords, name: str, value: str) -> None:
     elif name == "N" and words.number is None:
         words.number = round(number)
     else:
-        if name in words.values:
-            words.strange.append(f"{name}{value}")
         words.values["O" if name == ":" else name] = number
-        if "." not in value:
-            words.pointless.add(name)

@@ -21,6 +21,10 @@ MOST_REPEATED = 1_000_000
 """Greatest number of executed blocks beyond the blocks of the file."""
 
 
+MOST_LOOPED = 100_000
+"""Number of blocks beyond those of the file after which loops are left."""
+
+
 @dataclass(slots=True)
 class _Level:
     """Call or repeat under way."""
@@ -48,6 +52,16 @@ class ProgramFlow:
     def is_called(self) -> bool:
         """Whether a subprogram is being executed."""
         return any(not level.is_repeat for level in self._levels)
+
+    @property
+    def depth(self) -> int:
+        """Number of subprograms being executed within each other."""
+        return sum(not level.is_repeat for level in self._levels)
+
+    @property
+    def is_worn_out(self) -> bool:
+        """Whether so many blocks were repeated that no further loop is begun."""
+        return self._executed > len(self._text) + MOST_LOOPED
 
     def is_inside(self, target: int) -> bool:
         """Whether the subprogram at a block is being executed."""

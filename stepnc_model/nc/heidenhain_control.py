@@ -13,7 +13,7 @@ from stepnc_model.nc.arcs import centre_of_radius, turn_of
 from stepnc_model.nc.drilling import cycle_moves, drilling
 from stepnc_model.nc.flow import ProgramFlow, places
 from stepnc_model.nc.klartext_words import KlartextWords, klartext_words
-from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind
+from stepnc_model.nc.moves import CompensationSide, FeedMode, MoveFlag, MoveKind
 from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.nc.remarks import Remarks
 from stepnc_model.nc.text import NcText
@@ -309,9 +309,11 @@ class HeidenhainControl:
     def _path(self, head: str, words: KlartextWords) -> None:
         if "RL" in words.names or "RR" in words.names:
             self.recorder.standing |= MoveFlag.COMPENSATED.value
+            self._beside(CompensationSide(is_left="RL" in words.names))
         elif "R0" in words.names:
             self.recorder.flags |= self.recorder.standing & MoveFlag.COMPENSATED.value
             self.recorder.standing &= ~MoveFlag.COMPENSATED.value
+            self._beside(None)
         path = self._paths.get(head)
         if head in {"RND", "CHF"}:
             self._rounded(words)
@@ -320,6 +322,10 @@ class HeidenhainControl:
         else:
             is_rapid = self._feed(words)
             self.lose(f"the path {head} is not understood" if not is_rapid else head)
+
+    def _beside(self, side: CompensationSide | None) -> None:
+        """Take the side of the contour on which the tool goes."""
+        self.recorder.setting = replace(self.recorder.setting, side=side)
 
     def _rounded(self, words: KlartextWords) -> None:
         """A chamfer or rounding between two lines: its neighbours stay in one piece."""

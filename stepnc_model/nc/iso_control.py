@@ -10,8 +10,9 @@ from math import isnan, nan
 
 from stepnc_model.nc import iso_codes
 from stepnc_model.nc.arcs import centre_of_radius, turn_of
-from stepnc_model.nc.block_words import BlockWords, words_of
+from stepnc_model.nc.block_words import BlockWords, take_word, words_of
 from stepnc_model.nc.drilling import cycle_moves, drilling
+from stepnc_model.nc.expression import Variables, evaluate, target_of
 from stepnc_model.nc.flow import ProgramFlow
 from stepnc_model.nc.iso_flow import IsoFlow
 from stepnc_model.nc.iso_modes import IsoModes, ModalMotion, Shot
@@ -22,6 +23,7 @@ from stepnc_model.nc.text import NcText
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.grid import FULL
+from stepnc_model.post.words import LARGEST
 from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 from stepnc_model.units import seconds_from_ms
 
@@ -49,6 +51,7 @@ class IsoControl:
         self.recorder = MoveRecorder(has_y=not self.is_lathe)
         self.remarks = Remarks(text)
         self.flow = ProgramFlow(text, self.recorder)
+        self.variables = Variables(is_linuxcnc=dialect is Dialect.LINUXCNC)
         self.modes = self.start_modes(machine)
         self.steering = self.steer()
 
@@ -85,6 +88,9 @@ class IsoControl:
         while block < size:
             self.flow.step(block)
             block = self._execute(block)
+        if self.recorder.count and not self.modes.has_unit:
+            codes = "G70 or G71" if self.dialect is Dialect.SINUMERIK else "G20 or G21"
+            self.remarks.assume(f"the program states no unit ({codes}): mm are assumed")
 
     def steer(self) -> IsoFlow:
         """Steering of the program."""
@@ -100,6 +106,8 @@ class IsoControl:
             return block + 1
         words = words_of(text, self.dialect)
         self.modes.shot, self.modes.lost = None, ""
+        if words.macros or words.assignments:
+            self._evaluate(words)
         following = self.steering.follow(words, block)
         if following is not None:
             return following
@@ -121,6 +129,33 @@ class IsoControl:
             self.modes.stand(MoveFlag.CONDITIONAL, is_on=False)
             self.recorder.unknown()
         return self.steering.ended(words, block)
+
+    def _evaluate(self, words: BlockWords) -> None:
+        """Compute words from variables as far as they are known, then set variables."""
+        if self.dialect is Dialect.SINUMERIK:
+            return
+        for name, text in list(words.macros.items()):
+            value = evaluate(text, self.variables)
+            if not isnan(value) and abs(value) <= LARGEST:
+                del words.macros[name]
+                words.evaluated.add(name)
+                take_word(words, name, value)
+        self.assign(words)
+
+    def assign(self, words: BlockWords) -> None:
+        """Set the variables of a block; unsure values are not known."""
+        is_sure = not (words.is_skippable or words.strange)
+        is_sure = is_sure and not self.recorder.standing & MoveFlag.CONDITIONAL
+        values = []
+        for text in words.assignments:
+            name, _, given = text.partition("=")
+            target = target_of(name, self.variables)
+            if target is None:
+                self.variables.forget()
+                return
+            values.append((target, evaluate(given, self.variables) if is_sure else nan))
+        for target, value in values:
+            self.variables.set(target, value)
 
     def _follow_contour(self, words: BlockWords) -> bool:
         """Enter the contour of a cycle that is not expanded; return whether it ends here.
@@ -181,7 +216,7 @@ class IsoControl:
         flags = MoveFlag(0)
         if words.is_skippable:
             flags |= MoveFlag.SKIPPABLE
-        if words.macros:
+        if words.macros or words.evaluated:
             flags |= MoveFlag.MACRO
         if words.label or words.number in self.steering.targets:
             flags |= MoveFlag.TARGET

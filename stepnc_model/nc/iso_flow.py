@@ -1,13 +1,17 @@
 """Flow of programs in the manner of ISO 6983: subprograms, repeats and conditions.
 
-Conditions are not evaluated: their blocks are executed once, and what they change is unknown
-afterwards.
+Conditions whose variables are known are evaluated, and loops run, within a bound. Blocks of
+other conditions are executed once, and what they change is unknown afterwards.
 """
 
 import re
+from math import isnan
 from typing import Protocol
 
+import numpy as np
+
 from stepnc_model.nc.block_words import BlockWords
+from stepnc_model.nc.expression import Variables, evaluate
 from stepnc_model.nc.flow import ProgramFlow, places
 from stepnc_model.nc.moves import MoveFlag
 from stepnc_model.nc.recorder import MoveRecorder
@@ -24,6 +28,11 @@ class Steered(Protocol):
     recorder: MoveRecorder
     remarks: Remarks
     flow: ProgramFlow
+    variables: Variables
+
+    def assign(self, words: BlockWords) -> None:
+        """Set the variables of a block."""
+        ...
 
     def forget(self) -> None:
         """Forget position and modal state."""
@@ -48,6 +57,49 @@ COUNT = re.compile(r"\[?\s*([0-9]+)(?:\.0*)?\s*\]?")
 
 END_OF_PROGRAM = {20, 300}
 
+KEYWORDS = re.compile(
+    rb"^[ \t]*(?:N[0-9]+[ \t]*)?o[ \t]*([0-9]+|<[^>\r\n]*>)[ \t]*"
+    rb"(if|elseif|else|endif|while|endwhile|do|repeat|endrepeat)\b",
+    re.M | re.I,
+)
+BRACKETS = re.compile(r"\[(?:[^\[\]]|\[(?:[^\[\]]|\[(?:[^\[\]]|\[[^\[\]]*\])*\])*\])*\]")
+FANUC_LOOP = re.compile(r"WHILE\s*(\[.*\])\s*DO\s*([0-9]+)\s*", re.I | re.S)
+FANUC_JUMP = re.compile(r"(?:IF\s*(\[.*\])\s*)?GOTO\s*([0-9]+)\s*", re.I | re.S)
+FANUC_THEN = re.compile(r"IF\s*(\[.*\])\s*THEN\s*(#.*=.*)", re.I | re.S)
+FANUC_END = re.compile(r"END\s*([0-9]+)\s*", re.I)
+FANUC_KEYWORDS = re.compile(
+    rb"^[ \t]*(?:N[0-9]+[ \t]*)?(?:WHILE[^\r\n;(]*?\b(DO)|(END))[ \t]*([0-9]+)", re.M | re.I
+)
+ARGUMENTS = {
+    **{"A": 1, "B": 2, "C": 3, "I": 4, "J": 5, "K": 6, "D": 7, "E": 8, "F": 9, "H": 11},
+    **{"M": 13, "Q": 17, "R": 18, "S": 19, "T": 20, "U": 21, "V": 22, "W": 23, "X": 24},
+    **{"Y": 25, "Z": 26},
+}
+"""Local variables of the arguments of G65."""
+
+
+def _keyword_places(text: NcText) -> dict[str, list[tuple[int, str]]]:
+    """Blocks and keywords of each O word that steers conditions and loops."""
+    found: dict[str, list[tuple[int, str]]] = {}
+    for each in KEYWORDS.finditer(text.data):
+        block = int(np.searchsorted(text.starts, each.start(1), side="right")) - 1
+        name = each[1].decode("latin-1").strip().upper()
+        found.setdefault(name, []).append((block, each[2].decode("latin-1").lower()))
+    return found
+
+
+def _loop_places(text: NcText) -> dict[int, int]:
+    """Block of END for the block of each WHILE of Fanuc."""
+    found: dict[int, int] = {}
+    begun: list[tuple[bytes, int]] = []
+    for each in FANUC_KEYWORDS.finditer(text.data):
+        block = int(np.searchsorted(text.starts, each.start(3), side="right")) - 1
+        if each[1] is not None:
+            begun.append((each[3], block))
+        elif begun and begun[-1][0] == each[3]:
+            found[begun.pop()[1]] = block
+    return found
+
 
 class IsoFlow:
     """Steering of one program. Running state."""
@@ -60,8 +112,10 @@ class IsoFlow:
         self._programs = dict(reversed(list(places(self._text, pattern))))
         self._ends = dict(places(self._text, ENDS)) if self._is_linuxcnc else {}
         self._numbers: dict[str, int] = {}
+        self._numbered: list[tuple[str, int]] = []
         if not self._is_linuxcnc and JUMPS.search(self._text.data):
-            self._numbers = dict(reversed(list(places(self._text, LOCAL))))
+            self._numbered = list(places(self._text, LOCAL))
+            self._numbers = dict(reversed(self._numbered))
         self.targets: set[int | None] = set()
         """Block numbers that jumps may lead to."""
         self._repeats: dict[str, int] = {}
@@ -71,6 +125,14 @@ class IsoFlow:
         self._changed: set[int] = set()
         self._is_begun = False
         self._percents = 0
+        self._variables = control.variables
+        self._keywords = _keyword_places(self._text) if self._is_linuxcnc else {}
+        self._loops = {} if self._is_linuxcnc else _loop_places(self._text)
+        self._starts = sorted(self._programs.values())
+        self._branches: dict[str, bool] = {}
+        """Whether a branch was taken, of the conditions that are evaluated."""
+        self._begun: dict[str, int] = {}
+        """First block of the loops that are evaluated."""
 
     def follow(self, words: BlockWords, block: int) -> int | None:
         """Next block if this one only steers the program, else None."""
@@ -84,7 +146,9 @@ class IsoFlow:
                 return self._named(begun, block)
         if words.flows:
             return self.statement(words.flows[0], block)
-        if 650 in words.codes or 660 in words.codes:
+        if 650 in words.codes:
+            return self._macro_called(words, block)
+        if 660 in words.codes:
             return self._outside(block, "a macro call")
         if 980 in words.functions or 970 in words.functions:
             return self._called(words, block)
@@ -134,7 +198,29 @@ class IsoFlow:
             return self._outside(block, f"the subprogram {number:g} is not in this file")
         if self._is_conditional and self._flow.is_inside(target):
             return self._outside(block, "a call of itself")
+        if times > 0:
+            self._variables.enter(None)
         return self._flow.call(block, target, times=times)
+
+    def _macro_called(self, words: BlockWords, block: int) -> int:
+        """Call a subprogram with arguments by G65."""
+        number, times = words.values.get("P"), int(words.values.get("L", 1.0))
+        target = None if number is None else self._target(number, is_local=False)
+        if target is None or times < 1:
+            return self._outside(block, "a macro call")
+        if self._is_conditional and self._flow.is_inside(target):
+            return self._outside(block, "a call of itself")
+        given = words.values.items()
+        self._variables.enter({ARGUMENTS[name]: v for name, v in given if name in ARGUMENTS})
+        return self._flow.call(block, target, times=times)
+
+    def _leave(self) -> int | None:
+        """Return from a subprogram, or execute it again."""
+        depth = self._flow.depth
+        following = self._flow.leave()
+        if self._flow.depth < depth:
+            self._variables.leave()
+        return following
 
     def _target(self, number: float, *, is_local: bool) -> int | None:
         found = self._numbers if is_local else self._programs
@@ -148,7 +234,7 @@ class IsoFlow:
         if "P" in words.values:
             self._control.remarks.lost(block, "a return to another block")
             self._begin_condition()
-        following = self._flow.leave()
+        following = self._leave()
         return len(self._text) if following is None else following
 
     def _outside(self, block: int, why: str) -> int:
@@ -156,11 +242,16 @@ class IsoFlow:
         self._control.remarks.lost(block, why)
         self._control.recorder.unknown()
         self._control.forget()
+        self._variables.forget()
         return block + 1
 
     def statement(self, text: str, block: int) -> int:
         """Execute a statement that steers the program; return the next block."""
         found = STATEMENT.fullmatch(text) if self._is_linuxcnc else None
+        if found is None and self._is_sure and not self._is_linuxcnc:
+            following = self._fanuc_statement(text, block)
+            if following is not None:
+                return following
         if found is None:
             self._control.remarks.lost(block, "conditions and jumps are not evaluated")
             self._control.recorder.unknown()
@@ -177,13 +268,161 @@ class IsoFlow:
                 )
             if self._is_conditional and self._flow.is_inside(target + 1):
                 return self._outside(block, "a call of itself")
+            given = [evaluate(each, self._variables) for each in BRACKETS.findall(rest)]
+            zeros: dict[int | str, float] = dict.fromkeys(range(1, 31), 0.0)
+            self._variables.enter(zeros | dict(enumerate(given, start=1)))
             return self._flow.call(block, target + 1)
         if keyword == "return" and self._open:
             return block + 1
         if keyword in {"endsub", "return"}:
-            following = self._flow.leave()
+            value = evaluate(rest, self._variables) if rest.strip() else 0.0
+            self._variables.set("_value", value)
+            following = self._leave()
             return block + 1 if following is None else following
-        return self._looped(name, keyword, rest, block)
+        known = self._evaluated(name, keyword, rest, block) if self._is_sure else None
+        return self._looped(name, keyword, rest, block) if known is None else known
+
+    @property
+    def _is_sure(self) -> bool:
+        """Whether it is known that the block is executed."""
+        return not self._open and not self._is_conditional
+
+    def _next_of(self, name: str, block: int, *keywords: str) -> int | None:
+        """Next block with one of some keywords of an O word."""
+        for place, keyword in self._keywords.get(name, ()):
+            if place > block and keyword in keywords:
+                return place
+        return None
+
+    def _evaluated(self, name: str, keyword: str, rest: str, block: int) -> int | None:
+        """Next block by a condition or loop whose variables are known; None: not evaluated."""
+        if keyword in {"if", "elseif", "else", "endif"}:
+            return self._branched(name, keyword, rest, block)
+        if keyword in {"break", "continue"} and name in self._begun:
+            end = self._next_of(name, block, "endwhile", "while")
+            if end is None:
+                return None
+            if keyword == "continue":
+                return end
+            del self._begun[name]
+            return end + 1
+        if keyword == "do":
+            self._begun[name] = block
+            return block + 1
+        if keyword == "endwhile" and name in self._begun:
+            return self._begun[name]
+        if keyword == "while":
+            return self._turned(name, rest, block)
+        if keyword == "repeat":
+            return self._counted(name, rest, block)
+        return None
+
+    def _branched(self, name: str, keyword: str, rest: str, block: int) -> int | None:
+        """Take one branch of a condition."""
+        if keyword == "if":
+            self._branches.pop(name, None)
+        elif name not in self._branches:
+            return None
+        if keyword == "endif":
+            del self._branches[name]
+            return block + 1
+        if keyword != "if" and self._branches[name]:
+            return self._next_of(name, block, "endif")
+        value = 1.0 if keyword == "else" else evaluate(rest, self._variables)
+        following = self._next_of(name, block, "elseif", "else", "endif")
+        if isnan(value) or (keyword != "else" and following is None):
+            self._branches.pop(name, None)
+            if keyword == "elseif":
+                self._control.remarks.lost(block, "conditions are not evaluated")
+                self._begin_condition()
+                self._open.append((name, "if"))
+                return block + 1
+            return None
+        self._branches[name] = value != 0.0
+        return block + 1 if value != 0.0 else following
+
+    def _turned(self, name: str, rest: str, block: int) -> int | None:
+        """Begin another turn of a loop, or leave it."""
+        begun = self._begun.get(name)
+        is_end = begun is not None and begun < block and self._is_do(name, begun)
+        end = block if is_end else self._next_of(name, block, "endwhile")
+        if end is None:
+            return None
+        value = evaluate(rest, self._variables)
+        is_known = not isnan(value) and not self._flow.is_worn_out
+        if begun is None and not is_known:
+            return None
+        if not is_known:
+            # Its blocks have run some times; how often in truth is not known.
+            del self._begun[name]
+            self._outside(block, "a loop whose number of turns is not known")
+            return end + 1
+        if value == 0.0:
+            self._begun.pop(name, None)
+            return end + 1
+        if is_end and begun is not None:
+            return begun + 1
+        self._begun[name] = block
+        return block + 1
+
+    def _is_do(self, name: str, block: int) -> bool:
+        """Whether a loop begins with DO and ends with its condition."""
+        return (block, "do") in self._keywords.get(name, ())
+
+    def _counted(self, name: str, rest: str, block: int) -> int | None:
+        """Begin a repeat whose number follows from variables."""
+        count, end = evaluate(rest, self._variables), self._next_of(name, block, "endrepeat")
+        if isnan(count) or end is None:
+            return None
+        if count < 1.0:
+            return end + 1
+        self._repeats[name] = block
+        self._times[block] = min(int(count), 10**9)
+        return block + 1
+
+    def _fanuc_statement(self, text: str, block: int) -> int | None:
+        """Next block by a condition, loop or jump of Fanuc; None: not evaluated."""
+        if found := FANUC_END.fullmatch(text):
+            return self._begun.get(found[1])
+        if found := FANUC_LOOP.fullmatch(text):
+            end = self._loops.get(block)
+            value = evaluate(found[1], self._variables)
+            if end is None or isnan(value) or self._flow.is_worn_out:
+                if self._begun.pop(found[2], None) is None or end is None:
+                    return None
+                self._outside(block, "a loop whose number of turns is not known")
+                return end + 1
+            if value == 0.0:
+                self._begun.pop(found[2], None)
+                return end + 1
+            self._begun[found[2]] = block
+            return block + 1
+        if found := FANUC_THEN.fullmatch(text):
+            value = evaluate(found[1], self._variables)
+            if isnan(value):
+                return None
+            if value != 0.0:
+                self._control.assign(BlockWords(assignments=[found[2]]))
+            return block + 1
+        found = FANUC_JUMP.fullmatch(text)
+        if found is None:
+            return None
+        value = 1.0 if found[1] is None else evaluate(found[1], self._variables)
+        if value == 0.0:
+            return block + 1
+        return None if isnan(value) or self._flow.is_worn_out else self._at(found[2], block)
+
+    def _at(self, number: str, block: int) -> int | None:
+        """Block of a number in the same program: the next one, or the first."""
+        begins = [each for each in self._starts if each <= block]
+        first = begins[-1] if begins else 0
+        beyond = next((each for each in self._starts if each > block), len(self._text))
+        found = [
+            place
+            for name, place in self._numbered
+            if int(name) == int(number) and first <= place < beyond
+        ]
+        return next((place for place in found if place > block), found[0] if found else None)
 
     def _looped(self, name: str, keyword: str, rest: str, block: int) -> int:
         """Repeat a number of times, or execute what depends on a condition once."""

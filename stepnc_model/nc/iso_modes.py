@@ -8,7 +8,7 @@ from math import isnan, nan
 
 from stepnc_model.nc import iso_codes
 from stepnc_model.nc.block_words import BlockWords
-from stepnc_model.nc.moves import FeedMode, MoveFlag
+from stepnc_model.nc.moves import CompensationSide, FeedMode, MoveFlag
 from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
@@ -79,6 +79,8 @@ class IsoModes:
         self.is_centre_absolute: bool | None = False
         self.scale = 1.0
         """Length of one unit of the program, mm."""
+        self.has_unit = False
+        """Whether the program has stated its unit."""
         self.is_diameter = self.is_lathe and dialect is not Dialect.LINUXCNC
         self.returns_to_start = True
         self.shift = [0.0, 0.0, 0.0]
@@ -173,6 +175,9 @@ class IsoModes:
             self.recorder.fed_by = self.recorder.block
         elif value is not None:
             self.set_feed(value, unit)
+            if "F" in words.evaluated:
+                # Its number is known, but no word of the program says it.
+                self.recorder.standing |= MoveFlag.MACRO_FEED.value
 
     def set_feed(self, value: float, unit: float) -> None:
         """Put the number of an F word in force, in units of a length in mm."""
@@ -208,9 +213,9 @@ class IsoModes:
                 table[code] = partial(self._take_transform, is_on)
         table |= {
             **{code: partial(self._take_mode, mode) for code, mode in MODES.items()},
-            **{code: partial(self._compensate, code != 400) for code in (400, 410, 420)},
-            200: partial(self._take, "scale", INCH),
-            210: partial(self._take, "scale", 1.0),
+            **{code: partial(self._compensate, code) for code in (400, 410, 420)},
+            200: partial(self._take_unit, INCH),
+            210: partial(self._take_unit, 1.0),
             900: partial(self._take, "is_absolute", True),
             910: partial(self._take, "is_absolute", False),
             960: self._surface_speed,
@@ -251,6 +256,8 @@ class IsoModes:
             70: partial(self._take, "is_diameter", True),
             80: partial(self._take, "is_diameter", False),
             331: partial(self._take_motion, ModalMotion.THREAD),
+            411: partial(self._compensate, 411),
+            421: partial(self._compensate, 421),
             901: partial(self._take, "is_centre_absolute", True),
             911: partial(self._take, "is_centre_absolute", False),
             921: partial(self._take_shift, 0.0),
@@ -261,6 +268,9 @@ class IsoModes:
     def _take(self, name: str, value: object, _: BlockWords) -> None:
         """Set one part of the modal state."""
         setattr(self, name, value)
+
+    def _take_unit(self, scale: float, _: BlockWords) -> None:
+        self.scale, self.has_unit = scale, True
 
     def _take_motion(self, motion: ModalMotion | CycleKind, _: BlockWords) -> None:
         self.to_motion(motion)
@@ -306,11 +316,27 @@ class IsoModes:
         self.recorder.setting = replace(self.recorder.setting, mode=mode)
         self.recorder.word, self.recorder.fed_by = nan, -1
 
-    def _compensate(self, is_on: bool, _: BlockWords) -> None:
+    def _compensate(self, code: int, words: BlockWords) -> None:
+        """Begin compensation to the left or right of the contour, or end it (G40)."""
+        side = None
+        if code != 400:
+            own = code % 10 == 1
+            given = words.values.get("D")
+            side = CompensationSide(
+                is_left=code < 420,
+                plane=self.plane or ArcPlane.XY,
+                number=None if given is None or own else int(given),
+                diameter=self.scale * (nan if given is None else given) if own else None,
+            )
+        self.compensate(side)
+
+    def compensate(self, side: CompensationSide | None) -> None:
+        """Begin or end cutter radius compensation."""
         was_on = bool(self.recorder.standing & MoveFlag.COMPENSATED)
-        self.stand(MoveFlag.COMPENSATED, is_on)
+        self.stand(MoveFlag.COMPENSATED, side is not None)
+        self.recorder.setting = replace(self.recorder.setting, side=side)
         # The move after G40 begins beside its commanded start.
-        if was_on and not is_on:
+        if was_on and side is None:
             self.recorder.carry(MoveFlag.COMPENSATED)
 
     def transform(self, is_on: bool) -> None:

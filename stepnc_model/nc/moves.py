@@ -88,6 +88,8 @@ class MoveFlag(IntFlag):
     """The block changes an offset or a frame."""
     UNPOINTED = 1 << 19
     """A coordinate has no decimal point: some controls count it in µm."""
+    BESIDE = 1 << 20
+    """The path is that of the tool beside a contour with cutter radius compensation."""
 
 
 UNADVISED = (
@@ -103,6 +105,7 @@ UNADVISED = (
 UNSPLIT = (
     UNADVISED
     | MoveFlag.COMPENSATED
+    | MoveFlag.BESIDE
     | MoveFlag.ROUNDED
     | MoveFlag.MACRO
     | MoveFlag.TARGET
@@ -117,6 +120,7 @@ UNSPLIT = (
 
 REASONS = {
     MoveFlag.COMPENSATED: "cutter radius compensation",
+    MoveFlag.BESIDE: "cutter radius compensation",
     MoveFlag.ROUNDED: "a chamfer or rounding",
     MoveFlag.MACRO: "a value from a variable",
     MoveFlag.TARGET: "a target of jumps",
@@ -134,6 +138,23 @@ REASONS = {
     MoveFlag.UNPOINTED: "coordinates without a decimal point",
 }
 """Reasons for which a block is left alone or in one piece, as messages name them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CompensationSide:
+    """Side of a contour on which the tool goes (G41, G42)."""
+
+    is_left: bool
+    plane: ArcPlane = ArcPlane.XY
+    number: int | None = None
+    """D word that names the tool or its offset; None without one."""
+    diameter: float | None = None
+    """Diameter that the program gives, mm (G41.1, G42.1); None: that of a table."""
+
+    @property
+    def sign(self) -> float:
+        """1 to the left of the contour, -1 to the right."""
+        return 1.0 if self.is_left else -1.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -161,6 +182,8 @@ class ModalSetting:
     """Whether axis words are distances from the last position (G91)."""
     is_centre_absolute: bool = False
     """Whether I, J and K are coordinates rather than distances from the start (G90.1)."""
+    side: CompensationSide | None = None
+    """Side of the contour on which the tool goes; None without compensation."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

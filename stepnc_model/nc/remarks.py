@@ -25,6 +25,10 @@ class Remarks:
         """Remark an assumption about a block."""
         self._add(block, why, Severity.NOTE)
 
+    def assume(self, why: str) -> None:
+        """Warn of an assumption about the whole program."""
+        self._list.add(Finding(severity=Severity.WARNING, message=why))
+
     def all(self) -> tuple[Finding, ...]:
         """All remarks by line."""
         return self._list.all()

@@ -13,7 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stepnc_model.nc.advice import BlockAdvice, RewrittenCode, UnchangedBlock, least_of
-from stepnc_model.nc.block_edit import BlockForm, feed_token, split_block, with_feed, with_mark
+from stepnc_model.nc.block_edit import (
+    BlockForm,
+    cycle_feed_token,
+    feed_token,
+    split_block,
+    with_cycle_feed,
+    with_feed,
+    with_mark,
+)
 from stepnc_model.nc.moves import (
     REASONS,
     UNADVISED,
@@ -62,6 +70,24 @@ class _Trace:
     refused: dict[int, str] = field(default_factory=dict)
 
 
+DEFINED_CYCLES = frozenset({Dialect.HEIDENHAIN, Dialect.SINUMERIK})
+"""Controls whose drilling cycles have no feed in the block that executes them."""
+
+
+def cycle_feed_blocks(moves: NcMoves, dialect: Dialect) -> NDArray[np.int64]:
+    """Blocks that give defined cycles their feed, and nothing else.
+
+    A definition of Heidenhain holds the feed itself; in Sinumerik the F word before the call is
+    in force, which may serve other moves as well: then it is not among these blocks.
+    """
+    if dialect not in DEFINED_CYCLES:
+        return np.zeros(0, np.int64)
+    is_fed = np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC)) & (moves.fed_by >= 0)
+    is_cycle = (moves.flags & int(MoveFlag.CYCLE)) != 0
+    of_cycles = np.unique(moves.fed_by[is_fed & is_cycle]).astype(np.int64)
+    return np.setdiff1d(of_cycles, moves.fed_by[is_fed & ~is_cycle])
+
+
 def rewrite(
     program: NcProgram, advice: Iterable[BlockAdvice], *, mark: bool = False
 ) -> RewrittenCode:
@@ -106,8 +132,14 @@ class _Rewriting:
             # As wide as what is looked up: a search would copy the array otherwise.
             self._sorted = self.moves.block[self._order].astype(np.int64)
         self._feed_words: dict[int, str | None] = {}
+        self.cycle_feeds: dict[int, str] = {}
+        """Number of the new feed of blocks that give defined cycles their feed."""
         self.plans: dict[int, _Plan] = {}
+        feeding = frozenset(cycle_feed_blocks(self.moves, program.dialect).tolist())
         for block in sorted(advice):
+            if block in feeding:
+                self._plan_cycle(advice[block])
+                continue
             plan = self._planned(advice[block])
             if plan is not None:
                 self.plans[block] = plan
@@ -160,6 +192,27 @@ class _Rewriting:
             advice=advice, pieces=pieces, feeds=texts, setting=first.setting, move=first
         )
 
+    def _plan_cycle(self, advice: BlockAdvice) -> None:
+        """Plan one feed for the cycles that a block gives their feed."""
+        block = advice.block
+        rows = np.flatnonzero(
+            (self.moves.fed_by == block) & np.isin(self.moves.kind, (MoveKind.LINE,))
+        )
+        flags = MoveFlag(int(np.bitwise_or.reduce(self.moves.flags[rows])))
+        if flags & UNADVISED:
+            self._leave(block, _named(flags & UNADVISED))
+            return
+        if not self.moves.is_advisable[rows].all():
+            self._leave(block, "a start or end of its cycles is not known")
+            return
+        if cycle_feed_token(self.program.text.block(block), self.program.dialect) is None:
+            self._leave(block, "the feed of its cycles is no number")
+            return
+        first = self.moves.move(int(rows[0]))
+        number = self._plain_number(rows, first.setting, min(advice.feeds))
+        if float(number) > 0.0:
+            self.cycle_feeds[block] = number
+
     def _fed_rows(self, block: int) -> NDArray[np.int64]:
         """Rows of a block that move at a feed."""
         low = int(self._sorted.searchsorted(block))
@@ -183,10 +236,8 @@ class _Rewriting:
             return "its executions have feeds in different modes"
         if FeedMode.PER_REVOLUTION in modes and not 0.0 < self.moves.fastest(rows) < inf:
             return "the spindle speed is not known or not limited"
-        if self.program.dialect is Dialect.HEIDENHAIN and flags & MoveFlag.CYCLE:
-            return "the feed of a cycle stands in its definition"
-        if self.program.dialect is Dialect.SINUMERIK and flags & MoveFlag.CYCLE:
-            return "the feed of a cycle is in force before its call"
+        if self.program.dialect in DEFINED_CYCLES and flags & MoveFlag.CYCLE:
+            return "the feed of a cycle stands in its definition, or before its call"
         return ""
 
     def _joining(self, rows: NDArray[np.int64]) -> str:
@@ -227,13 +278,18 @@ class _Rewriting:
 
     def _number(self, rows: NDArray[np.int64], move: NcMove, piece: MovePiece) -> str:
         """Number of the F word of a piece, for the execution that allows least."""
-        setting, mode = move.setting, move.setting.mode
-        if mode is FeedMode.PER_MINUTE:
-            return self.style.feed(mm_min_from_speed(piece.feed) / setting.unit, mode)
-        if mode is FeedMode.INVERSE_TIME:
+        if move.setting.mode is FeedMode.INVERSE_TIME:
             value = mm_min_from_speed(piece.feed) / piece.length if piece.length else inf
-            return self.style.feed(min(value, 1e6), mode)
-        return self.style.feed(piece.feed / self.moves.fastest(rows) / setting.unit, mode)
+            return self.style.feed(min(value, 1e6), FeedMode.INVERSE_TIME)
+        return self._plain_number(rows, move.setting, piece.feed)
+
+    def _plain_number(self, rows: NDArray[np.int64], setting: ModalSetting, feed: float) -> str:
+        """Number of an F word per minute or per revolution, for a feed in mm/s."""
+        if setting.mode is FeedMode.PER_REVOLUTION:
+            feed = feed / self.moves.fastest(rows)
+        else:
+            feed = mm_min_from_speed(feed)
+        return self.style.feed(feed / setting.unit, setting.mode)
 
     # The feed in force.
 
@@ -269,6 +325,8 @@ class _Rewriting:
         if block < 0:
             return None
         if block not in self._feed_words:
+            if block in self.cycle_feeds:
+                return self.cycle_feeds[block]
             token = feed_token(self.program.text.block(block), self.program.dialect)
             is_number = token is not None and token.kind is TokenKind.WORD
             self._feed_words[block] = token.value if token is not None and is_number else None
@@ -297,9 +355,12 @@ class _Rewriting:
         text, data = self.program.text, self.program.text.data
         parts: list[bytes] = []
         behind = changed = added = 0
-        for block in sorted({*self.plans, *trace.restored}):
+        for block in sorted({*self.plans, *self.cycle_feeds, *trace.restored}):
             old = text.block(block)
-            if block in self.plans:
+            if block in self.cycle_feeds:
+                new = self._cycle_fed(block, old, trace.restored.get(block))
+                changed += new != old
+            elif block in self.plans:
                 new = self._changed(self.plans[block], old)
                 changed += new != old
                 added += new.count("\n") - old.count("\n") if new != old else 0
@@ -343,6 +404,15 @@ class _Rewriting:
         if self.mark and plan.advice.reason and new != text:
             new = _marked_first(new, plan.advice.reason, dialect)
         return new
+
+    def _cycle_fed(self, block: int, text: str, fed_by: int | None) -> str:
+        """Text of a block that gives cycles their feed."""
+        dialect = self.program.dialect
+        token = cycle_feed_token(text, dialect)
+        feed = self.cycle_feeds[block]
+        is_same = token is not None and _is_equal(token.value, feed)
+        new = text if is_same else with_cycle_feed(text, feed, dialect=dialect)
+        return new if fed_by is None else self._restored(block, new, fed_by)
 
     def _form(self, plan: _Plan) -> BlockForm:
         move, setting = plan.move, plan.setting

@@ -79,8 +79,8 @@ class SinumerikModes(IsoModes):
         """Actions of the G codes in which Sinumerik differs."""
         thread = partial(self._take_motion, ModalMotion.THREAD)
         table: CodeTable = {
-            **dict.fromkeys(iso_codes.SINUMERIK_INCHES, partial(self._take, "scale", INCH)),
-            **dict.fromkeys(iso_codes.SINUMERIK_METRIC, partial(self._take, "scale", 1.0)),
+            **dict.fromkeys(iso_codes.SINUMERIK_INCHES, partial(self._take_unit, INCH)),
+            **dict.fromkeys(iso_codes.SINUMERIK_METRIC, partial(self._take_unit, 1.0)),
             **dict.fromkeys((630, 3310, 3320), thread),
             1530: partial(self._take, "shot", Shot.MACHINE),
             9610: partial(self._take_mode, FeedMode.PER_MINUTE),

@@ -5,13 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from optimiser.along_path.caps import CapName, capped
+from optimiser.along_path.caps import CapName, CutBounds, capped
 from optimiser.along_path.runs import MachineFeeds
 from optimiser.along_path.stretch import PathStretch, PlaceCaps
 from simulator.motion.control import control_model
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import AxisLimits, Segments, lines
-from simulator.removal.stations import air
+from simulator.removal.stations import StationKind, Stations, air
+from tests.optimiser.cuts import CARBIDE, CUT
 
 LIMITS = AxisLimits(
     acceleration=np.full(3, 4000.0),
@@ -19,7 +20,30 @@ LIMITS = AxisLimits(
     feed=np.full(3, 300.0),
     jerk=np.full(3, 50_000.0),
 )
+BOUNDS = CutBounds(cut=CUT, at=CARBIDE)
 FIR = MachineFeeds(control=control_model(ControlModelName.FIR, LIMITS), limits=LIMITS)
+
+
+def half_cut(ends: list[float], is_cut: list[bool]) -> Stations:
+    """Stations of a mill of 12 mm that cuts half its diameter, 3 mm deep, or nothing."""
+    cuts = np.array(is_cut)
+    values = {
+        "section": 18.0,
+        "growth": 0.0,
+        "axial_depth": 3.0,
+        "radial_width": 6.0,
+        "entry_angle": 0.0,
+        "exit_angle": 0.5 * np.pi,
+        "contact_angle": 0.5 * np.pi,
+        "chip_ratio": 2.0 / np.pi,
+        "diameter": 12.0,
+    }
+    return Stations(
+        segment=np.zeros(len(ends), dtype=np.int64),
+        station=np.array(ends),
+        kind=np.where(cuts, int(StationKind.MILLING), int(StationKind.AIR)),
+        **{name: np.where(cuts, value, 0.0) for name, value in values.items()},
+    )
 
 
 def stretch_of(segments: Segments) -> PathStretch:

@@ -11,6 +11,8 @@ from optimiser.along_path.pieces import PieceRules
 from optimiser.along_path.plan import (
     FeedPlanner,
     FeedTask,
+    RunBlock,
+    SlowerPart,
     block_feeds,
     lowered,
     rounded_down,
@@ -73,16 +75,59 @@ def test_feeds_are_rounded_down_by_little(rate: float, is_per_revolution: bool) 
     assert found >= 0.98 * rate
 
 
-def test_parts_that_are_too_fast_are_lowered() -> None:
+def slower(*parts: tuple[float, float], excess: float = 2.0) -> SlowerPart:
+    """Slower feeds of a part, each with its end."""
+    return SlowerPart(
+        parts=tuple(BlockPart(end=end, rate=rate) for end, rate in parts), excess=excess
+    )
+
+
+def test_parts_that_are_too_fast_are_divided() -> None:
     feeds = {4: (BlockPart(end=0.5, rate=10.0), BlockPart(end=1.0, rate=20.0))}
-    found = lowered(feeds, {(4, 1): 1.25}, keeps_levels=False)
-    assert [part.rate for part in found[4]] == [10.0, pytest.approx(16.0, rel=0.01)]
+    found = lowered(
+        feeds,
+        {(4, 1): slower((0.2, 4.0), (1.0, 20.0)), (7, 0): slower((1.0, 3.0))},
+        blocks={},
+        levels=None,
+    )
+    assert [part.rate for part in found[4]] == [10.0, 4.0, 20.0]
+    assert [part.end for part in found[4]] == pytest.approx([0.5, 0.6, 1.0])
+    assert [part.rate for part in found[7]] == [3.0]
 
 
-def test_parts_of_one_feed_are_lowered_together_where_their_number_is_bound() -> None:
-    feeds = {
-        1: (BlockPart(end=1.0, rate=20.0),),
-        2: (BlockPart(end=1.0, rate=20.0),),
+def test_the_number_of_feeds_stays_where_it_is_bound() -> None:
+    """A feed that is hardly too fast falls everywhere; a part far too fast gets another."""
+    given = {
+        block: (BlockPart(end=1.0, rate=rate),)
+        for block, rate in ((1, 20.0), (2, 20.0), (3, 5.0), (4, 15.0))
     }
-    found = lowered(feeds, {(1, 0): 1.1}, keeps_levels=True)
-    assert found[1][0].rate == found[2][0].rate < 20.0 / 1.09
+    blocks = {
+        block: RunBlock(name="b" if block == 4 else "a", weight=10.0, rate=parts[0].rate)
+        for block, parts in given.items()
+    } | {5: RunBlock(name="a", weight=1.0, rate=5.0)}
+    for rate, feeds in ((19.5, {5.0, 19.5}), (6.0, {5.0, 20.0})):
+        slow = {(1, 0): slower((0.5, rate), (1.0, 20.0))}
+        found = lowered(given, slow, blocks=blocks, levels=2)
+        assert {part.rate for block in (1, 2, 3) for part in found[block]} == feeds
+        assert found[1][0].rate <= rate
+        assert found[4] == given[4]
+        assert 5 not in found
+
+
+def test_the_lowest_feed_falls_wherever_it_is_used() -> None:
+    given = {1: (BlockPart(end=1.0, rate=5.0),), 2: (BlockPart(end=1.0, rate=5.0),)}
+    blocks = {block: RunBlock(name="", weight=1.0, rate=5.0) for block in given}
+    found = lowered(given, {(1, 0): slower((1.0, 2.0))}, blocks=blocks, levels=1)
+    assert found[1][0].rate == found[2][0].rate == 2.0
+
+
+def test_executions_of_a_block_weigh_together() -> None:
+    one = RunBlock(name="a", weight=2.0, rate=5.0)
+    assert one.plus(None) is one
+    assert one.plus(RunBlock(name="a", weight=3.0, rate=5.0)).weight == 5.0
+
+
+def test_two_executions_of_a_part_have_the_slower_feed_as_a_whole() -> None:
+    one, other = slower((0.3, 7.0), (1.0, 9.0)), slower((1.0, 8.0), excess=3.0)
+    assert one.or_slower(other) == slower((1.0, 7.0), excess=3.0)
+    assert one.or_slower(None) is one

@@ -179,6 +179,16 @@ def test_a_programmed_feed_near_the_best_is_kept() -> None:
     assert pieces.rate.tolist() == [4.95]
 
 
+def test_a_block_in_one_piece_is_not_slowed_for_a_smoother_corner() -> None:
+    """A fast feed elsewhere lengthens the filter; the whole of both lines would pay for it."""
+    segments = lines([(0, 0, 0), (100, 0, 0), (5, 8, 0), (200, 8, 0)], speed=8.0)
+    stretch = replace(stretch_of(segments), can_split=np.array([False, False, True]))
+    places = places_of(segments, np.cumsum(segments.length).tolist(), [np.inf] * 3)
+    pieces = pieces_of(stretch, commands_of(stretch, places, FIR), PieceRules())
+    given = float((segments.length / segments.speed).sum())
+    assert float((pieces.length / pieces.rate).sum()) <= given * (1.0 + 1e-9)
+
+
 def test_a_path_without_length_has_no_commands() -> None:
     segments = lines([(1, 2, 3), (1, 2, 3)], speed=5.0)
     found = commands_of(stretch_of(segments), place_caps(stretch_of(segments)), FIR)

@@ -5,43 +5,23 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from optimiser.along_path.caps import NAMES, CapName, CutBounds
+from optimiser.along_path.caps import NAMES, CapName
 from optimiser.along_path.stretch import (
     ENTRY_LENGTH,
     ENTRY_SHARE,
     PathStretch,
-    excess,
     place_caps,
     segment_caps,
 )
 from simulator.motion.segments import arc
-from simulator.removal.stations import StationKind, Stations
-from tests.optimiser.along_path.stretches import LIMITS, straight, stretch_of
-from tests.optimiser.cuts import CARBIDE, CUT
-
-BOUNDS = CutBounds(cut=CUT, at=CARBIDE)
-
-
-def half_cut(ends: list[float], is_cut: list[bool]) -> Stations:
-    """Stations of a mill of 12 mm that cuts half its diameter, 3 mm deep, or nothing."""
-    cuts = np.array(is_cut)
-    values = {
-        "section": 18.0,
-        "growth": 0.0,
-        "axial_depth": 3.0,
-        "radial_width": 6.0,
-        "entry_angle": 0.0,
-        "exit_angle": 0.5 * np.pi,
-        "contact_angle": 0.5 * np.pi,
-        "chip_ratio": 2.0 / np.pi,
-        "diameter": 12.0,
-    }
-    return Stations(
-        segment=np.zeros(len(ends), dtype=np.int64),
-        station=np.array(ends),
-        kind=np.where(cuts, int(StationKind.MILLING), int(StationKind.AIR)),
-        **{name: np.where(cuts, value, 0.0) for name, value in values.items()},
-    )
+from simulator.removal.stations import Stations
+from tests.optimiser.along_path.stretches import (
+    BOUNDS,
+    LIMITS,
+    half_cut,
+    straight,
+    stretch_of,
+)
 
 
 def stretch(met: Stations, near: Stations | None = None) -> PathStretch:
@@ -64,7 +44,7 @@ def test_the_chip_is_reduced_on_the_way_in() -> None:
     )
     assert before == np.inf
     assert entry == pytest.approx(ENTRY_SHARE * inside)
-    assert 10.0 + ENTRY_LENGTH * CUT.diameter > 10.5
+    assert 10.0 + ENTRY_LENGTH * BOUNDS.cut.diameter > 10.5
     assert names_at(stretch(met), [10.2])[0] is CapName.ENTRY
 
 
@@ -95,13 +75,6 @@ def test_an_engagement_that_is_no_number_is_refused() -> None:
         ValueError, match="block 0: the engagement at station 1 is not a number"
     ):
         place_caps(stretch(broken))
-
-
-def test_the_excess_is_the_programmed_feed_over_the_permitted_one() -> None:
-    found = stretch(half_cut([30.0], [True]))
-    permitted = place_caps(found).caps.feed[-1]
-    assert excess(found)[0] == pytest.approx(10.0 / permitted)
-    assert excess(replace(found, is_free=np.array([False])))[0] == 0.0
 
 
 def test_arcs_keep_the_acceleration_of_the_axes() -> None:

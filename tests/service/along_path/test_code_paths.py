@@ -58,7 +58,8 @@ LEFT_OUT = {
     "an end from a variable": slot(40.0).replace("X110.", "X#100"),
     "a condition": "IF [#1 EQ 1] GOTO 100\n" + slot(40.0) + "N100\n",
     "compensation": (
-        "G0 X-20. Y40.\nZ-4.\nG41 D1 G1 X-10. F300.\nX110.\nG40 X120. Y60.\nG0 Z20.\n"
+        "G0 X-20. Y40.\nZ-4.\nG41 D1 G1 X-10. F300.\nX50.\nG3 X52. Y42. R2.\nG1 Y60.\n"
+        "G40 X120. Y60.\nG0 Z20.\n"
     ),
 }
 
@@ -76,10 +77,23 @@ def test_what_is_left_out_removes_nothing_and_is_told(what: str) -> None:
     assert code.can_change[lines_of(text, "G1 X110. F300.")[0]]
 
 
+@pytest.mark.parametrize(("code", "removed"), [("G41", 0.0), ("G42", SLOT)])
+def test_the_tool_cuts_beside_a_compensated_contour(code: str, removed: float) -> None:
+    """The contour is the far side of the stock: to its left is air, to its right a slot."""
+    text = HEAD + f"G0 X-30. Y80.\nZ-4.\n{code} D1 G1 X-10. F300.\nX110.\nG40 X130.\nG0 Z20.\n"
+    paths = paths_of(text + END, dialect=Dialect.FANUC)
+    assert volume(paths) == pytest.approx(removed, rel=0.01)
+    line = lines_of(text, "X110.")[0]
+    assert paths.can_change[line]
+    assert not paths.can_split[line]
+    assert "goes beside the compensated contour" in reasons(paths)
+
+
 def test_the_tool_goes_over_the_stock_where_moves_are_left_out() -> None:
     # The contour ends 4 mm deep on the far side: a straight way there would cut a slot.
     text = (
-        HEAD + "G0 X-20. Y-20.\nZ-4.\nG41 D1 G1 X-10. Y40. F300.\nX110.\nG40 X120. Y60.\n"
+        HEAD + "G0 X-20. Y-20.\nZ-4.\nG41 D1 G1 X-10. Y40. F300.\nX100.\n"
+        "G3 X102. Y42. R2.\nG40 G1 X120. Y60.\n"
         "G1 Y70. F300.\nX112.\nG0 Z20.\n" + END
     )
     code = paths_of(text)
@@ -160,16 +174,14 @@ def test_an_unknown_spindle_speed_keeps_the_feed() -> None:
     assert volume(code) == pytest.approx(2.0 * SLOT, rel=0.01)
 
 
-def test_cycles_whose_feed_stands_elsewhere_keep_it() -> None:
+def test_a_cycle_whose_feed_serves_other_moves_keeps_it() -> None:
     text = (
-        "0 BEGIN PGM A MM\n1 TOOL CALL 5 Z S2000 F200\n2 L Z+50 R0 FMAX M3\n"
-        "3 CYCL DEF 200 DRILLING ~\n Q200=2 ~\n Q201=-10 ~\n Q206=150 ~\n Q202=10 ~\n"
-        " Q203=+0 ~\n Q204=50\n4 L X+20 Y+20 R0 FMAX M99\n5 L Z+50 R0 FMAX M30\n"
-        "6 END PGM A MM\n"
+        "N10 G71 G90 G17 G54\nN20 T5 D1\nN30 M6\nN40 S2000 M3\nN50 G0 X20 Y20 Z5\n"
+        "N60 G1 X30 F150\nN70 CYCLE82(5,0,2,-10,0,0.5)\nN80 G0 Z50\nM30\n"
     )
-    code = paths_of(text, dialect=Dialect.HEIDENHAIN)
-    assert not code.can_change.any()
-    assert "the feed of a cycle stands in its definition" in reasons(code)
+    code = paths_of(text, dialect=Dialect.SINUMERIK)
+    assert not code.can_change[lines_of(text, "CYCLE82")[0]]
+    assert "the feed of a cycle serves other moves as well" in reasons(code)
 
 
 def test_the_plain_program_runs_whole() -> None:

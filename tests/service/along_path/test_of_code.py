@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from optimiser.along_path.tool_bounds import bounds_of_tool
 from service.along_path.code_output import code_advice_json, print_code_advice
 from service.along_path.of_code import CodeAdvice, CodeFiles, optimise_code
 from service.requests.advice import AdviceRequest
@@ -26,6 +27,7 @@ from tests.service.along_path.foreign import (
     MILL,
     advised,
     lines_of,
+    paths_of,
     rewritten,
     slot,
 )
@@ -106,7 +108,7 @@ def test_the_rewritten_program_takes_the_planned_time_and_stays(name: str) -> No
     again = advised(rewritten(text, request), request)
     assert first.rewritten.changed > 0
     assert again.rewritten.changed == again.rewritten.added == 0
-    assert again.along.time_before == pytest.approx(first.along.time_after, rel=0.005)
+    assert again.along.time_before == pytest.approx(first.along.time_after, rel=0.01)
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
@@ -118,6 +120,31 @@ def test_loads_keep_their_bounds(name: str) -> None:
             continue
         permitted = max(WITHIN * (greatest or np.inf), step.before.force.value)
         assert step.after.force.value <= permitted, step.name
+
+
+@pytest.mark.parametrize("name", ["arcs and helix", "freecad"])
+def test_the_run_meets_what_was_planned_for_a_sharp_edge(name: str) -> None:
+    text, request = PROGRAMS[name]
+    request = replace(request, safety=0.5)
+    found = advised(text, request)
+    code = paths_of(text)
+    for part, step in zip(code.parts, found.along.steps[1:], strict=True):
+        bounds = bounds_of_tool(
+            code.tools[part.tool], code.machine, code.material.material, quantile=0.5,
+            is_finishing=part.is_finishing, roughness=None,
+        )  # fmt: skip
+        assert bounds is not None
+        bent = step.after.deflection.value / bounds.at.deflection.value
+        assert 0.5 < bent <= WITHIN
+
+
+def test_a_rapid_straight_out_of_the_material_cuts_nothing() -> None:
+    """A slot that ends in the block: 60 mm and half a cutter of 12 mm, 4 mm deep."""
+    text = HEAD + "G0 X-10. Y40.\nZ-4.\nG1 X60. F300.\nG0 Z20.\n" + END
+    slot_volume = 4.0 * (12.0 * 60.0 + 0.5 * np.pi * 6.0**2)
+    step = advised(text).along.steps[1]
+    for run in (step.before, step.after):
+        assert run.volume == pytest.approx(slot_volume, rel=0.004)
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
@@ -144,9 +171,50 @@ def test_a_subprogram_for_two_tools_has_the_feed_that_both_permit() -> None:
         SUBPROGRAMS[SUBPROGRAMS.index("M30") :],
     )
     change = calls.index("T2 M6")
-    first, second = calls[:change] + sub, HEAD + calls[change:] + sub
+    # Called twice, its blocks stay in one piece as well.
+    once = calls[change:].replace("M98 P2\n", "M98 P2 L2\n")
+    first, second = calls[:change] + sub, HEAD + once + sub
     assert feed(SUBPROGRAMS) == pytest.approx(min(feed(first), feed(second)), rel=0.02)
     assert feed(first) != pytest.approx(feed(second), rel=0.02)
+
+
+DEFINED = {
+    Dialect.HEIDENHAIN: (
+        "0 BEGIN PGM A MM\n1 TOOL CALL 5 Z S2000 F200\n2 L Z+50 R0 FMAX M3\n"
+        "3 CYCL DEF 200 DRILLING ~\n Q200=2 ~\n Q201=-10 ~\n Q206=+30 ~\n Q202=10 ~\n"
+        " Q203=+0 ~\n Q204=50\n4 L X+20 Y+20 R0 FMAX M99\n5 L X+40 R0 FMAX M99\n"
+        "6 L Z+50 R0 FMAX M30\n7 END PGM A MM\n",
+        "Q206=+30",
+        r"Q206=(\S+) ~",
+    ),
+    Dialect.SINUMERIK: (
+        "N10 G71 G90 G17 G54\nN20 T5 D1\nN30 M6\nN40 S2000 M3\nN50 G0 X20 Y20 Z5\n"
+        "N60 F30\nN70 MCALL CYCLE82(5,0,2,-10,0,0.5)\nN80 X20 Y20\nN90 X40\nN100 MCALL\n"
+        "N110 G0 Z50\nM30\n",
+        "F30",
+        r"N60 F(\S+)",
+    ),
+}
+
+
+@pytest.mark.parametrize("dialect", DEFINED)
+def test_a_defined_cycle_gets_its_feed_where_it_is_given(dialect: Dialect) -> None:
+    """The feed is that of the same holes drilled by Fanuc's cycle, in one place of the file."""
+    text, old, pattern = DEFINED[dialect]
+    request = replace(MILL, dialect=dialect)
+    result = advised(text, request)
+    new = result.rewritten.data.decode()
+    found = re.search(pattern, new)
+    assert found is not None
+    assert result.rewritten.changed == 1
+    assert new == text.replace(old, found[0].split(" ")[-1] if old[0] == "F" else found[0][:-2])
+    fanuc = HEAD.replace("T1", "T5").replace("S3000", "S2000") + (
+        "G0 X20. Y20.\nZ5.\nG99 G81 X20. Y20. Z-10. R2. F30.\nX40.\nG80\nG0 Z50.\n"
+    )
+    same = re.search(r"R2\. F([0-9.]+)", rewritten(fanuc + END))
+    assert same is not None
+    assert float(found[1]) == pytest.approx(float(same[1]), rel=0.01)
+    assert float(found[1]) > 60.0
 
 
 def test_a_tool_that_meets_no_stock_keeps_its_feeds() -> None:

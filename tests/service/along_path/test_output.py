@@ -27,10 +27,11 @@ def test_text_report_and_table(tmp_path: Path, capsys: pytest.CaptureFixture[str
         "--feeds-csv",
         str(feeds),
     ]
-    assert run(*words, "--jerk") == 0
+    assert run(*words, "--jerk", "--smooth", "0.05") == 0
     shown = capsys.readouterr().out
     assert "one feed per part -> along the path" in shown
     assert "s with limited jerk" in shown
+    assert "s as the smoothest profile" in shown
     assert "share of the path by active limit: " in shown
     page = report.read_text()
     assert "Along the paths" in page

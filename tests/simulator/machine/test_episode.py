@@ -85,6 +85,13 @@ def test_each_station_holds_for_the_stretch_before_it(planned: Planned) -> None:
     assert found.tolist() == [0, 0, 1, 1, 2, 4, 4]
 
 
+def test_a_segment_that_has_just_begun_has_a_station_of_its_own(planned: Planned) -> None:
+    """While the filter settles, the command stands where two segments meet."""
+    course = planned()
+    found = course.stations_at(at([0, 0, 1, 2], [0.0, 10.0, 0.0, 0.0]))
+    assert found.tolist() == [0, 2, 3, 4]
+
+
 @pytest.mark.parametrize(
     "control", [ExactStop(), FixedTimeFilter(first=0.06, second=0.02)], ids=["stop", "fir"]
 )

@@ -239,7 +239,7 @@ def test_short_blocks_mean_the_same_as_with_a_comment(control: Dialect) -> None:
 
 def test_a_tool_may_have_a_name() -> None:
     for control, code in (
-        (Dialect.SINUMERIK, b'T="MILL 10"\nM6\nG0 X0 Y0 Z0\nG1 X1 F100\nM30\n'),
+        (Dialect.SINUMERIK, b'G71\nT="MILL 10"\nM6\nG0 X0 Y0 Z0\nG1 X1 F100\nM30\n'),
         (Dialect.HEIDENHAIN, b'TOOL CALL "MILL 10" Z S900\nL X+0 Y+0 Z+0 FMAX\nL X+1 F100\n'),
     ):
         program = read_program(code, dialect=control)
@@ -256,3 +256,22 @@ def test_the_motion_before_a_cycle_is_in_force_after_it() -> None:
     assert fanuc.moves.kind[-2:].tolist() == [MoveKind.RAPID, MoveKind.LINE]
     linuxcnc = read_program(code, dialect=Dialect.LINUXCNC)
     assert linuxcnc.moves.kind[-2:].tolist() == [MoveKind.UNKNOWN, MoveKind.LINE]
+
+
+@pytest.mark.parametrize(
+    ("dialect", "code", "said"),
+    [
+        (Dialect.FANUC, "G1 X5. F100.\nG1 X9.\n", "states no unit (G20 or G21)"),
+        (Dialect.SINUMERIK, "G1 X5 F100\n", "states no unit (G70 or G71)"),
+        (Dialect.FANUC, "G21\nG1 X5. F100.\n", ""),
+        (Dialect.LINUXCNC, "G20\nG1 X5 F10\n", ""),
+        (Dialect.SINUMERIK, "G710\nG1 X5 F100\n", ""),
+        (Dialect.HEIDENHAIN, "0 BEGIN PGM A MM\n1 L X+5 F100\n2 END PGM A MM\n", ""),
+        (Dialect.FANUC, "O1\nM30\n", ""),
+    ],
+)
+def test_an_assumed_unit_is_told_once(dialect: Dialect, code: str, said: str) -> None:
+    found = read_program(code.encode(), dialect=dialect).findings
+    told = [each for each in found if "states no unit" in each.message]
+    assert len(told) == bool(said)
+    assert all(said in each.message and each.line == 0 for each in told)
