@@ -10,6 +10,7 @@ import pytest
 
 from service.jobs import advise, child
 from service.jobs.task import RunningJob
+from service.problem import problem_of
 from service.storage import database, jobs, programs
 from service.storage.folder import DATABASE, open_data_folder
 from service.storage.jobs import Job, JobKind, JobState
@@ -211,12 +212,10 @@ def test_a_request_to_end_after_the_end_changes_nothing() -> None:
 def test_a_request_to_end_while_an_error_is_told_is_no_fault(
     idle: Shop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    real = child.problem_of
-
     def late(*words: Any, **named: Any) -> dict[str, Any]:
         signal.raise_signal(signal.SIGTERM)
-        return real(*words, **named)
+        return problem_of(*words, **named)
 
-    monkeypatch.setattr(child, "problem_of", late)
+    monkeypatch.setattr("service.jobs.child.problem_of", late)
     found = ran(idle, idle.order(JobKind.ADVICE, workingsteps=["NO SUCH STEP"]))
     assert (found.state, found.problem) == (JobState.CANCELLED, None)
