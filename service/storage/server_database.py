@@ -148,7 +148,8 @@ class ServerDatabase:
                     with raw.transaction():
                         connection.execute("SET LOCAL statement_timeout = 0")
                         _migrate(connection, self.place)
-                    raw.patience = WAIT
+                    # The patient one is not lent to others.
+                    raw.close()
         except psycopg.Error as error:
             raise Unavailable(str(fault(error, self.place))) from error
 

@@ -212,7 +212,6 @@ def test_a_request_to_end_after_the_end_changes_nothing() -> None:
 def test_a_request_to_end_while_an_error_is_told_is_no_fault(
     idle: Shop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-
     def late(*words: Any, **named: Any) -> dict[str, Any]:
         signal.raise_signal(signal.SIGTERM)
         return problem_of(*words, **named)

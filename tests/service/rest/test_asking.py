@@ -31,13 +31,12 @@ def signalled(server: Server, number: signal.Signals) -> None:
         os.kill(pid, number)
 
 
-@pytest.fixture
-def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server_database, "WAIT", 1.0)
+def be_patient(monkeypatch: pytest.MonkeyPatch, seconds: float) -> None:
+    """How long the service waits for its database."""
+    monkeypatch.setattr(server_database, "WAIT", seconds)
+    monkeypatch.setattr(server_database.Raw, "patience", seconds)
     monkeypatch.setattr(server_database, "PAUSE", 0.1)
-    monkeypatch.setattr(server_database.Raw, "patience", 1.0)
     monkeypatch.setattr(server_database, "CONNECT_TIMEOUT", 2)
-    monkeypatch.delenv("STEPNC_KB", raising=False)
 
 
 def within(app: FastAPI, act: Callable[[httpx.AsyncClient], Awaitable[None]]) -> None:
@@ -49,10 +48,11 @@ def within(app: FastAPI, act: Callable[[httpx.AsyncClient], Awaitable[None]]) ->
     asyncio.run(run())
 
 
-@pytest.mark.usefixtures("impatient")
 def test_a_database_that_falls_silent_holds_up_nobody_else(
-    new_server: ServerMaker, tmp_path: Path
+    new_server: ServerMaker, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.delenv("STEPNC_KB", raising=False)
+    be_patient(monkeypatch, 300.0)
     server = new_server()
     app = application(Settings(data=str(tmp_path / "data"), database=server.url))
 
@@ -66,6 +66,13 @@ def test_a_database_that_falls_silent_holds_up_nobody_else(
             for _ in range(10):
                 assert (await to.get("/healthz")).status_code == 200
             assert not [task for task in waiting if task.done()]
+        finally:
+            signalled(server, signal.SIGCONT)
+        assert {each.status_code for each in await asyncio.gather(*waiting)} == {200}
+        be_patient(monkeypatch, 1.0)
+        signalled(server, signal.SIGSTOP)
+        try:
+            waiting = [asyncio.create_task(to.get("/v1/programs")) for _ in range(ASKED)]
             for answer in await asyncio.gather(*waiting):
                 is_problem(answer, 503, "unavailable")
                 assert int(answer.headers["retry-after"]) > 0
@@ -80,10 +87,10 @@ def test_a_database_that_falls_silent_holds_up_nobody_else(
     app.state.data_folder.database.close()
 
 
-@pytest.mark.usefixtures("impatient")
 def test_a_rate_limit_without_its_database_is_one_of_the_process(
     new_server: ServerMaker, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    be_patient(monkeypatch, 1.0)
     monkeypatch.setattr("service.rest.rate.PATIENCE", 0.1)
     server = new_server()
     database = server_database.ServerDatabase(server.url)
