@@ -24,7 +24,6 @@ from stepnc_model.entities.turning import (
 from stepnc_model.entities.turning_tools import TurningMachineCuttingTool
 from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.program import ResolvedWorkingstep
-from stepnc_model.toolpath.path import FARTHEST
 from stepnc_model.toolpath.task import ToolPathTask, job_of
 from stepnc_model.toolpath.turning.offset import (
     InsertFlanks,
@@ -324,8 +323,8 @@ def _raw(
     if stock is not None and stock.high[2] > stock.low[2]:
         radius = stock.radius or max(map(abs, (*stock.low[:2], *stock.high[:2])))
         return _cylinder(radius, stock.low[2], stock.high[2]), ()
-    whole = (*outlines, *_around(job))
-    radius = max(outline.radii[1] for outline in whole)
+    radius = max(outline.radii[1] for outline in outlines)
+    radius = max((outline.radii[1] for outline in _around(job, radius)), default=radius)
     low, high = min(o.low for o in outlines), max(o.high for o in outlines)
     text = f"no stock given: assuming a bar of {2.0 * radius:g} mm diameter, as the features"
     length = _to_face(job)
@@ -386,12 +385,12 @@ def _faced(
     return _without_front(left)
 
 
-def _around(job: ToolPathTask) -> Iterator[FeatureOutline]:
+def _around(job: ToolPathTask, reach: float) -> Iterator[FeatureOutline]:
     """Outlines of all turned features, which a bar that is faced is to hold."""
     if isinstance(job.step.operation, Facing):
         known: Known = {}
         for step in job.program.workingsteps:
-            yield from _outlines(job, step, FARTHEST, known)
+            yield from _outlines(job, step, reach, known)
 
 
 def _to_face(job: ToolPathTask) -> float:

@@ -1,8 +1,11 @@
 """Attributes of simple and complex instances by name, and references backwards."""
 
+import pytest
+
 from stepnc_model.ap238.instances import Instances, references
+from stepnc_model.ap238.view import AimView
 from stepnc_model.part21.values import Ref, Typed, Value
-from tests.stepnc_model.ap238.samples import read
+from tests.stepnc_model.ap238.samples import exported, read
 
 TEXT = b"""ISO-10303-21;
 HEADER;
@@ -62,3 +65,11 @@ def test_references_are_found_in_lists_and_typed_values() -> None:
         None,
     )
     assert list(references(value)) == [Ref(1), Ref(2), Ref(3)]
+
+
+def test_a_view_is_the_same_however_few_instances_stay_parsed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    wanted = AimView.of(read(exported("paper002"))).data
+    monkeypatch.setattr("stepnc_model.ap238.instances.MOST_KEPT", 3)
+    assert AimView.of(read(exported("paper002"))).data == wanted

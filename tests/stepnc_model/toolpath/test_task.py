@@ -15,6 +15,7 @@ from stepnc_model.toolpath.task import (
     clamps_of,
     job_of,
     stock_of,
+    unused_stock,
 )
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
@@ -137,3 +138,16 @@ def test_clamping_positions_come_out_in_the_setup() -> None:
                       "#901=CARTESIAN_POINT('',(100.,0.,0.));"))  # fmt: skip
     setup = program.workingsteps[0].setup
     assert clamps_of(program, setup) == ((175.0, 93.0, -32.0), (175.0, -3.0, -32.0))
+
+
+@pytest.mark.parametrize(("height", "is_used"), [("-39.", True), ("-1.", True), ("10.", False)])
+def test_a_raw_part_above_all_features_is_not_used(height: str, is_used: bool) -> None:
+    text = (PARTS / "bracket.stpnc").read_text(encoding="utf-8")
+    place = text.index("#35=CARTESIAN_POINT('',(")
+    line = text[place : text.index("\n", place)]
+    x, y, _ = line.partition("(")[2].split("(")[1].split(")")[0].split(",")
+    program = edited((line, f"#35=CARTESIAN_POINT('',({x},{y},{height}));"))
+    setup = program.workingsteps[0].setup
+    assert (stock_of(program, setup) is not None) is is_used
+    told = unused_stock(program, setup)
+    assert (told is None) is is_used

@@ -162,6 +162,12 @@ class TestPeck:
             "feed 5"
         )
 
+    def test_a_feed_on_retract_of_zero_is_none(self) -> None:
+        given, left = path("DRILLING", retract="0."), path("DRILLING")
+        assert shown(given) == shown(left)
+        (told,) = [each for each in given.findings if each.attribute == "feed_on_retract"]
+        assert told.severity is Severity.WARNING
+
     def test_a_first_step_to_the_bottom_is_one_stroke(self) -> None:
         assert shown(path("MULTISTEP_DRILLING", rest=",2.,30.,5.,$")) == ["feed -30", "rapid 5"]
 

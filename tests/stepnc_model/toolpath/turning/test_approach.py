@@ -60,3 +60,16 @@ def test_an_angle_without_length_or_deep_in_the_material_is_refused(
     )
     with pytest.raises(SchemaError, match="is not a valid lead-in"):
         path_of("FINISH CONTOUR", *edits)
+
+
+def test_a_bar_that_is_not_given_stands_out_by_one_cut_and_the_allowance(
+    path_of: Callable[..., ToolPath],
+) -> None:
+    path = path_of("ROUGH FACE", ("$,$,#33,(#36)", "$,$,$,(#36)"))
+    cuts = {round(m.end[2], 9) for _, m in path.segments() if m.type is MoveType.CONTACT}
+    assert cuts == {0.5}
+    # The face reaches 30 mm from the axis, no feature farther; 1.5 mm are cut, 0.5 mm left.
+    assert any(
+        each.message.endswith("a bar of 60 mm diameter, as the features, and 2 mm to face off")
+        for each in path.findings
+    )
