@@ -65,12 +65,7 @@ def solid_triangles(place: SolidPlace, *, tolerance: float) -> Floats:
         When there is no such solid, or several, or Open CASCADE is missing or cannot read it;
         when its triangles are not closed, or have another volume.
     """
-    file = place.file
-    try:
-        taken = whole_exchange(file) if place.root is None else exchange_below(file, place.root)
-        names = _names(file, taken)
-    except Part21Error as error:
-        raise StepNcError(f"{place.name}: {error}") from error
+    taken, names = _taken(place)
     sag = sag_within(tolerance)
     found = tessellate(
         taken.data,
@@ -92,11 +87,22 @@ def require_solids(place: SolidPlace) -> None:
     StepNcError
         When there is none, or Open CASCADE is missing or cannot read the file.
     """
-    taken = whole_exchange(place.file)
+    taken, names = _taken(place)
     # No instance has the number 0: nothing is tessellated.
-    found = tessellate(taken.data, name=place.name, sag=1.0, choice=Choice(wanted=(0,)))
+    choice = Choice(solids=tuple(names), wanted=(0,))
+    found = tessellate(taken.data, name=place.name, sag=1.0, choice=choice)
     if not len(found.number):
-        raise _not_one(place, found, taken, {})
+        raise _not_one(place, found, taken, names)
+
+
+def _taken(place: SolidPlace) -> tuple[Exchange, dict[int, str]]:
+    """What Open CASCADE gets of a file, and the names of the solids in it."""
+    file = place.file
+    try:
+        taken = whole_exchange(file) if place.root is None else exchange_below(file, place.root)
+        return taken, _names(file, taken)
+    except Part21Error as error:
+        raise StepNcError(f"{place.name}: {error}") from error
 
 
 def _choice(place: SolidPlace, taken: Exchange, names: dict[int, str]) -> Choice:
