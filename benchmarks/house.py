@@ -27,7 +27,7 @@ PRODUCT = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "servi
 ALLOWED = {
     "optimiser.profile.smooth_limit": "problems of paths without jumps, made by hand",
     "optimiser.profile.tangential_limit": "problems made by hand",
-    "optimiser.profile_program.solver_profile": "the judge of the sweep, in tests and benchmarks",
+    "optimiser.profile_program.solver_profile": "judge of the sweep, in tests and benchmarks",
     "kbe.migrations.versions.0001_outcomes.upgrade": "Alembic calls it by this name",
     "service.rest.app.application": "the application by itself, for tests and other servers",
     "service.rest.app.openapi": "the document by itself, for the pages",
