@@ -1,5 +1,6 @@
 """Variables, expressions, conditions and loops: what follows from the program's own numbers."""
 
+from collections.abc import Sequence
 from math import isnan
 from pathlib import Path
 
@@ -39,7 +40,7 @@ def read(text: str, dialect: Dialect = Dialect.LINUXCNC) -> NcProgram:
     return read_program(text.encode("latin-1"), dialect=dialect)
 
 
-def require_same(moves: NcMoves, truth: list[tuple[float, ...]], *, digit: float) -> None:
+def require_same(moves: NcMoves, truth: Sequence[tuple[float, ...]], *, digit: float) -> None:
     """Require the ends of LinuxCNC's moves."""
     rows = np.flatnonzero(moves.kind <= MoveKind.ARC)
     assert len(rows) == len(truth)
@@ -66,7 +67,8 @@ def test_expressions_and_statements_are_those_of_linuxcnc(linuxcnc: Oracle) -> N
 def ends(text: str, dialect: Dialect) -> list[float]:
     """Ends in X of the moves at a feed."""
     moves = read(text, dialect).moves
-    return moves.end[moves.kind == MoveKind.LINE][:, 0].tolist()
+    found: list[float] = moves.end[moves.kind == MoveKind.LINE][:, 0].tolist()
+    return found
 
 
 FANUC_HEAD = "O1\nG21 G90 G17\nT1 M6\nG0 X0. Y0. Z0.\nF100.\n"
