@@ -87,7 +87,7 @@ def read_and_rewrite(megabytes: float) -> None:
     print(f"{len(data) / 1e6:.0f} MB, {blocks} blocks; before reading {peak_mb():.0f} MB")
     with timed("read", blocks):
         program = read_program(data)
-    some = range(10, blocks, REWRITTEN_SHARE)
+    some = range(10, len(program.text) - 10, REWRITTEN_SHARE)
     advice = (BlockAdvice(block=block, ends=(1.0,), feeds=(10.0,)) for block in some)
     with timed("rewrite", blocks):
         rewrite(program, advice)

@@ -328,10 +328,6 @@ class IsoModes:
                 number=None if given is None or own else int(given),
                 diameter=self.scale * (nan if given is None else given) if own else None,
             )
-        self.compensate(side)
-
-    def compensate(self, side: CompensationSide | None) -> None:
-        """Begin or end cutter radius compensation."""
         was_on = bool(self.recorder.standing & MoveFlag.COMPENSATED)
         self.stand(MoveFlag.COMPENSATED, side is not None)
         self.recorder.setting = replace(self.recorder.setting, side=side)

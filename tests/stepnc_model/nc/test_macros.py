@@ -67,7 +67,8 @@ def test_expressions_and_statements_are_those_of_linuxcnc(linuxcnc: Oracle) -> N
 def ends(text: str, dialect: Dialect) -> list[float]:
     """Ends in X of the moves at a feed."""
     moves = read(text, dialect).moves
-    return list(map(float, moves.end[moves.kind == MoveKind.LINE][:, 0]))
+    found: list[float] = moves.end[moves.kind == MoveKind.LINE][:, 0].tolist()
+    return found
 
 
 FANUC_HEAD = "O1\nG21 G90 G17\nT1 M6\nG0 X0. Y0. Z0.\nF100.\n"
