@@ -11,10 +11,10 @@ from math import copysign, cos, hypot, isnan, nan, radians, sin
 
 from stepnc_model.nc.arcs import centre_of_radius, turn_of
 from stepnc_model.nc.drilling import cycle_moves, drilling
-from stepnc_model.nc.flow import ProgramFlow, places
+from stepnc_model.nc.flow import BEHIND_THE_END, ProgramFlow, places
 from stepnc_model.nc.klartext_words import KlartextWords, klartext_words
 from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind
-from stepnc_model.nc.recorder import MoveRecorder
+from stepnc_model.nc.recorder import MoveRecorder, frame_name
 from stepnc_model.nc.remarks import Remarks
 from stepnc_model.nc.text import NcText
 from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
@@ -26,6 +26,8 @@ LABELS = re.compile(
     rb"^[ \t]*(?:[0-9]+[ \t]+)?LBL[ \t]*([1-9][0-9]*|\"[^\"\r\n]*\")", re.M | re.I
 )
 
+PROGRAMS = re.compile(rb"^[ \t]*(?:[0-9]+[ \t]+)?BEGIN[ \t]+(PGM)\b", re.M | re.I)
+
 CYCLES = {
     "200": CycleKind.DRILL,
     "201": CycleKind.BORE,
@@ -35,8 +37,10 @@ CYCLES = {
     "207": CycleKind.TAP,
     "240": CycleKind.DRILL,
 }
-QUIET_CYCLES = {"9", "13", "32", "14", "20", "247"}
-"""Dwell, orientation, tolerance, contour data and preset: none moves an axis."""
+QUIET_CYCLES = {"9", "13", "32", "14", "20"}
+"""Dwell, orientation, tolerance and contour data: none moves an axis."""
+
+PARAMETER = re.compile(r"Q[LRS]?[0-9]")
 
 QUIET = frozenset({
     *{"BLK", "TOOL_DEF", "BEGIN", "END", "STOP", "FUNCTION", "SEL", "PATTERN", "HEAD"},
@@ -60,7 +64,8 @@ class HeidenhainControl:
         self.centre: dict[str, float] = {}
         self.spindle = 0.0
         self.sense = 0.0
-        self.shift = [0.0, 0.0, 0.0]
+        self.preset = "preset"
+        self.shift, self.shifted_by = [0.0, 0.0, 0.0], 0
         self.cycle: tuple[str, dict[str, float], int] | None = None
         self.rotary: dict[str, float] = {}
         self.is_called_always = False
@@ -85,6 +90,8 @@ class HeidenhainControl:
         while block < size:
             self.flow.step(block)
             block = self._execute(block)
+        for _, other in list(places(self.text, PROGRAMS))[1:2]:
+            self.remarks.warn(other, BEHIND_THE_END)
 
     def _execute(self, block: int) -> int:
         words = klartext_words(self.text.block(block))
@@ -185,7 +192,7 @@ class HeidenhainControl:
     def _feed(self, words: KlartextWords) -> bool:
         """Take F or FU of a path block; return whether the block is a rapid."""
         recorder = self.recorder
-        if "F" in words.macros or "FU" in words.macros or "AUTO" in words.names:
+        if "F" in words.macros or "FU" in words.macros or {"AUTO", "FAUTO"} & set(words.names):
             self._forget_feed()
         for name, mode in (("F", FeedMode.PER_MINUTE), ("FU", FeedMode.PER_REVOLUTION)):
             value = words.values.get(name)
@@ -226,8 +233,10 @@ class HeidenhainControl:
                 self.lose("a cycle call with positions of its own is not expanded")
             else:
                 self._drill()
-        elif head == "PLANE":
+        elif head == "PLANE" or (head == "TRANS" and "DATUM" not in names):
             self._transform("RESET" not in names)
+        elif head == "TRANS":
+            self._shift_datum(words, is_anew="RESET" in names)
         else:
             self.lose(f"{head} is not expanded")
             self._feed(words)
@@ -261,6 +270,8 @@ class HeidenhainControl:
         number = words.cycle.partition(".")[0]
         if number in {"7", "8", "10", "11", "26", "19"}:
             self._coordinates(words, number)
+        elif number == "247":
+            self._set_preset(words.assigned.get("Q339", nan))
         elif number in CYCLES:
             self.cycle = number, dict(words.assigned), self.recorder.block
         elif words.cycle == "9.1":
@@ -270,37 +281,46 @@ class HeidenhainControl:
             if number not in {"21", "22", "23", "24", "25", "27", "28", "29"}:
                 self.cycle = number, {}, self.recorder.block
 
+    def _set_preset(self, number: float) -> None:
+        """Take another preset (cycle 247), in which the position is not known yet."""
+        self.preset = f"preset {number:g}"
+        self.recorder.at = [nan, nan, nan]
+        self._name_frame()
+
     def _coordinates(self, words: KlartextWords, number: str) -> None:
         """Take a shift of the datum, or a mirror, rotation, scale or tilt."""
         if words.cycle.endswith(".0"):
             return
         if number == "7":
-            new = list(self.shift)
-            for axis, letter in enumerate("XYZ"):
-                if letter in words.values:
-                    new[axis] = self.scale * words.values[letter]
-                elif f"I{letter}" in words.values:
-                    new[axis] += self.scale * words.values[f"I{letter}"]
-                elif letter in words.macros or f"I{letter}" in words.macros:
-                    new[axis] = nan
-            at = self.recorder.at
-            self.recorder.at = [a + o - s for a, o, s in zip(at, self.shift, new, strict=True)]
-            self.shift = new
-            self._name_frame()
+            self._shift_datum(words, is_anew=False)
             return
-        given = [*words.values.values()]
+        # ROT and SCL are no addresses: their number stands alone, or is a Q parameter.
+        given = [*words.values.values(), *words.numbers]
         neutral = 1.0 if number in {"11", "26"} else 0.0
-        is_on = bool(words.macros) or any(value != neutral for value in given)
+        is_macro = bool(words.macros) or any(PARAMETER.match(name) for name in words.names)
+        is_on = is_macro or any(value != neutral for value in given)
         is_on = is_on or (number == "8" and bool(set("XYZ") & set(words.names)))
         self._transform(is_on)
 
+    def _shift_datum(self, words: KlartextWords, *, is_anew: bool) -> None:
+        """Shift the coordinates; by a line of the datum table the distance is not known."""
+        new = [0.0, 0.0, 0.0] if is_anew else list(self.shift)
+        if "#" in words.strange or "TABLE" in words.names:
+            new = [nan, nan, nan]
+        for axis, letter in enumerate("XYZ"):
+            if letter in words.values:
+                new[axis] = self.scale * words.values[letter]
+            elif f"I{letter}" in words.values:
+                new[axis] += self.scale * words.values[f"I{letter}"]
+            elif letter in words.macros or f"I{letter}" in words.macros:
+                new[axis] = nan
+        at = self.recorder.at
+        self.recorder.at = [a + o - s for a, o, s in zip(at, self.shift, new, strict=True)]
+        self.shift, self.shifted_by = new, self.recorder.block
+        self._name_frame()
+
     def _name_frame(self) -> None:
-        shifted = ", ".join(
-            f"{axis} {value:g}"
-            for axis, value in zip("XYZ", self.shift, strict=True)
-            if value != 0.0
-        )
-        name = f"preset shifted by {shifted}" if shifted else "preset"
+        name = frame_name(self.preset, self.shift, self.shifted_by)
         frame = self.recorder.frame(name)
         self.recorder.setting = replace(self.recorder.setting, frame=frame)
 

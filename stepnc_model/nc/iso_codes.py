@@ -66,6 +66,9 @@ TRANSFORMS_OFF = {
     Dialect.SINUMERIK: frozenset[int](),
 }
 
+CENTRED_TRANSFORMS = {500, 501, 510, 511, 680, 682, 683, 684, 1000, 1010}
+"""Codes of these whose axis words name a centre or an axis, and move nothing."""
+
 LENGTHS = {430, 431, 432, 440, 490}
 """Tool length offset on or off: z of the program is known again at its next position."""
 

@@ -81,10 +81,11 @@ class IsoControl:
         PostError
             If the program repeats or nests blocks without end, with the line.
         """
-        block, size = 0, len(self.text)
+        block, last, size = 0, 0, len(self.text)
         while block < size:
             self.flow.step(block)
-            block = self._execute(block)
+            last, block = block, self._execute(block)
+        self.steering.remark_rest(last + 1)
 
     def steer(self) -> IsoFlow:
         """Steering of the program."""
@@ -212,6 +213,8 @@ class IsoControl:
             self._in_machine(words)
         elif self.modes.shot is Shot.OFFSETS:
             self._set_offsets(words)
+        elif self.modes.shot is Shot.CENTRE:
+            return
         elif self.modes.shot is Shot.DWELL:
             self.recorder.dwell(self.seconds(words))
             if self.dialect is Dialect.LINUXCNC and has_axes and not self.modes.lost:

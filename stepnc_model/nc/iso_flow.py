@@ -7,8 +7,8 @@ afterwards.
 import re
 from typing import Protocol
 
-from stepnc_model.nc.block_words import BlockWords
-from stepnc_model.nc.flow import ProgramFlow, places
+from stepnc_model.nc.block_words import BlockWords, words_of
+from stepnc_model.nc.flow import BEHIND_THE_END, ProgramFlow, places
 from stepnc_model.nc.moves import MoveFlag
 from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.nc.remarks import Remarks
@@ -46,7 +46,10 @@ JUMPS = re.compile(rb"M97|M99[ \t]*P|GOTO", re.I)
 STATEMENT = re.compile(r"o\s*([0-9]+|<[^>]*>|\S+?)\s*([a-z]+)\s*(.*)", re.I | re.S)
 COUNT = re.compile(r"\[?\s*([0-9]+)(?:\.0*)?\s*\]?")
 
+RETURN = re.compile(r"M0*99(?![0-9])", re.I)
+
 END_OF_PROGRAM = {20, 300}
+AXES = frozenset("XYZUVWABC")
 
 
 class IsoFlow:
@@ -71,6 +74,8 @@ class IsoFlow:
         self._changed: set[int] = set()
         self._is_begun = False
         self._percents = 0
+        self._entered: set[int] = set()
+        """Blocks at which called subprograms begin."""
 
     def follow(self, words: BlockWords, block: int) -> int | None:
         """Next block if this one only steers the program, else None."""
@@ -134,7 +139,33 @@ class IsoFlow:
             return self._outside(block, f"the subprogram {number:g} is not in this file")
         if self._is_conditional and self._flow.is_inside(target):
             return self._outside(block, "a call of itself")
+        self._entered.add(target)
         return self._flow.call(block, target, times=times)
+
+    def remark_rest(self, block: int) -> None:
+        """Remark the first moves behind the end of the program that no call executes."""
+        heads = sorted(self._programs.values())
+        size = len(self._text)
+        while block < size:
+            text = self._text.block(block)
+            if block in self._entered:
+                inside = block
+                if block in heads:
+                    block = next((each for each in heads if each > inside), size)
+                else:
+                    while block < size and not RETURN.search(self._text.block(block)):
+                        block += 1
+                    block += 1
+                continue
+            words = words_of(text, self._control.dialect)
+            found = STATEMENT.fullmatch(words.flows[0]) if words.flows else None
+            if self._is_linuxcnc and found is not None and found[2].lower() == "sub":
+                block = self._ends.get(found[1].upper(), size) + 1
+                continue
+            if AXES & {*words.values, *words.macros}:
+                self._control.remarks.warn(block, BEHIND_THE_END)
+                return
+            block += 1
 
     def _target(self, number: float, *, is_local: bool) -> int | None:
         found = self._numbers if is_local else self._programs

@@ -9,7 +9,7 @@ from math import isnan, nan
 from stepnc_model.nc import iso_codes
 from stepnc_model.nc.block_words import BlockWords
 from stepnc_model.nc.moves import FeedMode, MoveFlag
-from stepnc_model.nc.recorder import MoveRecorder
+from stepnc_model.nc.recorder import MoveRecorder, frame_name
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.toolpath.path import ArcPlane, CycleKind
@@ -42,6 +42,8 @@ class Shot(Enum):
     SHIFT = auto()
     LOCAL = auto()
     OFFSETS = auto()
+    CENTRE = auto()
+    """Axis words name the centre of a rotation, scale or mirror image."""
 
 
 MOTIONS = {
@@ -82,6 +84,8 @@ class IsoModes:
         self.is_diameter = self.is_lathe and dialect is not Dialect.LINUXCNC
         self.returns_to_start = True
         self.shift = [0.0, 0.0, 0.0]
+        self.shifted_by = 0
+        """Block that shifted the frame last."""
         self.base = "G54"
         self.edition = ""
         """Words for the last block that gave values to frames."""
@@ -205,7 +209,8 @@ class IsoModes:
             (iso_codes.TRANSFORMS_OFF[control], False),
         ):
             for code in codes:
-                table[code] = partial(self._take_transform, is_on)
+                centred = code in iso_codes.CENTRED_TRANSFORMS
+                table[code] = partial(self._take_transform, is_on, centred)
         table |= {
             **{code: partial(self._take_mode, mode) for code, mode in MODES.items()},
             **{code: partial(self._compensate, code != 400) for code in (400, 410, 420)},
@@ -279,8 +284,10 @@ class IsoModes:
     def _take_length(self, _: BlockWords) -> None:
         self.lose_height()
 
-    def _take_transform(self, is_on: bool, _: BlockWords) -> None:
+    def _take_transform(self, is_on: bool, is_centred: bool, _: BlockWords) -> None:
         self.transform(is_on)
+        if is_centred:
+            self.shot = Shot.CENTRE
 
     def _take_mode(self, mode: FeedMode, _: BlockWords) -> None:
         self.to_mode(mode)
@@ -349,7 +356,7 @@ class IsoModes:
         """Shift the coordinates of the frame."""
         at = self.recorder.at
         self.recorder.at = [a + o - s for a, o, s in zip(at, self.shift, shift, strict=True)]
-        self.shift = shift
+        self.shift, self.shifted_by = shift, self.recorder.block
         self.recorder.flags |= MoveFlag.OFFSET.value
         self._name_frame()
 
@@ -361,13 +368,7 @@ class IsoModes:
         self._name_frame()
 
     def _name_frame(self) -> None:
-        shifted = ", ".join(
-            f"{axis} {value:g}"
-            for axis, value in zip("XYZ", self.shift, strict=True)
-            if value != 0.0
-        )
-        base = f"{self.base}{self.edition}"
-        name = f"{base} shifted by {shifted}" if shifted else base
+        name = frame_name(f"{self.base}{self.edition}", self.shift, self.shifted_by)
         setting = self.recorder.setting
         self.recorder.setting = replace(setting, frame=self.recorder.frame(name))
 

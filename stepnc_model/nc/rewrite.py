@@ -242,21 +242,35 @@ class _Rewriting:
         trace = _Trace()
         for each in self.plans.values():
             each.needs = False
-        changed: int | None = None
+        changed, changed_by, may_lack = None, -1, False
         for row in _rows(self.moves):
             if row.flags & MoveFlag.FRESH_FEED:
+                may_lack = self._is_skippable(row.fed_by)
+                if changed is not None and may_lack:
+                    # Where the operator skips its F word, the feed before it is in force.
+                    self._put_back(trace, row.fed_by, changed_by, changed)
                 changed = None
             if row.kind in {MoveKind.RAPID, MoveKind.DWELL}:
                 continue
             plan = self.plans.get(row.block)
             if plan is not None:
                 before = self._in_force(changed, row.fed_by)
-                plan.needs |= not _is_equal(before, plan.feeds[0])
+                plan.needs |= may_lack or not _is_equal(before, plan.feeds[0])
                 changed = None if row.is_inverse else row.block
+                changed_by, may_lack = row.fed_by, False
             elif changed is not None and not row.is_inverse:
-                self._put_back(trace, row, changed)
+                if not (row.flags & MoveFlag.OWN_FEED and row.fed_by == row.block):
+                    is_macro = bool(row.flags & MoveFlag.MACRO_FEED)
+                    self._put_back(trace, row.block, row.fed_by, changed, is_macro=is_macro)
                 changed = None
         return trace
+
+    def _is_skippable(self, block: int) -> bool:
+        """Whether the operator may skip a block of the file."""
+        text = self.program.text.block(block) if block >= 0 else ""
+        return "/" in text and any(
+            token.kind is TokenKind.SKIP for token in tokens(text, self.program.dialect)
+        )
 
     def _in_force(self, changed: int | None, fed_by: int) -> str | None:
         """Number of the F word that is in force before a block."""
@@ -274,22 +288,22 @@ class _Rewriting:
             self._feed_words[block] = token.value if token is not None and is_number else None
         return self._feed_words[block]
 
-    def _put_back(self, trace: _Trace, row: "_Row", changed: int) -> None:
+    def _put_back(
+        self, trace: _Trace, block: int, fed_by: int, changed: int, *, is_macro: bool = False
+    ) -> None:
         """Note that a block needs the programmed feed, or refuse the advice before it."""
-        programmed = self._feed_word(row.fed_by)
-        if row.flags & MoveFlag.OWN_FEED and row.fed_by == row.block:
-            return
+        programmed = self._feed_word(fed_by)
         if programmed is None:
-            if row.fed_by >= 0 or row.flags & MoveFlag.MACRO_FEED:
+            if fed_by >= 0 or is_macro:
                 trace.refused[changed] = "a later block needs a feed that is not known"
             return
         if _is_equal(programmed, self.plans[changed].feeds[-1]):
             return
-        known = trace.restored.get(row.block)
+        known = trace.restored.get(block)
         if known is not None and not _is_equal(self._feed_word(known), programmed):
             trace.refused[changed] = "a later block is called with different feeds"
             return
-        trace.restored[row.block] = row.fed_by
+        trace.restored[block] = fed_by
 
     # The new bytes.
 
@@ -373,6 +387,7 @@ class _Rewriting:
             len(kinds)
             and (kinds != MoveKind.UNKNOWN).all()
             and feed_token(text, dialect) is None
+            and not self._is_skippable(block)
         ):
             return with_feed(text, word, dialect=dialect, gap=gap)
         head = f"L{gap}" if dialect is Dialect.HEIDENHAIN else ""

@@ -44,6 +44,9 @@ CYCLES = {
 FIRST_DEPTH, DEPTH_OF_PECK, BREAKS = 5, 6, 11
 """Indices of the arguments FDEP, FDPR and VARI of CYCLE83."""
 
+FRAME_VARIABLE = re.compile(r"\$[A-Z]_[A-Z]*(?:FR|FRAME)\b", re.I)
+"""Variable that holds a frame, such as ``$P_UIFR[1]``."""
+
 ROUNDING = ("CHF", "CHR", "RND", "RNDM")
 STRANGE_ENDS = ("ANG", "AP", "RP", "I1", "J1", "K1")
 """Addresses that give the end of a move in a form that is not understood."""
@@ -85,9 +88,18 @@ class SinumerikModes(IsoModes):
             1530: partial(self._take, "shot", Shot.MACHINE),
             9610: partial(self._take_mode, FeedMode.PER_MINUTE),
         }
+        for code in (580, 590):
+            table[code] = self._shift_by_words
         for code, place in ((740, "the reference point"), (750, "a fixed point")):
             table[code] = partial(self._leave_for, f"G{code // 10} moves to {place}")
         return table
+
+    def _shift_by_words(self, words: BlockWords) -> None:
+        """Take a shift by G58 or G59: what follows stands in a frame of its own."""
+        for letter in "XYZ":
+            words.values.pop(letter, None)
+            words.macros.pop(letter, None)
+        self.set_frame(self.recorder.block)
 
     def _leave_for(self, why: str, _: BlockWords) -> None:
         self.lose(why)
@@ -193,6 +205,12 @@ class SinumerikControl(IsoControl):
             self.remarks.note(self.recorder.block, "the tool has a name and no number")
             if self.is_lathe:
                 self.modes.to_tool(None)
+        if any(map(FRAME_VARIABLE.match, (*words.values, *words.macros))):
+            self.modes.set_frame(self.recorder.block)
+        if "L" in words.values or "L" in words.macros:
+            number = words.values.get("L", nan)
+            self.modes.lose(f"the subprogram L{number:g} is not in this file")
+            self.modes.forget()
         for name in STRANGE_ENDS:
             if name in words.values or name in words.macros:
                 self.modes.lose(f"ends given by {name} are not understood")

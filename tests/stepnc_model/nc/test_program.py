@@ -256,3 +256,138 @@ def test_the_motion_before_a_cycle_is_in_force_after_it() -> None:
     assert fanuc.moves.kind[-2:].tolist() == [MoveKind.RAPID, MoveKind.LINE]
     linuxcnc = read_program(code, dialect=Dialect.LINUXCNC)
     assert linuxcnc.moves.kind[-2:].tolist() == [MoveKind.UNKNOWN, MoveKind.LINE]
+
+
+@pytest.mark.parametrize("word", [b"F Q1", b"FQ1", b"F AUTO", b"FAUTO"])
+def test_a_feed_of_klartext_that_is_no_number_is_not_known(word: bytes) -> None:
+    code = b"BEGIN PGM A MM\nL X+0 Y+0 Z+0 FMAX\nL X+1 F100\nL X+2 " + word + b"\nL X+3\n"
+    program = read_program(code, dialect=Dialect.HEIDENHAIN)
+    assert np.isnan(program.moves.feed[-2:]).all()
+    assert not program.moves.is_advisable[-2:].any()
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_a_byte_order_mark_is_no_word(control: Dialect) -> None:
+    code = b"%\nG90 G0 X0. Y0. Z5.\nG1 Z-1. F100.\nM30\n%\n"
+    if control is Dialect.HEIDENHAIN:
+        code = b"0 BEGIN PGM A MM\n1 L X+0 Y+0 Z+5 FMAX\n2 L Z-1 F100\n3 END PGM A MM\n"
+    plain = read_program(code, dialect=control)
+    marked = read_program(b"\xef\xbb\xbf" + code, dialect=control)
+    assert len(plain.moves) == 2
+    assert marked.moves.rows.tobytes() == plain.moves.rows.tobytes()
+    assert marked.findings == plain.findings
+
+
+def test_a_byte_order_mark_does_not_hide_the_control() -> None:
+    assert read_program(b"\xef\xbb\xbf0 BEGIN PGM A MM\n").dialect is Dialect.HEIDENHAIN
+
+
+@pytest.mark.parametrize(
+    ("control", "code", "line"),
+    [
+        (Dialect.FANUC, b"%\nO1\nG0 X1.\nM30\n%\n%\nO2\nG20\nG0 X2.\nM30\n%\n", 9),
+        (Dialect.FANUC, b"O1\nM98 P3\nM30\nO3\nG0 X1.\nM99\nO4\nG0 X2.\nM99\n", 8),
+        (Dialect.HAAS, b"O00001\nM97 P9\nM30\nN9 G0 X1.\nM99\nN10 G0 X2.\nM99\n", 6),
+        (Dialect.LINUXCNC, b"G0 X1\nM2\no1 sub\nG0 X2\no1 endsub\nG0 X3\n", 6),
+        (Dialect.SINUMERIK, b"%_N_A_MPF\nG0 X1\nM30\n%_N_B_MPF\nG0 X2\nM30\n", 5),
+        (
+            Dialect.HEIDENHAIN,
+            b"BEGIN PGM A MM\nL X+1 FMAX\nL M30\nLBL 1\nL X+2 FMAX\nLBL 0\nEND PGM A MM\n"
+            b"BEGIN PGM B MM\nL X+3 FMAX\nEND PGM B MM\n",
+            8,
+        ),
+    ],
+)
+def test_what_stands_behind_the_end_is_told(control: Dialect, code: bytes, line: int) -> None:
+    program = read_program(code, dialect=control)
+    found = [each.line for each in program.findings if "behind the end" in each.message]
+    assert found == [line]
+
+
+@pytest.mark.parametrize(
+    ("begin", "end"),
+    [
+        (b"G68 X0. Y0. R30.", b"G69"),
+        (b"G51 X0. Y0. P2.", b"G50"),
+        (b"G51.1 X0.", b"G50.1 X0."),
+    ],
+)
+def test_the_centre_of_a_rotation_is_no_move(begin: bytes, end: bytes) -> None:
+    head = b"O1\nG21 G90\nT1 M6\nS900 M3\nG0 X5. Y5. Z5.\nG1 Z-1. F100.\n"
+    code = head + begin + b"\nX10. Y10.\n" + end + b"\nX1. Y1. Z1.\nM30\n"
+    moves = read_program(code, dialect=Dialect.FANUC).moves
+    assert moves.block.tolist() == [4, 5, 7, 9]
+
+
+KLARTEXT = b"BEGIN PGM A MM\nTOOL CALL 1 Z S900\nL X+0 Y+0 Z+5 R0 FMAX\nL X+1 F100\n"
+ANEW = b"\nL X+0 Y+0 Z+5\nL X+9\n"
+
+
+@pytest.mark.parametrize(
+    ("on", "off"),
+    [
+        (b"CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+30", b"CYCL DEF 10.1 ROT+0"),
+        (b"CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 IROT-5", b"CYCL DEF 10.1 ROT+0"),
+        (b"CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+Q5", b"CYCL DEF 10.1 ROT+0"),
+        (b"CYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL 0.995", b"CYCL DEF 11.1 SCL 1"),
+        (b"TRANS ROTATION ROT30", b"TRANS ROTATION RESET"),
+    ],
+)
+def test_rotated_and_scaled_klartext_keeps_its_feeds(on: bytes, off: bytes) -> None:
+    program = read_program(KLARTEXT + on + ANEW + off + ANEW, dialect=Dialect.HEIDENHAIN)
+    cuts = program.moves.is_advisable[program.moves.kind == MoveKind.LINE]
+    assert cuts.tolist() == [True, False, False, False, True]
+
+
+@pytest.mark.parametrize(
+    ("shift", "frame"),
+    [
+        (b"CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+10", "preset shifted by X 10"),
+        (b"TRANS DATUM AXIS X+10", "preset shifted by X 10"),
+        (b"CYCL DEF 247 DATUM SETTING ~\nQ339=+3 ;DATUM NUMBER", "preset 3"),
+        (
+            b"CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 #5",
+            "preset shifted by X by an unknown distance, Y by an unknown distance, "
+            "Z by an unknown distance in block 6",
+        ),
+    ],
+)
+def test_another_datum_of_klartext_is_another_frame(shift: bytes, frame: str) -> None:
+    moves = read_program(KLARTEXT + shift + ANEW, dialect=Dialect.HEIDENHAIN).moves
+    assert moves.frames[moves.move(len(moves) - 1).setting.frame] == frame
+
+
+def test_two_unknown_shifts_are_two_frames() -> None:
+    code = b"G21 G90\nG92 X0 Y0 Z0\nG0 X0 Y0 Z0\nG1 X5 F100\nG92 X0\nG0 X0 Y0 Z0\nG1 X6\n"
+    moves = read_program(code, dialect=Dialect.LINUXCNC).moves
+    assert len({int(frame) for frame in moves.frame[moves.kind == MoveKind.LINE]}) == 2
+
+
+SIEMENS = b"G17 G90 G94 G71\nT1 D1 M6\nS900 M3\nG54 G0 X0 Y0 Z5\nG1 Z-1 F100\n"
+
+
+@pytest.mark.parametrize(
+    "shift",
+    [
+        b"$P_UIFR[1]=CTRANS(X,10)",
+        b"$P_UIFR[1,X,TR]=10",
+        b"$P_PFRAME=CTRANS(X,10)",
+        b"G58 X10",
+        b"G59 X10 Y5",
+    ],
+)
+def test_a_frame_that_a_sinumerik_program_sets_is_another_one(shift: bytes) -> None:
+    code = SIEMENS + shift + b"\nG54 G0 X0 Y0 Z5\nG1 X7 Z-1\nM30\n"
+    moves = read_program(code, dialect=Dialect.SINUMERIK).moves
+    first, second = (
+        moves.move(int(row)) for row in np.flatnonzero(moves.kind == MoveKind.LINE)
+    )
+    assert moves.frames[first.setting.frame] == "G54"
+    assert moves.frames[second.setting.frame] == "G54 as set in block 6"
+
+
+def test_a_subprogram_of_sinumerik_that_is_not_here_is_told() -> None:
+    program = read_program(SIEMENS + b"L100 P2\nX7\nM30\n", dialect=Dialect.SINUMERIK)
+    (found,) = program.findings[:1]
+    assert (found.line, "the subprogram L100 is not in this file" in found.message) == (6, True)
+    assert not program.moves.is_known[-1]
