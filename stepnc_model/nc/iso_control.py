@@ -37,6 +37,9 @@ PLAIN = re.compile(
 )
 """Block that moves on a straight line, and does nothing else."""
 
+FRAME_PARAMETERS = re.compile(r"#[ \t]*(?:5[2-3][0-9]{2}|7[0-9]{3}|14[0-9]{3})[ \t]*=(?!=)")
+"""Variables that hold offsets of frames: #5201 to #5390, #7001 to #7948, #14001 to #15996."""
+
 PLAIN_MOTIONS = {ModalMotion.RAPID, ModalMotion.LINE}
 
 
@@ -104,6 +107,8 @@ class IsoControl:
         following = self.steering.follow(words, block)
         if following is not None:
             return following
+        if words.assigns and FRAME_PARAMETERS.search(text):
+            self.modes.set_frame(block)
         if words.is_empty:
             return block + 1
         is_last = self._follow_contour(words)
@@ -219,6 +224,8 @@ class IsoControl:
             self.recorder.dwell(self.seconds(words))
             if self.dialect is Dialect.LINUXCNC and has_axes and not self.modes.lost:
                 self._interpolate(words)
+        elif ",A" in words.values or ",A" in words.macros:
+            self.modes.lose("an end given by its angle ,A")
         elif self.modes.lost:
             return
         elif isinstance(self.modes.motion, CycleKind):

@@ -49,6 +49,9 @@ COUNT = re.compile(r"\[?\s*([0-9]+)(?:\.0*)?\s*\]?")
 RETURN = re.compile(r"M0*99(?![0-9])", re.I)
 
 END_OF_PROGRAM = {20, 300}
+CALLS = {970, 980, 990}
+"""M97, M98 and M99."""
+
 AXES = frozenset("XYZUVWABC")
 
 
@@ -74,6 +77,10 @@ class IsoFlow:
         self._changed: set[int] = set()
         self._is_begun = False
         self._percents = 0
+        self._number: float | None = None
+        """P of a block that calls or returns."""
+        self._times_called: float | None = None
+        """L of such a block."""
         self._entered: set[int] = set()
         """Blocks at which called subprograms begin."""
 
@@ -91,14 +98,19 @@ class IsoFlow:
             return self.statement(words.flows[0], block)
         if 650 in words.codes or 660 in words.codes:
             return self._outside(block, "a macro call")
-        if 980 in words.functions or 970 in words.functions:
-            return self._called(words, block)
-        if 990 in words.functions:
-            return self._returned(words, block)
+        if 1980 in words.functions:
+            return self._outside(block, "a program that is not in this file is called")
+        if CALLS & set(words.functions):
+            self._number, self._times_called = (words.values.pop(a, None) for a in "PL")
+            # The other words of the block come first: G55 M98 P2, or G90 M99.
+            others = words.codes or words.values or words.macros or words.functions[1:]
+            return None if others else self._steered(words, block)
         return None
 
     def ended(self, words: BlockWords, block: int) -> int:
-        """Block after this one, which may end the program."""
+        """Block after this one, which may call, return, or end the program."""
+        if CALLS & set(words.functions):
+            return self._steered(words, block)
         if END_OF_PROGRAM & set(words.functions) and not self._open:
             return len(self._text)
         return block + 1
@@ -125,9 +137,17 @@ class IsoFlow:
             return block + 1
         return len(self._text)
 
+    def _steered(self, words: BlockWords, block: int) -> int:
+        """Call a subprogram or return from one; return the block to execute next."""
+        is_call = bool({970, 980} & set(words.functions))
+        return self._called(words, block) if is_call else self._returned(block)
+
     def _called(self, words: BlockWords, block: int) -> int:
         """Call a subprogram by M98, or by M97 at a block number."""
-        number, times = words.values.get("P"), int(words.values.get("L", 1.0))
+        number, times = (
+            self._number,
+            int(1.0 if self._times_called is None else self._times_called),
+        )
         if number is None:
             return self._outside(block, "a call without P")
         is_local = 970 in words.functions
@@ -174,9 +194,9 @@ class IsoFlow:
                 return block
         return None
 
-    def _returned(self, words: BlockWords, block: int) -> int:
+    def _returned(self, block: int) -> int:
         """Return from a subprogram; the main program ends, where a control begins anew."""
-        if "P" in words.values:
+        if self._number is not None:
             self._control.remarks.lost(block, "a return to another block")
             self._begin_condition()
         following = self._flow.leave()

@@ -278,8 +278,13 @@ class IsoModes:
             self._straight = motion
         self.motion = motion
 
-    def _take_frame(self, name: str, _: BlockWords) -> None:
-        self.to_frame(name)
+    def _take_frame(self, name: str, words: BlockWords) -> None:
+        is_numbered = "P" in words.values and 40 not in words.codes
+        if name == "G54" and is_numbered and self.dialect is Dialect.FANUC:
+            # Fanuc takes G54 P5 for G54.1 P5.
+            self._numbered_frame(words)
+        else:
+            self.to_frame(name)
 
     def _take_length(self, _: BlockWords) -> None:
         self.lose_height()

@@ -391,3 +391,46 @@ def test_a_subprogram_of_sinumerik_that_is_not_here_is_told() -> None:
     (found,) = program.findings[:1]
     assert (found.line, "the subprogram L100 is not in this file" in found.message) == (6, True)
     assert not program.moves.is_known[-1]
+
+
+FANUC = b"O1\nG21 G90\nT1 M6\nS900 M3\nG54 G0 X0. Y0. Z5.\nG1 Z-1. F100.\n"
+
+
+def test_other_words_of_a_block_that_calls_or_returns_are_executed() -> None:
+    code = FANUC + (b"G55 X50. M98 P2 L2\nX8. F70.\nM30\nO2\nG91 G1 X1.\nF60. G90 Y5. M99\n")
+    moves = read_program(code, dialect=Dialect.FANUC).moves
+    assert moves.block[2:].tolist() == [6, 10, 11, 10, 11, 7]
+    assert {moves.frames[int(frame)] for frame in moves.frame[2:]} == {"G55"}
+    assert moves.end[2:, 0].tolist() == [50.0, 51.0, 51.0, 52.0, 52.0, 8.0]
+    assert np.allclose(60.0 * moves.feed[2:], [100.0, 100.0, 60.0, 60.0, 60.0, 70.0])
+    assert not moves.is_splittable[2]
+
+
+def test_a_call_by_block_number_comes_after_its_block() -> None:
+    code = b"O00001\nG21 G90\nG0 X0. Y0. Z0.\nG1 X1. F500. M97 P9\nX3.\nM30\nN9 Y3.\nM99\n"
+    moves = read_program(code, dialect=Dialect.HAAS).moves
+    assert moves.block.tolist() == [2, 3, 6, 4]
+    assert moves.end[:, :2].tolist() == [[0.0, 0.0], [1.0, 0.0], [1.0, 3.0], [3.0, 3.0]]
+
+
+@pytest.mark.parametrize("word", [b"M198 P5", b"X5. ,A45."])
+def test_what_moves_in_a_way_that_is_not_understood_is_told(word: bytes) -> None:
+    program = read_program(FANUC + word + b"\nX7.\nM30\n", dialect=Dialect.FANUC)
+    assert program.findings[0].line == 7
+    assert not program.moves.is_known[-1]
+
+
+@pytest.mark.parametrize(
+    ("word", "frame"),
+    [
+        (b"G54 P5", "G54.1 P5"),
+        (b"#5221=-300.", "G54 as set in block 7"),
+        (b"#7001 = #1", "G54 as set in block 7"),
+        (b"#500=3.", "G54"),
+        (b"IF [#5221 EQ 3] GOTO 5", "G54"),
+    ],
+)
+def test_frames_that_a_fanuc_program_sets(word: bytes, frame: str) -> None:
+    code = FANUC + word + b"\nG0 X0. Y0. Z5.\nG1 X7.\nM30\n"
+    moves = read_program(code, dialect=Dialect.FANUC).moves
+    assert moves.frames[moves.move(len(moves) - 1).setting.frame] == frame
