@@ -40,11 +40,16 @@ CYCLES = {
 QUIET_CYCLES = {"9", "13", "32", "14", "20"}
 """Dwell, orientation, tolerance and contour data: none moves an axis."""
 
+MACHINE_AXES = {910, 920}
+"""M91 and M92: coordinates of the machine."""
+PLUNGE_FACTOR, HANDWHEEL, RETRACT = 1030, 1180, 1400
+"""M103, M118 and M140."""
+
 PARAMETER = re.compile(r"Q[LRS]?[0-9]")
 
 QUIET = frozenset({
     *{"BLK", "TOOL_DEF", "BEGIN", "END", "STOP", "FUNCTION", "SEL", "PATTERN", "HEAD"},
-    *{"TCH", "ERROR", "FN"},
+    *{"ERROR", "FN"},
 })
 PLANES = {"XY": ArcPlane.XY, "XZ": ArcPlane.ZX, "YZ": ArcPlane.YZ}
 PATHS = {"L", "C", "CR", "CC", "CP", "LP", "CTP", "CT", "CHF", "RND", "LN"}
@@ -62,6 +67,8 @@ class HeidenhainControl:
         self.flow = ProgramFlow(text, self.recorder)
         self.scale = 1.0
         self.centre: dict[str, float] = {}
+        self.feed_mode = FeedMode.PER_MINUTE
+        """Reference of the word F."""
         self.spindle = 0.0
         self.sense = 0.0
         self.preset = "preset"
@@ -105,6 +112,13 @@ class HeidenhainControl:
                 return following
         if head in PATHS:
             self._path(head, words)
+        elif head == "PRESET":
+            self._set_preset(words.numbers[-1] if words.numbers else nan)
+        elif head == "TCH":
+            # A probing cycle may set the datum.
+            self.lose("a probing cycle is not executed")
+            self.shift, self.shifted_by = [nan, nan, nan], block
+            self._name_frame()
         elif head in {"TOOL", "CYCL", "PLANE", "APPR", "DEP", "TRANS"}:
             self._other(head, words)
         elif head and head not in QUIET and not words.functions:
@@ -189,12 +203,24 @@ class HeidenhainControl:
         self.recorder.is_fresh = True
         self.recorder.standing |= MoveFlag.MACRO_FEED.value
 
+    def _take_mode(self, words: KlartextWords) -> None:
+        """Take M136 and M137: F counts by the revolution, or by the minute again."""
+        for code, mode in ((1360, FeedMode.PER_REVOLUTION), (1370, FeedMode.PER_MINUTE)):
+            if code in words.functions and self.feed_mode is not mode:
+                self.feed_mode = mode
+                self.recorder.setting = replace(self.recorder.setting, mode=mode)
+                self.recorder.word, self.recorder.fed_by = nan, -1
+
     def _feed(self, words: KlartextWords) -> bool:
         """Take F or FU of a path block; return whether the block is a rapid."""
         recorder = self.recorder
+        if PLUNGE_FACTOR in words.functions:
+            # F is a share of the feed in force here.
+            words.values.pop("F", None)
         if "F" in words.macros or "FU" in words.macros or {"AUTO", "FAUTO"} & set(words.names):
             self._forget_feed()
-        for name, mode in (("F", FeedMode.PER_MINUTE), ("FU", FeedMode.PER_REVOLUTION)):
+        self._take_mode(words)
+        for name, mode in (("F", self.feed_mode), ("FU", FeedMode.PER_REVOLUTION)):
             value = words.values.get(name)
             if value is not None:
                 per_minute = mode is FeedMode.PER_MINUTE
@@ -211,8 +237,11 @@ class HeidenhainControl:
             if code in words.functions:
                 self.sense = sense
                 self._turn()
-        if {910, 920} & set(words.functions):
+        if MACHINE_AXES & set(words.functions):
             self.recorder.at = [nan, nan, nan]
+        if RETRACT in words.functions:
+            self.recorder.move(MoveKind.RAPID, (*self.recorder.at[:2], nan))
+        self._take_mode(words)
 
     def _turn(self) -> None:
         speed = self.sense * rev_s_from_rpm(self.spindle) + 0.0
@@ -238,6 +267,10 @@ class HeidenhainControl:
         elif head == "TRANS":
             self._shift_datum(words, is_anew="RESET" in names)
         else:
+            if head == "DEP":
+                self._end_compensation()
+            elif {"RL", "RR"} & set(words.names):
+                self.recorder.standing |= MoveFlag.COMPENSATED.value
             self.lose(f"{head} is not expanded")
             self._feed(words)
 
@@ -330,8 +363,12 @@ class HeidenhainControl:
         if "RL" in words.names or "RR" in words.names:
             self.recorder.standing |= MoveFlag.COMPENSATED.value
         elif "R0" in words.names:
-            self.recorder.flags |= self.recorder.standing & MoveFlag.COMPENSATED.value
-            self.recorder.standing &= ~MoveFlag.COMPENSATED.value
+            self._end_compensation()
+        if words.strange or HANDWHEEL in words.functions:
+            what = f"'{words.strange[0]}'" if words.strange else "the handwheel offset M118"
+            self._feed(words)
+            self.lose(f"{what} is not understood")
+            return
         path = self._paths.get(head)
         if head in {"RND", "CHF"}:
             self._rounded(words)
@@ -340,6 +377,11 @@ class HeidenhainControl:
         else:
             is_rapid = self._feed(words)
             self.lose(f"the path {head} is not understood" if not is_rapid else head)
+
+    def _end_compensation(self) -> None:
+        """End the radius compensation: this block still leads away from the contour."""
+        self.recorder.flags |= self.recorder.standing & MoveFlag.COMPENSATED.value
+        self.recorder.standing &= ~MoveFlag.COMPENSATED.value
 
     def _rounded(self, words: KlartextWords) -> None:
         """A chamfer or rounding between two lines: its neighbours stay in one piece."""
@@ -350,7 +392,11 @@ class HeidenhainControl:
     def _coordinate(self, words: KlartextWords, axis: int) -> float:
         letter = "XYZ"[axis]
         at = self.recorder.at[axis]
+        is_given = letter in words.values or f"I{letter}" in words.values
         if letter in words.macros or f"I{letter}" in words.macros:
+            return nan
+        if is_given and MACHINE_AXES & set(words.functions):
+            self.recorder.flags |= MoveFlag.MACHINE.value
             return nan
         if f"I{letter}" in words.values:
             return at + self.scale * words.values[f"I{letter}"]

@@ -168,8 +168,8 @@ class SinumerikControl(IsoControl):
                 words.macros.pop(letter, None)
         elif name == "TRAFOOF":
             self.modes.transform(False)
-        elif name in {"SUPA"}:
-            self.recorder.flags |= MoveFlag.MACHINE.value
+        elif name == "SUPA":
+            self.modes.shot = Shot.MACHINE
         elif name == "MCALL":
             self._modal_call = None
         elif name in {"RET"} or name in iso_codes.SINUMERIK_QUIET:

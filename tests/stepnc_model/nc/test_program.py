@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from stepnc_model.errors import PostError
-from stepnc_model.nc.moves import MoveKind
+from stepnc_model.nc.moves import MoveFlag, MoveKind
 from stepnc_model.nc.neutral_blocks import neutral_blocks
 from stepnc_model.nc.program import NcProgram, read_program
 from stepnc_model.post.blocks import Circular, Cycles, Linear, MachineType, Rapid
@@ -434,3 +434,68 @@ def test_frames_that_a_fanuc_program_sets(word: bytes, frame: str) -> None:
     code = FANUC + word + b"\nG0 X0. Y0. Z5.\nG1 X7.\nM30\n"
     moves = read_program(code, dialect=Dialect.FANUC).moves
     assert moves.frames[moves.move(len(moves) - 1).setting.frame] == frame
+
+
+def klartext(*lines: str) -> NcProgram:
+    """Klartext that ends with two cuts at a place that it states anew."""
+    code = KLARTEXT + "\n".join(lines).encode() + ANEW
+    return read_program(code, dialect=Dialect.HEIDENHAIN)
+
+
+def test_positions_of_the_machine_are_no_positions_of_the_program() -> None:
+    moves = klartext("L Z-1 R0 FMAX M91", "L X+3 F100 M92").moves
+    fixed = moves.part(2, 4)
+    assert np.isnan([fixed.end[0, 2], fixed.end[1, 0]]).all()
+    assert (fixed.flags & int(MoveFlag.MACHINE)).all()
+    assert not fixed.is_advisable.any()
+
+
+def test_a_retraction_leaves_an_unknown_height() -> None:
+    moves = klartext("L M140 MB MAX", "L X+5").moves
+    assert moves.kind[2] == MoveKind.RAPID
+    assert np.isnan(moves.end[3, 2])
+
+
+def test_m136_counts_feeds_by_the_revolution() -> None:
+    moves = klartext("L M3 M136", "L X+5 F0.1", "L X+6 F200 M137", "L X+7 FU0.2").moves
+    assert np.allclose(60.0 * moves.feed[2:5], [90.0, 200.0, 180.0])
+    again = klartext("L M3", "L X+5 FU0.2", "L X+6 F200").moves
+    assert np.allclose(60.0 * again.feed[2:4], [180.0, 200.0])
+
+
+def test_the_factor_of_m103_is_no_feed() -> None:
+    assert np.allclose(60.0 * klartext("L X+5 M103 F0.5").moves.feed[2:], 100.0)
+
+
+def test_a_contour_that_is_approached_with_compensation_is_compensated() -> None:
+    contour = "APPR LT X+10 Y+10 Z-1 LEN5 RL F200", "L X+20 Y+10 Z-1", "L X+30", "DEP LT LEN5"
+    moves = klartext(*contour).moves
+    flagged = (moves.flags & int(MoveFlag.COMPENSATED)) != 0
+    assert flagged[moves.kind == MoveKind.LINE].tolist() == [False, True, True, False, False]
+
+
+@pytest.mark.parametrize("words", ["L X+5 Y+5,5", "L X+5 Y+5 R+", "L X+5 Y+5 M118 X1 Y1"])
+def test_a_path_with_other_words_is_not_understood(words: str) -> None:
+    program = klartext(words)
+    assert [each.line for each in program.findings] == [5]
+    assert np.isnan(program.moves.end[2]).any()
+
+
+@pytest.mark.parametrize(
+    ("words", "frame"),
+    [
+        ("PRESET SELECT #3", "preset 3"),
+        ("TCH PROBE 410 DATUM INSIDE RECTAN.", "preset shifted"),
+    ],
+)
+def test_a_datum_that_is_set_on_the_way_is_another_frame(words: str, frame: str) -> None:
+    moves = klartext(words).moves
+    assert moves.frames[moves.move(len(moves) - 1).setting.frame].startswith(frame)
+
+
+def test_a_position_of_the_machine_by_supa_is_none_of_the_program() -> None:
+    code = SIEMENS + b"G0 SUPA Z0 D0\nG0 X3 Y3\nM30\n"
+    moves = read_program(code, dialect=Dialect.SINUMERIK).moves
+    assert moves.flags[-2] & int(MoveFlag.MACHINE)
+    assert np.isnan(moves.end[-2:, 2]).all()
+    assert moves.end[-1, :2].tolist() == [3.0, 3.0]
