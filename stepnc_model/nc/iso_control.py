@@ -205,7 +205,8 @@ class IsoControl:
 
     def rounding(self, words: BlockWords) -> Sequence[str]:
         """Addresses of chamfers and roundings at the end of a line."""
-        is_line = self.modes.motion is ModalMotion.LINE and not {20, 30} & set(words.codes)
+        is_line = 10 in words.codes or self.modes.motion is ModalMotion.LINE
+        is_line = is_line and not {0, 20, 30} & set(words.codes)
         return (",C", ",R", "C", "R") if self.is_lathe and is_line else (",C", ",R")
 
     def _move(self, words: BlockWords) -> None:

@@ -237,6 +237,7 @@ class IsoModes:
             }
             for code in iso_codes.LATHE_CYCLES:
                 table[code] = partial(self._not_expanded, code)
+            table[920] = self._thread_or_limit
         else:
             for code, kind in iso_codes.CANNED.items():
                 table[code] = partial(self._take_motion, kind)
@@ -382,6 +383,13 @@ class IsoModes:
         if isnan(number):
             self.recorder.at = [nan, nan, nan]
         self.to_frame(f"G54.1 P{number:g}")
+
+    def _thread_or_limit(self, words: BlockWords) -> None:
+        """Take G92: a threading cycle, or the limit of the speed (G92 S) like G50 S."""
+        if "S" in words.values and not set("XZUW") & {*words.values, *words.macros}:
+            self._lathe_shift(words)
+        else:
+            self._not_expanded(920, words)
 
     def _lathe_shift(self, words: BlockWords) -> None:
         """Limit the speed of the spindle (G50 S), or shift the coordinates (G50 X Z)."""

@@ -499,3 +499,43 @@ def test_a_position_of_the_machine_by_supa_is_none_of_the_program() -> None:
     assert moves.flags[-2] & int(MoveFlag.MACHINE)
     assert np.isnan(moves.end[-2:, 2]).all()
     assert moves.end[-1, :2].tolist() == [3.0, 3.0]
+
+
+TURNED = b"O1\nG21 G99\nT0101\nG97 S1000 M3\nG0 X50. Z2.\n"
+
+
+@pytest.mark.parametrize("word", [b"R2.", b"C2.", b",R2."])
+def test_a_rounding_in_the_block_of_g1_keeps_it_whole(word: bytes) -> None:
+    code = TURNED + b"G1 Z-10. " + word + b" F.1\nM30\n"
+    moves = read_program(code, dialect=Dialect.FANUC, machine=MachineType.LATHE).moves
+    assert moves.flags[-1] & int(MoveFlag.ROUNDED)
+    assert not moves.is_splittable[-1]
+
+
+@pytest.mark.parametrize("code", [b"G50 S800", b"G92 S800"])
+def test_a_limit_of_the_speed_is_no_speed(code: bytes) -> None:
+    turned = TURNED + code + b"\nG1 Z-10. F.1\nG96 S500\nX4.\nM30\n"
+    program = read_program(turned, dialect=Dialect.FANUC, machine=MachineType.LATHE)
+    assert program.findings == ()
+    assert np.allclose(60.0 * program.moves.spindle[-2:], [1000.0, 800.0])
+
+
+@pytest.mark.parametrize(
+    ("control", "code", "lines"),
+    [
+        (Dialect.HAAS, b"G21\nG0 X0.\nG1 X1. F100.\nX2. F200\nX3. F300\n", [4]),
+        (Dialect.FANUC, b"G20\nG0 X0.\nG1 X1. F10\n", [3]),
+        (Dialect.FANUC, b"G21\nG0 X0.\nG1 X1. F100\n", []),
+        (Dialect.HAAS, b"G20\nG0 X0.\nG1 X1. F.5 (F10)\n", []),
+    ],
+)
+def test_a_feed_whose_unit_depends_on_a_setting_is_told(
+    control: Dialect, code: bytes, lines: list[int]
+) -> None:
+    found = read_program(code, dialect=control).findings
+    assert [each.line for each in found if "a feed without" in each.message] == lines
+
+
+def test_text_of_two_bytes_a_character_is_told() -> None:
+    program = read_program("G21 G90\nG0 X1\n".encode("utf-16"))
+    assert "the file is UTF-16 text" in program.findings[0].message
