@@ -257,6 +257,7 @@ class IsoModes:
             70: partial(self._take, "is_diameter", True),
             80: partial(self._take, "is_diameter", False),
             331: partial(self._take_motion, ModalMotion.THREAD),
+            **{code: partial(self._compensate, True) for code in (411, 421)},
             901: partial(self._take, "is_centre_absolute", True),
             911: partial(self._take, "is_centre_absolute", False),
             921: partial(self._take_shift, 0.0),
@@ -457,6 +458,14 @@ class IsoModes:
                 self.to_tool(None)
         elif 60 in words.functions:
             self.to_tool(self.tool)
+        elif 610 in words.functions and self.dialect is Dialect.LINUXCNC:
+            # M61 Q5 says which tool is in the spindle.
+            called = words.values.pop("Q", nan)
+            self.tool, self.tool_name = None if isnan(called) else int(called), ""
+            self.to_tool(self.tool)
+        if 720 in words.functions and self.dialect is Dialect.LINUXCNC:
+            self.lose("M72 restores a state that is not kept here")
+            self.forget()
 
     def to_tool(self, number: int | None) -> None:
         """Change the tool, after which its height is not known."""

@@ -539,3 +539,26 @@ def test_a_feed_whose_unit_depends_on_a_setting_is_told(
 def test_text_of_two_bytes_a_character_is_told() -> None:
     program = read_program("G21 G90\nG0 X1\n".encode("utf-16"))
     assert "the file is UTF-16 text" in program.findings[0].message
+
+
+NGC = b"G21 G90\nT1 M6\nS900 M3\nG0 X0 Y0 Z5\nG1 Z-1 F100\n"
+
+
+def test_m61_names_the_tool_in_the_spindle() -> None:
+    moves = read_program(NGC + b"M61 Q5\nG1 X5 Z-1\n", dialect=Dialect.LINUXCNC).moves
+    assert moves.tool[-2:].tolist() == [1, 5]
+
+
+@pytest.mark.parametrize("code", [b"G41.1 D5", b"G42.1 D5"])
+def test_compensation_by_a_diameter_in_the_block_is_compensation(code: bytes) -> None:
+    ended = NGC + code + b" X5\nX10 Y0 Z-1\nG40 X20\nX30\n"
+    moves = read_program(ended, dialect=Dialect.LINUXCNC).moves
+    flagged = (moves.flags[-4:] & int(MoveFlag.COMPENSATED)) != 0
+    assert flagged.tolist() == [True, True, True, False]
+
+
+def test_a_restored_state_is_not_known() -> None:
+    code = NGC + b"M70\nG91\nM72\nG1 X5 Y5 Z-1 F200\n"
+    program = read_program(code, dialect=Dialect.LINUXCNC)
+    assert "M72 restores a state" in program.findings[0].message
+    assert not program.moves.is_known[-1]
