@@ -12,9 +12,10 @@ from math import copysign, cos, hypot, isnan, nan, radians, sin
 from stepnc_model.nc.arcs import centre_of_radius, turn_of
 from stepnc_model.nc.drilling import cycle_moves, drilling
 from stepnc_model.nc.flow import BEHIND_THE_END, ProgramFlow, places
+from stepnc_model.nc.klartext_datum import KlartextDatum
 from stepnc_model.nc.klartext_words import KlartextWords, klartext_words
 from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind
-from stepnc_model.nc.recorder import MoveRecorder, frame_name
+from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.nc.remarks import Remarks
 from stepnc_model.nc.text import NcText
 from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
@@ -45,7 +46,6 @@ MACHINE_AXES = {910, 920}
 PLUNGE_FACTOR, HANDWHEEL, RETRACT = 1030, 1180, 1400
 """M103, M118 and M140."""
 
-PARAMETER = re.compile(r"Q[LRS]?[0-9]")
 
 QUIET = frozenset({
     *{"BLK", "TOOL_DEF", "BEGIN", "END", "STOP", "FUNCTION", "SEL", "PATTERN", "HEAD"},
@@ -71,8 +71,7 @@ class HeidenhainControl:
         """Reference of the word F."""
         self.spindle = 0.0
         self.sense = 0.0
-        self.preset = "preset"
-        self.shift, self.shifted_by = [0.0, 0.0, 0.0], 0
+        self.datum = KlartextDatum(self.recorder)
         self.cycle: tuple[str, dict[str, float], int] | None = None
         self.rotary: dict[str, float] = {}
         self.is_called_always = False
@@ -113,12 +112,11 @@ class HeidenhainControl:
         if head in PATHS:
             self._path(head, words)
         elif head == "PRESET":
-            self._set_preset(words.numbers[-1] if words.numbers else nan)
+            self.datum.to_preset(words.numbers[-1] if words.numbers else nan)
         elif head == "TCH":
             # A probing cycle may set the datum.
             self.lose("a probing cycle is not executed")
-            self.shift, self.shifted_by = [nan, nan, nan], block
-            self._name_frame()
+            self.datum.shift_to([nan, nan, nan])
         elif head in {"TOOL", "CYCL", "PLANE", "APPR", "DEP", "TRANS"}:
             self._other(head, words)
         elif head and head not in QUIET and not words.functions:
@@ -263,9 +261,9 @@ class HeidenhainControl:
             else:
                 self._drill()
         elif head == "PLANE" or (head == "TRANS" and "DATUM" not in names):
-            self._transform("RESET" not in names)
+            self.datum.transform("RESET" not in names)
         elif head == "TRANS":
-            self._shift_datum(words, is_anew="RESET" in names)
+            self.datum.shift_by(words, scale=self.scale, is_anew="RESET" in names)
         else:
             if head == "DEP":
                 self._end_compensation()
@@ -290,21 +288,13 @@ class HeidenhainControl:
             self.remarks.note(self.recorder.block, "the tool has a name and no number")
             self.recorder.at[2] = nan
 
-    def _transform(self, is_on: bool) -> None:
-        flag = MoveFlag.TRANSFORMED.value
-        if is_on:
-            self.recorder.standing |= flag
-        else:
-            self.recorder.standing &= ~flag
-        self.recorder.at = [nan, nan, nan]
-
     def _define(self, words: KlartextWords) -> None:
         """Take the definition of a cycle."""
         number = words.cycle.partition(".")[0]
         if number in {"7", "8", "10", "11", "26", "19"}:
-            self._coordinates(words, number)
+            self.datum.change(words, number, scale=self.scale)
         elif number == "247":
-            self._set_preset(words.assigned.get("Q339", nan))
+            self.datum.to_preset(words.assigned.get("Q339", nan))
         elif number in CYCLES:
             self.cycle = number, dict(words.assigned), self.recorder.block
         elif words.cycle == "9.1":
@@ -313,49 +303,6 @@ class HeidenhainControl:
             self.cycle = None
             if number not in {"21", "22", "23", "24", "25", "27", "28", "29"}:
                 self.cycle = number, {}, self.recorder.block
-
-    def _set_preset(self, number: float) -> None:
-        """Take another preset (cycle 247), in which the position is not known yet."""
-        self.preset = f"preset {number:g}"
-        self.recorder.at = [nan, nan, nan]
-        self._name_frame()
-
-    def _coordinates(self, words: KlartextWords, number: str) -> None:
-        """Take a shift of the datum, or a mirror, rotation, scale or tilt."""
-        if words.cycle.endswith(".0"):
-            return
-        if number == "7":
-            self._shift_datum(words, is_anew=False)
-            return
-        # ROT and SCL are no addresses: their number stands alone, or is a Q parameter.
-        given = [*words.values.values(), *words.numbers]
-        neutral = 1.0 if number in {"11", "26"} else 0.0
-        is_macro = bool(words.macros) or any(PARAMETER.match(name) for name in words.names)
-        is_on = is_macro or any(value != neutral for value in given)
-        is_on = is_on or (number == "8" and bool(set("XYZ") & set(words.names)))
-        self._transform(is_on)
-
-    def _shift_datum(self, words: KlartextWords, *, is_anew: bool) -> None:
-        """Shift the coordinates; by a line of the datum table the distance is not known."""
-        new = [0.0, 0.0, 0.0] if is_anew else list(self.shift)
-        if "#" in words.strange or "TABLE" in words.names:
-            new = [nan, nan, nan]
-        for axis, letter in enumerate("XYZ"):
-            if letter in words.values:
-                new[axis] = self.scale * words.values[letter]
-            elif f"I{letter}" in words.values:
-                new[axis] += self.scale * words.values[f"I{letter}"]
-            elif letter in words.macros or f"I{letter}" in words.macros:
-                new[axis] = nan
-        at = self.recorder.at
-        self.recorder.at = [a + o - s for a, o, s in zip(at, self.shift, new, strict=True)]
-        self.shift, self.shifted_by = new, self.recorder.block
-        self._name_frame()
-
-    def _name_frame(self) -> None:
-        name = frame_name(self.preset, self.shift, self.shifted_by)
-        frame = self.recorder.frame(name)
-        self.recorder.setting = replace(self.recorder.setting, frame=frame)
 
     # Paths.
 

@@ -323,40 +323,6 @@ KLARTEXT = b"BEGIN PGM A MM\nTOOL CALL 1 Z S900\nL X+0 Y+0 Z+5 R0 FMAX\nL X+1 F1
 ANEW = b"\nL X+0 Y+0 Z+5\nL X+9\n"
 
 
-@pytest.mark.parametrize(
-    ("on", "off"),
-    [
-        (b"CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+30", b"CYCL DEF 10.1 ROT+0"),
-        (b"CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 IROT-5", b"CYCL DEF 10.1 ROT+0"),
-        (b"CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+Q5", b"CYCL DEF 10.1 ROT+0"),
-        (b"CYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL 0.995", b"CYCL DEF 11.1 SCL 1"),
-        (b"TRANS ROTATION ROT30", b"TRANS ROTATION RESET"),
-    ],
-)
-def test_rotated_and_scaled_klartext_keeps_its_feeds(on: bytes, off: bytes) -> None:
-    program = read_program(KLARTEXT + on + ANEW + off + ANEW, dialect=Dialect.HEIDENHAIN)
-    cuts = program.moves.is_advisable[program.moves.kind == MoveKind.LINE]
-    assert cuts.tolist() == [True, False, False, False, True]
-
-
-@pytest.mark.parametrize(
-    ("shift", "frame"),
-    [
-        (b"CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+10", "preset shifted by X 10"),
-        (b"TRANS DATUM AXIS X+10", "preset shifted by X 10"),
-        (b"CYCL DEF 247 DATUM SETTING ~\nQ339=+3 ;DATUM NUMBER", "preset 3"),
-        (
-            b"CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 #5",
-            "preset shifted by X by an unknown distance, Y by an unknown distance, "
-            "Z by an unknown distance in block 6",
-        ),
-    ],
-)
-def test_another_datum_of_klartext_is_another_frame(shift: bytes, frame: str) -> None:
-    moves = read_program(KLARTEXT + shift + ANEW, dialect=Dialect.HEIDENHAIN).moves
-    assert moves.frames[moves.move(len(moves) - 1).setting.frame] == frame
-
-
 def test_two_unknown_shifts_are_two_frames() -> None:
     code = b"G21 G90\nG92 X0 Y0 Z0\nG0 X0 Y0 Z0\nG1 X5 F100\nG92 X0\nG0 X0 Y0 Z0\nG1 X6\n"
     moves = read_program(code, dialect=Dialect.LINUXCNC).moves
@@ -479,18 +445,6 @@ def test_a_path_with_other_words_is_not_understood(words: str) -> None:
     program = klartext(words)
     assert [each.line for each in program.findings] == [5]
     assert np.isnan(program.moves.end[2]).any()
-
-
-@pytest.mark.parametrize(
-    ("words", "frame"),
-    [
-        ("PRESET SELECT #3", "preset 3"),
-        ("TCH PROBE 410 DATUM INSIDE RECTAN.", "preset shifted"),
-    ],
-)
-def test_a_datum_that_is_set_on_the_way_is_another_frame(words: str, frame: str) -> None:
-    moves = klartext(words).moves
-    assert moves.frames[moves.move(len(moves) - 1).setting.frame].startswith(frame)
 
 
 def test_a_position_of_the_machine_by_supa_is_none_of_the_program() -> None:
