@@ -10,6 +10,7 @@ from pathlib import Path
 from optimiser.along_path.caps import CutBounds
 from optimiser.along_path.tool_bounds import bounds_of_tool
 from optimiser.modes import Mode
+from service.along_path.called_tools import called_tool_findings, with_called_tools
 from service.along_path.code_paths import CodeBlocks, CodePaths
 from service.along_path.course import PathSource
 from service.along_path.plan_run import PartTotals
@@ -109,7 +110,7 @@ def optimise_code(
 
     def paths_of(program: NcProgram) -> CodePaths:
         return CodePaths(
-            program,
+            with_called_tools(program, library),
             machine,
             material,
             name=name,
@@ -159,6 +160,7 @@ def optimise_code(
         findings=(
             *program.findings,
             *library.findings,
+            *called_tool_findings(program, library),
             *code.findings,
             *_idle(code, along),
             *_unchanged(rewritten),

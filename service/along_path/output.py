@@ -67,9 +67,10 @@ def print_along_path(along: FeedsAlongPath) -> None:
     total = f"{along.time_before:.1f} -> {along.time_after:.1f}"
     print_table(STEP, along.shown, foot={"part of the program": "total", "time s": total})
     ratio = along.time_after / along.time_before if along.time_before else 1.0
+    to_plan = along.time_after / along.planned_time if along.planned_time else 1.0
     print_line(
         f"time × {ratio:.3f}; {len(along.feeds)} blocks changed, {along.parts} splits; "
-        f"run/plan {along.time_after / along.planned_time:.4f}"
+        f"run/plan {to_plan:.4f}"
     )
     print_line(free_words(along))
     shares = ", ".join(f"{words} {share:.0%}" for words, share in active_shares(along))

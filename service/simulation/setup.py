@@ -307,7 +307,10 @@ def _read(
             else:
                 yield lines.count, block
     except PostError as error:
-        raise StepNcError(f"{request.code.name}: {error}") from error
+        raise StepNcError(
+            f"{request.code.name}: {error} (the virtual machine reads plain code; "
+            "`stepnc check` and `optimise` read code of any origin)"
+        ) from error
 
 
 def dialect_of(code: Path, named: str) -> Dialect:

@@ -5,7 +5,7 @@ column.
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,7 @@ from typing import Any
 from lxml import etree
 
 from simulator.agent.model import read_streams_root
-from simulator.client.columns import Cell, RowMaker, columns_of
+from simulator.client.columns import Cell, RowMaker, column_name, columns_of
 from simulator.client.connection import ClientItem, ClientObservation, observation_of
 from simulator.errors import AgentError
 
@@ -37,7 +37,8 @@ def read_document(path: Path) -> ReadDocument:
     Raises
     ------
     AgentError
-        When the file cannot be read, is no document of streams, or has a faulty stamp.
+        When the file cannot be read, is no document of streams, has a faulty stamp, or tells
+        of several machines.
     """
     items: dict[str, ClientItem] = {}
     found: list[ClientObservation] = []
@@ -50,8 +51,20 @@ def read_document(path: Path) -> ReadDocument:
             raise AgentError(f"{path}: line {element.sourceline}: {error}") from error
         if found[-1].id not in items:
             items[found[-1].id] = _item(element)
+    _require_one_machine(items.values(), path)
     found.sort(key=lambda each: each.sequence)
     return ReadDocument(items=tuple(items.values()), observations=tuple(found))
+
+
+def _require_one_machine(items: Iterable[ClientItem], path: Path) -> None:
+    """Refuse a document from which a run would get columns of several machines."""
+    devices = dict.fromkeys(item.device for item in items if column_name(item))
+    if len(devices) > 1:
+        names = ", ".join(f"'{name}'" for name in devices)
+        raise AgentError(
+            f"{path}: tells of {len(devices)} devices, {names}: ask the agent for one of them, "
+            f"as in http://HOST:PORT/{next(iter(devices))}/sample"
+        )
 
 
 def _item(element: Any) -> ClientItem:

@@ -131,7 +131,15 @@ def _words(code: str, path: Path, line: int) -> dict[str, float]:
         if letter not in words:
             message = "missing; every tool has a number T and a pocket P"
             raise LibraryError(message, path=str(path), key=letter, line=line)
-    return words
+    return _given_words(words)
+
+
+def _given_words(words: dict[str, float]) -> dict[str, float]:
+    """Words without I0 J0 Q0, which editors write where nothing is given."""
+    absent = {"Q"} if not words.get("Q") else set()
+    if not words.get("I") and not words.get("J"):
+        absent |= {"I", "J"}
+    return {letter: value for letter, value in words.items() if letter not in absent}
 
 
 def _unusable(words: dict[str, float]) -> str:

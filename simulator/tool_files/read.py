@@ -13,7 +13,7 @@ from pathlib import Path
 
 from simulator.errors import LibraryError
 from simulator.toml_file import read_bounded
-from simulator.tool_files.csv_table import is_heading, read_csv
+from simulator.tool_files.csv_table import is_heading, is_passed, read_csv
 from simulator.tool_files.file_unit import FileUnit, other_size
 from simulator.tool_files.freecad import read_freecad
 from simulator.tool_files.fusion import read_fusion
@@ -94,7 +94,9 @@ def _detected(data: bytes, path: Path) -> tuple[ToolFormat, str]:
         return ToolFormat.FUSION, _unpacked(data, path)
     text = _decoded(data, path)
     lines = (line.strip() for line in text.splitlines())
-    first = next((line for line in lines if line and line[0] not in "#;"), "")
+    first = next(
+        (each for each in lines if each and each[0] != ";" and not is_passed(each)), ""
+    )
     if first.startswith("<"):
         return ToolFormat.HSMWORKS, text
     if first.startswith("{"):

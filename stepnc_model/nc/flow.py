@@ -20,6 +20,12 @@ DEEPEST = 50
 MOST_REPEATED = 1_000_000
 """Greatest number of executed blocks beyond the blocks of the file."""
 
+BEHIND_THE_END = (
+    "stands behind the end of the program and is not executed: the feeds from here stay as "
+    "they are; if it is another program, give it a file of its own"
+)
+"""Remark on moves behind the end of a program."""
+
 
 MOST_LOOPED = 100_000
 """Number of blocks beyond those of the file after which loops are left."""

@@ -11,7 +11,8 @@ from math import copysign, cos, hypot, isnan, nan, radians, sin
 
 from stepnc_model.nc.arcs import centre_of_radius, turn_of
 from stepnc_model.nc.drilling import cycle_moves, drilling
-from stepnc_model.nc.flow import ProgramFlow, places
+from stepnc_model.nc.flow import BEHIND_THE_END, ProgramFlow, places
+from stepnc_model.nc.klartext_datum import KlartextDatum
 from stepnc_model.nc.klartext_words import KlartextWords, klartext_words
 from stepnc_model.nc.moves import CompensationSide, FeedMode, MoveFlag, MoveKind
 from stepnc_model.nc.recorder import MoveRecorder
@@ -26,6 +27,8 @@ LABELS = re.compile(
     rb"^[ \t]*(?:[0-9]+[ \t]+)?LBL[ \t]*([1-9][0-9]*|\"[^\"\r\n]*\")", re.M | re.I
 )
 
+PROGRAMS = re.compile(rb"^[ \t]*(?:[0-9]+[ \t]+)?BEGIN[ \t]+(PGM)\b", re.M | re.I)
+
 CYCLES = {
     "200": CycleKind.DRILL,
     "201": CycleKind.BORE,
@@ -35,12 +38,18 @@ CYCLES = {
     "207": CycleKind.TAP,
     "240": CycleKind.DRILL,
 }
-QUIET_CYCLES = {"9", "13", "32", "14", "20", "247"}
-"""Dwell, orientation, tolerance, contour data and preset: none moves an axis."""
+QUIET_CYCLES = {"9", "13", "32", "14", "20"}
+"""Dwell, orientation, tolerance and contour data: none moves an axis."""
+
+MACHINE_AXES = {910, 920}
+"""M91 and M92: coordinates of the machine."""
+PLUNGE_FACTOR, HANDWHEEL, RETRACT = 1030, 1180, 1400
+"""M103, M118 and M140."""
+
 
 QUIET = frozenset({
     *{"BLK", "TOOL_DEF", "BEGIN", "END", "STOP", "FUNCTION", "SEL", "PATTERN", "HEAD"},
-    *{"TCH", "ERROR", "FN"},
+    *{"ERROR", "FN"},
 })
 PLANES = {"XY": ArcPlane.XY, "XZ": ArcPlane.ZX, "YZ": ArcPlane.YZ}
 PATHS = {"L", "C", "CR", "CC", "CP", "LP", "CTP", "CT", "CHF", "RND", "LN"}
@@ -58,9 +67,11 @@ class HeidenhainControl:
         self.flow = ProgramFlow(text, self.recorder)
         self.scale = 1.0
         self.centre: dict[str, float] = {}
+        self.feed_mode = FeedMode.PER_MINUTE
+        """Reference of the word F."""
         self.spindle = 0.0
         self.sense = 0.0
-        self.shift = [0.0, 0.0, 0.0]
+        self.datum = KlartextDatum(self.recorder)
         self.cycle: tuple[str, dict[str, float], int] | None = None
         self.rotary: dict[str, float] = {}
         self.is_called_always = False
@@ -85,6 +96,8 @@ class HeidenhainControl:
         while block < size:
             self.flow.step(block)
             block = self._execute(block)
+        for _, other in list(places(self.text, PROGRAMS))[1:2]:
+            self.remarks.warn(other, BEHIND_THE_END)
 
     def _execute(self, block: int) -> int:
         words = klartext_words(self.text.block(block))
@@ -98,6 +111,12 @@ class HeidenhainControl:
                 return following
         if head in PATHS:
             self._path(head, words)
+        elif head == "PRESET":
+            self.datum.to_preset(words.numbers[-1] if words.numbers else nan)
+        elif head == "TCH":
+            # A probing cycle may set the datum.
+            self.lose("a probing cycle is not executed")
+            self.datum.shift_to([nan, nan, nan])
         elif head in {"TOOL", "CYCL", "PLANE", "APPR", "DEP", "TRANS"}:
             self._other(head, words)
         elif head and head not in QUIET and not words.functions:
@@ -182,12 +201,24 @@ class HeidenhainControl:
         self.recorder.is_fresh = True
         self.recorder.standing |= MoveFlag.MACRO_FEED.value
 
+    def _take_mode(self, words: KlartextWords) -> None:
+        """Take M136 and M137: F counts by the revolution, or by the minute again."""
+        for code, mode in ((1360, FeedMode.PER_REVOLUTION), (1370, FeedMode.PER_MINUTE)):
+            if code in words.functions and self.feed_mode is not mode:
+                self.feed_mode = mode
+                self.recorder.setting = replace(self.recorder.setting, mode=mode)
+                self.recorder.word, self.recorder.fed_by = nan, -1
+
     def _feed(self, words: KlartextWords) -> bool:
         """Take F or FU of a path block; return whether the block is a rapid."""
         recorder = self.recorder
-        if "F" in words.macros or "FU" in words.macros or "AUTO" in words.names:
+        if PLUNGE_FACTOR in words.functions:
+            # F is a share of the feed in force here.
+            words.values.pop("F", None)
+        if "F" in words.macros or "FU" in words.macros or {"AUTO", "FAUTO"} & set(words.names):
             self._forget_feed()
-        for name, mode in (("F", FeedMode.PER_MINUTE), ("FU", FeedMode.PER_REVOLUTION)):
+        self._take_mode(words)
+        for name, mode in (("F", self.feed_mode), ("FU", FeedMode.PER_REVOLUTION)):
             value = words.values.get(name)
             if value is not None:
                 per_minute = mode is FeedMode.PER_MINUTE
@@ -204,8 +235,11 @@ class HeidenhainControl:
             if code in words.functions:
                 self.sense = sense
                 self._turn()
-        if {910, 920} & set(words.functions):
+        if MACHINE_AXES & set(words.functions):
             self.recorder.at = [nan, nan, nan]
+        if RETRACT in words.functions:
+            self.recorder.move(MoveKind.RAPID, (*self.recorder.at[:2], nan))
+        self._take_mode(words)
 
     def _turn(self) -> None:
         speed = self.sense * rev_s_from_rpm(self.spindle) + 0.0
@@ -226,9 +260,15 @@ class HeidenhainControl:
                 self.lose("a cycle call with positions of its own is not expanded")
             else:
                 self._drill()
-        elif head == "PLANE":
-            self._transform("RESET" not in names)
+        elif head == "PLANE" or (head == "TRANS" and "DATUM" not in names):
+            self.datum.transform("RESET" not in names)
+        elif head == "TRANS":
+            self.datum.shift_by(words, scale=self.scale, is_anew="RESET" in names)
         else:
+            if head == "DEP":
+                self._end_compensation()
+            elif {"RL", "RR"} & set(words.names):
+                self.recorder.standing |= MoveFlag.COMPENSATED.value
             self.lose(f"{head} is not expanded")
             self._feed(words)
 
@@ -248,19 +288,13 @@ class HeidenhainControl:
             self.remarks.note(self.recorder.block, "the tool has a name and no number")
             self.recorder.at[2] = nan
 
-    def _transform(self, is_on: bool) -> None:
-        flag = MoveFlag.TRANSFORMED.value
-        if is_on:
-            self.recorder.standing |= flag
-        else:
-            self.recorder.standing &= ~flag
-        self.recorder.at = [nan, nan, nan]
-
     def _define(self, words: KlartextWords) -> None:
         """Take the definition of a cycle."""
         number = words.cycle.partition(".")[0]
         if number in {"7", "8", "10", "11", "26", "19"}:
-            self._coordinates(words, number)
+            self.datum.change(words, number, scale=self.scale)
+        elif number == "247":
+            self.datum.to_preset(words.assigned.get("Q339", nan))
         elif number in CYCLES:
             self.cycle = number, dict(words.assigned), self.recorder.block
         elif words.cycle == "9.1":
@@ -270,40 +304,6 @@ class HeidenhainControl:
             if number not in {"21", "22", "23", "24", "25", "27", "28", "29"}:
                 self.cycle = number, {}, self.recorder.block
 
-    def _coordinates(self, words: KlartextWords, number: str) -> None:
-        """Take a shift of the datum, or a mirror, rotation, scale or tilt."""
-        if words.cycle.endswith(".0"):
-            return
-        if number == "7":
-            new = list(self.shift)
-            for axis, letter in enumerate("XYZ"):
-                if letter in words.values:
-                    new[axis] = self.scale * words.values[letter]
-                elif f"I{letter}" in words.values:
-                    new[axis] += self.scale * words.values[f"I{letter}"]
-                elif letter in words.macros or f"I{letter}" in words.macros:
-                    new[axis] = nan
-            at = self.recorder.at
-            self.recorder.at = [a + o - s for a, o, s in zip(at, self.shift, new, strict=True)]
-            self.shift = new
-            self._name_frame()
-            return
-        given = [*words.values.values()]
-        neutral = 1.0 if number in {"11", "26"} else 0.0
-        is_on = bool(words.macros) or any(value != neutral for value in given)
-        is_on = is_on or (number == "8" and bool(set("XYZ") & set(words.names)))
-        self._transform(is_on)
-
-    def _name_frame(self) -> None:
-        shifted = ", ".join(
-            f"{axis} {value:g}"
-            for axis, value in zip("XYZ", self.shift, strict=True)
-            if value != 0.0
-        )
-        name = f"preset shifted by {shifted}" if shifted else "preset"
-        frame = self.recorder.frame(name)
-        self.recorder.setting = replace(self.recorder.setting, frame=frame)
-
     # Paths.
 
     def _path(self, head: str, words: KlartextWords) -> None:
@@ -311,9 +311,12 @@ class HeidenhainControl:
             self.recorder.standing |= MoveFlag.COMPENSATED.value
             self._beside(CompensationSide(is_left="RL" in words.names))
         elif "R0" in words.names:
-            self.recorder.flags |= self.recorder.standing & MoveFlag.COMPENSATED.value
-            self.recorder.standing &= ~MoveFlag.COMPENSATED.value
-            self._beside(None)
+            self._end_compensation()
+        if words.strange or HANDWHEEL in words.functions:
+            what = f"'{words.strange[0]}'" if words.strange else "the handwheel offset M118"
+            self._feed(words)
+            self.lose(f"{what} is not understood")
+            return
         path = self._paths.get(head)
         if head in {"RND", "CHF"}:
             self._rounded(words)
@@ -327,6 +330,12 @@ class HeidenhainControl:
         """Take the side of the contour on which the tool goes."""
         self.recorder.setting = replace(self.recorder.setting, side=side)
 
+    def _end_compensation(self) -> None:
+        """End the radius compensation: this block still leads away from the contour."""
+        self.recorder.flags |= self.recorder.standing & MoveFlag.COMPENSATED.value
+        self.recorder.standing &= ~MoveFlag.COMPENSATED.value
+        self._beside(None)
+
     def _rounded(self, words: KlartextWords) -> None:
         """A chamfer or rounding between two lines: its neighbours stay in one piece."""
         self.recorder.round_corner()
@@ -336,7 +345,11 @@ class HeidenhainControl:
     def _coordinate(self, words: KlartextWords, axis: int) -> float:
         letter = "XYZ"[axis]
         at = self.recorder.at[axis]
+        is_given = letter in words.values or f"I{letter}" in words.values
         if letter in words.macros or f"I{letter}" in words.macros:
+            return nan
+        if is_given and MACHINE_AXES & set(words.functions):
+            self.recorder.flags |= MoveFlag.MACHINE.value
             return nan
         if f"I{letter}" in words.values:
             return at + self.scale * words.values[f"I{letter}"]
@@ -408,7 +421,7 @@ class HeidenhainControl:
 
     def _radius(self, words: KlartextWords) -> None:
         self._feed(words)
-        axes = "".join(sorted(letter for letter in "XYZ" if letter in _lettered(words)))
+        axes = "".join(sorted(letter for letter in "XYZ" if letter in words.axes))
         plane = PLANES.get(axes, ArcPlane.XY)
         sense = words.sense
         radius = words.values.get("R", nan) * self.scale
@@ -482,8 +495,3 @@ class HeidenhainControl:
 
 
 _AXES = (*"XYZ", "IX", "IY", "IZ", "PA", "PR", "IPA", "IPR", *"ABCUVW")
-
-
-def _lettered(words: KlartextWords) -> set[str]:
-    """Axes that a block names, absolute or relative."""
-    return {name.removeprefix("I") for name in (*words.values, *words.macros)}

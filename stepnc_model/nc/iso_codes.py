@@ -66,6 +66,9 @@ TRANSFORMS_OFF = {
     Dialect.SINUMERIK: frozenset[int](),
 }
 
+CENTRED_TRANSFORMS = {500, 501, 510, 511, 680, 682, 683, 684, 1000, 1010}
+"""Codes of these whose axis words name a centre or an axis, and move nothing."""
+
 LENGTHS = {430, 431, 432, 440, 490}
 """Tool length offset on or off: z of the program is known again at its next position."""
 
@@ -98,8 +101,8 @@ END_FUNCTIONS: dict[Dialect, frozenset[int]] = {
 START_FUNCTIONS = frozenset({30, 40, 70, 80, 130, 140, 880})
 """M codes that act before the move of their block: spindle and coolant on."""
 
-KNOWN_FUNCTIONS = START_FUNCTIONS | {0, 10, 20, 50, 60, 90, 300, 290, 190, 170, 480, 490, 980,
-                                     990, 970, 890, 400, 410, 420, 430, 440, 600}  # fmt: skip
+KNOWN_FUNCTIONS = START_FUNCTIONS | {0, 10, 20, 50, 60, 90, 300, 290, 190, 170, 480, 490,
+                                     890, 400, 410, 420, 430, 440, 600}  # fmt: skip
 
 SINUMERIK_QUIET = frozenset({
     *{"SOFT", "BRISK", "DRIVE", "FFWON", "FFWOF", "COMPON", "COMPOF", "COMPCAD", "COMPCURV"},

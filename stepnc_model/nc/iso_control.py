@@ -15,7 +15,8 @@ from stepnc_model.nc.drilling import cycle_moves, drilling
 from stepnc_model.nc.expression import Variables, evaluate, target_of
 from stepnc_model.nc.flow import ProgramFlow
 from stepnc_model.nc.iso_flow import IsoFlow
-from stepnc_model.nc.iso_modes import IsoModes, ModalMotion, Shot
+from stepnc_model.nc.iso_modes import IsoModes
+from stepnc_model.nc.iso_motions import ModalMotion, Shot
 from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind
 from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.nc.remarks import Remarks
@@ -38,6 +39,9 @@ PLAIN = re.compile(
     re.IGNORECASE,
 )
 """Block that moves on a straight line, and does nothing else."""
+
+FRAME_PARAMETERS = re.compile(r"#[ \t]*(?:5[2-3][0-9]{2}|7[0-9]{3}|14[0-9]{3})[ \t]*=(?!=)")
+"""Variables that hold offsets of frames: #5201 to #5390, #7001 to #7948, #14001 to #15996."""
 
 PLAIN_MOTIONS = {ModalMotion.RAPID, ModalMotion.LINE}
 
@@ -84,10 +88,11 @@ class IsoControl:
         PostError
             If the program repeats or nests blocks without end, with the line.
         """
-        block, size = 0, len(self.text)
+        block, last, size = 0, 0, len(self.text)
         while block < size:
             self.flow.step(block)
-            block = self._execute(block)
+            last, block = block, self._execute(block)
+        self.steering.remark_rest(last + 1)
         if self.recorder.count and not self.modes.has_unit:
             codes = "G70 or G71" if self.dialect is Dialect.SINUMERIK else "G20 or G21"
             self.remarks.assume(f"the program states no unit ({codes}): mm are assumed")
@@ -106,11 +111,14 @@ class IsoControl:
             return block + 1
         words = words_of(text, self.dialect)
         self.modes.shot, self.modes.lost = None, ""
+        sets_frame = bool(words.assignments) and FRAME_PARAMETERS.search(text)
         if words.macros or words.assignments:
             self._evaluate(words)
         following = self.steering.follow(words, block)
         if following is not None:
             return following
+        if sets_frame:
+            self.modes.set_frame(block)
         if words.is_empty:
             return block + 1
         is_last = self._follow_contour(words)
@@ -234,7 +242,8 @@ class IsoControl:
 
     def rounding(self, words: BlockWords) -> Sequence[str]:
         """Addresses of chamfers and roundings at the end of a line."""
-        is_line = self.modes.motion is ModalMotion.LINE and not {20, 30} & set(words.codes)
+        is_line = 10 in words.codes or self.modes.motion is ModalMotion.LINE
+        is_line = is_line and not {0, 20, 30} & set(words.codes)
         return (",C", ",R", "C", "R") if self.is_lathe and is_line else (",C", ",R")
 
     def _move(self, words: BlockWords) -> None:
@@ -247,10 +256,14 @@ class IsoControl:
             self._in_machine(words)
         elif self.modes.shot is Shot.OFFSETS:
             self._set_offsets(words)
+        elif self.modes.shot is Shot.CENTRE:
+            return
         elif self.modes.shot is Shot.DWELL:
             self.recorder.dwell(self.seconds(words))
             if self.dialect is Dialect.LINUXCNC and has_axes and not self.modes.lost:
                 self._interpolate(words)
+        elif ",A" in words.values or ",A" in words.macros:
+            self.modes.lose("an end given by its angle ,A")
         elif self.modes.lost:
             return
         elif isinstance(self.modes.motion, CycleKind):

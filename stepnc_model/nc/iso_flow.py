@@ -8,11 +8,10 @@ import re
 from math import isnan
 from typing import Protocol
 
-import numpy as np
-
-from stepnc_model.nc.block_words import BlockWords
+from stepnc_model.nc.block_words import BlockWords, words_of
 from stepnc_model.nc.expression import Variables, evaluate
-from stepnc_model.nc.flow import ProgramFlow, places
+from stepnc_model.nc.flow import BEHIND_THE_END, ProgramFlow, places
+from stepnc_model.nc.flow_keywords import keyword_places, loop_places
 from stepnc_model.nc.moves import MoveFlag
 from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.nc.remarks import Remarks
@@ -55,50 +54,25 @@ JUMPS = re.compile(rb"M97|M99[ \t]*P|GOTO", re.I)
 STATEMENT = re.compile(r"o\s*([0-9]+|<[^>]*>|\S+?)\s*([a-z]+)\s*(.*)", re.I | re.S)
 COUNT = re.compile(r"\[?\s*([0-9]+)(?:\.0*)?\s*\]?")
 
-END_OF_PROGRAM = {20, 300}
+RETURN = re.compile(r"M0*99(?![0-9])", re.I)
 
-KEYWORDS = re.compile(
-    rb"^[ \t]*(?:N[0-9]+[ \t]*)?o[ \t]*([0-9]+|<[^>\r\n]*>)[ \t]*"
-    rb"(if|elseif|else|endif|while|endwhile|do|repeat|endrepeat)\b",
-    re.M | re.I,
-)
+END_OF_PROGRAM = {20, 300}
+CALLS = {970, 980, 990}
+"""M97, M98 and M99."""
+
+AXES = frozenset("XYZUVWABC")
+
 BRACKETS = re.compile(r"\[(?:[^\[\]]|\[(?:[^\[\]]|\[(?:[^\[\]]|\[[^\[\]]*\])*\])*\])*\]")
 FANUC_LOOP = re.compile(r"WHILE\s*(\[.*\])\s*DO\s*([0-9]+)\s*", re.I | re.S)
 FANUC_JUMP = re.compile(r"(?:IF\s*(\[.*\])\s*)?GOTO\s*([0-9]+)\s*", re.I | re.S)
 FANUC_THEN = re.compile(r"IF\s*(\[.*\])\s*THEN\s*(#.*=.*)", re.I | re.S)
 FANUC_END = re.compile(r"END\s*([0-9]+)\s*", re.I)
-FANUC_KEYWORDS = re.compile(
-    rb"^[ \t]*(?:N[0-9]+[ \t]*)?(?:WHILE[^\r\n;(]*?\b(DO)|(END))[ \t]*([0-9]+)", re.M | re.I
-)
 ARGUMENTS = {
     **{"A": 1, "B": 2, "C": 3, "I": 4, "J": 5, "K": 6, "D": 7, "E": 8, "F": 9, "H": 11},
     **{"M": 13, "Q": 17, "R": 18, "S": 19, "T": 20, "U": 21, "V": 22, "W": 23, "X": 24},
     **{"Y": 25, "Z": 26},
 }
 """Local variables of the arguments of G65."""
-
-
-def _keyword_places(text: NcText) -> dict[str, list[tuple[int, str]]]:
-    """Blocks and keywords of each O word that steers conditions and loops."""
-    found: dict[str, list[tuple[int, str]]] = {}
-    for each in KEYWORDS.finditer(text.data):
-        block = int(np.searchsorted(text.starts, each.start(1), side="right")) - 1
-        name = each[1].decode("latin-1").strip().upper()
-        found.setdefault(name, []).append((block, each[2].decode("latin-1").lower()))
-    return found
-
-
-def _loop_places(text: NcText) -> dict[int, int]:
-    """Block of END for the block of each WHILE of Fanuc."""
-    found: dict[int, int] = {}
-    begun: list[tuple[bytes, int]] = []
-    for each in FANUC_KEYWORDS.finditer(text.data):
-        block = int(np.searchsorted(text.starts, each.start(3), side="right")) - 1
-        if each[1] is not None:
-            begun.append((each[3], block))
-        elif begun and begun[-1][0] == each[3]:
-            found[begun.pop()[1]] = block
-    return found
 
 
 class IsoFlow:
@@ -126,13 +100,19 @@ class IsoFlow:
         self._is_begun = False
         self._percents = 0
         self._variables = control.variables
-        self._keywords = _keyword_places(self._text) if self._is_linuxcnc else {}
-        self._loops = {} if self._is_linuxcnc else _loop_places(self._text)
+        self._keywords = keyword_places(self._text) if self._is_linuxcnc else {}
+        self._loops = {} if self._is_linuxcnc else loop_places(self._text)
         self._starts = sorted(self._programs.values())
         self._branches: dict[str, bool] = {}
         """Whether a branch was taken, of the conditions that are evaluated."""
         self._begun: dict[str, int] = {}
         """First block of the loops that are evaluated."""
+        self._number: float | None = None
+        """P of a block that calls or returns."""
+        self._times_called: float | None = None
+        """L of such a block."""
+        self._entered: set[int] = set()
+        """Blocks at which called subprograms begin."""
 
     def follow(self, words: BlockWords, block: int) -> int | None:
         """Next block if this one only steers the program, else None."""
@@ -150,14 +130,19 @@ class IsoFlow:
             return self._macro_called(words, block)
         if 660 in words.codes:
             return self._outside(block, "a macro call")
-        if 980 in words.functions or 970 in words.functions:
-            return self._called(words, block)
-        if 990 in words.functions:
-            return self._returned(words, block)
+        if 1980 in words.functions:
+            return self._outside(block, "a program that is not in this file is called")
+        if CALLS & set(words.functions):
+            self._number, self._times_called = (words.values.pop(a, None) for a in "PL")
+            # The other words of the block come first: G55 M98 P2, or G90 M99.
+            others = words.codes or words.values or words.macros or words.functions[1:]
+            return None if others else self._steered(words, block)
         return None
 
     def ended(self, words: BlockWords, block: int) -> int:
-        """Block after this one, which may end the program."""
+        """Block after this one, which may call, return, or end the program."""
+        if CALLS & set(words.functions):
+            return self._steered(words, block)
         if END_OF_PROGRAM & set(words.functions) and not self._open:
             return len(self._text)
         return block + 1
@@ -184,9 +169,17 @@ class IsoFlow:
             return block + 1
         return len(self._text)
 
+    def _steered(self, words: BlockWords, block: int) -> int:
+        """Call a subprogram or return from one; return the block to execute next."""
+        is_call = bool({970, 980} & set(words.functions))
+        return self._called(words, block) if is_call else self._returned(block)
+
     def _called(self, words: BlockWords, block: int) -> int:
         """Call a subprogram by M98, or by M97 at a block number."""
-        number, times = words.values.get("P"), int(words.values.get("L", 1.0))
+        number, times = (
+            self._number,
+            int(1.0 if self._times_called is None else self._times_called),
+        )
         if number is None:
             return self._outside(block, "a call without P")
         is_local = 970 in words.functions
@@ -198,6 +191,7 @@ class IsoFlow:
             return self._outside(block, f"the subprogram {number:g} is not in this file")
         if self._is_conditional and self._flow.is_inside(target):
             return self._outside(block, "a call of itself")
+        self._entered.add(target)
         if times > 0:
             self._variables.enter(None)
         return self._flow.call(block, target, times=times)
@@ -210,6 +204,7 @@ class IsoFlow:
             return self._outside(block, "a macro call")
         if self._is_conditional and self._flow.is_inside(target):
             return self._outside(block, "a call of itself")
+        self._entered.add(target)
         given = words.values.items()
         self._variables.enter({ARGUMENTS[name]: v for name, v in given if name in ARGUMENTS})
         return self._flow.call(block, target, times=times)
@@ -222,6 +217,31 @@ class IsoFlow:
             self._variables.leave()
         return following
 
+    def remark_rest(self, block: int) -> None:
+        """Remark the first moves behind the end of the program that no call executes."""
+        heads = sorted(self._programs.values())
+        size = len(self._text)
+        while block < size:
+            text = self._text.block(block)
+            if block in self._entered:
+                inside = block
+                if block in heads:
+                    block = next((each for each in heads if each > inside), size)
+                else:
+                    while block < size and not RETURN.search(self._text.block(block)):
+                        block += 1
+                    block += 1
+                continue
+            words = words_of(text, self._control.dialect)
+            found = STATEMENT.fullmatch(words.flows[0]) if words.flows else None
+            if self._is_linuxcnc and found is not None and found[2].lower() == "sub":
+                block = self._ends.get(found[1].upper(), size) + 1
+                continue
+            if AXES & {*words.values, *words.macros}:
+                self._control.remarks.warn(block, BEHIND_THE_END)
+                return
+            block += 1
+
     def _target(self, number: float, *, is_local: bool) -> int | None:
         found = self._numbers if is_local else self._programs
         for name, block in found.items():
@@ -229,9 +249,9 @@ class IsoFlow:
                 return block
         return None
 
-    def _returned(self, words: BlockWords, block: int) -> int:
+    def _returned(self, block: int) -> int:
         """Return from a subprogram; the main program ends, where a control begins anew."""
-        if "P" in words.values:
+        if self._number is not None:
             self._control.remarks.lost(block, "a return to another block")
             self._begin_condition()
         following = self._leave()

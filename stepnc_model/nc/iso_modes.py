@@ -2,14 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from enum import Enum, auto
 from functools import partial
 from math import isnan, nan
 
 from stepnc_model.nc import iso_codes
 from stepnc_model.nc.block_words import BlockWords
+from stepnc_model.nc.iso_motions import MODES, MOTIONS, SHOTS, ModalMotion, Shot
 from stepnc_model.nc.moves import CompensationSide, FeedMode, MoveFlag
-from stepnc_model.nc.recorder import MoveRecorder
+from stepnc_model.nc.recorder import MoveRecorder, frame_name
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.toolpath.path import ArcPlane, CycleKind
@@ -21,50 +21,6 @@ FEET_PER_METRE = 0.3048
 
 CodeTable = dict[int, Callable[[BlockWords], None]]
 """Action of each G code, in tenths."""
-
-
-class ModalMotion(Enum):
-    """Modal motion that axis words execute."""
-
-    RAPID = auto()
-    LINE = auto()
-    CLOCKWISE = auto()
-    COUNTERCLOCKWISE = auto()
-    THREAD = auto()
-
-
-class Shot(Enum):
-    """Function of one block that uses the axis words for something else than a move."""
-
-    DWELL = auto()
-    HOME = auto()
-    MACHINE = auto()
-    SHIFT = auto()
-    LOCAL = auto()
-    OFFSETS = auto()
-
-
-MOTIONS = {
-    0: ModalMotion.RAPID,
-    10: ModalMotion.LINE,
-    20: ModalMotion.CLOCKWISE,
-    30: ModalMotion.COUNTERCLOCKWISE,
-    330: ModalMotion.THREAD,
-}
-MODES = {
-    930: FeedMode.INVERSE_TIME,
-    940: FeedMode.PER_MINUTE,
-    950: FeedMode.PER_REVOLUTION,
-}
-SHOTS = {
-    40: Shot.DWELL,
-    280: Shot.HOME,
-    300: Shot.HOME,
-    530: Shot.MACHINE,
-    920: Shot.SHIFT,
-    520: Shot.LOCAL,
-    100: Shot.OFFSETS,
-}
 
 
 class IsoModes:
@@ -84,6 +40,8 @@ class IsoModes:
         self.is_diameter = self.is_lathe and dialect is not Dialect.LINUXCNC
         self.returns_to_start = True
         self.shift = [0.0, 0.0, 0.0]
+        self.shifted_by = 0
+        """Block that shifted the frame last."""
         self.base = "G54"
         self.edition = ""
         """Words for the last block that gave values to frames."""
@@ -210,7 +168,8 @@ class IsoModes:
             (iso_codes.TRANSFORMS_OFF[control], False),
         ):
             for code in codes:
-                table[code] = partial(self._take_transform, is_on)
+                centred = code in iso_codes.CENTRED_TRANSFORMS
+                table[code] = partial(self._take_transform, is_on, centred)
         table |= {
             **{code: partial(self._take_mode, mode) for code, mode in MODES.items()},
             **{code: partial(self._compensate, code) for code in (400, 410, 420)},
@@ -237,6 +196,7 @@ class IsoModes:
             }
             for code in iso_codes.LATHE_CYCLES:
                 table[code] = partial(self._not_expanded, code)
+            table[920] = self._thread_or_limit
         else:
             for code, kind in iso_codes.CANNED.items():
                 table[code] = partial(self._take_motion, kind)
@@ -283,14 +243,21 @@ class IsoModes:
             self._straight = motion
         self.motion = motion
 
-    def _take_frame(self, name: str, _: BlockWords) -> None:
-        self.to_frame(name)
+    def _take_frame(self, name: str, words: BlockWords) -> None:
+        is_numbered = "P" in words.values and 40 not in words.codes
+        if name == "G54" and is_numbered and self.dialect is Dialect.FANUC:
+            # Fanuc takes G54 P5 for G54.1 P5.
+            self._numbered_frame(words)
+        else:
+            self.to_frame(name)
 
     def _take_length(self, _: BlockWords) -> None:
         self.lose_height()
 
-    def _take_transform(self, is_on: bool, _: BlockWords) -> None:
+    def _take_transform(self, is_on: bool, is_centred: bool, _: BlockWords) -> None:
         self.transform(is_on)
+        if is_centred:
+            self.shot = Shot.CENTRE
 
     def _take_mode(self, mode: FeedMode, _: BlockWords) -> None:
         self.to_mode(mode)
@@ -371,7 +338,7 @@ class IsoModes:
         """Shift the coordinates of the frame."""
         at = self.recorder.at
         self.recorder.at = [a + o - s for a, o, s in zip(at, self.shift, shift, strict=True)]
-        self.shift = shift
+        self.shift, self.shifted_by = shift, self.recorder.block
         self.recorder.flags |= MoveFlag.OFFSET.value
         self._name_frame()
 
@@ -383,13 +350,7 @@ class IsoModes:
         self._name_frame()
 
     def _name_frame(self) -> None:
-        shifted = ", ".join(
-            f"{axis} {value:g}"
-            for axis, value in zip("XYZ", self.shift, strict=True)
-            if value != 0.0
-        )
-        base = f"{self.base}{self.edition}"
-        name = f"{base} shifted by {shifted}" if shifted else base
+        name = frame_name(f"{self.base}{self.edition}", self.shift, self.shifted_by)
         setting = self.recorder.setting
         self.recorder.setting = replace(setting, frame=self.recorder.frame(name))
 
@@ -398,6 +359,13 @@ class IsoModes:
         if isnan(number):
             self.recorder.at = [nan, nan, nan]
         self.to_frame(f"G54.1 P{number:g}")
+
+    def _thread_or_limit(self, words: BlockWords) -> None:
+        """Take G92: a threading cycle, or the limit of the speed (G92 S) like G50 S."""
+        if "S" in words.values and not set("XZUW") & {*words.values, *words.macros}:
+            self._lathe_shift(words)
+        else:
+            self._not_expanded(920, words)
 
     def _lathe_shift(self, words: BlockWords) -> None:
         """Limit the speed of the spindle (G50 S), or shift the coordinates (G50 X Z)."""
@@ -465,6 +433,14 @@ class IsoModes:
                 self.to_tool(None)
         elif 60 in words.functions:
             self.to_tool(self.tool)
+        elif 610 in words.functions and self.dialect is Dialect.LINUXCNC:
+            # M61 Q5 says which tool is in the spindle.
+            called = words.values.pop("Q", nan)
+            self.tool, self.tool_name = None if isnan(called) else int(called), ""
+            self.to_tool(self.tool)
+        if 720 in words.functions and self.dialect is Dialect.LINUXCNC:
+            self.lose("M72 restores a state that is not kept here")
+            self.forget()
 
     def to_tool(self, number: int | None) -> None:
         """Change the tool, after which its height is not known."""

@@ -40,6 +40,11 @@ class KlartextWords:
         return not (self.names or self.values or self.functions)
 
     @property
+    def axes(self) -> set[str]:
+        """Axes that the block names, absolute or relative."""
+        return {name.removeprefix("I") for name in (*self.values, *self.macros)}
+
+    @property
     def sense(self) -> float:
         """1 for DR+, -1 for DR-, 0 without one of them."""
         if "DR+" in self.names:

@@ -91,7 +91,8 @@ def style_of(text: NcText, dialect: Dialect, *, unit: float) -> NumberStyle:
     newline = NEWLINE.search(head)
     is_klartext = dialect is Dialect.HEIDENHAIN
     is_old = dialect in {Dialect.FANUC, Dialect.HAAS}
-    pointed_feeds = any(point and not digits for point, digits in feeds)
+    # Old controls may count a feed without a point in less than whole units.
+    pointed_feeds = any(point and (is_old or not digits) for point, digits in feeds)
     return NumberStyle(
         places=min(6, max(least, *map(len, decimals), 0)),
         feed_places=min(4, max((len(digits) for _, digits in feeds), default=0)),

@@ -4,6 +4,8 @@
 with remarks on what was not understood. :mod:`stepnc_model.nc.rewrite` changes the feeds.
 """
 
+import re
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -19,6 +21,12 @@ from stepnc_model.nc.sinumerik_control import SinumerikControl
 from stepnc_model.nc.text import NcText, text_of
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
+
+WHOLE_FEED = re.compile(r"^[^(;]*F *[0-9]+(?![0-9.])", re.I)
+"""Block with a feed that has no decimal point, outside comments."""
+
+MOST_FEEDS = 10_000
+"""Greatest number of F words that are looked at for their decimal point."""
 
 CHUNK = 1 << 16
 """Rows that are looked at together."""
@@ -75,8 +83,11 @@ def read_program(
     kind = guess.machine if machine is None else machine
     text = text_of(data, chosen)
     control = _control(text, chosen, kind)
+    if data.startswith((BOM_UTF16_LE, BOM_UTF16_BE)):
+        control.remarks.warn(0, "the file is UTF-16 text: save it as ASCII or UTF-8")
     control.run()
     moves = control.recorder.moves()
+    _remark_whole_feeds(control.remarks, moves, text, chosen)
     for begin in range(0, len(moves), CHUNK):
         _remark(control.remarks, moves.part(begin, begin + CHUNK))
     return NcProgram(
@@ -130,6 +141,23 @@ def _remark(remarks: Remarks, moves: NcMoves) -> None:
         is_so = is_fed & ((moves.flags & int(flag) & left) != 0)
         for block in _first_of_runs(is_so, moves):
             remarks.warn(block, f"{name}: the feed is left alone")
+
+
+def _remark_whole_feeds(
+    remarks: Remarks, moves: NcMoves, text: NcText, dialect: Dialect
+) -> None:
+    """Remark the first feed without a point, where controls differ in its unit."""
+    has_inches = any(each.unit > 1.0 for each in moves.settings)
+    if dialect is not Dialect.HAAS and not (dialect is Dialect.FANUC and has_inches):
+        return
+    for block in np.unique(moves.fed_by)[:MOST_FEEDS]:
+        if block >= 0 and WHOLE_FEED.search(text.block(int(block))):
+            why = (
+                "a feed without decimal point is read in whole units, which some settings of "
+                "this control count in smaller ones"
+            )
+            remarks.warn(int(block), why)
+            return
 
 
 def _first_of_runs(is_so: np.ndarray, moves: NcMoves) -> Iterator[int]:

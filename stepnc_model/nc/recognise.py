@@ -5,6 +5,7 @@ hints LinuxCNC is taken, whose code is the plainest.
 """
 
 import re
+from codecs import BOM_UTF8
 from dataclasses import dataclass
 
 from stepnc_model.post.blocks import MachineType
@@ -89,7 +90,7 @@ def recognise(data: bytes) -> RecognisedControl:
     >>> recognise(b"%\nO1234 (PART)\nG21 G54\nT1 M6\n").dialect.value
     'fanuc'
     """
-    head = data[:LOOKED_AT]
+    head = data[:LOOKED_AT].removeprefix(BOM_UTF8)
     code = COMMENTS.sub(b" ", head)
     points: dict[Dialect, int] = {d: 0 for d in Dialect if d is not Dialect.CANONICAL}
     hints: dict[Dialect, list[str]] = {dialect: [] for dialect in points}

@@ -3,7 +3,7 @@
 import struct
 from array import array
 from collections.abc import Sequence
-from math import nan
+from math import isnan, nan
 
 import numpy as np
 
@@ -22,6 +22,26 @@ _PACKED = struct.Struct("<7d6ib")
 _FLAGS_AT = 7 * 8 + 5 * 4
 """Offset of the flags in a row."""
 _ROUNDED = MoveFlag.ROUNDED.value
+
+
+def frame_name(base: str, shift: Sequence[float], block: int) -> str:
+    """Name of a frame that a block shifts from another, mm.
+
+    Two shifts by unknown distances have different names.
+
+    Examples
+    --------
+    >>> frame_name("G54", (10.0, 0.0, float("nan")), 4)
+    'G54 shifted by X 10, Z by an unknown distance in block 5'
+    """
+    shifted = ", ".join(
+        f"{axis} by an unknown distance" if isnan(value) else f"{axis} {value:g}"
+        for axis, value in zip("XYZ", shift, strict=True)
+        if value != 0.0
+    )
+    if any(map(isnan, shift)):
+        shifted += f" in block {block + 1}"
+    return f"{base} shifted by {shifted}" if shifted else base
 
 
 class MoveRecorder:

@@ -5,7 +5,7 @@ advice and no F word of their own. The order of execution decides: a block in a 
 would need another feed for each call refuses the advice before it.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from math import inf
 
@@ -22,6 +22,7 @@ from stepnc_model.nc.block_edit import (
     with_feed,
     with_mark,
 )
+from stepnc_model.nc.feed_rows import feed_rows
 from stepnc_model.nc.moves import (
     REASONS,
     UNADVISED,
@@ -298,21 +299,35 @@ class _Rewriting:
         trace = _Trace()
         for each in self.plans.values():
             each.needs = False
-        changed: int | None = None
-        for row in _rows(self.moves):
+        changed, changed_by, may_lack = None, -1, False
+        for row in feed_rows(self.moves):
             if row.flags & MoveFlag.FRESH_FEED:
+                may_lack = self._is_skippable(row.fed_by)
+                if changed is not None and may_lack:
+                    # Where the operator skips its F word, the feed before it is in force.
+                    self._put_back(trace, row.fed_by, changed_by, changed)
                 changed = None
             if row.kind in {MoveKind.RAPID, MoveKind.DWELL}:
                 continue
             plan = self.plans.get(row.block)
             if plan is not None:
                 before = self._in_force(changed, row.fed_by)
-                plan.needs |= not _is_equal(before, plan.feeds[0])
+                plan.needs |= may_lack or not _is_equal(before, plan.feeds[0])
                 changed = None if row.is_inverse else row.block
+                changed_by, may_lack = row.fed_by, False
             elif changed is not None and not row.is_inverse:
-                self._put_back(trace, row, changed)
+                if not (row.flags & MoveFlag.OWN_FEED and row.fed_by == row.block):
+                    is_macro = bool(row.flags & MoveFlag.MACRO_FEED)
+                    self._put_back(trace, row.block, row.fed_by, changed, is_macro=is_macro)
                 changed = None
         return trace
+
+    def _is_skippable(self, block: int) -> bool:
+        """Whether the operator may skip a block of the file."""
+        text = self.program.text.block(block) if block >= 0 else ""
+        return "/" in text and any(
+            token.kind is TokenKind.SKIP for token in tokens(text, self.program.dialect)
+        )
 
     def _in_force(self, changed: int | None, fed_by: int) -> str | None:
         """Number of the F word that is in force before a block."""
@@ -332,22 +347,22 @@ class _Rewriting:
             self._feed_words[block] = token.value if token is not None and is_number else None
         return self._feed_words[block]
 
-    def _put_back(self, trace: _Trace, row: "_Row", changed: int) -> None:
+    def _put_back(
+        self, trace: _Trace, block: int, fed_by: int, changed: int, *, is_macro: bool = False
+    ) -> None:
         """Note that a block needs the programmed feed, or refuse the advice before it."""
-        programmed = self._feed_word(row.fed_by)
-        if row.flags & MoveFlag.OWN_FEED and row.fed_by == row.block:
-            return
+        programmed = self._feed_word(fed_by)
         if programmed is None:
-            if row.fed_by >= 0 or row.flags & MoveFlag.MACRO_FEED:
+            if fed_by >= 0 or is_macro:
                 trace.refused[changed] = "a later block needs a feed that is not known"
             return
         if _is_equal(programmed, self.plans[changed].feeds[-1]):
             return
-        known = trace.restored.get(row.block)
+        known = trace.restored.get(block)
         if known is not None and not _is_equal(self._feed_word(known), programmed):
             trace.refused[changed] = "a later block is called with different feeds"
             return
-        trace.restored[row.block] = row.fed_by
+        trace.restored[block] = fed_by
 
     # The new bytes.
 
@@ -443,6 +458,7 @@ class _Rewriting:
             len(kinds)
             and (kinds != MoveKind.UNKNOWN).all()
             and feed_token(text, dialect) is None
+            and not self._is_skippable(block)
         ):
             return with_feed(text, word, dialect=dialect, gap=gap)
         head = f"L{gap}" if dialect is Dialect.HEIDENHAIN else ""
@@ -453,36 +469,6 @@ def _marked_first(text: str, reason: str, dialect: Dialect) -> str:
     """Several lines with a comment in the first."""
     first, newline, rest = text.partition("\n")
     return with_mark(first + newline, reason, dialect=dialect) + rest
-
-
-@dataclass(frozen=True, slots=True)
-class _Row:
-    """Row of the moves, as far as the feed in force concerns it."""
-
-    block: int
-    fed_by: int
-    kind: int
-    flags: int
-    is_inverse: bool
-
-
-CHUNK = 1 << 16
-
-
-def _rows(moves: NcMoves) -> Iterator[_Row]:
-    """Rows of the moves in the order of their execution."""
-    inverse = list(FeedMode).index(FeedMode.INVERSE_TIME)
-    for begin in range(0, len(moves), CHUNK):
-        part = slice(begin, begin + CHUNK)
-        columns = (
-            moves.block[part].tolist(),
-            moves.fed_by[part].tolist(),
-            moves.kind[part].tolist(),
-            moves.flags[part].tolist(),
-            (moves.mode[part] == inverse).tolist(),
-        )
-        for values in zip(*columns, strict=True):
-            yield _Row(*values)
 
 
 def _is_equal(one: str | None, other: str | None) -> bool:

@@ -14,7 +14,8 @@ from stepnc_model.nc.drilling import cycle_moves, drilling
 from stepnc_model.nc.flow import places
 from stepnc_model.nc.iso_control import IsoControl
 from stepnc_model.nc.iso_flow import IsoFlow, Steered
-from stepnc_model.nc.iso_modes import INCH, CodeTable, IsoModes, ModalMotion, Shot
+from stepnc_model.nc.iso_modes import INCH, CodeTable, IsoModes
+from stepnc_model.nc.iso_motions import ModalMotion, Shot
 from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind
 from stepnc_model.nc.text import NcText
 from stepnc_model.nc.token import NUMBER
@@ -43,6 +44,9 @@ CYCLES = {
 }
 FIRST_DEPTH, DEPTH_OF_PECK, BREAKS = 5, 6, 11
 """Indices of the arguments FDEP, FDPR and VARI of CYCLE83."""
+
+FRAME_VARIABLE = re.compile(r"\$[A-Z]_[A-Z]*(?:FR|FRAME)\b", re.I)
+"""Variable that holds a frame, such as ``$P_UIFR[1]``."""
 
 ROUNDING = ("CHF", "CHR", "RND", "RNDM")
 STRANGE_ENDS = ("ANG", "AP", "RP", "I1", "J1", "K1")
@@ -85,9 +89,18 @@ class SinumerikModes(IsoModes):
             1530: partial(self._take, "shot", Shot.MACHINE),
             9610: partial(self._take_mode, FeedMode.PER_MINUTE),
         }
+        for code in (580, 590):
+            table[code] = self._shift_by_words
         for code, place in ((740, "the reference point"), (750, "a fixed point")):
             table[code] = partial(self._leave_for, f"G{code // 10} moves to {place}")
         return table
+
+    def _shift_by_words(self, words: BlockWords) -> None:
+        """Take a shift by G58 or G59: what follows stands in a frame of its own."""
+        for letter in "XYZ":
+            words.values.pop(letter, None)
+            words.macros.pop(letter, None)
+        self.set_frame(self.recorder.block)
 
     def _leave_for(self, why: str, _: BlockWords) -> None:
         self.lose(why)
@@ -156,8 +169,8 @@ class SinumerikControl(IsoControl):
                 words.macros.pop(letter, None)
         elif name == "TRAFOOF":
             self.modes.transform(False)
-        elif name in {"SUPA"}:
-            self.recorder.flags |= MoveFlag.MACHINE.value
+        elif name == "SUPA":
+            self.modes.shot = Shot.MACHINE
         elif name == "MCALL":
             self._modal_call = None
         elif name in {"RET"} or name in iso_codes.SINUMERIK_QUIET:
@@ -193,6 +206,12 @@ class SinumerikControl(IsoControl):
             self.remarks.note(self.recorder.block, "the tool has a name and no number")
             if self.is_lathe:
                 self.modes.to_tool(None)
+        if any(map(FRAME_VARIABLE.match, (*words.values, *words.macros))):
+            self.modes.set_frame(self.recorder.block)
+        if "L" in words.values or "L" in words.macros:
+            number = words.values.get("L", nan)
+            self.modes.lose(f"the subprogram L{number:g} is not in this file")
+            self.modes.forget()
         for name in STRANGE_ENDS:
             if name in words.values or name in words.macros:
                 self.modes.lose(f"ends given by {name} are not understood")

@@ -58,6 +58,9 @@ class Token(NamedTuple):
     """Number, expression or arguments as written."""
 
 
+BYTE_ORDER_MARK = "\xef\xbb\xbf"
+"""Mark of UTF-8 at the beginning of a file, one character a byte; a blank to the control."""
+
 NUMBER = r"[-+]?(?:[0-9]++\.?+[0-9]*+|\.[0-9]++)"
 _BLANK = r"[ \t\x0b\x0c\x00]"
 _BRACKET = r"\[[^\[\]\r\n]*+\]"
@@ -71,7 +74,7 @@ _ADDRESS = r"IPA|IPR|I[XYZABCUVW]|PA|PR|DR|DL|CCA|FU|FZ|FT|REP|[XYZABCUVWFSRMT]"
 
 # The last group of an alternative names the kind and holds the value; a group of_KIND holds
 # the name. No group repeats over what another could match: no input makes them slow.
-_COMMON = (rf"(?P<SPACE>{_BLANK}++)", r"(?P<LINE_END>\r\n|\n|\r)")
+_COMMON = (rf"(?P<SPACE>{_BLANK}++|\A{BYTE_ORDER_MARK})", r"(?P<LINE_END>\r\n|\n|\r)")
 _LAST = (r"(?P<SKIP>/[0-9]?)", r"(?P<PERCENT>%)", r"(?P<OTHER>.)")
 _ISO = (
     rf"(?P<ASSIGNMENT>{_VARIABLE}{_BLANK}*+={_BLANK}*+(?>(?:{_BRACKET}|[^\s;(\[\]])*))",
@@ -109,7 +112,7 @@ _HEIDENHAIN = (
     rf"(?P<of_ASSIGNMENT>Q[LRS]?[0-9]++){_BLANK}*+={_BLANK}*+"
     rf"(?P<ASSIGNMENT>{NUMBER}|[^\s;~]++)",
     r"(?P<NAME>DR[-+](?![0-9.Q])|R[0LR](?![0-9.A-Z])|[A-Z]{2,}+(?![-+.0-9Q])"
-    r"|[A-Z](?![-+.0-9A-Z])(?![ \t]*+[-+.]?[0-9]))",
+    r"|[A-Z](?![-+.0-9A-Z])(?![ \t]*+(?:[-+.]?[0-9]|[-+]?Q[LRS]?[0-9])))",
     rf"(?P<of_MACRO>{_ADDRESS}){_BLANK}*+(?P<MACRO>[-+]?Q[LRS]?[0-9]++)",
     rf"(?P<of_WORD>{_ADDRESS}){_BLANK}*+(?P<WORD>{NUMBER})",
     r"(?P<NAME2>[A-Z][A-Z0-9_]*+)",

@@ -50,3 +50,21 @@ def test_what_is_no_document_is_told(tmp_path: Path, text: str, message: str) ->
         read_document(written(tmp_path, text))
     with pytest.raises(AgentError, match="cannot be read"):
         read_document(tmp_path / "none.xml")
+
+
+def test_positions_of_two_machines_are_not_mixed(tmp_path: Path) -> None:
+    device = STREAMS[STREAMS.index("<DeviceStream") : STREAMS.index("</Streams>")]
+    other = device.replace('"Mill"', '"Lathe"').replace('dataItemId="', 'dataItemId="l')
+    path = written(tmp_path, STREAMS.replace("<DeviceStream", other + "<DeviceStream", 1))
+    with pytest.raises(AgentError, match="tells of 2 devices, 'Lathe', 'Mill': ask"):
+        read_document(path)
+
+
+def test_an_agent_that_tells_of_itself_is_no_second_machine(tmp_path: Path) -> None:
+    own = (
+        '<DeviceStream name="Agent"><ComponentStream component="Agent" name="a"><Events>'
+        '<Availability dataItemId="a" sequence="4" timestamp="2026-01-01T00:00:01Z">AVAILABLE'
+        "</Availability></Events></ComponentStream></DeviceStream>"
+    )
+    path = written(tmp_path, STREAMS.replace("<DeviceStream", own + "<DeviceStream", 1))
+    assert len(read_document(path).rows()) == 2

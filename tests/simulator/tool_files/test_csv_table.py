@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from simulator.errors import LibraryError
 from simulator.removal.cutter import Cutter, Insert
 from simulator.tool_files.csv_table import read_csv
 from simulator.tool_files.read import ToolFormat, read_tools
@@ -78,8 +79,8 @@ def test_a_boring_insert(tmp_path: Path) -> None:
             "line 3: diameter_mm: missing; expected a number, 0.01 to 2000 mm",
         ),
         (
-            ["number;kind;diameter_mm", "3;endmill;0,5"],
-            "line 2: diameter_mm: '0,5' is not a number; expected 0.01 to 2000 mm",
+            ["number;kind;diameter_mm", "3;endmill;0,5mm"],
+            "line 2: diameter_mm: '0,5mm' is not a number; expected 0.01 to 2000 mm",
         ),
         ([HEADING, "3,saw,10,A,4"], "line 2: kind: 'saw' is not one of endmill"),
         (
@@ -127,3 +128,19 @@ def test_what_is_written_is_read(numbers: list[int], diameter: float) -> None:
     assert [each.row.number for each in found] == numbers
     assert {each.row.diameter_mm for each in found} == {diameter}
     assert [each.line for each in found] == list(range(2, len(numbers) + 2))
+
+
+@pytest.mark.parametrize("first", ["", "sep=;\n"])
+def test_decimal_commas_are_read_where_no_comma_separates(tmp_path: Path, first: str) -> None:
+    file = tmp_path / "tools.csv"
+    file.write_text(first + "number;kind;id;diameter_mm\n1;drill;6,8;6,8\n", encoding="utf-8")
+    (tool,) = read_tools(file).tools
+    assert isinstance(tool.shape, Cutter)
+    assert (tool.id, tool.shape.diameter) == ("6,8", 6.8)
+
+
+def test_a_comma_in_quotes_is_not_guessed_at(tmp_path: Path) -> None:
+    file = tmp_path / "tools.csv"
+    file.write_text('number,kind,diameter_mm\n1,drill,"6,8"\n', encoding="utf-8")
+    with pytest.raises(LibraryError, match="line 2: diameter_mm: '6,8' is not a number"):
+        read_tools(file)

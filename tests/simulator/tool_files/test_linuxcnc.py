@@ -150,3 +150,9 @@ def test_lines_of_a_table(line: str) -> None:
 @pytest.mark.parametrize("line", ["tool = 1", "T1M6", "number,kind", "[[tool]]", "Tool 1"])
 def test_other_lines(line: str) -> None:
     assert not is_tool_line(line)
+
+
+def test_zeros_that_an_editor_writes_make_no_turning_tool(tmp_path: Path) -> None:
+    library = found(tmp_path, "T3 P0 X0 Y0 Z1.2 A0 B0 C0 D6.8 I0 J0 Q0 ;drill\n", FileUnit.MM)
+    assert library.by_number[3].kind is ToolKind.DRILL
+    assert isinstance(library.by_number[3].shape, Cutter)

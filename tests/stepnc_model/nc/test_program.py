@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from stepnc_model.errors import PostError
-from stepnc_model.nc.moves import MoveKind
+from stepnc_model.nc.moves import MoveFlag, MoveKind
 from stepnc_model.nc.neutral_blocks import neutral_blocks
 from stepnc_model.nc.program import NcProgram, read_program
 from stepnc_model.post.blocks import Circular, Cycles, Linear, MachineType, Rapid
@@ -275,3 +275,263 @@ def test_an_assumed_unit_is_told_once(dialect: Dialect, code: str, said: str) ->
     told = [each for each in found if "states no unit" in each.message]
     assert len(told) == bool(said)
     assert all(said in each.message and each.line == 0 for each in told)
+
+
+@pytest.mark.parametrize("word", [b"F Q1", b"FQ1", b"F AUTO", b"FAUTO"])
+def test_a_feed_of_klartext_that_is_no_number_is_not_known(word: bytes) -> None:
+    code = b"BEGIN PGM A MM\nL X+0 Y+0 Z+0 FMAX\nL X+1 F100\nL X+2 " + word + b"\nL X+3\n"
+    program = read_program(code, dialect=Dialect.HEIDENHAIN)
+    assert np.isnan(program.moves.feed[-2:]).all()
+    assert not program.moves.is_advisable[-2:].any()
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_a_byte_order_mark_is_no_word(control: Dialect) -> None:
+    code = b"%\nG90 G0 X0. Y0. Z5.\nG1 Z-1. F100.\nM30\n%\n"
+    if control is Dialect.HEIDENHAIN:
+        code = b"0 BEGIN PGM A MM\n1 L X+0 Y+0 Z+5 FMAX\n2 L Z-1 F100\n3 END PGM A MM\n"
+    plain = read_program(code, dialect=control)
+    marked = read_program(b"\xef\xbb\xbf" + code, dialect=control)
+    assert len(plain.moves) == 2
+    assert marked.moves.rows.tobytes() == plain.moves.rows.tobytes()
+    assert marked.findings == plain.findings
+
+
+def test_a_byte_order_mark_does_not_hide_the_control() -> None:
+    assert read_program(b"\xef\xbb\xbf0 BEGIN PGM A MM\n").dialect is Dialect.HEIDENHAIN
+
+
+@pytest.mark.parametrize(
+    ("control", "code", "line"),
+    [
+        (Dialect.FANUC, b"%\nO1\nG0 X1.\nM30\n%\n%\nO2\nG20\nG0 X2.\nM30\n%\n", 9),
+        (Dialect.FANUC, b"O1\nM98 P3\nM30\nO3\nG0 X1.\nM99\nO4\nG0 X2.\nM99\n", 8),
+        (Dialect.HAAS, b"O00001\nM97 P9\nM30\nN9 G0 X1.\nM99\nN10 G0 X2.\nM99\n", 6),
+        (Dialect.LINUXCNC, b"G0 X1\nM2\no1 sub\nG0 X2\no1 endsub\nG0 X3\n", 6),
+        (Dialect.SINUMERIK, b"%_N_A_MPF\nG0 X1\nM30\n%_N_B_MPF\nG0 X2\nM30\n", 5),
+        (
+            Dialect.HEIDENHAIN,
+            b"BEGIN PGM A MM\nL X+1 FMAX\nL M30\nLBL 1\nL X+2 FMAX\nLBL 0\nEND PGM A MM\n"
+            b"BEGIN PGM B MM\nL X+3 FMAX\nEND PGM B MM\n",
+            8,
+        ),
+    ],
+)
+def test_what_stands_behind_the_end_is_told(control: Dialect, code: bytes, line: int) -> None:
+    program = read_program(code, dialect=control)
+    found = [each.line for each in program.findings if "behind the end" in each.message]
+    assert found == [line]
+
+
+@pytest.mark.parametrize(
+    ("begin", "end"),
+    [
+        (b"G68 X0. Y0. R30.", b"G69"),
+        (b"G51 X0. Y0. P2.", b"G50"),
+        (b"G51.1 X0.", b"G50.1 X0."),
+    ],
+)
+def test_the_centre_of_a_rotation_is_no_move(begin: bytes, end: bytes) -> None:
+    head = b"O1\nG21 G90\nT1 M6\nS900 M3\nG0 X5. Y5. Z5.\nG1 Z-1. F100.\n"
+    code = head + begin + b"\nX10. Y10.\n" + end + b"\nX1. Y1. Z1.\nM30\n"
+    moves = read_program(code, dialect=Dialect.FANUC).moves
+    assert moves.block.tolist() == [4, 5, 7, 9]
+
+
+KLARTEXT = b"BEGIN PGM A MM\nTOOL CALL 1 Z S900\nL X+0 Y+0 Z+5 R0 FMAX\nL X+1 F100\n"
+ANEW = b"\nL X+0 Y+0 Z+5\nL X+9\n"
+
+
+def test_two_unknown_shifts_are_two_frames() -> None:
+    code = b"G21 G90\nG92 X0 Y0 Z0\nG0 X0 Y0 Z0\nG1 X5 F100\nG92 X0\nG0 X0 Y0 Z0\nG1 X6\n"
+    moves = read_program(code, dialect=Dialect.LINUXCNC).moves
+    assert len({int(frame) for frame in moves.frame[moves.kind == MoveKind.LINE]}) == 2
+
+
+SIEMENS = b"G17 G90 G94 G71\nT1 D1 M6\nS900 M3\nG54 G0 X0 Y0 Z5\nG1 Z-1 F100\n"
+
+
+@pytest.mark.parametrize(
+    "shift",
+    [
+        b"$P_UIFR[1]=CTRANS(X,10)",
+        b"$P_UIFR[1,X,TR]=10",
+        b"$P_PFRAME=CTRANS(X,10)",
+        b"G58 X10",
+        b"G59 X10 Y5",
+    ],
+)
+def test_a_frame_that_a_sinumerik_program_sets_is_another_one(shift: bytes) -> None:
+    code = SIEMENS + shift + b"\nG54 G0 X0 Y0 Z5\nG1 X7 Z-1\nM30\n"
+    moves = read_program(code, dialect=Dialect.SINUMERIK).moves
+    first, second = (
+        moves.move(int(row)) for row in np.flatnonzero(moves.kind == MoveKind.LINE)
+    )
+    assert moves.frames[first.setting.frame] == "G54"
+    assert moves.frames[second.setting.frame] == "G54 as set in block 6"
+
+
+def test_a_subprogram_of_sinumerik_that_is_not_here_is_told() -> None:
+    program = read_program(SIEMENS + b"L100 P2\nX7\nM30\n", dialect=Dialect.SINUMERIK)
+    (found,) = program.findings[:1]
+    assert (found.line, "the subprogram L100 is not in this file" in found.message) == (6, True)
+    assert not program.moves.is_known[-1]
+
+
+FANUC = b"O1\nG21 G90\nT1 M6\nS900 M3\nG54 G0 X0. Y0. Z5.\nG1 Z-1. F100.\n"
+
+
+def test_other_words_of_a_block_that_calls_or_returns_are_executed() -> None:
+    code = FANUC + (b"G55 X50. M98 P2 L2\nX8. F70.\nM30\nO2\nG91 G1 X1.\nF60. G90 Y5. M99\n")
+    moves = read_program(code, dialect=Dialect.FANUC).moves
+    assert moves.block[2:].tolist() == [6, 10, 11, 10, 11, 7]
+    assert {moves.frames[int(frame)] for frame in moves.frame[2:]} == {"G55"}
+    assert moves.end[2:, 0].tolist() == [50.0, 51.0, 51.0, 52.0, 52.0, 8.0]
+    assert np.allclose(60.0 * moves.feed[2:], [100.0, 100.0, 60.0, 60.0, 60.0, 70.0])
+    assert not moves.is_splittable[2]
+
+
+def test_a_call_by_block_number_comes_after_its_block() -> None:
+    code = b"O00001\nG21 G90\nG0 X0. Y0. Z0.\nG1 X1. F500. M97 P9\nX3.\nM30\nN9 Y3.\nM99\n"
+    moves = read_program(code, dialect=Dialect.HAAS).moves
+    assert moves.block.tolist() == [2, 3, 6, 4]
+    assert moves.end[:, :2].tolist() == [[0.0, 0.0], [1.0, 0.0], [1.0, 3.0], [3.0, 3.0]]
+
+
+@pytest.mark.parametrize("word", [b"M198 P5", b"X5. ,A45."])
+def test_what_moves_in_a_way_that_is_not_understood_is_told(word: bytes) -> None:
+    program = read_program(FANUC + word + b"\nX7.\nM30\n", dialect=Dialect.FANUC)
+    assert program.findings[0].line == 7
+    assert not program.moves.is_known[-1]
+
+
+@pytest.mark.parametrize(
+    ("word", "frame"),
+    [
+        (b"G54 P5", "G54.1 P5"),
+        (b"#5221=-300.", "G54 as set in block 7"),
+        (b"#7001 = #1", "G54 as set in block 7"),
+        (b"#500=3.", "G54"),
+        (b"IF [#5221 EQ 3] GOTO 5", "G54"),
+    ],
+)
+def test_frames_that_a_fanuc_program_sets(word: bytes, frame: str) -> None:
+    code = FANUC + word + b"\nG0 X0. Y0. Z5.\nG1 X7.\nM30\n"
+    moves = read_program(code, dialect=Dialect.FANUC).moves
+    assert moves.frames[moves.move(len(moves) - 1).setting.frame] == frame
+
+
+def klartext(*lines: str) -> NcProgram:
+    """Klartext that ends with two cuts at a place that it states anew."""
+    code = KLARTEXT + "\n".join(lines).encode() + ANEW
+    return read_program(code, dialect=Dialect.HEIDENHAIN)
+
+
+def test_positions_of_the_machine_are_no_positions_of_the_program() -> None:
+    moves = klartext("L Z-1 R0 FMAX M91", "L X+3 F100 M92").moves
+    fixed = moves.part(2, 4)
+    assert np.isnan([fixed.end[0, 2], fixed.end[1, 0]]).all()
+    assert (fixed.flags & int(MoveFlag.MACHINE)).all()
+    assert not fixed.is_advisable.any()
+
+
+def test_a_retraction_leaves_an_unknown_height() -> None:
+    moves = klartext("L M140 MB MAX", "L X+5").moves
+    assert moves.kind[2] == MoveKind.RAPID
+    assert np.isnan(moves.end[3, 2])
+
+
+def test_m136_counts_feeds_by_the_revolution() -> None:
+    moves = klartext("L M3 M136", "L X+5 F0.1", "L X+6 F200 M137", "L X+7 FU0.2").moves
+    assert np.allclose(60.0 * moves.feed[2:5], [90.0, 200.0, 180.0])
+    again = klartext("L M3", "L X+5 FU0.2", "L X+6 F200").moves
+    assert np.allclose(60.0 * again.feed[2:4], [180.0, 200.0])
+
+
+def test_the_factor_of_m103_is_no_feed() -> None:
+    assert np.allclose(60.0 * klartext("L X+5 M103 F0.5").moves.feed[2:], 100.0)
+
+
+def test_a_contour_that_is_approached_with_compensation_is_compensated() -> None:
+    contour = "APPR LT X+10 Y+10 Z-1 LEN5 RL F200", "L X+20 Y+10 Z-1", "L X+30", "DEP LT LEN5"
+    moves = klartext(*contour).moves
+    flagged = (moves.flags & int(MoveFlag.COMPENSATED)) != 0
+    assert flagged[moves.kind == MoveKind.LINE].tolist() == [False, True, True, False, False]
+
+
+@pytest.mark.parametrize("words", ["L X+5 Y+5,5", "L X+5 Y+5 R+", "L X+5 Y+5 M118 X1 Y1"])
+def test_a_path_with_other_words_is_not_understood(words: str) -> None:
+    program = klartext(words)
+    assert [each.line for each in program.findings] == [5]
+    assert np.isnan(program.moves.end[2]).any()
+
+
+def test_a_position_of_the_machine_by_supa_is_none_of_the_program() -> None:
+    code = SIEMENS + b"G0 SUPA Z0 D0\nG0 X3 Y3\nM30\n"
+    moves = read_program(code, dialect=Dialect.SINUMERIK).moves
+    assert moves.flags[-2] & int(MoveFlag.MACHINE)
+    assert np.isnan(moves.end[-2:, 2]).all()
+    assert moves.end[-1, :2].tolist() == [3.0, 3.0]
+
+
+TURNED = b"O1\nG21 G99\nT0101\nG97 S1000 M3\nG0 X50. Z2.\n"
+
+
+@pytest.mark.parametrize("word", [b"R2.", b"C2.", b",R2."])
+def test_a_rounding_in_the_block_of_g1_keeps_it_whole(word: bytes) -> None:
+    code = TURNED + b"G1 Z-10. " + word + b" F.1\nM30\n"
+    moves = read_program(code, dialect=Dialect.FANUC, machine=MachineType.LATHE).moves
+    assert moves.flags[-1] & int(MoveFlag.ROUNDED)
+    assert not moves.is_splittable[-1]
+
+
+@pytest.mark.parametrize("code", [b"G50 S800", b"G92 S800"])
+def test_a_limit_of_the_speed_is_no_speed(code: bytes) -> None:
+    turned = TURNED + code + b"\nG1 Z-10. F.1\nG96 S500\nX4.\nM30\n"
+    program = read_program(turned, dialect=Dialect.FANUC, machine=MachineType.LATHE)
+    assert program.findings == ()
+    assert np.allclose(60.0 * program.moves.spindle[-2:], [1000.0, 800.0])
+
+
+@pytest.mark.parametrize(
+    ("control", "code", "lines"),
+    [
+        (Dialect.HAAS, b"G21\nG0 X0.\nG1 X1. F100.\nX2. F200\nX3. F300\n", [4]),
+        (Dialect.FANUC, b"G20\nG0 X0.\nG1 X1. F10\n", [3]),
+        (Dialect.FANUC, b"G21\nG0 X0.\nG1 X1. F100\n", []),
+        (Dialect.HAAS, b"G20\nG0 X0.\nG1 X1. F.5 (F10)\n", []),
+    ],
+)
+def test_a_feed_whose_unit_depends_on_a_setting_is_told(
+    control: Dialect, code: bytes, lines: list[int]
+) -> None:
+    found = read_program(code, dialect=control).findings
+    assert [each.line for each in found if "a feed without" in each.message] == lines
+
+
+def test_text_of_two_bytes_a_character_is_told() -> None:
+    program = read_program("G21 G90\nG0 X1\n".encode("utf-16"))
+    assert "the file is UTF-16 text" in program.findings[0].message
+
+
+NGC = b"G21 G90\nT1 M6\nS900 M3\nG0 X0 Y0 Z5\nG1 Z-1 F100\n"
+
+
+def test_m61_names_the_tool_in_the_spindle() -> None:
+    moves = read_program(NGC + b"M61 Q5\nG1 X5 Z-1\n", dialect=Dialect.LINUXCNC).moves
+    assert moves.tool[-2:].tolist() == [1, 5]
+
+
+@pytest.mark.parametrize("code", [b"G41.1 D5", b"G42.1 D5"])
+def test_compensation_by_a_diameter_in_the_block_is_compensation(code: bytes) -> None:
+    ended = NGC + code + b" X5\nX10 Y0 Z-1\nG40 X20\nX30\n"
+    moves = read_program(ended, dialect=Dialect.LINUXCNC).moves
+    flagged = (moves.flags[-4:] & int(MoveFlag.COMPENSATED)) != 0
+    assert flagged.tolist() == [True, True, True, False]
+
+
+def test_a_restored_state_is_not_known() -> None:
+    code = NGC + b"M70\nG91\nM72\nG1 X5 Y5 Z-1 F200\n"
+    program = read_program(code, dialect=Dialect.LINUXCNC)
+    assert "M72 restores a state" in program.findings[0].message
+    assert not program.moves.is_known[-1]

@@ -148,6 +148,36 @@ def test_a_feed_from_a_variable_refuses_the_advice_before_it() -> None:
     assert result.unchanged[0].reason == "a feed from a variable"
 
 
+@pytest.mark.parametrize(
+    ("skipped", "wanted"),
+    [
+        (b"/N3 X30.\nX40.\n", b"F100.\n/N3 X30.\nX40.\n"),
+        (b"/2 N3 X30. F70.\nX40.\n", b"F100.\n/2 N3 X30. F70.\nX40.\n"),
+        (b"/F70.\nX40.\n", b"F100.\n/F70.\nX40.\n"),
+        (b"X30.\n/X40.\nX50.\n", b"X30. F100.\n/X40.\nX50.\n"),
+    ],
+)
+def test_the_programmed_feed_is_back_before_what_the_operator_may_skip(
+    skipped: bytes, wanted: bytes
+) -> None:
+    code = b"O1\n" + ISO.replace(b"F100", b"F100.") + b"X10."
+    result = rewritten(code + b"\n" + skipped, Dialect.FANUC, (6, (1.0,), (300.0,)))
+    assert result.data == code + b" F300.\n" + wanted
+
+
+def test_an_advised_feed_is_written_where_the_one_before_it_may_be_skipped() -> None:
+    code = b"O1\n" + ISO + b"/X10. F70.\nX20.\n"
+    result = rewritten(code, Dialect.FANUC, (7, (1.0,), (70.0,)))
+    assert result.data == b"O1\n" + ISO + b"/X10. F70.\nX20. F70.\n"
+
+
+@pytest.mark.parametrize("control", [Dialect.FANUC, Dialect.HAAS])
+def test_a_whole_feed_has_a_point_where_others_have_one(control: Dialect) -> None:
+    code = b"G20 G90\nT1 M6\nS900 M3\nG0 X0. Y0. Z1.\nG1 Z-.1 F6.16\nX1. F12.5\n"
+    result = rewritten(code, control, (5, (1.0,), (25.4 * 20.0,)))
+    assert result.data == code.replace(b"F12.5", b"F20.")
+
+
 def test_a_subprogram_called_with_two_feeds_refuses_the_advice_before_it() -> None:
     code = (
         b"O1\n" + ISO + b"G1 X5. F50.\nX6.\nM98 P2\nG1 X7. F80.\nX8.\nM98 P2\nM30\n"

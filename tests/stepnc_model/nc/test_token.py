@@ -53,6 +53,8 @@ def test_a_long_line_takes_no_more_than_its_length(control: Dialect, text: str) 
         (Dialect.HEIDENHAIN, "IY-5.5", TokenKind.WORD, "IY", "-5.5"),
         (Dialect.HEIDENHAIN, "Q206=+150", TokenKind.ASSIGNMENT, "Q206", "+150"),
         (Dialect.HEIDENHAIN, "FQ1", TokenKind.MACRO, "F", "Q1"),
+        (Dialect.HEIDENHAIN, "F Q1", TokenKind.MACRO, "F", "Q1"),
+        *((each, "\xef\xbb\xbf", TokenKind.SPACE, "", "\xef\xbb\xbf") for each in CONTROLS),
     ],
 )
 def test_words_of_each_control(
