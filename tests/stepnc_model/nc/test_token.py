@@ -35,9 +35,10 @@ def test_tokens_laid_end_to_end_are_the_block(drawn: bytes | str, control: Diale
     ["X[", "X[a", "#", "((", '"', "A=(", "Q1=", "o1 a[", "IF [", "X#", "#<a", "o<", "aX[b"],
 )
 def test_a_long_line_takes_no_more_than_its_length(control: Dialect, text: str) -> None:
-    begun = time.perf_counter()
+    # A square of the length would be minutes of the processor, whatever else it does.
+    begun = time.process_time()
     list(tokens(text * 20_000, control))
-    assert time.perf_counter() - begun < 5.0
+    assert time.process_time() - begun < 20.0
 
 
 @pytest.mark.parametrize(
