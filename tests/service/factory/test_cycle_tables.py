@@ -2,7 +2,7 @@
 
 from math import pi
 from pathlib import Path
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 import pytest
@@ -65,9 +65,9 @@ def test_time_and_energy_are_within_a_per_cent_of_direct_runs(
 def test_a_shop_asks_for_many_parts(table: CycleTable) -> None:
     """2 µs a part is what is wanted; ten times that is a slip, on any machine."""
     rows = np.random.default_rng(1).uniform(LOW, HIGH, (100_000, 3))
-    began = perf_counter()
+    began = process_time()
     table.values(*rows.T)
-    assert (perf_counter() - began) / len(rows) < 20e-6
+    assert (process_time() - began) / len(rows) < 20e-6
 
 
 def test_layers_of_a_slot_change_at_a_third_of_its_depth(cycles: PartCycles) -> None:
