@@ -4,6 +4,7 @@ import asyncio
 import os
 import signal
 from collections.abc import Awaitable, Callable
+from contextlib import suppress
 from pathlib import Path
 
 import httpx
@@ -28,7 +29,9 @@ def signalled(server: Server, number: signal.Signals) -> None:
     """Send a signal to all processes of a server."""
     first = int((server.folder / "data" / "postmaster.pid").read_text("ascii").split()[0])
     for pid in (first, *children(first)):
-        os.kill(pid, number)
+        # Its processes come and go.
+        with suppress(ProcessLookupError):
+            os.kill(pid, number)
 
 
 def be_patient(monkeypatch: pytest.MonkeyPatch, seconds: float) -> None:

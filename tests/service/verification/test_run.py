@@ -123,12 +123,12 @@ def fast_shaft_log() -> RunLog:
     return run_log(shaft(), rate=10.0, feed=lambda speed: np.full_like(speed, 1000.0 / 60.0))
 
 
-def test_what_is_left_at_the_bottom_of_a_groove_is_uncertain_at_10_hz(tmp_path: Path) -> None:
+def test_what_is_left_at_the_bottom_of_a_groove_is_found_at_10_hz(tmp_path: Path) -> None:
     groove = SHORT_OFFSETS[0]
     answer = found(groove, fast_shaft_log(), shaft(), folder=tmp_path, request=SHAFT_REQUEST)
-    assert not answer.spots
-    assert answer.least > groove.size
-    assert "not found" in shown(answer)
+    assert answer.is_right
+    assert answer.spot is not None
+    assert answer.spot.uncertainty < 0.5 * groove.size
 
 
 @pytest.mark.parametrize("error", SHORT_OFFSETS[1:4], ids=["-X", "+Z", "-Z"])
