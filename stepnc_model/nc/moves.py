@@ -422,8 +422,19 @@ class NcMoves:
         return replace(self, rows=self.rows[begin:end])
 
     def move(self, index: int) -> NcMove:
-        """Return one row as a value."""
-        return self._value(self.rows[index].item(), float(self.feed[index]))
+        """Return one row as a value; rows near to each other are the quickest."""
+        row = index % len(self)
+        begin = row - row % CHUNK
+        if begin not in self._latest:
+            self._latest.clear()
+            self._latest[begin] = self.part(begin, begin + CHUNK)
+        part = self._latest[begin]
+        return self._value(part.rows[row - begin].item(), float(part.feed[row - begin]))
+
+    @cached_property
+    def _latest(self) -> dict[int, "NcMoves"]:
+        """Rows around the last one that was asked for: derived columns of all are large."""
+        return {}
 
     def each(self) -> Iterator[NcMove]:
         """Yield all rows as values, in bounded memory."""

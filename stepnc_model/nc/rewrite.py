@@ -367,8 +367,9 @@ class _Rewriting:
     # The new bytes.
 
     def _assembled(self, trace: _Trace) -> RewrittenCode:
-        text, data = self.program.text, self.program.text.data
-        parts: list[bytes] = []
+        # Views, so that what stays is copied once.
+        text, data = self.program.text, memoryview(self.program.text.data)
+        parts: list[bytes | memoryview] = []
         behind = changed = added = 0
         for block in sorted({*self.plans, *self.cycle_feeds, *trace.restored}):
             old = text.block(block)
