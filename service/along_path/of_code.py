@@ -5,6 +5,7 @@ Only F words change, and blocks are split.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from optimiser.along_path.caps import CutBounds
@@ -38,7 +39,7 @@ from service.requests.fields import require_bounds
 from simulator.library import load_machine
 from simulator.spec import Machine, MaterialMatch
 from simulator.tool_files.file_unit import FileUnit
-from simulator.tool_files.read import read_tools
+from simulator.tool_files.read import ToolLibrary, read_tools
 from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
 from stepnc_model.nc.advice import RewrittenCode
 from stepnc_model.nc.program import NcProgram, read_program
@@ -96,17 +97,13 @@ def optimise_code(
     require_bounds(request)
     output = _output(files)
     name = files.name or files.file.name
-    if files.tools is None or not request.stock:
-        raise StepNcError("NC code names no tools and no stock: add --tools and --stock")
-    if not request.material:
-        raise StepNcError("NC code names no material: add --material (`stepnc materials`)")
+    library = _tools(request, files)
     program = read_program(read_bytes(files.file), dialect=request.dialect)
     is_lathe = program.machine is MachineType.LATHE
     machine = load_machine(request.machine or (DEFAULT_LATHE if is_lathe else DEFAULT_MILL))
     require_axes(machine)
     material = load_material_named(request.material)
     tell(f"material: {material.reason}")
-    library = read_tools(files.tools, unit=files.tools_unit)
 
     def paths_of(program: NcProgram) -> CodePaths:
         return CodePaths(
@@ -119,15 +116,7 @@ def optimise_code(
         )
 
     code = paths_of(program)
-
-    def source_of(code: CodePaths) -> PathSource:
-        bounds = _bounds(code, request)
-        return PathSource(
-            prepare=code.prepared,
-            bounds=lambda part: bounds.get(part.name),
-            numbered=lambda run: CodeBlocks(run.blocks, code),
-        )
-
+    source_of = partial(_source, request)
     task = replace(
         task_of(request, machine), keeps_traces=files.report is not None, keeps_idle=True
     )
@@ -172,6 +161,25 @@ def optimise_code(
         write_atomically(output, rewritten.data)
         tell(f"written: {output}")
     return found
+
+
+def _tools(request: AdviceRequest, files: CodeFiles) -> ToolLibrary:
+    """Read the tools; what NC code itself does not name must be given."""
+    if files.tools is None or not request.stock:
+        raise StepNcError("NC code names no tools and no stock: add --tools and --stock")
+    if not request.material:
+        raise StepNcError("NC code names no material: add --material (`stepnc materials`)")
+    return read_tools(files.tools, unit=files.tools_unit)
+
+
+def _source(request: AdviceRequest, code: CodePaths) -> PathSource:
+    """Paths of NC code with the bounds of their tools."""
+    bounds = _bounds(code, request)
+    return PathSource(
+        prepare=code.prepared,
+        bounds=lambda part: bounds.get(part.name),
+        numbered=lambda run: CodeBlocks(run.blocks, code),
+    )
 
 
 def _output(files: CodeFiles) -> Path:

@@ -111,7 +111,7 @@ class IsoControl:
             return block + 1
         words = words_of(text, self.dialect)
         self.modes.shot, self.modes.lost = None, ""
-        sets_frame = bool(words.assignments) and FRAME_PARAMETERS.search(text)
+        sets_frame = words.assignments and FRAME_PARAMETERS.search(text)
         if words.macros or words.assignments:
             self._evaluate(words)
         following = self.steering.follow(words, block)

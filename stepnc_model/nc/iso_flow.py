@@ -176,10 +176,8 @@ class IsoFlow:
 
     def _called(self, words: BlockWords, block: int) -> int:
         """Call a subprogram by M98, or by M97 at a block number."""
-        number, times = (
-            self._number,
-            int(1.0 if self._times_called is None else self._times_called),
-        )
+        number = self._number
+        times = 1 if self._times_called is None else int(self._times_called)
         if number is None:
             return self._outside(block, "a call without P")
         is_local = 970 in words.functions
