@@ -1,7 +1,9 @@
-"""HTTP protocol with bounds on the time and size of a request head.
+"""HTTP protocol with bounds on a request head and an end for streams.
 
-The server underneath bounds neither: it would wait without end for a client that never
-completes its head, and keep it in memory. Bodies are bounded by the access middleware.
+The server underneath bounds neither time nor size of a head: it would wait without end for a
+client that never completes it, and keep it in memory. Bodies are bounded by the access
+middleware. Nor does it end a stream when it stops: it would wait for the client, then cancel
+and log a fault.
 """
 
 import asyncio
@@ -17,7 +19,7 @@ HEAD_BYTES = 1 << 16
 
 
 class BoundedHttpProtocol(HttpToolsProtocol):
-    """HTTP connection with bounds on the time and size of a request head. Running state."""
+    """HTTP connection with bounds on a request head and an end for streams. Running state."""
 
     def __init__(self, *arguments: Any, **words: Any) -> None:
         super().__init__(*arguments, **words)
@@ -50,6 +52,18 @@ class BoundedHttpProtocol(HttpToolsProtocol):
         elif self._begin is None and self.cycle is not None and self.cycle.response_complete:
             # Not a head, or the rest of a body that was refused.
             self._expect()
+
+    def shutdown(self) -> None:
+        """Finish the current answer; a stream has no end, so leave its client at once."""
+        super().shutdown()
+        cycle = self.cycle
+        if cycle is None or cycle.response_complete or not cycle.chunked_encoding:
+            return
+        if self.transport.get_write_buffer_size():
+            # The client does not read what it gets.
+            self.transport.abort()
+        else:
+            self.transport.close()
 
     def on_message_begin(self) -> None:
         """Note that a request head has begun (see httptools)."""

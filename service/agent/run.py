@@ -39,6 +39,9 @@ from simulator.machine.virtual import LoadedTool
 from simulator.spec import Machine
 from stepnc_model.errors import StepNcError
 
+FAREWELL = 10
+"""s that answers may still take at the end; streams end at once"""
+
 BACKLOG = 2048
 """connections that may wait to be accepted"""
 
@@ -391,7 +394,7 @@ async def _serve(
         ws="none",
         lifespan="off",
         timeout_keep_alive=30,
-        timeout_graceful_shutdown=2,
+        timeout_graceful_shutdown=FAREWELL,
     )
     if shdr is not None:
         await ShdrServer(agent).serve(shdr)

@@ -1,6 +1,7 @@
-"""Heads that never end, on a small server in this process whose bounds are short."""
+"""Heads and streams that never end, on a small server in this process."""
 
 import asyncio
+import logging
 import socket
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
@@ -139,3 +140,42 @@ def test_the_rest_of_a_refused_body_is_no_head() -> None:
         await greeted(reader, writer)
 
     talked(talk)
+
+
+@pytest.mark.parametrize("reads", [True, False])
+def test_a_stream_ends_with_its_server(reads: bool, caplog: pytest.LogCaptureFixture) -> None:
+    ended: list[str] = []
+
+    async def stream(scope: Scope, receive: Receive, send: Send) -> None:
+        """Much until nothing more is taken, then nothing; until the client is gone."""
+        assert scope["type"] == "http"
+        await receive()
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+        body = {"type": "http.response.body", "body": b"x" * 65536, "more_body": True}
+        with suppress(TimeoutError):
+            async with asyncio.timeout(0.2):
+                while not reads:
+                    await send(body)
+                    await asyncio.sleep(0.0)  # else a send after the end would not wait
+        ended.append((await receive())["type"])
+
+    async def both() -> None:
+        with socket.create_server(("127.0.0.1", 0)) as line:
+            config = uvicorn.Config(stream, http=BoundedHttpProtocol, ws="none", lifespan="off",
+                                    log_config=None, timeout_graceful_shutdown=60)  # fmt: skip
+            server = uvicorn.Server(config)
+            serving = asyncio.create_task(server.serve(sockets=[line]))
+            reader, writer = await asyncio.open_connection(*line.getsockname(), limit=1024)
+            writer.write(WHOLE)
+            await reader.readuntil(b"\r\n\r\n")
+            server.should_exit = True
+            async with asyncio.timeout(20.0):
+                await serving
+            writer.close()
+            with suppress(ConnectionError):
+                await writer.wait_closed()
+
+    with caplog.at_level(logging.ERROR):
+        asyncio.run(both())
+    assert ended == ["http.disconnect"]
+    assert not caplog.records
