@@ -39,7 +39,7 @@ from optimiser.profile import (
     TangentialLimit,
     too_fast_at_start,
 )
-from simulator.kernels.kernel import entry, kernel
+from simulator.kernels.kernel import entry, kernel, reordered
 
 
 def sweep(problem: ProfileProblem, limit: TangentialLimit) -> PathProfile:
@@ -67,11 +67,13 @@ def sweep(problem: ProfileProblem, limit: TangentialLimit) -> PathProfile:
         size = getattr(limit, name).shape
         if size not in {(1,), problem.lengths.shape}:
             raise ValueError(f"{name} must have shape (1,) or {problem.lengths.shape}: {size}")
-    squares, total = problem.bounds(), np.zeros(1)
+    squares, total = np.empty(len(problem)), np.zeros(1)
     sweep_along(
         problem.lengths,
         np.ascontiguousarray(limit.accelerating),
         np.ascontiguousarray(limit.braking),
+        problem.caps,
+        np.array((problem.start, problem.end)),
         squares,
         total,
     )
@@ -120,52 +122,67 @@ def sweep_axes(problem: ProfileProblem, limit: AxisLimit) -> PathProfile:
 
 @entry
 def sweep_along(
-    lengths: Floats, accelerating: Floats, braking: Floats, squares: Floats, total: Floats
+    lengths: Floats,
+    accelerating: Floats,
+    braking: Floats,
+    caps: Floats,
+    ends: Floats,
+    squares: Floats,
+    total: Floats,
 ) -> None:
-    """Lower squared feeds to what can be reached, and add up the time.
+    """Find the squared feeds that can be reached within caps, and add up the time.
 
     Parameters
     ----------
     lengths : (N−1,) array, mm
     accelerating, braking : (1,) or (N−1,) array, mm/s²
+    caps : (N,) array, mm²/s²
+    ends : (2,) array, mm²/s²
+        Further caps, on the first and the last station.
     squares : (N,) array, mm²/s²
-        Caps, lowered in place; from the end alone if the first of them falls.
+        Squared feeds; from the end alone if the first of them is lower than its caps.
     total : (1,) array, s
         Time.
     """
-    start = squares[0]
-    _sweep_back(lengths, braking, squares)
+    start = min(caps[0], ends[0])
+    _sweep_back(lengths, braking, caps, min(caps[len(lengths)], ends[1]), squares)
+    squares[0] = min(squares[0], start)
     if squares[0] >= start:
         _sweep_on(lengths, accelerating, squares)
         total[0] = _time(lengths, squares)
 
 
 @kernel
-def _sweep_back(lengths: Floats, braking: Floats, squares: Floats) -> None:
-    """Lower squared feeds, from the end, to those from which braking suffices.
+def _sweep_back(
+    lengths: Floats, braking: Floats, caps: Floats, end: float, squares: Floats
+) -> None:
+    """Find, from the end, the squared feeds from which braking suffices.
 
     Each station waits for the next one, so that four quarters of the path, side by side, take
     half the time. A quarter takes the cap at its end for the squared feed there; where that is
     lower, the stations before are lowered again until one does not change.
     """
-    stride, quarter = (1 if len(braking) > 1 else 0), len(lengths) // 4
+    quarter = len(lengths) // 4 if len(braking) == 1 else 0
+    four = end
+    squares[len(lengths)] = four
     for row in range(len(lengths) - 1, 4 * quarter - 1, -1):
-        squares[row] = _braked(lengths, braking, stride, squares, row, squares[row + 1])
-    one, two = squares[quarter], squares[2 * quarter]
-    three, four = squares[3 * quarter], squares[4 * quarter]
+        four = min(caps[row], four + 2.0 * braking[min(row, len(braking) - 1)] * lengths[row])
+        squares[row] = four
+    gain = 2.0 * braking[0]
+    one, two, three = caps[quarter], caps[2 * quarter], caps[3 * quarter]
     for row in range(quarter - 1, -1, -1):
-        one = _braked(lengths, braking, stride, squares, row, one)
+        one = min(caps[row], one + gain * lengths[row])
         squares[row] = one
-        two = _braked(lengths, braking, stride, squares, row + quarter, two)
+        two = min(caps[row + quarter], two + gain * lengths[row + quarter])
         squares[row + quarter] = two
-        three = _braked(lengths, braking, stride, squares, row + 2 * quarter, three)
+        three = min(caps[row + 2 * quarter], three + gain * lengths[row + 2 * quarter])
         squares[row + 2 * quarter] = three
-        four = _braked(lengths, braking, stride, squares, row + 3 * quarter, four)
+        four = min(caps[row + 3 * quarter], four + gain * lengths[row + 3 * quarter])
         squares[row + 3 * quarter] = four
     for part in range(3, 0, -1):
         row = part * quarter - 1
         while row >= 0:
-            lower = _braked(lengths, braking, stride, squares, row, squares[row + 1])
+            lower = min(squares[row], squares[row + 1] + gain * lengths[row])
             if lower == squares[row]:
                 break
             squares[row] = lower
@@ -173,49 +190,37 @@ def _sweep_back(lengths: Floats, braking: Floats, squares: Floats) -> None:
 
 
 @kernel
-def _braked(
-    lengths: Floats, braking: Floats, stride: int, squares: Floats, row: int, after: float
-) -> float:
-    """Greatest squared feed at the start of an interval from which braking suffices."""
-    square: float = min(squares[row], after + 2.0 * braking[row * stride] * lengths[row])
-    return square
-
-
-@kernel
 def _sweep_on(lengths: Floats, accelerating: Floats, squares: Floats) -> None:
     """Lower squared feeds, from the start, to those that can be reached, by quarters too."""
-    stride, quarter = (1 if len(accelerating) > 1 else 0), len(lengths) // 4
+    quarter = len(lengths) // 4 if len(accelerating) == 1 else 0
+    gain = 2.0 * accelerating[0]
     one, two = squares[0], squares[quarter]
     three, four = squares[2 * quarter], squares[3 * quarter]
     for row in range(quarter):
-        one = _reached(lengths, accelerating, stride, squares, row, one)
+        one = min(squares[row + 1], one + gain * lengths[row])
         squares[row + 1] = one
-        two = _reached(lengths, accelerating, stride, squares, row + quarter, two)
-        squares[row + quarter + 1] = two
-        three = _reached(lengths, accelerating, stride, squares, row + 2 * quarter, three)
-        squares[row + 2 * quarter + 1] = three
-        four = _reached(lengths, accelerating, stride, squares, row + 3 * quarter, four)
-        squares[row + 3 * quarter + 1] = four
+        at = row + quarter
+        two = min(squares[at + 1], two + gain * lengths[at])
+        squares[at + 1] = two
+        at += quarter
+        three = min(squares[at + 1], three + gain * lengths[at])
+        squares[at + 1] = three
+        at += quarter
+        four = min(squares[at + 1], four + gain * lengths[at])
+        squares[at + 1] = four
     for part in range(1, 4):
         row = part * quarter
         while row < 4 * quarter:
-            lower = _reached(lengths, accelerating, stride, squares, row, squares[row])
+            lower = min(squares[row + 1], squares[row] + gain * lengths[row])
             if lower == squares[row + 1]:
                 break
             squares[row + 1] = lower
             row += 1
+    square = squares[4 * quarter]
     for row in range(4 * quarter, len(lengths)):
-        squares[row + 1] = _reached(lengths, accelerating, stride, squares, row, squares[row])
-
-
-@kernel
-def _reached(
-    lengths: Floats, accelerating: Floats, stride: int, squares: Floats, row: int, before: float
-) -> float:
-    """Greatest squared feed at the end of an interval that accelerating reaches."""
-    faster = before + 2.0 * accelerating[row * stride] * lengths[row]
-    square: float = min(squares[row + 1], faster)
-    return square
+        reach = 2.0 * accelerating[min(row, len(accelerating) - 1)] * lengths[row]
+        square = min(squares[row + 1], square + reach)
+        squares[row + 1] = square
 
 
 @kernel
@@ -224,14 +229,23 @@ def _time(lengths: Floats, squares: Floats) -> float:
     total, row = 0.0, 0
     while row < len(lengths):
         last = min(row + 1024, len(lengths))
-        feed, block = sqrt(squares[row]), 0.0
-        for each in range(row, last):
-            after = sqrt(squares[each + 1])
-            block += lengths[each] / (feed + after)
-            feed = after
-        total += 2.0 * block
+        total += 2.0 * _block_time(lengths, squares, row, last)
         row = last
     return total
+
+
+@reordered
+def _block_time(lengths: Floats, squares: Floats, first: int, last: int) -> float:
+    """Half the time of some intervals; two of them share a division."""
+    block, feed = 0.0, sqrt(squares[first])
+    for row in range(first, last - 1, 2):
+        middle, after = sqrt(squares[row + 1]), sqrt(squares[row + 2])
+        one, two = feed + middle, middle + after
+        block += (lengths[row] * two + lengths[row + 1] * one) / (one * two)
+        feed = after
+    if (last - first) % 2:
+        block += lengths[last - 1] / (sqrt(squares[last - 1]) + sqrt(squares[last]))
+    return block
 
 
 Geometry = tuple[Floats, Floats, Floats, Floats]

@@ -14,7 +14,7 @@ import llvmlite.binding as llvm
 import numba
 
 from simulator.kernels import link
-from simulator.kernels.identity import is_kernel, names_of
+from simulator.kernels.identity import is_kernel, is_reordered, names_of
 
 
 def object_code(
@@ -63,7 +63,11 @@ def _compiled(function: Any, known: dict[object, Any]) -> Any:
         }
         same = FunctionType(function.__code__, names, function.__name__, function.__defaults__)
         known[function] = numba.njit(
-            error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False
+            error_model="numpy",
+            fastmath={"reassoc"} if is_reordered(function) else False,
+            no_cpython_wrapper=True,
+            no_cfunc_wrapper=True,
+            _nrt=False,
         )(same)
     return known[function]
 

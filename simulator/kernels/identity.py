@@ -32,6 +32,11 @@ def is_kernel(value: object) -> bool:
     return hasattr(value, "is_kernel")
 
 
+def is_reordered(function: object) -> bool:
+    """Whether the sums of a kernel may be added up in any order."""
+    return hasattr(function, "is_reordered")
+
+
 def names_of(function: Any) -> Iterator[tuple[str, object]]:
     """Global names that a kernel uses, with their values, in the order of its bytecode.
 
@@ -51,6 +56,8 @@ def _parts(function: Any, seen: set[object]) -> Iterator[str]:
     yield function.__qualname__
     yield from map(repr, (code.co_code, code.co_consts, code.co_names, code.co_varnames))
     yield repr((code.co_exceptiontable, function.__defaults__))
+    if is_reordered(function):
+        yield "reordered"
     for name, value in names_of(function):
         yield name
         if is_kernel(value):

@@ -42,6 +42,12 @@ def kernel(function: Function) -> Function:
     return function
 
 
+def reordered(function: Function) -> Function:
+    """Mark a kernel whose sums may be added up in any order, side by side."""
+    function.is_reordered = True  # type: ignore[attr-defined]
+    return kernel(function)
+
+
 class KernelEntry(Generic[Parameters]):
     """Kernel that can be called from Python and runs as machine code."""
 

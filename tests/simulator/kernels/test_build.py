@@ -9,6 +9,7 @@ import pytest
 from numba.core.errors import NumbaError
 
 from simulator.kernels.build import object_code, require_self_contained
+from simulator.kernels.kernel import reordered
 
 
 def test_an_object_file_has_its_kernel_and_calls_mathematics() -> None:
@@ -22,6 +23,18 @@ def test_an_object_file_has_its_kernel_and_calls_mathematics() -> None:
     assert b"atan2" in code
     assert b"numba" not in code.replace(b"NumbaEnv", b"")
     assert llvm.ObjectFileRef.from_data(code)
+
+
+def test_sums_in_any_order_are_other_code() -> None:
+    def added(values: Any) -> None:
+        total = 0.0
+        for value in values:
+            total += value
+        values[0] = total
+
+    in_order = object_code(added, (np.zeros(3),), symbol="added_1")
+    assert object_code(added, (np.zeros(3),), symbol="added_1") == in_order
+    assert object_code(reordered(added), (np.zeros(3),), symbol="added_1") != in_order
 
 
 def test_a_kernel_that_needs_numba_is_refused() -> None:

@@ -54,3 +54,8 @@ def test_versions_and_processor_count(name: str, monkeypatch: pytest.MonkeyPatch
     else:
         monkeypatch.setattr(link, "processor", lambda: ("none", "none", ""))
     assert digest() != BEFORE
+
+
+def test_the_order_of_sums_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(height, "is_reordered", True, raising=False)
+    assert digest() != BEFORE
