@@ -70,8 +70,7 @@ def sweep(problem: ProfileProblem, limit: TangentialLimit) -> PathProfile:
     squares, total = np.empty(len(problem)), np.zeros(1)
     sweep_along(
         problem.lengths,
-        np.ascontiguousarray(limit.accelerating),
-        np.ascontiguousarray(limit.braking),
+        (np.ascontiguousarray(limit.accelerating), np.ascontiguousarray(limit.braking)),
         problem.caps,
         np.array((problem.start, problem.end)),
         squares,
@@ -123,8 +122,7 @@ def sweep_axes(problem: ProfileProblem, limit: AxisLimit) -> PathProfile:
 @entry
 def sweep_along(
     lengths: Floats,
-    accelerating: Floats,
-    braking: Floats,
+    limits: tuple[Floats, Floats],
     caps: Floats,
     ends: Floats,
     squares: Floats,
@@ -135,7 +133,8 @@ def sweep_along(
     Parameters
     ----------
     lengths : (N−1,) array, mm
-    accelerating, braking : (1,) or (N−1,) array, mm/s²
+    limits : tuple of (1,) or (N−1,) arrays, mm/s²
+        Accelerating and braking.
     caps : (N,) array, mm²/s²
     ends : (2,) array, mm²/s²
         Further caps, on the first and the last station.
@@ -144,6 +143,7 @@ def sweep_along(
     total : (1,) array, s
         Time.
     """
+    accelerating, braking = limits
     start = min(caps[0], ends[0])
     _sweep_back(lengths, braking, caps, min(caps[len(lengths)], ends[1]), squares)
     squares[0] = min(squares[0], start)
