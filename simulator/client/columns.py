@@ -7,7 +7,7 @@ reads a recorded one; data items without such a column have one by their id.
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from math import nan
+from math import inf, nan
 
 from simulator.client.connection import ClientItem, ClientObservation
 
@@ -63,6 +63,10 @@ BY_TYPE = {
 """columns by component, type and sub type"""
 
 TIME = "time_s"
+
+LATE = 5.0
+"""s that an observation may come after its moment; later the clock has been set back"""
+
 EXECUTION = "execution"
 RUNNING = frozenset({"ACTIVE", "WAIT", "FEED_HOLD", "INTERRUPTED"})
 """words of ``execution`` while a program runs; a tool change is a wait"""
@@ -130,14 +134,20 @@ def column_name(item: ClientItem) -> str:
 
 @dataclass(kw_only=True)
 class RowMaker:
-    """Makes rows of observations. Running state: the last value of each column."""
+    """Makes rows of observations. Running state: the last value of each column.
+
+    Observations of several adapters may come in another order than that of their times. Those
+    that come together are put in order; one that comes late has no row of its own.
+    """
 
     columns: tuple[RecordedColumn, ...]
     begin: float | None = None
     """time of the first row, s since 1970; None: there is none yet"""
     _held: dict[str, Cell] = field(default_factory=dict)
     _numeric: dict[str, bool] = field(default_factory=dict)
+    _since: dict[str, float] = field(default_factory=dict)
     _open: float | None = None
+    _latest: float = -inf
 
     def __post_init__(self) -> None:
         self._places = {each.id for each in self.columns if each.axis is not None}
@@ -146,24 +156,34 @@ class RowMaker:
     def rows(self, observations: Iterable[ClientObservation]) -> list[Mapping[str, Cell]]:
         """Rows that are complete once these observations have come."""
         found: list[Mapping[str, Cell]] = []
-        for each in observations:
-            if self._open is not None and each.time > self._open:
+        for each in sorted(observations, key=lambda observation: observation.time):
+            if self._open is not None and not self._open - LATE <= each.time <= self._open:
                 found.append(self._row(self._open))
-                self._open = None
+                self._latest, self._open = self._open, None
             is_numeric = self._numeric.get(each.id)
             if is_numeric is None:
                 continue
+            if each.time < self._since.get(each.id, -inf) <= each.time + LATE:
+                # Older than what is known: its moment has passed.
+                continue
+            self._since[each.id] = each.time
             is_whole = not is_numeric or each.id in self._places
             self._held[each.id] = each.value if is_whole else _number(each.value)
-            if is_numeric and each.value is not None:
+            if is_numeric and each.value is not None and not self._is_late(each.time):
                 self._open = each.time
         return found
 
+    def _is_late(self, time: float) -> bool:
+        """Whether a moment has passed; of a clock that is set back, it has not."""
+        last = self._latest if self._open is None else self._open
+        return last - LATE <= time < last
+
     def last(self) -> list[Mapping[str, Cell]]:
         """The row that waits for more observations of its moment."""
-        found = [] if self._open is None else [self._row(self._open)]
-        self._open = None
-        return found
+        if self._open is None:
+            return []
+        self._latest, self._open = self._open, None
+        return [self._row(self._latest)]
 
     def held(self, name: str) -> Cell:
         """Last value of a column; None where there is none."""
@@ -173,6 +193,7 @@ class RowMaker:
     def interrupt(self) -> None:
         """Nothing is known any more of what holds."""
         self._held.clear()
+        self._since.clear()
 
     def _row(self, time: float) -> Mapping[str, Cell]:
         if self.begin is None:

@@ -81,6 +81,33 @@ def test_a_row_is_a_moment_and_holds_what_is_known() -> None:
     assert isnan(rows[2]["y"])  # type: ignore[arg-type]
 
 
+def test_moments_are_in_order_whatever_the_order_of_observations() -> None:
+    rows = rows_of(
+        [
+            ClientObservation("x", 1, 100.2, "2"),
+            ClientObservation("x", 2, 100.0, "0"),
+            ClientObservation("y", 3, 100.1, "7"),
+        ],
+        [
+            ClientObservation("x", 4, 100.1, "1"),
+            ClientObservation("y", 5, 100.15, "8"),
+            ClientObservation("x", 6, 100.3, "3"),
+        ],
+    )
+    assert [row["time_s"] for row in rows] == [0.0, 0.1, 0.2, 0.3]
+    assert [row["x"] for row in rows] == [0.0, 0.0, 2.0, 3.0]
+    assert [row["y"] for row in rows][1:] == [7.0, 8.0, 8.0]
+
+
+def test_a_clock_that_is_set_back_goes_on() -> None:
+    rows = rows_of(
+        [ClientObservation("x", 1, 5000.0, "1")],
+        [ClientObservation("x", 2, 1400.0, "2")],
+        [ClientObservation("x", 3, 1400.1, "3")],
+    )
+    assert [row["x"] for row in rows] == [1.0, 2.0, 3.0]
+
+
 def test_a_position_of_the_path_has_a_column_for_each_axis() -> None:
     item = ClientItem(
         id="tip", name="", category="SAMPLE", type="PATH_POSITION", sub_type="ACTUAL",
