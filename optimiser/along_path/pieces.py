@@ -59,6 +59,8 @@ class FeedPieces:
     """Whether the feed is per revolution, (P,)."""
     run: Ints
     """Number of the run of feed moves between two rapids, (P,)."""
+    last_run: Ints
+    """Number of the last run of a part that has several, as a drilling cycle has, (P,)."""
 
     def __len__(self) -> int:
         return len(self.block)
@@ -97,6 +99,7 @@ def pieces_of(stretch: PathStretch, commands: Commands, rules: PieceRules) -> Fe
     group = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(at))))
     before = np.concatenate(([0.0], np.cumsum(length)))
     of_block = np.searchsorted(first, starts, side="right") - 1
+    run = commands.run[at]
     return FeedPieces(
         block=block[starts],
         begin=before[starts] - before[first[of_block]],
@@ -106,7 +109,8 @@ def pieces_of(stretch: PathStretch, commands: Commands, rules: PieceRules) -> Fe
         name=commands.caps.name[at][_least_rows(rate, starts, group)],
         programmed=programmed[starts],
         is_per_revolution=is_per_revolution[starts],
-        run=commands.run[at][starts],
+        run=run[starts],
+        last_run=run[np.append(starts[1:], len(at))[: len(starts)] - 1],
     )
 
 

@@ -131,7 +131,8 @@ class FeedPlanner:
         commands = commands_of(stretch, places, machine)
         name = stretch.workingstep
         pieces = pieces_of(stretch, commands, self.task.rules)
-        pieces = replace(pieces, run=pieces.run + len(self._locked))
+        earlier = len(self._locked)
+        pieces = replace(pieces, run=pieces.run + earlier, last_run=pieces.last_run + earlier)
         self._pieces.setdefault(name, []).append(pieces)
         self._locked += commands.greatest_locked.tolist()
         self._bounds[name] = self._bounds.get(name, 0.0) + self._least_time(stretch, places)
@@ -188,9 +189,12 @@ class FeedPlanner:
 
     def _window(self, pieces: FeedPieces) -> float:
         """Time in which the control's filter settles after the runs of some pieces, s."""
-        runs, row = np.unique(pieces.run, return_inverse=True)
+        number = pieces.last_run - pieces.run + 1
+        piece = np.repeat(np.arange(len(pieces)), number)
+        run = pieces.run[piece] + np.arange(len(piece)) - (np.cumsum(number) - number)[piece]
+        runs, row = np.unique(run, return_inverse=True)
         greatest = np.array(self._locked)[runs]
-        np.maximum.at(greatest, row, pieces.rate * pieces.length / pieces.weight)
+        np.maximum.at(greatest, row, (pieces.rate * pieces.length / pieces.weight)[piece])
         machine = self.task.machine
         return sum(
             smoothing_of(machine.control, machine.limits, feed).window
@@ -235,6 +239,7 @@ def joined(parts: Iterable[FeedPieces]) -> FeedPieces:
             programmed=nothing,
             is_per_revolution=np.zeros(0, dtype=np.bool_),
             run=none,
+            last_run=none,
         )
     return FeedPieces(**{
         field: np.concatenate([getattr(part, field) for part in found])

@@ -163,6 +163,7 @@ def test_small_changes_within_a_block_are_lowered(
         programmed=ones,
         is_per_revolution=np.zeros(len(rows), dtype=np.bool_),
         run=block,
+        last_run=block,
     )
     found = without_small_changes(pieces, change)
     assert (found <= rate).all()

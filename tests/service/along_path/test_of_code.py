@@ -107,6 +107,7 @@ def test_the_rewritten_program_takes_the_planned_time_and_stays(name: str) -> No
     first = advised(text, request)
     again = advised(rewritten(text, request), request)
     assert first.rewritten.changed > 0
+    assert first.along.time_after == pytest.approx(first.along.planned_time, rel=0.005)
     assert again.rewritten.changed == again.rewritten.added == 0
     assert again.along.time_before == pytest.approx(first.along.time_after, rel=0.01)
 
