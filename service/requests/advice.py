@@ -124,9 +124,9 @@ class AdviceRequest(Request):
     stock: Annotated[
         Name,
         About(
-            "raw part of a program that defines none, in mm: x0,y0,z0,x1,y1,z1 or "
-            "diameter,z0,z1",
-            flag="--stock", metavar="NUMBERS", examples=("0,0,-30,100,120,5",),
+            "raw part of NC code, or of a program that defines none, in mm: x0,y0,z0,x1,y1,z1 "
+            "or diameter,z0,z1; on the command line also an STL or STEP file",
+            flag="--stock", metavar="STOCK", examples=("0,0,-30,100,120,5",),
         ),
     ] = ""  # fmt: skip
     safety: Annotated[

@@ -23,8 +23,8 @@ class VerificationRequest(Request):
         Name,
         About(
             "raw part where there is no program, or it defines none, in mm: "
-            "x0,y0,z0,x1,y1,z1 or diameter,z0,z1",
-            flag="--stock", metavar="NUMBERS", examples=("0,0,-30,100,120,5",),
+            "x0,y0,z0,x1,y1,z1 or diameter,z0,z1; on the command line also an STL or STEP file",
+            flag="--stock", metavar="STOCK", examples=("0,0,-30,100,120,5",),
         ),
     ] = ""  # fmt: skip
     zero: Annotated[
