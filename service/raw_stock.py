@@ -189,7 +189,7 @@ def body_map(
 
 
 def given_stock(text: str) -> GivenStock:
-    """Read a raw part for a STEP-NC program: numbers, a mesh or a solid.
+    """Read a raw part that was not cut before: numbers, a mesh or a solid.
 
     Raises
     ------
@@ -199,8 +199,8 @@ def given_stock(text: str) -> GivenStock:
     raw = raw_stock_of(text)
     if raw.kept is not None:
         raise StepNcError(
-            f"{raw.name}: a kept stock serves NC code only; a program takes numbers, an STL "
-            "file or a STEP file"
+            f"{raw.name}: a kept stock serves NC code only: name numbers, an STL file or a "
+            "STEP file"
         )
     if raw.triangles is None:
         return raw
