@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass
 from math import sqrt
+from typing import Protocol
 
-from optimiser.assumed_stock import assumed_stock
+from optimiser.assumed_stock import assumed_stock, words_of
 from optimiser.hardest import PathContacts
 from simulator.errors import SimulationError
 from simulator.motion.tool_path import ToolPathRun
@@ -57,15 +58,47 @@ class StockPlace:
     is_turning: bool
 
 
-class ClampedStocks:
-    """Stock maps of a program, one per setup and process (mutable state)."""
+class BodyMaps(Protocol):
+    """Maker of stock maps of raw parts that are bodies of any shape."""
 
-    def __init__(self, program: Program, machine: Machine) -> None:
+    def __call__(
+        self,
+        program: Program,
+        setup: Ref[Setup] | None,
+        *,
+        is_turning: bool,
+        cell: float | None,
+    ) -> StockMap | None:
+        """Return the map of a raw part; None if it is a box or a bar.
+
+        Raises
+        ------
+        ValueError
+            When it cannot be turned.
+        """
+        ...
+
+
+class ClampedStocks:
+    """Stock maps of a program, one per setup and process (mutable state).
+
+    Parameters
+    ----------
+    program : Program
+    machine : Machine
+    body_map : BodyMaps, optional
+        Without it, the box or bar around a body counts.
+    """
+
+    def __init__(
+        self, program: Program, machine: Machine, body_map: BodyMaps | None = None
+    ) -> None:
         self.program = program
         self.machine = machine
+        self._body_map = body_map
         self.stocks: dict[StockPlace, StockMap | None] = {}
-        self.assumed: dict[StockPlace, Stock] = {}
-        """Raw parts that the program does not describe."""
+        self.assumed: dict[StockPlace, str] = {}
+        """What is assumed of raw parts that are not known."""
         self._changes: dict[StockPlace, Change] = {}
         """Pending changes by stock, applied when the next workingstep asks for its stock."""
 
@@ -101,13 +134,29 @@ class ClampedStocks:
             if raw is None and not place.is_turning:
                 raw = assumed_stock(self.program, place.setup)
                 if raw is not None:
-                    self.assumed[place] = raw
+                    self.assumed[place] = words_of(raw)
             if raw is None:
                 return None
+            cell = None if place.is_turning else _cell(raw, self._diameters())
+            body = self._body(place, cell) if raw.is_around else None
+            if body is not None:
+                return body
             if place.is_turning:
                 return TurningStock(raw)
-            return MillingStock(raw, cell=_cell(raw, self._diameters()))
+            return MillingStock(raw, cell=cell)
         except (SchemaError, ValueError):
+            return None
+
+    def _body(self, place: StockPlace, cell: float | None) -> StockMap | None:
+        """Map of a raw part that is a body; None where the box or bar around it counts."""
+        if self._body_map is None:
+            return None
+        try:
+            return self._body_map(
+                self.program, place.setup, is_turning=place.is_turning, cell=cell
+            )
+        except ValueError as error:
+            self.assumed[place] = f"the bar around the raw part counts as solid: {error}"
             return None
 
     def _diameters(self) -> list[float]:

@@ -15,8 +15,15 @@ from copy import copy
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from optimiser.assumed_stock import words_of
-from optimiser.clamped import Change, ClampedStocks, StockMap, StockPlace, TrialContacts, met_by
+from optimiser.clamped import (
+    BodyMaps,
+    Change,
+    ClampedStocks,
+    StockMap,
+    StockPlace,
+    TrialContacts,
+    met_by,
+)
 from optimiser.cut import Cut, CutKind
 from optimiser.estimated import GUESSES, estimated_cut
 from optimiser.hardest import (
@@ -155,6 +162,8 @@ class MeasuredCuts:
     is_run : bool
         Whether a simulated run is compared with the plan; the cuts then include the loads that
         the axes actually reach.
+    body_map : BodyMaps, optional
+        Maker of maps of raw parts that are bodies; without it, their box or bar counts.
     """
 
     def __init__(
@@ -164,6 +173,7 @@ class MeasuredCuts:
         material: WorkMaterial,
         *,
         is_run: bool = False,
+        body_map: BodyMaps | None = None,
     ) -> None:
         self.program = program
         self.machine = machine
@@ -171,7 +181,7 @@ class MeasuredCuts:
         self.kienzle = material.kienzle
         self._with_loads = with_reached if is_run else with_power
         self.control, self.limits = usual_motion(machine)
-        self.stocks = ClampedStocks(program, machine)
+        self.stocks = ClampedStocks(program, machine, body_map)
         self._left_out: dict[int, str] = {}
         """Ids of workingsteps without a path, by the instance number of their feature."""
         self._estimate: Cut | None = None
@@ -207,8 +217,7 @@ class MeasuredCuts:
         assumed = self.stocks.assumed.get(self.stocks.place(step))
         if assumed is not None:
             at = step.ref if step.setup is None else step.setup
-            text = words_of(assumed)
-            findings.append(self.program.finding(Severity.WARNING, text, at))
+            findings.append(self.program.finding(Severity.WARNING, assumed, at))
         findings += [each for each in seen.path.findings if each.severity is not Severity.NOTE]
         if not seen.meeting.why:
             findings = [each for each in findings if each.message not in GUESSES]

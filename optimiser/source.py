@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from optimiser.cut import Cut, CutKind
 from optimiser.estimated import Estimates
@@ -13,6 +13,9 @@ from stepnc_model.entities.milling import MillingTypeOperation
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding
 from stepnc_model.program import Program, ResolvedWorkingstep
+
+if TYPE_CHECKING:
+    from optimiser.clamped import BodyMaps
 
 
 def why_elsewhere(step: ResolvedWorkingstep, machine: Machine) -> str:
@@ -83,15 +86,21 @@ class WiperCutSource:
 
 
 def along_paths(
-    program: Program, machine: Machine, material: WorkMaterial, *, is_run: bool = False
+    program: Program,
+    machine: Machine,
+    material: WorkMaterial,
+    *,
+    is_run: bool = False,
+    body_map: "BodyMaps | None" = None,
 ) -> CutSource:
     """Source of cuts along the real tool paths in the remaining stock, timed by the machine.
 
-    With ``is_run``, the cuts include the loads that the axes actually reach.
+    With ``is_run``, the cuts include the loads that the axes actually reach; with ``body_map``,
+    raw parts that are bodies have their own shape.
     """
     from optimiser.measured import MeasuredCuts  # noqa: PLC0415 (numpy)
 
-    return MeasuredCuts(program, machine, material, is_run=is_run)
+    return MeasuredCuts(program, machine, material, is_run=is_run, body_map=body_map)
 
 
 def from_features(program: Program, machine: Machine, material: WorkMaterial) -> CutSource:

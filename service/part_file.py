@@ -10,7 +10,7 @@ from pathlib import Path
 from service.brep.solid import SolidPlace, require_solids, sag_within, solid_triangles
 from service.files import read_bytes
 from service.program_kind import PART21
-from service.stl import is_binary_stl, stl_triangles
+from service.stl import HEADER, RECORD, VERTEX, is_binary_stl, stl_triangles
 from simulator.motion.segments import Floats
 from stepnc_model.errors import Part21Error, StepNcError
 from stepnc_model.part21.reader import Part21File
@@ -51,6 +51,17 @@ def part_place(text: str) -> tuple[Path, str]:
     return Path(name), solid
 
 
+def place_text(path: Path, solid: str) -> str:
+    """Text that :func:`part_place` splits into a file and a solid of it.
+
+    Examples
+    --------
+    >>> place_text(Path("part.step"), "2")
+    'part.step#2'
+    """
+    return f"{path}{CHOICE}{solid}" if solid else str(path)
+
+
 def read_part(path: Path, *, solid: str = "", tolerance: float) -> PartMesh:
     """Read the triangles of a part.
 
@@ -88,6 +99,22 @@ def require_part(path: Path) -> None:
         require_solids(_solids(content, path))
     else:
         stl_triangles(content, path)
+
+
+def require_part_form(path: Path) -> None:
+    """Refuse a file that is neither STL nor STEP, without reading its part.
+
+    Raises
+    ------
+    StepNcError
+        When its beginning and its size are those of neither.
+    """
+    with path.open("rb") as file:
+        head = file.read(LOOKED_AT)
+    count = int.from_bytes(head[HEADER - 4 : HEADER], "little")
+    is_binary = len(head) >= HEADER and path.stat().st_size == HEADER + RECORD * count
+    if not (is_binary or _is_step(head) or VERTEX.search(head)):
+        raise StepNcError(f"{path}: expected an STL or STEP file")
 
 
 def _solids(content: bytes, path: Path, solid: str = "") -> SolidPlace:

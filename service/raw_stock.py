@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from service.brep.bodies import USUAL_TOLERANCE, ProgramBodies
+from service.brep.bodies import USUAL_TOLERANCE, ProgramBodies, stock_around
 from service.file_names import PROGRAMS
 from service.files import read_bytes
 from service.numbers import require_size, stock_in
@@ -27,7 +27,7 @@ from stepnc_model.errors import StepNcError
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, Stock
 from stepnc_model.toolpath.frame import Frame, workpiece_frame
-from stepnc_model.toolpath.task import raw_body
+from stepnc_model.toolpath.task import drawn_stock, raw_body
 
 KEPT_SUFFIX = ".npz"
 """Ending of a file that keeps a stock."""
@@ -148,13 +148,63 @@ def larger_stock_map(machine: Machine, raw: GivenStock, margin: float) -> StockM
 def raw_triangles(program: Program, setup: Ref[Setup] | None) -> Floats | None:
     """Triangles of the raw part of a program, (T, 3, 3), mm, in coordinates of a setup.
 
-    None if the program has no B-rep body of it, or that cannot be read, which is told.
+    None if it is a box or a bar: the program has no B-rep body of it, does not use it, or it
+    cannot be read, which is told.
     """
-    body, bodies = raw_body(program), program.bodies
-    if body is None or not isinstance(bodies, ProgramBodies):
+    bodies = program.bodies
+    if not isinstance(bodies, ProgramBodies):
+        return None
+    if bodies.given is not None:
+        return bodies.given
+    body = raw_body(program)
+    if body is None or drawn_stock(program, setup) is None:
         return None
     mesh = bodies.raw(program.file, body)
     return None if mesh is None else placed_triangles(mesh, workpiece_frame(program, setup))
+
+
+def body_map(
+    program: Program, setup: Ref[Setup] | None, *, is_turning: bool, cell: float | None
+) -> MillingStock | TurningStock | None:
+    """Map of a raw part that is a body; None if it is a box or a bar.
+
+    Parameters
+    ----------
+    program : Program
+    setup : Ref or None
+    is_turning : bool
+        Whether it is turned.
+    cell : float, mm
+        Size of the map's cells on a mill; None: chosen from the size of the part.
+
+    Raises
+    ------
+    ValueError
+        When it is turned, and no closed body of revolution about Z.
+    """
+    mesh = raw_triangles(program, setup)
+    if mesh is None:
+        return None
+    return turning_stock_of(mesh) if is_turning else milling_stock_of(mesh, cell=cell)
+
+
+def given_stock(text: str) -> GivenStock:
+    """Read a raw part that was not cut before: numbers, a mesh or a solid.
+
+    Raises
+    ------
+    StepNcError
+        As :func:`raw_stock_of`; when it is a stock that an earlier run kept.
+    """
+    raw = raw_stock_of(text)
+    if raw.kept is not None:
+        raise StepNcError(
+            f"{raw.name}: a kept stock serves NC code only: name numbers, an STL file or a "
+            "STEP file"
+        )
+    if raw.triangles is None:
+        return raw
+    return replace(raw, bounds=stock_around(raw.triangles))
 
 
 def placed_triangles(triangles: Floats, frame: Frame) -> Floats:

@@ -3,18 +3,20 @@
 from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from service.brep.bodies import ProgramBodies
 from service.files import read_bytes
-from service.numbers import stock_in
 from stepnc_model.errors import StepNcError
 from stepnc_model.given import GivenData
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.plausibility import units_by_numbers
-from stepnc_model.program import Program, ResolvedWorkingstep, Stock
+from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.task import drawn_stock
 from stepnc_model.units import AUTO, PROFILES, UnitProfile, speed_from_mm_min
+
+if TYPE_CHECKING:
+    from service.raw_stock import GivenStock
 
 E = TypeVar("E", bound=StrEnum)
 
@@ -36,7 +38,7 @@ def read_program(
     """
     called = name or path.name
     file = Part21File.from_bytes(read_bytes(path), name=called)
-    raw = stock_in(stock) if stock else None
+    raw = _given_stock(stock)
     program = program_in(file, units=units, name=called, stock=raw, tell=tell)
     if raw is not None and drawn_stock(program, None) is not None:
         raise StepNcError(f"stock {stock}: '{called}' defines its own raw part; omit the stock")
@@ -56,7 +58,7 @@ def program_in(
     *,
     units: str,
     name: str,
-    stock: Stock | None = None,
+    stock: "GivenStock | None" = None,
     tell: Tell = silent,
 ) -> Program:
     """Program of a file in the named units, or in those that its numbers show.
@@ -66,16 +68,26 @@ def program_in(
     StepNcError
         When the units are unknown or, for ``auto``, not shown by the numbers.
     """
-    bodies = ProgramBodies(tell)
+    bodies = ProgramBodies(tell, None if stock is None else stock.triangles)
+    bounds = None if stock is None else stock.bounds
     if units != AUTO:
         profile = unit_profile(units)
-        return Program(file, units=profile, name=name, stock=stock, bodies=bodies)
-    program = Program(file, name=name, stock=stock, bodies=bodies)
+        return Program(file, units=profile, name=name, stock=bounds, bodies=bodies)
+    program = Program(file, name=name, stock=bounds, bodies=bodies)
     profile, evidence = units_by_numbers(program, program.workingsteps)
     tell(f"units: {profile.name}, the only ones that make all numbers plausible")
     for each in evidence:
         tell(f"  line {each.line}: {each.entity}: {each.message}")
-    return Program(file, units=profile, name=name, stock=stock, bodies=bodies)
+    return Program(file, units=profile, name=name, stock=bounds, bodies=bodies)
+
+
+def _given_stock(text: str) -> "GivenStock | None":
+    """Raw part as the user gives it; None for no text."""
+    if not text:
+        return None
+    from service.raw_stock import given_stock  # noqa: PLC0415 (numpy)
+
+    return given_stock(text)
 
 
 def unit_profile(name: str) -> UnitProfile:

@@ -38,10 +38,13 @@ from stepnc_model.toolpath.task import stock_of
 from stepnc_model.units import mm_from_um
 
 if TYPE_CHECKING:
+    from optimiser.clamped import StockMap
     from service.along_path.run import FeedsAlongPath
     from service.confirmation import Confirmation
     from service.knowledge.verbs import AcceptedFactor
     from simulator.tool_table import TableTool
+    from stepnc_model.entities.executables import Setup
+    from stepnc_model.part21.values import Ref
 
 NOTHING_WRITTEN = "nothing was written: no workingstep was advised"
 
@@ -347,10 +350,19 @@ def _task(request: AdviceRequest, tools: "tuple[TableTool, ...]") -> Optimisatio
         safety=request.safety,
         centre_cutting={**request.centre_cutting, **_centre_cutting(tools)},
         allow_plunge=request.allow_plunge,
-        source=partial(along_paths, is_run=request.is_confirmed),
+        source=partial(along_paths, is_run=request.is_confirmed, body_map=_body_map),
         keep_going=request.keep_going,
         ignores_records=request.ignore_record,
     )
+
+
+def _body_map(
+    program: Program, setup: "Ref[Setup] | None", *, is_turning: bool, cell: float | None
+) -> "StockMap | None":
+    """Map of a raw part that is a body; None if it is a box or a bar."""
+    from service.raw_stock import body_map  # noqa: PLC0415 (numpy)
+
+    return body_map(program, setup, is_turning=is_turning, cell=cell)
 
 
 def _centre_cutting(tools: tuple["TableTool", ...]) -> dict[str, bool]:
@@ -395,13 +407,7 @@ def _nc_code(
 def _read_again(program: Program, data: bytes) -> Program:
     """Parse a program again from its changed bytes."""
     file = Part21File.from_bytes(data, name=program.name)
-    return Program(
-        file,
-        units=program.units,
-        name=program.name,
-        stock=program.stock,
-        bodies=program.bodies,
-    )
+    return program.changed(file)
 
 
 def _with_file_findings(

@@ -80,7 +80,7 @@ def with_settings(
         done.add(int(step.operation_ref))
         _edit(draft, step, settings, is_named=bool(workingsteps))
     file = Part21File.from_bytes(draft.edits.apply(), name=program.name)
-    return Program(file, units=program.units, name=program.name, stock=program.stock)
+    return program.changed(file)
 
 
 def common_settings(program: Program) -> CutSettings:

@@ -155,7 +155,7 @@ def _read(program: Program, data: bytes) -> Program:
     file = Part21File.from_bytes(data, name=program.name)
     if isinstance(program.file, AimView):
         file = program.file.changed(file)
-    return Program(file, units=program.units, name=program.name, stock=program.stock)
+    return program.changed(file)
 
 
 def _set(draft: Draft, text: str) -> SetAttribute:

@@ -14,7 +14,6 @@ from stepnc_model.ap238.view import AimView, is_aim
 from stepnc_model.binding import Model
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import (
-    Assignment,
     IfStatement,
     MachiningWorkingstep,
     NonSequential,
@@ -45,12 +44,15 @@ class Stock:
     high: tuple[float, float, float]
     radius: float | None = None
     """Radius of a bar, mm; its axis is in the middle of the box."""
+    is_around: bool = False
+    """Whether it stands around a raw part of another shape."""
 
     def grown(self, margin: float) -> "Stock":
         """Stock that is larger by a margin on all sides, mm."""
         x, y, z = self.low
         right, back, top = self.high
-        return Stock(
+        return replace(
+            self,
             low=(x - margin, y - margin, z - margin),
             high=(right + margin, back + margin, top + margin),
             radius=None if self.radius is None else self.radius + margin,
@@ -74,6 +76,8 @@ class Bodies(Protocol):
 
 
 T = TypeVar("T")
+
+Texture = tuple[SurfaceTextureParameter, MachinedSurface]
 
 MAX_EXECUTABLES = 100_000
 """Greatest number of executables; mutually nested workplans could grow without bound."""
@@ -159,9 +163,7 @@ class Program:
         self._faults: dict[int, SchemaError] = {}
         self.executables = tuple(self._walk())
         self.workingsteps = tuple(self._workingsteps())
-        self._textures: (
-            dict[int, list[tuple[SurfaceTextureParameter, MachinedSurface]]] | None
-        ) = None
+        self._textures: dict[int, list[Texture]] | None = None
         self._by_feature: dict[int, list[ResolvedWorkingstep]] = {}
         self._named: dict[str, list[Ref[Entity]]] | None = None
         self._drilling, self._other = _technologies(self.workingsteps)
@@ -176,6 +178,12 @@ class Program:
             Part21File.from_bytes(path.read_bytes(), name=path.name),
             units=units,
             name=path.name,
+        )
+
+    def changed(self, file: Part21File) -> "Program":
+        """Program of a changed file: its units, name, raw part and bodies stay."""
+        return Program(
+            file, units=self.units, name=self.name, stock=self.stock, bodies=self.bodies
         )
 
     def get(self, ref: Ref[T]) -> T:
@@ -279,7 +287,7 @@ class Program:
                 attribute=fault.attribute,
                 line=fault.line,
             )
-            for fault in self._faults.values()
+            for fault in self.faults
         )
         return self.file.findings + self.model.findings() + faults.all()
 
@@ -297,9 +305,7 @@ class Program:
         found = {int(other.ref): other for each in features for other in each}
         return sorted(found.values(), key=lambda other: other.index)
 
-    def textures_of(
-        self, feature: Ref[Entity]
-    ) -> list[tuple[SurfaceTextureParameter, MachinedSurface]]:
+    def textures_of(self, feature: Ref[Entity]) -> list[Texture]:
         """Required textures of a feature, each with the surface that it applies to."""
         if self._textures is None:
             self._textures = {}
@@ -347,15 +353,13 @@ class Program:
         inner = {int(element) for plan in plans.values() for element in plan.its_elements}
         outer = [ref for ref in plans if int(ref) not in inner]
         if len(outer) != 1:
-            raise SchemaError(
-                f"no PROJECT, and {len(outer)} workplans that are not nested in another: "
-                "a program needs one main workplan"
-            )
+            found = f"no PROJECT, and {len(outer)} workplans that are not nested in another"
+            raise SchemaError(f"{found}: a program needs one main workplan")
         return outer[0]
 
     def _walk(self) -> Iterator[ProgramLine]:
         """Executables in order, structures before their contents; iterative."""
-        stack: list[_WalkVisit] = [_WalkVisit(self._main_workplan(), 0, None)]
+        stack = [_WalkVisit(self._main_workplan(), 0, None)]
         open_ones: set[int] = set()
         count = 0
         while stack:
@@ -418,7 +422,8 @@ class Program:
 
     def _workingstep(self, executable: ProgramLine) -> ResolvedWorkingstep | None:
         """Resolve one workingstep; None if the executable is not a workingstep."""
-        entity = self.model.entity(int(executable.ref))
+        at = executable.ref
+        entity = self.model.entity(int(at))
         if isinstance(entity, MachiningWorkingstep):
             feature = entity.its_feature
             features: tuple[Ref[Entity], ...] = (feature,) if feature is not None else ()
@@ -427,9 +432,7 @@ class Program:
         else:
             return None
         if entity.its_operation is None:
-            raise self.error(
-                "the workingstep has no operation", executable.ref, "its_operation"
-            )
+            raise self.error("the workingstep has no operation", at, "its_operation")
         operation = self.get(entity.its_operation)
         if not isinstance(operation, MachiningOperation):
             raise self.error("is not a machining operation", entity.its_operation)
@@ -442,7 +445,7 @@ class Program:
         for ref in (operation.its_tool, operation.its_technology, *features):
             self.get(ref)
         return ResolvedWorkingstep(
-            ref=executable.ref,
+            ref=at,
             id=entity.its_id,
             operation_ref=entity.its_operation,
             operation=operation,
@@ -494,6 +497,4 @@ def _children(entity: Entity | None) -> tuple[Ref[Entity], ...]:
         return tuple(branch for branch in branches if branch is not None)
     if isinstance(entity, WhileStatement):
         return (entity.body,)
-    if isinstance(entity, Assignment):
-        return ()
     return ()

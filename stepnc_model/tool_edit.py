@@ -49,6 +49,6 @@ def with_tool_diameter(program: Program, diameter: float) -> Program:
     dimension = draft.own(body_ref, "dimension", at=body)
     draft.put(shape.dimension, "diameter", Real(rounded(diameter)), at=dimension)
     file = Part21File.from_bytes(draft.edits.apply(), name=program.name)
-    changed = Program(file, units=program.units, name=program.name, stock=program.stock)
+    changed = program.changed(file)
     tool_of(changed, tools[0])
     return changed

@@ -29,28 +29,20 @@ class ProgramBodies:
     ----------
     tell : callable
         Takes the reason why a raw part is not known.
+    given : (T, 3, 3) array, mm
+        Triangles of a raw part that the user gives, in coordinates of every setup; None: the
+        program's own counts.
     """
 
-    def __init__(self, tell: Callable[[str], None]) -> None:
+    def __init__(self, tell: Callable[[str], None], given: "Floats | None" = None) -> None:
+        self.given = given
         self._tell = tell
         self._raw: dict[int, Floats | None] = {}
 
     def box(self, file: Part21File, representation: int) -> Stock | None:
         """Box or bar around the raw part; None if it cannot be read, which is told once."""
         triangles = self.raw(file, representation)
-        if triangles is None:
-            return None
-        x, y, z = triangles.reshape(-1, 3).T
-        low, high = (float(x.min()), float(y.min())), (float(x.max()), float(y.max()))
-        middle = (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]))
-        around = float((((x - middle[0]) ** 2 + (y - middle[1]) ** 2) ** 0.5).max())
-        widths = (0.5 * (high[0] - low[0]), 0.5 * (high[1] - low[1]))
-        is_round = all(abs(each - around) <= ROUND for each in widths)
-        return Stock(
-            low=(*low, float(z.min())),
-            high=(*high, float(z.max())),
-            radius=around if is_round else None,
-        )
+        return None if triangles is None else stock_around(triangles)
 
     def raw(self, file: Part21File, representation: int) -> "Floats | None":
         """Triangles of the raw part, (T, 3, 3); None if it cannot be read, which is told."""
@@ -63,6 +55,22 @@ class ProgramBodies:
             except StepNcError as error:
                 self._tell(f"the raw part is not known: {error}")
         return self._raw[representation]
+
+
+def stock_around(triangles: "Floats") -> Stock:
+    """Bar around the triangles, (T, 3, 3) in mm, of a round body; box around another."""
+    x, y, z = triangles.reshape(-1, 3).T
+    low, high = (float(x.min()), float(y.min())), (float(x.max()), float(y.max()))
+    middle = (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]))
+    around = float((((x - middle[0]) ** 2 + (y - middle[1]) ** 2) ** 0.5).max())
+    widths = (0.5 * (high[0] - low[0]), 0.5 * (high[1] - low[1]))
+    is_round = all(abs(each - around) <= ROUND for each in widths)
+    return Stock(
+        low=(*low, float(z.min())),
+        high=(*high, float(z.max())),
+        radius=around if is_round else None,
+        is_around=True,
+    )
 
 
 def body_triangles(file: Part21File, representation: int, *, tolerance: float) -> "Floats":

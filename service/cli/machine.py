@@ -43,9 +43,10 @@ def add_code(parser: argparse.ArgumentParser) -> None:
         "--stock",
         default="",
         metavar="STOCK",
-        help="stock for NC code without a program, in mm: x0,y0,z0,x1,y1,z1 of a box, "
-        "diameter,z0,z1 or diameter,length of a bar, x,y,diameter,z0,z1 of an upright bar, an "
-        "STL or STEP file (part.step#SOLID), or an .npz file of --keep-stock",
+        help="stock for NC code without a program, or for a program that defines none, in mm: "
+        "x0,y0,z0,x1,y1,z1 of a box, diameter,z0,z1 or diameter,length of a bar, "
+        "x,y,diameter,z0,z1 of an upright bar, an STL or STEP file (part.step#SOLID); for NC "
+        "code also an .npz file of --keep-stock",
     )
 
 
@@ -167,15 +168,15 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
     Raises
     ------
     StepNcError
-        When options for NC code are given without --nc.
+        When options of NC code alone are given without --nc.
     """
     from service.simulation.run import RunFiles
     from service.simulation.setup import CodeRequest
     from stepnc_model.errors import StepNcError
 
     code = None
-    if options.nc is None and (options.dialect or options.tools or options.stock):
-        raise StepNcError("--dialect, --tools and --stock need NC code: name it with --nc")
+    if options.nc is None and (options.dialect or options.tools):
+        raise StepNcError("--dialect and --tools need NC code: name it with --nc")
     if options.tools_unit and options.tools is None:
         raise StepNcError("--tools-unit needs a tool table: name it with --tools")
     if options.nc is not None:
@@ -189,6 +190,7 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
     return RunFiles(
         file=file,
         code=code,
+        stock="" if options.nc is not None else options.stock,
         output=options.output,
         report=getattr(options, "report", None),
         kept=getattr(options, "keep_stock", None),

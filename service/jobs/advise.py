@@ -34,6 +34,7 @@ def run(task: RunningJob) -> None:
     if request.tools_id is not None:
         tools = files.require_file(task.data_folder, request.tools_id, FileKind.TOOLS)
         names[tools] = files.get(task.data_folder, request.tools_id, FileKind.TOOLS).name
+    request = task.with_stock(request, names)
     kind = programs.get(task.data_folder, task.job.program).kind
     advise = _advise_code if kind is ProgramKind.NC_CODE else _advise_program
     with naming(names):

@@ -21,10 +21,15 @@ from service.storage.jobs import Job, JobKind
 if TYPE_CHECKING:
     from service.requests.advice import AdviceRequest
     from service.requests.runs import RunRequest
+    from service.requests.stored_advice import StoredAdviceRequest
+    from service.requests.stored_verification import QueuedVerification
     from service.requests.verification import VerificationRequest
 
 N = TypeVar("N", bound="AdviceRequest | RunRequest | VerificationRequest")
 """Type of requests that name a machine and a material."""
+
+S = TypeVar("S", bound="StoredAdviceRequest | QueuedVerification")
+"""Type of requests that may name an uploaded raw part."""
 
 RESULT = "result.json"
 OPTIMISED = "optimised.stpnc"
@@ -70,6 +75,23 @@ class RunningJob:
             machine=machine_word(self.data_folder, request.machine),
             material=material_word(self.data_folder, request.material),
         )
+
+    def with_stock(self, request: S, names: dict[Path, str]) -> S:
+        """Return the request with the path of an uploaded raw part, and note the file's name.
+
+        Raises
+        ------
+        NotFound
+            When the file was deleted.
+        """
+        if request.stock_id is None:
+            return request
+        from service.part_file import place_text  # noqa: PLC0415 (numpy)
+        from service.storage import files  # noqa: PLC0415 (used by those who name one)
+
+        path = files.require_file(self.data_folder, request.stock_id, files.FileKind.STOCK)
+        names[path] = files.get(self.data_folder, request.stock_id).name
+        return replace(request, stock=place_text(path, request.stock_solid))
 
     @property
     def folder(self) -> Path:

@@ -28,6 +28,7 @@ def run(task: RunningJob) -> None:
     request = task.request(QueuedVerification)
     names: dict[Path, str] = {}
     tools = _input(task, request.tools_id, FileKind.TOOLS, names)
+    request = task.with_stock(request, names)
     required = _input(task, request.required_id, FileKind.REQUIRED_PART, names)
     program: Path | None = None
     if task.job.program:

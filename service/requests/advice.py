@@ -17,6 +17,9 @@ from stepnc_model.units import AUTO, PROFILES
 
 Name = Annotated[str, MaxLen(LONGEST_NAME)]
 
+StockText = Annotated[str, MaxLen(4096)]
+"""Raw part: numbers, or a path of the usual greatest length."""
+
 Units = StrEnum("Units", {name.replace("-", "_"): name for name in (*PROFILES, AUTO)})  # type: ignore[misc]
 """Unit profiles of files, by name, and ``auto``."""
 
@@ -122,11 +125,11 @@ class AdviceRequest(Request):
         ),
     ] = False
     stock: Annotated[
-        Name,
+        StockText,
         About(
-            "raw part of a program that defines none, in mm: x0,y0,z0,x1,y1,z1 or "
-            "diameter,z0,z1",
-            flag="--stock", metavar="NUMBERS", examples=("0,0,-30,100,120,5",),
+            "raw part of NC code, or of a program that defines none, in mm: x0,y0,z0,x1,y1,z1 "
+            "or diameter,z0,z1; on the command line also an STL or STEP file",
+            flag="--stock", metavar="STOCK", examples=("0,0,-30,100,120,5",),
         ),
     ] = ""  # fmt: skip
     safety: Annotated[

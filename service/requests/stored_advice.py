@@ -6,6 +6,7 @@ from typing import Annotated
 from service.requests.advice import AdviceRequest
 from service.requests.fields import About
 from service.requests.runs import OptionalId
+from service.requests.stored_stock import StockId, StockSolid
 from simulator.tool_files.file_unit import FileUnit
 
 
@@ -20,6 +21,8 @@ class StoredAdviceRequest(AdviceRequest):
             "over centre or have wipers"
         ),
     ] = None
+    stock_id: StockId = None
+    stock_solid: StockSolid = ""
     tools_unit: Annotated[
         FileUnit | None,
         About("unit of lengths of a tool table that states none, LinuxCNC's (default: mm)"),

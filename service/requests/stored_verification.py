@@ -8,6 +8,7 @@ from annotated_types import MaxLen
 from service.requests.advice import Name
 from service.requests.fields import LONGEST_NAME, About
 from service.requests.runs import OptionalId
+from service.requests.stored_stock import StockId, StockSolid
 from service.requests.verification import VerificationRequest
 
 MonitorName = Annotated[str, MaxLen(LONGEST_NAME)]
@@ -20,8 +21,8 @@ class StoredVerificationRequest(VerificationRequest):
     program_id: Annotated[
         OptionalId,
         About(
-            "an uploaded program (default: the one of the run; without any, machine, stock, "
-            "tools_id and required_id are needed)"
+            "an uploaded program (default: the one of the run; without any, machine, stock "
+            "or stock_id, tools_id and required_id are needed)"
         ),
     ] = None
     advice_id: Annotated[OptionalId, About("or the program optimised by this advice")] = None
@@ -34,6 +35,8 @@ class StoredVerificationRequest(VerificationRequest):
         About("or the latest run that the agent of this monitored machine still keeps"),
     ] = ""
     tools_id: Annotated[OptionalId, About("an uploaded tool table with measured tools")] = None
+    stock_id: StockId = None
+    stock_solid: StockSolid = ""
     required_id: Annotated[
         OptionalId, About("an uploaded required part, in place of the features")
     ] = None

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from annotated_types import Interval
 
-from service.requests.advice import ISO, FileUnits, MachineName, MaterialName, Name
+from service.requests.advice import ISO, FileUnits, MachineName, MaterialName, Name, StockText
 from service.requests.fields import About, Request
 
 INCH_THOUSANDTH = 0.0254
@@ -20,11 +20,11 @@ class VerificationRequest(Request):
     material: MaterialName = ""
     units: FileUnits = ISO
     stock: Annotated[
-        Name,
+        StockText,
         About(
             "raw part where there is no program, or it defines none, in mm: "
-            "x0,y0,z0,x1,y1,z1 or diameter,z0,z1",
-            flag="--stock", metavar="NUMBERS", examples=("0,0,-30,100,120,5",),
+            "x0,y0,z0,x1,y1,z1 or diameter,z0,z1; on the command line also an STL or STEP file",
+            flag="--stock", metavar="STOCK", examples=("0,0,-30,100,120,5",),
         ),
     ] = ""  # fmt: skip
     zero: Annotated[

@@ -1,4 +1,4 @@
-"""Routes of ``/v1/files``: logs of machines, tool tables and required parts."""
+"""Routes of ``/v1/files``: logs of machines, tool tables, required parts and stocks."""
 
 from functools import partial
 from typing import Annotated
@@ -63,10 +63,11 @@ async def upload(
     kind: Annotated[FileKind, Query(description="what the file is")] = FileKind.LOG,
     key: IdempotencyHeader = None,
 ) -> Response:
-    """Store a log, a tool table or a required part.
+    """Store a log, a tool table, a required part or a stock.
 
     Logs: .parquet, .csv, .xml, .shdr. Tool tables: .toml, .csv, LinuxCNC's .tbl, libraries of
-    Fusion (.json, .tools) and HSMWorks (.hsmlib). Required parts: .stl, .step, .stp.
+    Fusion (.json, .tools) and HSMWorks (.hsmlib). Required parts and stocks: .stl, .step,
+    .stp; the job that uses a stock reads its part.
     """
     bound = LARGEST_TOOLS if kind is FileKind.TOOLS else settings_of(request).upload_bytes
     with FileUpload(data_folder, kind, name) as taken:

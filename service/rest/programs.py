@@ -12,7 +12,7 @@ from service.contents import check
 from service.contents_output import contents_json
 from service.errors import Unreadable
 from service.files import read_bytes
-from service.numbers import stock_in, tool_numbers_in
+from service.numbers import tool_numbers_in
 from service.program_kind import ProgramKind, kind_of
 from service.requests.advice import ISO, Name, Units
 from service.requests.fields import dumped
@@ -32,6 +32,7 @@ from service.rest.context import (
     runnable,
     settings_of,
 )
+from service.rest.raw_part import require_stock
 from service.rest.replies import file_reply, json_reply, matches, tagged
 from service.rest.uploads import pieces
 from service.rest.views import (
@@ -191,8 +192,8 @@ async def ask_advice(
 ) -> Response:
     """Queue a job that optimises the feeds; its result will be at ``/v1/advice/{job}``.
 
-    For NC code the request names ``tools_id``, ``stock`` and ``material``; the feeds are chosen
-    along its paths.
+    For NC code the request names ``tools_id``, ``stock`` or ``stock_id``, and ``material``; the
+    feeds are chosen along its paths.
     """
     asked = JobRequest(kind=JobKind.ADVICE, request=dumped(body), program=id, owner=owner)
     return await queued(request, asked, key, require=advisable)
@@ -209,9 +210,7 @@ def advisable(data_folder: DataFolder, asked: JobRequest) -> None:
     words = asked.request
     if words["tools_id"] is not None:
         files.require_file(data_folder, words["tools_id"], FileKind.TOOLS)
-    if words["stock"]:
-        # Numbers only: names of files are never read.
-        stock_in(words["stock"])
+    require_stock(data_folder, words)
     if programs.get(data_folder, asked.program).kind is ProgramKind.STEP_NC:
         for name in OF_PATHS:
             if words[name] and not words["is_along_path"]:
@@ -219,7 +218,8 @@ def advisable(data_folder: DataFolder, asked: JobRequest) -> None:
         runnable(data_folder, asked)
         return
     programs.require_file(data_folder, asked.program)
-    missing = [name for name in OF_CODE if not words[name]]
+    given = {**words, "stock": words["stock"] or words["stock_id"]}
+    missing = [name for name in OF_CODE if not given[name]]
     if missing:
         raise StepNcError(f"advice on NC code needs {', '.join(OF_CODE)}; missing: "
                           f"{', '.join(missing)}")  # fmt: skip

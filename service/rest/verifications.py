@@ -9,7 +9,7 @@ from starlette.concurrency import run_in_threadpool
 
 from service.errors import Unreadable
 from service.jobs.task import LOG, PLACES, REPORT, SURFACE
-from service.numbers import numbers_in, stock_in
+from service.numbers import numbers_in
 from service.requests.fields import dumped
 from service.requests.stored_verification import QueuedVerification, StoredVerificationRequest
 from service.rest.asking import answered, result_file
@@ -26,6 +26,7 @@ from service.rest.context import (
 )
 from service.rest.knowledge import KINDS, TableFormat
 from service.rest.logged import LOGS, agent_url, logged_order, require_logs
+from service.rest.raw_part import require_stock
 from service.rest.replies import file_reply, json_reply, report_reply
 from service.rest.results import file_of, read_in_turn, require_done, result_reply
 from service.rest.verification_views import SurfaceMapView, VerificationView, map_view
@@ -40,6 +41,9 @@ ROUTES = APIRouter(prefix="/v1/verifications", tags=["verifications"])
 
 WITHOUT_PROGRAM = ("machine", "stock", "tools_id", "required_id")
 """Fields that a verification without a program needs."""
+
+IN_PLACE = {"stock": "stock_id"}
+"""Fields that take the place of others."""
 
 PLACES_SHOWN = 12_000
 
@@ -78,14 +82,13 @@ def verifiable(data_folder: DataFolder, asked: JobRequest) -> None:
         raise Unreadable(f"name one of {', '.join(LOGS)}")
     if asked.program:
         runnable(data_folder, asked)
-    elif all(words[name] for name in WITHOUT_PROGRAM):
+    elif all(words[name] or words.get(IN_PLACE.get(name, "")) for name in WITHOUT_PROGRAM):
         library.require(data_folder, machine=words["machine"], material=words["material"])
     else:
         wanted = ", ".join(WITHOUT_PROGRAM)
         raise Unreadable(f"name a program_id or an advice_id; or all of {wanted}")
     require_logs(data_folder, asked)
-    if words["stock"]:
-        stock_in(words["stock"])
+    require_stock(data_folder, words)
     if words["zero"] and words["zero"] != FIT:
         numbers_in(words["zero"], "zero", counts=(3,))
 

@@ -12,7 +12,7 @@ from service.numbers import numbers_in
 from service.paths.remarks import tell_remarks
 from service.progress import Ticker, bar
 from service.raw_stock import KEPT_SUFFIX, file_of_stock
-from service.reading import Tell, silent
+from service.reading import Tell, read_program, silent
 from service.requests.fields import require_bounds
 from service.requests.runs import ForceView, SimulationRequest
 from service.run_file import require_suffix
@@ -58,6 +58,8 @@ class RunFiles:
     """Name of the program; empty: the name of its file."""
     code: CodeRequest | None = None
     """NC code to run instead of the program's own paths."""
+    stock: str = ""
+    """Raw part of a program that defines none; empty: its own."""
     output: Path | None = None
     report: Path | None = None
     kept: Path | None = None
@@ -225,14 +227,10 @@ def _prepared(request: SimulationRequest, files: RunFiles, tell: Tell) -> Prepar
         )
     if files.file is None:
         raise StepNcError("name a STEP-NC program, or NC code with --nc")
-    return from_program(
-        files.file,
-        name=files.name,
-        units=request.units,
-        machine=request.machine,
-        material=request.material,
-        tell=tell,
+    program = read_program(
+        files.file, units=request.units, name=files.name, stock=files.stock, tell=tell
     )
+    return from_program(program, machine=request.machine, material=request.material, tell=tell)
 
 
 def machine_of(
@@ -269,6 +267,8 @@ def _require_files(files: RunFiles) -> None:
     inputs = [files.file]
     if code is not None:
         inputs += [code.code, code.tools, file_of_stock(code.stock)]
+    if files.stock:
+        inputs.append(file_of_stock(files.stock))
     if files.kept is not None and files.kept.suffix.lower() != KEPT_SUFFIX:
         raise WriteError(f"must end with {KEPT_SUFFIX}", path=str(files.kept))
     outputs = [files.output, files.report, files.kept]

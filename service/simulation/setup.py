@@ -99,17 +99,14 @@ class CountedIterator(Generic[T]):
         return min(1.0, self.size / max(1, whole))
 
 
-def from_program(
-    file: Path, *, name: str = "", units: str, machine: str, material: str, tell: Tell
-) -> PreparedRun:
+def from_program(program: Program, *, machine: str, material: str, tell: Tell) -> PreparedRun:
     """Prepare a STEP-NC program on a suitable machine.
 
     Raises
     ------
     StepNcError
-        When the file or a name is invalid.
+        When a name is invalid, or the program cannot be prepared.
     """
-    program = read_program(file, units=units, name=name, tell=tell)
     match = material_for(material, program)
     tell(f"material: {match.reason}")
     return prepared_program(program, machine_for(machine, program), match, tell=tell)

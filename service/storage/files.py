@@ -1,4 +1,4 @@
-"""Storage of uploaded files other than programs: logs, tool tables and required parts.
+"""Storage of uploaded files other than programs: logs, tool tables, required parts and stocks.
 
 Files are written in pieces to a temporary one, so that an upload of any size needs little
 memory; a file gets its place, and an entry in lists, once its content was checked.
@@ -31,7 +31,7 @@ TOOL_TABLES = frozenset({".toml", ".csv", ".tbl", ".json", ".tools", ".hsmlib"})
 
 
 PARTS = frozenset({".stl", ".step", ".stp"})
-"""Suffixes of required parts; the content tells the format."""
+"""Suffixes of required and raw parts; the content tells the format."""
 
 
 class FileKind(StrEnum):
@@ -43,6 +43,8 @@ class FileKind(StrEnum):
     """Tool table: TOML, CSV, LinuxCNC's, or a library of Fusion or HSMWorks."""
     REQUIRED_PART = "required-part"
     """Required part: an STL file, or solids of a STEP file."""
+    STOCK = "stock"
+    """Raw part: an STL file, or solids of a STEP file."""
 
     @property
     def suffixes(self) -> frozenset[str]:
@@ -59,6 +61,7 @@ class FileKind(StrEnum):
 
 FIELDS = {
     FileKind.LOG: "log_id", FileKind.TOOLS: "tools_id", FileKind.REQUIRED_PART: "required_id",
+    FileKind.STOCK: "stock_id",
 }  # fmt: skip
 """Field of a job's request that names a file of each kind."""
 

@@ -142,8 +142,10 @@ def _milled_required(
     setup: RequiredSetup, file: LogFile, cell: float | None, tell: Tell
 ) -> ComparedParts:
     mesh = setup.required
-    part = required_part(mesh.triangles, setup.stock, cell=cell, most_sag=mesh.sag)
-    left = LoggedPart(part, setup.stock, _rotating(setup.cutters))
+    part = required_part(
+        mesh.triangles, setup.stock, cell=cell, most_sag=mesh.sag, raw=setup.raw
+    )
+    left = LoggedPart(part, setup.stock, _rotating(setup.cutters), raw=setup.raw)
     for piece in _told(file, left, tell):
         left.add(piece)
     places = required_places(part, left)
@@ -170,7 +172,12 @@ def _turned_required(
     setup: RequiredSetup, file: LogFile, cell: float | None, tell: Tell
 ) -> ComparedParts:
     part = required_bar(setup.required.triangles, setup.stock, cell=cell)
-    left = LoggedBar(part.bar, setup.stock, setup.cutters)
+    raw = None
+    if setup.raw is not None:
+        raw = required_bar(setup.raw, setup.stock, cell=cell).bar
+        np.minimum(part.bar.outer, raw.outer, out=part.bar.outer)
+        np.maximum(part.bar.inner, raw.inner, out=part.bar.inner)
+    left = LoggedBar(part.bar, setup.stock, setup.cutters, raw=raw)
     for piece in _told(file, left, tell):
         left.add(piece)
     places = required_turned_places(part, left)

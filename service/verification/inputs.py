@@ -8,7 +8,7 @@ from xml.parsers import expat
 from pyarrow import parquet
 
 from service.agent.replay import LONGEST_LINE
-from service.part_file import require_part
+from service.part_file import require_part, require_part_form
 from service.recording.signals import POSITIONS
 from service.recording.table import TABLES, headings
 from service.storage.files import FileKind
@@ -120,8 +120,13 @@ def _require_part(path: Path) -> None:
     require_part(path)
 
 
+def _require_stock(path: Path) -> None:
+    require_part_form(path)
+
+
 _CHECKS: Mapping[FileKind, Callable[[Path], None]] = {
     FileKind.LOG: _require_log,
     FileKind.TOOLS: _require_tools,
     FileKind.REQUIRED_PART: _require_part,
+    FileKind.STOCK: _require_stock,
 }

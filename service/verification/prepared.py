@@ -7,9 +7,8 @@ import numpy as np
 
 from service.brep.bodies import body_triangles
 from service.chosen import machine_for, material_for
-from service.numbers import stock_in
 from service.part_file import PartMesh, read_part
-from service.raw_stock import placed_triangles, raw_triangles
+from service.raw_stock import given_stock, placed_triangles, raw_triangles
 from service.reading import Tell, read_program, silent
 from service.requests.verification import VerificationRequest
 from service.simulation.setup import PreparedRun, prepared_program
@@ -99,6 +98,8 @@ class RequiredSetup:
     """Name of the file of the required part."""
     machine: Machine
     stock: Stock
+    raw: Floats | None = None
+    """Triangles of the raw part, (T, 3, 3), mm; None: it fills the stock."""
     cutters: dict[int, Cutter | Insert | None]
     """Shapes of the tools by number."""
     required: PartMesh
@@ -159,7 +160,7 @@ def required_setup(
     given = {
         "--required FILE": required,
         "--tools TABLE": tools,
-        "--stock NUMBERS": request.stock,
+        "--stock STOCK": request.stock,
         "--machine NAME": request.machine,
     }
     missing = [name for name, value in given.items() if not value]
@@ -176,13 +177,14 @@ def required_setup(
     if not any(isinstance(tool.shape, kind) for tool in table):
         what = "turns" if kind is Insert else "rotates"
         raise StepNcError(f"{tools}: no tool {what}: {machine.name} needs one")
-    stock = stock_in(request.stock)
+    raw = given_stock(request.stock)
     return RequiredSetup(
         name=required.path.name,
         machine=machine,
-        stock=stock,
+        stock=raw.bounds,
+        raw=raw.triangles,
         cutters={tool.number: tool.shape for tool in table},
-        required=required_mesh(required, stock, tolerance=request.tolerance_mm),
+        required=required_mesh(required, raw.bounds, tolerance=request.tolerance_mm),
     )
 
 

@@ -36,6 +36,10 @@ NEAR = 1.5
 """Greatest distance of a wall from the cells that show it, as a multiple of a cell."""
 
 
+LEFT = 0.05
+"""Height up to which raw and required part count as the same, mm: facets lie beside both."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RequiredPart:
     """Part that a mesh of triangles describes, within a stock."""
@@ -57,7 +61,12 @@ class RequiredPart:
 
 
 def required_part(
-    triangles: Floats, stock: Stock, *, cell: float | None = None, most_sag: float = inf
+    triangles: Floats,
+    stock: Stock,
+    *,
+    cell: float | None = None,
+    most_sag: float = inf,
+    raw: Floats | None = None,
 ) -> RequiredPart:
     """Prepare a required part for comparison.
 
@@ -70,6 +79,9 @@ def required_part(
         Size of the cells of the height map; by default chosen from the stock.
     most_sag : float, mm
         Greatest distance of the triangles from the surface, where it is known.
+    raw : (T, 3, 3) array, mm
+        Triangles of the raw part in the stock; without them it fills the stock. Walls that it
+        has already are not compared.
 
     Raises
     ------
@@ -78,14 +90,18 @@ def required_part(
     """
     whole = zmap_of(stock, cell=cell_size(stock) if cell is None else cell)
     grid = whole.grid
-    raw = grid.heights.copy()
     is_outside = grid.owner == OUTSIDE
+    if raw is not None:
+        grid.heights[:] = grid.bottom
+        raise_to(grid, np.ascontiguousarray(raw))
+    uncut = grid.heights.copy()
     grid.heights[:] = -np.inf
     raise_to(grid, np.ascontiguousarray(triangles))
     is_part = (grid.heights > grid.bottom) & ~is_outside
-    np.clip(grid.heights, grid.bottom, raw, out=grid.heights)
-    # Every wall counts, also where nothing was cut.
-    grid.owner[:] = np.where(is_outside, OUTSIDE, 0)
+    np.clip(grid.heights, grid.bottom, uncut, out=grid.heights)
+    # Every wall counts, also where nothing was cut, but those that the raw part has already.
+    is_left = is_outside | ((uncut - grid.heights <= LEFT) & (raw is not None))
+    grid.owner[:] = np.where(is_left, OUTSIDE, 0)
     found, is_wall = wall_cells(whole)
     grid.owner[:] = np.where(is_outside, OUTSIDE, UNCUT)
     edges = edges_of(triangles)

@@ -3,7 +3,8 @@
 Paths warn of what their generators assume: holes deeper than their features, security planes
 that are moved. This module adds what shows in the program itself: a course of travel whose
 placement is turned against the tool, features off the stock, a left-hand tool that is turned
-clockwise, a stock that is not known. Workingsteps that cannot be read are passed over here.
+clockwise, a stock that is not known or has the shape of a body. Workingsteps that cannot be
+read are passed over here.
 """
 
 from collections.abc import Iterable, Iterator
@@ -11,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from stepnc_model.entities.enums import Hand
 from stepnc_model.entities.profiles import LinearPath
 from stepnc_model.errors import Finding, SchemaError, Severity
-from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.program import Program, ResolvedWorkingstep, Stock
 from stepnc_model.technology import ProgrammedQuantity, programmed
 from stepnc_model.tool import hand_of
 from stepnc_model.toolpath.frame import feature_frame, frame_of
@@ -46,22 +47,36 @@ def remarks(program: Program, paths: Iterable[ToolPath]) -> tuple[Finding, ...]:
 
 
 def _of_stock(program: Program) -> Iterator[Finding]:
-    """Warnings that a stock is not used, and that none is known."""
+    """Say that a stock is not used, that none is known, or that it is that of a body."""
+    is_said = False
     for step in program.workingsteps:
         try:
             with program.using(step.ref, step.setup):
-                is_known = stock_of(program, step.setup) is not None
+                stock = stock_of(program, step.setup)
                 unused = unused_stock(program, step.setup)
         except SchemaError:
             continue
         if unused is not None:
             yield unused
-        if not is_known:
+        if stock is not None and stock.is_around and not is_said:
+            is_said = True
+            yield Finding(severity=Severity.NOTE, message=_shape_words(stock))
+        if stock is None:
             text = "no stock is known: engagement is estimated, collisions are not found"
             setup = step.ref if step.setup is None else step.setup
             at = setup if int(setup) in program.file else step.ref
             yield program.finding(Severity.WARNING, text, at)
             return
+
+
+def _shape_words(stock: Stock) -> str:
+    """Sentence that states which shape of a raw part is used for what."""
+    kind = "box" if stock.radius is None else "bar"
+    low, high = (",".join(f"{value:.4g}" for value in at) for at in (stock.low, stock.high))
+    return (
+        f"the raw part is a body: engagement, air and removal see its shape; tool paths are "
+        f"made for the {kind} around it, {low} to {high} mm"
+    )
 
 
 def _of_step(program: Program, step: ResolvedWorkingstep) -> Iterator[Finding]:

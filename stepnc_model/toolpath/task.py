@@ -291,6 +291,7 @@ def _placed(shape: Stock, frame: Frame) -> Stock:
         low=(min(columns[0]), min(columns[1]), min(columns[2])),
         high=(max(columns[0]), max(columns[1]), max(columns[2])),
         radius=shape.radius,
+        is_around=shape.is_around,
     )
 
 

@@ -88,6 +88,7 @@ TOGETHER = {
     "service/requests/blocks.py": "fields only; read in tests/service/blocks",
     "service/requests/recording.py": "fields only; read in tests/service/recording",
     "service/requests/verification.py": "fields only; read in tests/service/verification",
+    "service/requests/stored_stock.py": "fields only; read in rest/test_raw_part.py",
     "service/requests/stored_verification.py": "fields only; read in rest/test_openapi.py",
     "service/requests/stored_cycle_time.py": "fields only; read in rest/test_openapi.py",
     "service/jobs/logs.py": "read in tests/service/jobs/test_verify.py and test_cycle_time.py",

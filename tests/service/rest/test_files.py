@@ -22,6 +22,8 @@ PART = b"solid a\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendsolid\n"
         ("log", "../run 1.csv", LOG),
         ("tools", "measured.toml", TOOLS),
         ("required-part", "part.STL", PART),
+        ("stock", "raw.stl", PART),
+        ("stock", "raw.step", b"ISO-10303-21;\n"),
     ],
 )
 def test_a_file_comes_back_byte_for_byte(
@@ -55,6 +57,8 @@ def test_a_file_comes_back_byte_for_byte(
         ("tools", "tools.toml", b"[[tool]]\nnumber = 0\n", (422, "tools.toml")),
         ("tools", "tools.toml", b"#" * (1 << 21), (413, "the tool table is larger than")),
         ("required-part", "part.stl", b"no part", (422, "part.stl: no triangles")),
+        ("stock", "raw.step", b"no part", (422, "raw.step: expected an STL or STEP file")),
+        ("stock", "raw.obj", PART, (400, "ends in .step, .stl, .stp")),
         ("picture", "a.png", b"x", (422, "kind")),
     ],
 )

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from service.numbers import numbers_in
-from service.reading import silent
+from service.reading import read_program, silent
 from service.simulation.setup import (
     CodeRequest,
     CountedIterator,
@@ -47,7 +47,9 @@ def test_what_is_handed_on_is_counted() -> None:
 
 
 def program(machine: str = "vmc15") -> PreparedRun:
-    return from_program(BRACKET, units="iso", machine=machine, material="", tell=silent)
+    return from_program(
+        read_program(BRACKET, units="iso"), machine=machine, material="", tell=silent
+    )
 
 
 def test_a_program_brings_tools_stock_and_material() -> None:

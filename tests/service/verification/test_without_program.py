@@ -153,3 +153,36 @@ def test_a_table_without_a_tool_of_the_machine_is_refused(tmp_path: Path) -> Non
         verify(log, None, MILL, inputs=inputs)
     with pytest.raises(StepNcError, match="needs a program"):
         verify(log, None, replace(MILL, has_deflection=True), inputs=inputs)
+
+
+def test_a_cast_part_is_a_stock(tmp_path: Path) -> None:
+    """Half of the pocket is cast; the log removes the other half."""
+    stock = write_stl(tmp_path / "cast.stl", test_required.HALF_CAST)
+    given = pocket_inputs(tmp_path)
+    log = write_log(tmp_path / "log.csv", POCKET)
+    found = verify(log, None, replace(MILL, stock=str(stock)), inputs=given)
+    assert not found.has_errors
+    half = 12.0 * 16.0 * 5.0 - 0.5 * (4.0 - np.pi) * 9.0 * 5.0
+    assert found.volumes.logged == pytest.approx(half, rel=0.01)
+    assert found.volumes.programmed == pytest.approx(half, rel=0.01)
+    aside = write_log(tmp_path / "aside.csv", POCKET + 4.0 * OFFSET)
+    found = verify(aside, None, replace(MILL, stock=str(stock)), inputs=given)
+    assert found.has_errors
+    beyond = found.places[found.places.is_beyond & found.places.is_wall]
+    assert beyond.position[:, 0].min() > 19.5
+
+
+def test_a_turned_blank_is_a_stock(tmp_path: Path) -> None:
+    """A mesh of the bar removes what the numbers of the bar remove; a thinner one less."""
+    given = turned_inputs(tmp_path)
+    log = write_log(tmp_path / "log.csv", TURNED)
+    volumes = []
+    for radius in (20.0, 19.0):
+        ends = ((-50.0, 0.0), (-50.0, radius), (0.5, radius), (0.5, 0.0))
+        stock = write_stl(tmp_path / f"bar{radius:g}.stl", revolved(ends))
+        found = verify(log, None, replace(LATHE, stock=str(stock)), inputs=given)
+        assert not found.places.is_beyond.any()
+        volumes.append(found.volumes.logged)
+    bar = verify(log, None, LATHE, inputs=given)
+    assert volumes[0] == pytest.approx(bar.volumes.logged, rel=2e-3)
+    assert volumes[1] < volumes[0]

@@ -11,6 +11,7 @@ from simulator.verification.mesh import edges_of
 from simulator.verification.required import required_part, required_places
 from stepnc_model.program import Stock
 from tests.simulator.verification.block import sampled, samples_at
+from tests.simulator.verification.box import box
 from tests.simulator.verification.meshes import pocketed_block
 
 STOCK = Stock(low=(0.0, 0.0, -12.0), high=(40.0, 30.0, 0.0))
@@ -87,3 +88,32 @@ def test_open_and_turned_triangles_are_counted() -> None:
     turned = MESH.copy()
     turned[0] = turned[0][::-1]
     assert edges_of(turned).unlike == 3
+
+
+HALF_CAST = np.concatenate([
+    box(low, high)
+    for low, high in (
+        ((0.0, 0.0, -12.0), (8.0, 30.0, 0.0)),
+        ((8.0, 0.0, -12.0), (20.0, 7.0, 0.0)),
+        ((8.0, 23.0, -12.0), (20.0, 30.0, 0.0)),
+        ((8.0, 7.0, -12.0), (20.0, 23.0, -5.0)),
+        ((20.0, 0.0, -12.0), (40.0, 30.0, 0.0)),
+    )
+])
+"""The block, in which the left half of the pocket is cast, with sharp corners."""
+
+
+def test_walls_of_the_raw_part_are_not_compared() -> None:
+    whole = required_part(MESH, STOCK, cell=0.2)
+    part = required_part(MESH, STOCK, cell=0.2, raw=HALF_CAST)
+    assert part.targets.x.min() > 19.5
+    assert np.count_nonzero(whole.targets.x > 20.5) == np.count_nonzero(part.targets.x > 20.5)
+    # What stands in the corners of the required part is not there in the raw one.
+    missing = 2.0 * (1.0 - np.pi / 4.0) * 9.0 * 5.0
+    assert whole.map.volume - part.map.volume == pytest.approx(missing, rel=0.05)
+    left = LoggedPart(part, STOCK, {1: CUTTER}, raw=HALF_CAST)
+    assert left.raw_volume - part.map.volume == pytest.approx(
+        12.0 * 16.0 * 5.0 - 0.5 * (4.0 - np.pi) * 9.0 * 5.0, rel=0.01
+    )
+    with pytest.raises(ValueError, match="no wall within the stock"):
+        required_part(MESH, STOCK, cell=0.2, raw=MESH)
