@@ -41,7 +41,7 @@ from simulator.motion.fir import FixedTimeFilter
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import ControlModel, axis_limits
 from simulator.spec import Machine, MaterialMatch
-from stepnc_model.errors import Finding, StepNcError, WriteError
+from stepnc_model.errors import Finding, SchemaError, StepNcError, WriteError
 from stepnc_model.program import Program
 from stepnc_model.units import mm_from_um
 
@@ -88,6 +88,8 @@ class Simulation:
     """Signals for a report, if one was requested."""
     deviation: SeededDeviation | None = None
     """Random deviation of motor powers, if one was requested."""
+    faults: tuple[SchemaError, ...] = ()
+    """Reasons why some workingsteps were left out."""
 
     @property
     def whole(self) -> Total:
@@ -147,6 +149,7 @@ def simulate(
         samples=0 if run.file is None else run.file.rows,
         trace=None if run.trace is None else run.trace.trace(),
         deviation=_deviation(request, virtual.machine),
+        faults=prepared.faults,
     )
 
 
@@ -216,22 +219,11 @@ def place_in(prepared: PreparedRun, virtual: VirtualMachine) -> str:
 
 def _prepared(request: SimulationRequest, files: RunFiles, tell: Tell) -> PreparedRun:
     if files.code is not None:
-        return from_code(
-            files.code,
-            program=files.file,
-            units=request.units,
-            machine=request.machine,
-            material=request.material,
-        )
+        return from_code(files.code, request, program=files.file)
     if files.file is None:
         raise StepNcError("name a STEP-NC program, or NC code with --nc")
     return from_program(
-        files.file,
-        name=files.name,
-        units=request.units,
-        machine=request.machine,
-        material=request.material,
-        tell=tell,
+        files.file, request, name=files.name, keep_going=request.keep_going, tell=tell
     )
 
 

@@ -93,7 +93,7 @@ def test_a_drive_above_its_limit_is_an_exit_code_of_its_own(
     assert "limit exceeded" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("option", ["--dialect", "--tools", "--stock"])
+@pytest.mark.parametrize("option", ["--dialect", "--tools"])
 def test_options_of_code_want_code(capsys: pytest.CaptureFixture[str], option: str) -> None:
     assert run(SLOT, option, "x") == BAD_INPUT
     assert "need NC code: name it with --nc" in capsys.readouterr().err
