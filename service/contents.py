@@ -6,9 +6,18 @@ from pathlib import Path
 from service.files import read_bytes
 from service.paths.remarks import program_remarks
 from service.paths.toolpaths import Paths, paths_of
-from service.reading import Tell, program_in, silent
+from service.reading import (
+    Tell,
+    given_data,
+    program_in,
+    read_stock,
+    require_no_other_stock,
+    silent,
+)
+from service.requests.given import ProgramRequest
 from service.uses import Use, UseName, uses_of
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError
+from stepnc_model.given import completed
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.plausibility import implausible, unit_findings
 from stepnc_model.program import Program
@@ -45,12 +54,32 @@ class Contents:
         return any(use.is_possible or use.is_possible_with_material for use in self.uses)
 
 
-def check(path: Path, *, units: str = "iso", name: str = "", tell: Tell = silent) -> Contents:
-    """Read a STEP-NC file and check it; return its contents and findings."""
+def check(
+    path: Path, request: ProgramRequest | None = None, *, name: str = "", tell: Tell = silent
+) -> Contents:
+    """Read a STEP-NC file and check it; return its contents and findings.
+
+    Parameters
+    ----------
+    path : Path
+    request : ProgramRequest, optional
+        What is given about the program beyond its file.
+    name : str
+        Name of the program; empty: the name of its file.
+    tell : callable
+        Receives messages.
+
+    Raises
+    ------
+    StepNcError
+        When the file is not one of Part 21, or something that is given is not valid.
+    """
+    given = request or ProgramRequest()
     called = name or path.name
     file = Part21File.from_bytes(read_bytes(path), name=called)
+    raw = read_stock(given.stock)
     try:
-        program = program_in(file, units=units, name=called, tell=tell)
+        program = program_in(file, units=given.units, name=called, stock=raw, tell=tell)
     except SchemaError as error:
         fault = Finding(
             severity=Severity.ERROR,
@@ -63,6 +92,8 @@ def check(path: Path, *, units: str = "iso", name: str = "", tell: Tell = silent
             program=None,
             findings=(*file.findings, fault),
         )
+    require_no_other_stock(program)
+    program = completed(program, given_data(given)).program
     made = _paths(program)
     found = program_remarks(program) if isinstance(made, StepNcError) else made.remarks
     return Contents(

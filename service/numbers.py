@@ -1,10 +1,13 @@
 """Parsing of numbers, raw part dimensions and tool numbers entered by the user."""
 
+import re
 from math import isfinite
 
 from stepnc_model.errors import StepNcError
+from stepnc_model.given import GivenFeed
 from stepnc_model.program import Stock
 from stepnc_model.toolpath.path import FARTHEST
+from stepnc_model.units import FeedUnit, speed_from_m_s, speed_from_mm_min
 
 LEAST_SIZE = 0.01
 """Smallest accepted size of a stock along an axis, in mm."""
@@ -62,6 +65,49 @@ def _bar(axis: tuple[float, float], diameter: float, ends: tuple[float, float]) 
         high=(axis[0] + radius, axis[1] + radius, ends[1]),
         radius=radius,
     )
+
+
+MOST_SPEED, MOST_CHIP = 2000.0, 100.0
+"""Greatest feed that is accepted, in mm/s, and in mm per tooth or revolution."""
+
+
+def feed_in(text: str) -> GivenFeed:
+    """Parse a feed: a number in mm/min, or a number with its unit.
+
+    Parameters
+    ----------
+    text : str
+        As ``240``, ``0.004m/s``, ``0.1mm/tooth`` or ``0.2 mm/rev``.
+
+    Returns
+    -------
+    GivenFeed
+
+    Raises
+    ------
+    StepNcError
+        When it is no number, or not within its bounds; the unit is named.
+    """
+    found = re.fullmatch(r"(.*?)\s*([a-z]+/[a-z]+)?\s*", text)
+    written, name = found.groups() if found else ("", None)
+    try:
+        number = float(written)
+        unit = FeedUnit(name or FeedUnit.MM_PER_MINUTE)
+    except ValueError:
+        known = ", ".join(unit.value for unit in FeedUnit)
+        message = f"feed '{text}': expected a number in mm/min, or with a unit: {known}"
+        raise StepNcError(message) from None
+    to_speed = {
+        FeedUnit.METRES_PER_SECOND: speed_from_m_s,
+        FeedUnit.MM_PER_MINUTE: speed_from_mm_min,
+    }.get(unit)
+    value = number if to_speed is None else to_speed(number)
+    most = MOST_CHIP if to_speed is None else MOST_SPEED
+    if not 0.0 < value <= most:
+        bound = most if to_speed is None else most / to_speed(1.0)
+        message = f"feed {number:g} {unit.value}: it must be above 0 to {bound:g} {unit.value}"
+        raise StepNcError(message)
+    return GivenFeed(value=value, unit=unit)
 
 
 def require_size(stock: Stock) -> None:

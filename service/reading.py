@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, TypeVar
 
 from service.brep.bodies import ProgramBodies
 from service.files import read_bytes
+from service.numbers import feed_in
+from service.requests.given import ProgramRequest
 from stepnc_model.errors import StepNcError
-from stepnc_model.given import GivenData
+from stepnc_model.given import Completed, GivenData, completed
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.plausibility import units_by_numbers
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.task import drawn_stock
-from stepnc_model.units import AUTO, PROFILES, UnitProfile, speed_from_mm_min
+from stepnc_model.units import AUTO, PROFILES, UnitProfile
 
 if TYPE_CHECKING:
     from service.raw_stock import GivenStock
@@ -38,19 +40,58 @@ def read_program(
     """
     called = name or path.name
     file = Part21File.from_bytes(read_bytes(path), name=called)
-    raw = _given_stock(stock)
+    raw = read_stock(stock)
     program = program_in(file, units=units, name=called, stock=raw, tell=tell)
-    if raw is not None and drawn_stock(program, None) is not None:
-        raise StepNcError(f"stock {stock}: '{called}' defines its own raw part; omit the stock")
+    require_no_other_stock(program)
     return program
 
 
-def given_data(
-    values: tuple[str, ...], teeth: tuple[str, ...], feed_mm_min: float | None
-) -> GivenData:
+def require_no_other_stock(program: Program) -> None:
+    """Refuse a raw part that was given for a program that describes its own.
+
+    Raises
+    ------
+    StepNcError
+    """
+    if program.stock is not None and drawn_stock(program, None) is not None:
+        raise StepNcError(f"'{program.name}' defines its own raw part: omit --stock")
+
+
+def read_given(
+    path: Path, request: ProgramRequest, *, name: str = "", tell: Tell = silent
+) -> Completed:
+    """Read a program with all that a request gives about it: units, raw part, missing data.
+
+    Parameters
+    ----------
+    path : Path
+    request : ProgramRequest
+    name : str
+        Name of the program; empty: the name of its file.
+    tell : callable
+        Receives messages.
+
+    Returns
+    -------
+    Completed
+        The program, and the data to be withdrawn from a file that is written.
+
+    Raises
+    ------
+    StepNcError
+        When the file or something that is given is not valid.
+    """
+    program = read_program(path, units=request.units, stock=request.stock, name=name, tell=tell)
+    return completed(program, given_data(request))
+
+
+def given_data(request: ProgramRequest) -> GivenData:
     """Data that a file lacks, from the words of a request."""
-    feed = None if feed_mm_min is None else speed_from_mm_min(feed_mm_min)
-    return GivenData(values=values, teeth=teeth, feed=feed)
+    return GivenData(
+        values=request.given,
+        teeth=request.teeth,
+        feed=feed_in(request.feed) if request.feed else None,
+    )
 
 
 def program_in(
@@ -81,8 +122,8 @@ def program_in(
     return Program(file, units=profile, name=name, stock=bounds, bodies=bodies)
 
 
-def _given_stock(text: str) -> "GivenStock | None":
-    """Raw part as the user gives it; None for no text."""
+def read_stock(text: str) -> "GivenStock | None":
+    """Read a raw part as the user gives it, in numbers or as a file; None for no text."""
     if not text:
         return None
     from service.raw_stock import given_stock  # noqa: PLC0415 (numpy)

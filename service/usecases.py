@@ -21,7 +21,7 @@ from service.files import (
 from service.knowledge.corrected import factors_for, finding_of, with_corrections
 from service.knowledge.place import named_place, require_apart
 from service.progress import Progress
-from service.reading import Tell, given_data, read_program, selected, silent
+from service.reading import Tell, read_given, read_program, selected, silent
 from service.records import changes_of
 from service.refusals import advisable, apart_from
 from service.requests.advice import AdviceRequest
@@ -30,7 +30,7 @@ from simulator.spec import Certainty, Machine, MaterialMatch
 from stepnc_model import writeback
 from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
 from stepnc_model.file_profile import FileProfile, RecordChoice
-from stepnc_model.given import Completed, completed, without_given
+from stepnc_model.given import Completed, without_given
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.program import Program, ResolvedWorkingstep
@@ -103,7 +103,7 @@ def optimise(
     output = _output(files)
     nc_place = _nc_place(request, files, output)
     require_apart(named_place(files.knowledge), output, files.report, files.feeds, nc_place)
-    whole = _whole_program(request, files, tell)
+    whole = read_given(files.file, request, name=files.name, tell=tell)
     program = whole.program
     profile = writeback.profile_for(program, profile)
     chosen = selected(program, request.workingsteps)
@@ -192,15 +192,6 @@ def _along(
         keeps_traces=files.report is not None,
         tell=tell,
     )
-
-
-def _whole_program(request: AdviceRequest, files: AdviceFiles, tell: Tell) -> Completed:
-    """Program of a file, with the data that the request gives."""
-    program = read_program(
-        files.file, units=request.units, name=files.name, stock=request.stock, tell=tell
-    )
-    data = given_data(request.given, request.teeth, request.feed_mm_min)
-    return completed(program, data)
 
 
 def _without_given(whole: Completed, data: bytes) -> bytes:

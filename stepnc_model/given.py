@@ -7,7 +7,7 @@ advised on its basis does. Units are those of the file.
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isclose
 
 from stepnc_model.ap238.converted import Converted
@@ -16,15 +16,34 @@ from stepnc_model.ap238.writing import spliced_into
 from stepnc_model.binding import Model
 from stepnc_model.draft import Draft
 from stepnc_model.entities.conversion import AttributeSlot, slots_of
+from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.measures import TolerancedLengthMeasure
+from stepnc_model.entities.technology import MillingTechnology
 from stepnc_model.entities.tools import MillingCuttingTool
+from stepnc_model.entities.turning import TurningTechnology
 from stepnc_model.errors import Part21Error, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Real, Ref, Value
-from stepnc_model.program import Program
+from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.tool import tool_of
 from stepnc_model.units import FeedUnit, m_s_from_speed, mm_min_from_speed
 
 _PLACE = re.compile(r"\s*#(\d{1,18})\s*\.\s*(\w+)\s*=(.*)", re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GivenFeed:
+    """Feed that a user gives, by time, by tooth or by turn."""
+
+    value: float
+    """Feed in mm/s, or in mm per tooth or revolution."""
+    unit: FeedUnit
+    """Unit in which it was given; the first two are both mm/s here."""
+
+    @property
+    def is_speed(self) -> bool:
+        """Whether it is a feed by time."""
+        return self.unit in {FeedUnit.METRES_PER_SECOND, FeedUnit.MM_PER_MINUTE}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,8 +54,8 @@ class GivenData:
     """Attributes of instances, ``#46.depth=12``."""
     teeth: tuple[str, ...] = ()
     """Numbers of teeth by the id of the tool, ``T3=2``."""
-    feed: float | None = None
-    """Feed of milling technologies that give none, mm/s."""
+    feed: GivenFeed | None = None
+    """Feed of technologies that give none."""
 
     def __bool__(self) -> bool:
         return bool(self.values or self.teeth or self.feed is not None)
@@ -54,6 +73,8 @@ class SetAttribute:
     """Instances that were added for it."""
     origin: Converted | None = None
     """What stands for ``ref`` in an AP238 file, where its own number is not kept."""
+    only_beside: str = ""
+    """Attribute of ``ref`` that must be withdrawn too; empty: this one stands alone."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,12 +108,24 @@ def completed(program: Program, data: GivenData) -> Completed:
     draft = Draft(program)
     given = [_set(draft, text) for text in data.values]
     given += [each for text in data.teeth for each in _teeth(draft, text)]
+    found = _changed(draft, given)
     if data.feed is not None:
-        given += _feeds(draft, data.feed)
-    found = _read(program, draft.edits.apply())
+        # Numbers of teeth that were given count, too.
+        draft = Draft(found)
+        feeds = list(_feeds(draft, data.feed))
+        found = _changed(draft, feeds)
+        given += feeds
+    return Completed(program=found, given=tuple(given))
+
+
+def _changed(draft: Draft, given: Sequence[SetAttribute]) -> Program:
+    """Program read again with what was set; refused if an attribute cannot hold its value."""
+    if not given:
+        return draft.program
+    found = _read(draft.program, draft.edits.apply())
     for each in given:
         _require_taken(found.model, each)
-    return Completed(program=found, given=tuple(given))
+    return found
 
 
 def without_given(program: Program, given: Sequence[SetAttribute]) -> bytes:
@@ -114,11 +147,24 @@ def without_given(program: Program, given: Sequence[SetAttribute]) -> bytes:
             _withdraw_from_view(draft, view, each)
         return spliced_into(view, draft.edits.apply(), draft.removed)
     for each in given:
-        place = program.model.position(each.ref, each.attribute)
-        if program.file.parameters(int(each.ref))[place] == each.value:
+        if all(_is_kept(program, other) for other in _together(given, each)):
             draft.put(each.ref, each.attribute, each.before)
             draft.remove(each.added)
     return draft.edits.apply()
+
+
+def _together(given: Sequence[SetAttribute], one: SetAttribute) -> Iterator[SetAttribute]:
+    """Set attribute, with the one beside which alone it is withdrawn."""
+    yield one
+    for other in given:
+        if other.ref == one.ref and other.attribute == one.only_beside:
+            yield other
+
+
+def _is_kept(program: Program, given: SetAttribute) -> bool:
+    """Whether an attribute still has the value that was given."""
+    place = program.model.position(given.ref, given.attribute)
+    return program.file.parameters(int(given.ref))[place] == given.value
 
 
 def _withdraw_from_view(draft: Draft, view: AimView, given: SetAttribute) -> None:
@@ -250,23 +296,59 @@ def _teeth(draft: Draft, text: str) -> Iterator[SetAttribute]:
         yield _put(draft, Ref(body), "number_of_teeth", int(count))
 
 
-def _feeds(draft: Draft, feed: float) -> Iterator[SetAttribute]:
-    """Set the feed of milling technologies that give none."""
+def _feeds(draft: Draft, feed: GivenFeed) -> Iterator[SetAttribute]:
+    """Set the feed of technologies that give none."""
     program = draft.program
-    for step in {int(each.technology_ref): each for each in program.workingsteps}.values():
-        technology = program.get(step.technology_ref)
-        feeds = [getattr(technology, name, None) for name in ("feedrate", "feedrate_per_tooth")]
-        if not hasattr(technology, "feedrate_per_tooth") or any(feeds):
+    users: dict[Ref[Entity], list[ResolvedWorkingstep]] = {}
+    for step in program.workingsteps:
+        users.setdefault(step.technology_ref, []).append(step)
+    for ref, steps in users.items():
+        technology = program.get(ref)
+        if not isinstance(technology, (MillingTechnology, TurningTechnology)):
             continue
-        unit = program.units_of(step.technology_ref).feed
-        number = {
-            FeedUnit.METRES_PER_SECOND: m_s_from_speed(feed),
-            FeedUnit.MM_PER_MINUTE: mm_min_from_speed(feed),
-        }.get(unit)
-        if number is None:
-            message = f"the file's feeds are in {unit.value}: give this one as #N.feedrate"
-            raise program.error(message, step.technology_ref, "feedrate")
-        yield _put(draft, step.technology_ref, "feedrate", Real(number))
+        is_turning = isinstance(technology, TurningTechnology)
+        per_edge = "feed_per_revolution" if is_turning else "feedrate_per_tooth"
+        if technology.feedrate or getattr(technology, per_edge):
+            continue
+        if feed.is_speed or feed.unit is program.units_of(ref).feed:
+            yield _put(draft, ref, "feedrate", Real(_in_file(program, ref, feed)))
+            continue
+        is_divided = not is_turning and feed.unit is FeedUnit.MM_PER_REVOLUTION
+        edges = _teeth_of(program, ref, steps) if is_divided else 1
+        if technology.feedrate is not None:
+            yield replace(_put(draft, ref, "feedrate", None), only_beside=per_edge)
+        yield _put(draft, ref, per_edge, Real(feed.value / edges))
+
+
+def _in_file(program: Program, ref: Ref[Entity], feed: GivenFeed) -> float:
+    """Given feed in the unit of a technology."""
+    unit = program.units_of(ref).feed
+    if unit is FeedUnit.METRES_PER_SECOND:
+        return m_s_from_speed(feed.value)
+    if unit is FeedUnit.MM_PER_MINUTE:
+        return mm_min_from_speed(feed.value)
+    if feed.is_speed:
+        text = (
+            f"the file's feeds are in {unit.value}: give this one so, as --feed 0.1{unit.value}"
+        )
+        raise program.error(text, ref, "feedrate")
+    return feed.value
+
+
+def _teeth_of(program: Program, ref: Ref[Entity], steps: Sequence[ResolvedWorkingstep]) -> int:
+    """Number of teeth of the tools that use a technology."""
+    tools = [tool_of(program, step.tool_ref) for step in steps]
+    lacking = next((tool for tool in tools if not tool.has_teeth), None)
+    if lacking is not None:
+        text = f"tool '{lacking.id}' has no number of teeth"
+        raise program.error(f'{text}: give it with --teeth "{lacking.id}=N"', ref, "feedrate")
+    counts = {tool.teeth for tool in tools}
+    if len(counts) > 1:
+        text = f"its tools have {' or '.join(map(str, sorted(counts)))} teeth"
+        raise program.error(
+            f"{text}: give a feed per tooth, as --feed 0.1mm/tooth", ref, "feedrate"
+        )
+    return counts.pop()
 
 
 def _require_taken(model: Model, given: SetAttribute) -> None:

@@ -180,7 +180,9 @@ def _adaptive(
         scale=1.0 if is_per_tooth else units.feed_scale,
     )
     if feed is None or speed is None:
-        raise program.error("the technology has no feed or no speed", ref, "its_feed")
+        owner = technology.its_feed if feed is None else technology.its_speed
+        text = f"the technology has no feed or no speed; {_gives(int(owner), 'value')}"
+        raise program.error(text, owner, "value")
     inhibition = "adaptive_allowed is false" if not feed_entity.adaptive_allowed else ""
     if technology.inhibit_feedrate_override:
         inhibition = "inhibit_feedrate_override"
@@ -201,10 +203,17 @@ def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) 
     )
     if feed is None:
         raise program.error(
-            "neither feedrate nor feed_per_revolution is given", ref, "feedrate"
+            "neither feedrate nor feed_per_revolution is given; "
+            f"{_gives(int(ref), 'feedrate')}",
+            ref,
+            "feedrate",
         )
     if technology.spindle_speed is None:
-        raise program.error("the technology has no spindle speed", ref, "spindle_speed")
+        raise program.error(
+            f"the technology has no spindle speed; {_gives(int(ref), 'spindle_speed', '#ID')}",
+            ref,
+            "spindle_speed",
+        )
     spindle = technology.spindle_speed
     entity: Entity = program.get(spindle)
     if not isinstance(entity, (ConstSpindleSpeed, ConstCuttingSpeed)):
@@ -218,7 +227,9 @@ def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) 
         scale=units.spindle if is_constant else units.cutting_speed,
     )
     if speed is None:
-        raise program.error("no speed value is given", spindle)
+        attribute = "rot_speed" if is_constant else "speed"
+        text = f"no speed value is given; {_gives(int(spindle), attribute)}"
+        raise program.error(text, spindle, attribute)
     top = entity.max_speed if isinstance(entity, ConstCuttingSpeed) else None
     return Programmed(
         feed=feed,
@@ -252,8 +263,8 @@ def _number(
     size = abs(written) if quantity is ProgrammedQuantity.SPINDLE_SPEED else written
     if not isfinite(size) or size <= 0.0:
         message = f"{quantity.value} {written:g} is not valid: it must be positive"
-        if written == 0.0 and isinstance(program.get(ref), MillingTechnology):
-            message += f"; {_gives(int(ref), attribute)}"
+        is_lacking = written == 0.0 and attribute in _FEEDS
+        message += f"; {_gives(int(ref), 'feedrate' if is_lacking else attribute)}"
         raise program.error(message, ref, attribute)
     return Number(
         ref=ref,
@@ -264,8 +275,12 @@ def _number(
     )
 
 
-def _gives(number: int, attribute: str) -> str:
-    """Option that gives what a milling technology lacks."""
+_FEEDS = ("feedrate", "feedrate_per_tooth", "feed_per_revolution")
+"""Attributes that ``--feed`` gives where they are missing or 0."""
+
+
+def _gives(number: int, attribute: str, value: str = "VALUE") -> str:
+    """Option that gives what a technology lacks."""
     if attribute == "feedrate":
-        return "optimise --feed MM_MIN gives one"
-    return f'optimise --set "#{number}.{attribute}=VALUE" gives one'
+        return "--feed gives one, as --feed 240 (mm/min) or --feed 0.1mm/tooth"
+    return f'--set "#{number}.{attribute}={value}" gives one'

@@ -7,8 +7,9 @@ from controller.orders import Criterion
 from controller.preview import LOOK_AHEAD
 from optimiser.modes import Free, Mode
 from optimiser.safety import USUAL_QUANTILE
-from service.requests.advice import AdviceRequest, Units
+from service.requests.advice import AdviceRequest
 from service.requests.fields import member_of
+from service.requests.given import Units
 from service.requests.runs import ControlRequest, ForceView, SensorChoice, SimulationRequest
 from service.simulation.run import RunFiles
 from service.simulation.setup import CodeRequest

@@ -1,7 +1,7 @@
 """Cycle time of a program: as programmed, predicted, and as logged, for ``cycletime``."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -11,8 +11,10 @@ from service.chosen import machine_for, require_axes
 from service.file_names import PROGRAMS
 from service.files import require_place, write_lines
 from service.paths.toolpaths import paths_of, with_feeds
-from service.reading import Tell, read_program, silent
+from service.reading import Tell, read_given, silent
 from service.recording.logged_run import LoggedRun, read_logged_run
+from service.requests.given import ProgramRequest
+from service.requests.runs import RunRequest
 from service.simulation.setup import CodeRequest, dialect_of, from_code
 from simulator.errors import SimulationError
 from simulator.machine.block_times import BlockTimes, LossCause, block_times
@@ -45,7 +47,8 @@ class CycleTimeRequest:
     machine: str = ""
     log: str = ""
     """Recorded run, MTConnect document or address of an agent; empty: none."""
-    units: str = "iso"
+    program: ProgramRequest = field(default_factory=ProgramRequest)
+    """What is given about a STEP-NC program beyond its file."""
     dialect: str = ""
     """Dialect of NC code that is read or written; empty: by the file extension."""
     control: ControlModelName = ControlModelName.FIR
@@ -123,13 +126,11 @@ class _Source:
         if not self.is_program:
             prepared = from_code(
                 CodeRequest(code=request.file, dialect=request.dialect),
+                RunRequest(machine=request.machine),
                 program=None,
-                units=request.units,
-                machine=request.machine,
-                material="",
             )
             return prepared.machine, prepared.blocks
-        program = read_program(request.file, units=request.units)
+        program = read_given(request.file, request.program, tell=tell).program
         paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
         blocks = blocks_of(program, paths.items, name=Path(program.name).stem)
         return machine_for(request.machine, program), enumerate(blocks, start=1)

@@ -1,10 +1,15 @@
 """``stepnc agent``: a program on the virtual machine as an MTConnect agent."""
 
 import argparse
-import re
 from pathlib import Path
 
-from service.cli.machine import USUAL_RATE, add_code, interruptible, run_files
+from service.cli.machine import (
+    USUAL_RATE,
+    add_code,
+    interruptible,
+    run_files,
+    run_request,
+)
 from service.cli.options import OK, Commands
 
 
@@ -20,7 +25,6 @@ def _agent_options(parser: argparse.ArgumentParser) -> None:
     from service.requests.agent import AgentRequest
     from service.requests.fields import add_options
 
-    parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
     add("file", type=Path, nargs="?", metavar="FILE",
         help="a STEP-NC program or a recorded run (.parquet, .csv, .xml, .shdr, .log)",
@@ -41,10 +45,9 @@ def _agent(options: argparse.Namespace) -> int:
     """``stepnc agent``."""
     from service.agent.run import AgentFiles, serve_agent
     from service.requests.agent import AgentRequest
-    from service.requests.fields import from_options
     from service.terminal import tell
 
-    request = from_options(AgentRequest, options, rate_hz=USUAL_RATE)
+    request = run_request(AgentRequest, options, rate_hz=USUAL_RATE)
     with interruptible():
         files = AgentFiles(
             run=run_files(options, options.file),

@@ -1,10 +1,17 @@
 """Commands on block rate and cycle time: ``blocktest``, ``blockfit`` and ``cycletime``."""
 
 import argparse
-import re
 from pathlib import Path
 
-from service.cli.options import CONTROLS, OK, Commands, add_json, text
+from service.cli.options import (
+    CONTROLS,
+    OK,
+    Commands,
+    add_json,
+    add_program_options,
+    program_request,
+    text,
+)
 
 
 def add_block_commands(commands: Commands) -> None:
@@ -22,8 +29,6 @@ def _add_fit(commands: Commands) -> None:
     parser = commands.add_parser(
         "blockfit", help="fit a control's time for a block to a log of its test, or to a table"
     )
-    # Coordinates may be negative: "-3,-3,-40" is not an option.
-    parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
     add(
         "log",
@@ -54,6 +59,10 @@ def _add_cycle_time(commands: Commands) -> None:
         "cycletime",
         help="estimate a program's cycle time from the block rate, and compare it with a log",
     )
+    parser.fill = _cycle_time_options
+
+
+def _cycle_time_options(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21), or NC code")
     add(
@@ -64,7 +73,7 @@ def _add_cycle_time(commands: Commands) -> None:
         metavar="LOG",
         help="recorded run (.parquet, .csv), MTConnect document (.xml) or address of an agent",
     )
-    add("--units", default="iso", help="units of a STEP-NC program, as of `stepnc simulate`")
+    add_program_options(parser)
     add("--machine", default="", help="one of `stepnc machines`, or your own file")
     add("--dialect", default="", metavar="NAME", help=f"dialect of NC code: {CONTROLS}")
     add("--control", default="fir", metavar="NAME",
@@ -142,7 +151,7 @@ def _cycle_time(options: argparse.Namespace) -> int:
             file=options.file,
             machine=options.machine,
             log=options.log,
-            units=options.units,
+            program=program_request(options),
             dialect=options.dialect,
             control=member_of(ControlModelName, options.control, "control"),
             deviation=options.deviation_mm,

@@ -1,12 +1,12 @@
 """Command ``stepnc control``: run a program under force control on the virtual machine."""
 
 import argparse
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from service.cli.machine import add_code, interruptible, run_files
+from service.cli.machine import add_code, interruptible, run_files, run_request
 from service.cli.options import (
+    BAD_INPUT,
     LIMIT_EXCEEDED,
     OK,
     Commands,
@@ -54,7 +54,6 @@ def _options(parser: argparse.ArgumentParser) -> None:
     from service.requests.fields import add_options
     from service.requests.runs import ControlRequest
 
-    parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
     add("file", type=Path, nargs="?", metavar="FILE", help="a STEP-NC program (Part 21)")
     add_options(parser, ControlRequest)
@@ -117,6 +116,8 @@ def _control(options: argparse.Namespace) -> int:
         from service.control.output import print_control
 
         print_control(run)
+    if run.faults:
+        return BAD_INPUT
     return LIMIT_EXCEEDED if exceeded(run, rows(run)) else OK
 
 
@@ -142,10 +143,9 @@ def _recorded(options: argparse.Namespace) -> Path | None:
 
 def _request(options: argparse.Namespace) -> "ControlRequest":
     from service.numbers import numbers_in
-    from service.requests.fields import from_options
     from service.requests.runs import ControlRequest
 
     low, high = numbers_in(options.band, "override band", counts=(2,))
-    return from_options(
+    return run_request(
         ControlRequest, options, override_low_percent=low, override_high_percent=high
     )

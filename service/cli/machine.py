@@ -1,19 +1,20 @@
 """Commands of the virtual machine: ``simulate``, ``calibrate`` and ``taptest``."""
 
 import argparse
-import re
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
-from service.cli.options import CONTROLS, LIMIT_EXCEEDED, OK, Commands, add_json
+from service.cli.options import BAD_INPUT, CONTROLS, LIMIT_EXCEEDED, OK, Commands, add_json
 
 if TYPE_CHECKING:
+    from service.requests.runs import RunRequest
     from service.simulation.run import RunFiles
     from simulator.tool_files.file_unit import FileUnit
 
+N = TypeVar("N", bound="RunRequest")
 
 USUAL_RATE = 10.0
 """Default number of samples per second in a file."""
@@ -39,15 +40,6 @@ def add_code(parser: argparse.ArgumentParser) -> None:
         "library of Fusion (.json, .tools), HSMWorks (.hsmlib) or FreeCAD (.fctl)",
     )
     add("--tools-unit", default="", metavar="UNIT", help="unit of a tool.tbl: mm or inch")
-    add(
-        "--stock",
-        default="",
-        metavar="STOCK",
-        help="stock for NC code without a program, or for a program that defines none, in mm: "
-        "x0,y0,z0,x1,y1,z1 of a box, diameter,z0,z1 or diameter,length of a bar, "
-        "x,y,diameter,z0,z1 of an upright bar, an STL or STEP file (part.step#SOLID); for NC "
-        "code also an .npz file of --keep-stock",
-    )
 
 
 def _add_calibrate(commands: Commands) -> None:
@@ -62,7 +54,6 @@ def _calibrate_options(parser: argparse.ArgumentParser) -> None:
     from service.requests.fields import add_options
     from service.requests.runs import RunRequest
 
-    parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
     add(
         "runs",
@@ -139,8 +130,6 @@ def _simulate_options(parser: argparse.ArgumentParser) -> None:
     from service.requests.fields import add_options
     from service.requests.runs import SimulationRequest
 
-    # Coordinates may be negative: "-3,-3,-40,153,93,2" is not an option.
-    parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
     add("file", type=Path, nargs="?", metavar="FILE", help="a STEP-NC program (Part 21)")
     add_options(parser, SimulationRequest, usual={"rate_hz": USUAL_RATE})
@@ -185,16 +174,31 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
             dialect=options.dialect,
             tools=options.tools,
             tools_unit=length_unit(options.tools_unit),
-            stock=options.stock,
+            stock=options.stock or "",
         )
     return RunFiles(
         file=file,
         code=code,
-        stock="" if options.nc is not None else options.stock,
         output=options.output,
         report=getattr(options, "report", None),
         kept=getattr(options, "keep_stock", None),
     )
+
+
+def run_request(kind: type[N], options: argparse.Namespace, **values: object) -> N:
+    """Return the request of a run; a stock that is named for NC code is not the program's.
+
+    Raises
+    ------
+    StepNcError
+        When an option is not valid.
+    """
+    from dataclasses import replace
+
+    from service.requests.fields import from_options
+
+    request = from_options(kind, options, **values)
+    return request if options.nc is None else replace(request, stock="")
 
 
 def length_unit(name: str) -> "FileUnit | None":
@@ -207,7 +211,7 @@ def length_unit(name: str) -> "FileUnit | None":
 
 def _simulate(options: argparse.Namespace) -> int:
     """Run the command ``stepnc simulate``."""
-    from service.requests.fields import from_options, member_of
+    from service.requests.fields import member_of
     from service.requests.runs import SimulationRequest
     from service.simulation.carbon import WORLD, stated
     from service.simulation.run import simulate
@@ -215,7 +219,7 @@ def _simulate(options: argparse.Namespace) -> int:
     from simulator.agent.names import NameSet, SchemaVersion
 
     carbon = WORLD if options.carbon_g_kwh is None else stated(options.carbon_g_kwh)
-    request = from_options(SimulationRequest, options, rate_hz=USUAL_RATE)
+    request = run_request(SimulationRequest, options, rate_hz=USUAL_RATE)
     files = run_files(options, options.file)
     if options.mtconnect is None:
         with interruptible():
@@ -254,6 +258,8 @@ def _simulate(options: argparse.Namespace) -> int:
         from service.simulation.output import print_simulation
 
         print_simulation(simulation, carbon=carbon)
+    if simulation.faults:
+        return BAD_INPUT
     return LIMIT_EXCEEDED if simulation.whole.overload_time > 0.0 else OK
 
 
@@ -266,14 +272,13 @@ def _calibrate(options: argparse.Namespace) -> int:
     from dataclasses import replace
 
     from service.calibration.run import CalibrationRequest, calibrate
-    from service.requests.fields import from_options
     from service.requests.runs import SimulationRequest
     from service.terminal import tell
 
     files = replace(run_files(options, options.program), output=None)
     request = CalibrationRequest(
         runs=tuple(options.runs),
-        simulation=from_options(SimulationRequest, options),
+        simulation=run_request(SimulationRequest, options),
         files=files,
         output=options.output,
     )

@@ -28,9 +28,10 @@ from service.cli.options import (
     CommandParser,
     Commands,
     add_cluster,
-    add_file,
     add_json,
     add_knowledge,
+    add_program,
+    program_request,
 )
 from service.cli.paths import add_path_commands
 from service.cli.record import add_record_command
@@ -117,7 +118,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def optimise_main(arguments: Sequence[str] | None = None) -> None:
     """Run the command ``optimise``, an alias of ``stepnc optimise``."""
-    parser = argparse.ArgumentParser(
+    parser = CommandParser(
         prog="optimise",
         description=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -182,7 +183,11 @@ def _add_check(commands: Commands) -> None:
         help="show the contents of a program or of NC code and its errors; exit 3 if it is "
         "unusable",
     )
-    add_file(parser)
+    parser.fill = _check_options
+
+
+def _check_options(parser: argparse.ArgumentParser) -> None:
+    add_program(parser)
     parser.add_argument(
         "--control",
         default="",
@@ -370,7 +375,7 @@ def _check_program(options: argparse.Namespace) -> int:
     from service.paths.remarks import tell_remarks
     from service.terminal import tell, write_out
 
-    contents = check(options.file, units=options.units, tell=tell)
+    contents = check(options.file, program_request(options), tell=tell)
     tell_remarks(contents.remarks, tell)
     if options.json:
         from service.contents_output import contents_json

@@ -1,6 +1,7 @@
 """Exit codes and options that several commands share. Imports nothing slow."""
 
 import argparse
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,6 +11,8 @@ OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, INTERRUPTED = 0, 3, 4, 5, 130
 CONTROLS = "linuxcnc, fanuc, haas, sinumerik, heidenhain or canonical"
 
 if TYPE_CHECKING:
+    from service.requests.given import ProgramRequest
+
     Commands = argparse._SubParsersAction["CommandParser"]
 else:
     Commands = object
@@ -20,6 +23,11 @@ class CommandParser(argparse.ArgumentParser):
 
     fill: Callable[["CommandParser"], None] | None = None
     """Function that adds the options."""
+
+    def __init__(self, *args: Any, **words: Any) -> None:
+        super().__init__(*args, **words)
+        # Coordinates may be negative: "-3,-3,-40,153,93,2" is not an option.
+        self._negative_number_matcher = re.compile(r"-[.\d]")
 
     def complete(self) -> None:
         """Add the options, unless they were added before."""
@@ -33,17 +41,34 @@ class CommandParser(argparse.ArgumentParser):
         return super().parse_known_args(*args, **words)
 
 
-def add_file(parser: argparse.ArgumentParser) -> None:
-    """Add the program file and the option for its units."""
+def add_program(parser: argparse.ArgumentParser) -> None:
+    """Add the program file, and the options for what is given beyond it."""
     parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
-    parser.add_argument(
-        "--units",
-        default="iso",
-        help="units of feeds and speeds in the file: iso (m/s, rev/s; default), rpm-mmin, "
-        "rpm-mmtooth, rpm-mmrev, revs-mmtooth, revs-mmrev, rpm-mmtooth-mmrev, "
-        "revs-mmtooth-mmrev (per tooth in milling, per turn in drilling), or auto: the only "
-        "ones in which all numbers are plausible",
-    )
+    add_program_options(parser)
+
+
+def add_program_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options for what is given about a program beyond its file."""
+    from service.requests.fields import add_options
+    from service.requests.given import ProgramRequest
+
+    add_options(parser, ProgramRequest)
+
+
+def program_request(options: argparse.Namespace) -> "ProgramRequest":
+    """Return what the options give about a program beyond its file.
+
+    Raises
+    ------
+    StepNcError
+        When an option is not valid.
+    """
+    from service.requests.fields import from_options, require_bounds
+    from service.requests.given import ProgramRequest
+
+    request = from_options(ProgramRequest, options)
+    require_bounds(request)
+    return request
 
 
 def add_json(parser: argparse.ArgumentParser) -> None:

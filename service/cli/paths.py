@@ -3,7 +3,15 @@
 import argparse
 from pathlib import Path
 
-from service.cli.options import BAD_INPUT, CONTROLS, OK, Commands, add_file, add_json
+from service.cli.options import (
+    BAD_INPUT,
+    CONTROLS,
+    OK,
+    Commands,
+    add_json,
+    add_program,
+    program_request,
+)
 
 
 def add_path_commands(commands: Commands) -> None:
@@ -18,7 +26,11 @@ def _add_toolpath(commands: Commands) -> None:
     parser = commands.add_parser(
         "toolpath", help="generate the tool paths of a program, or use those that it contains"
     )
-    add_file(parser)
+    parser.fill = _toolpath_options
+
+
+def _toolpath_options(parser: argparse.ArgumentParser) -> None:
+    add_program(parser)
     _add_keep_going(parser)
     parser.add_argument("--plot", type=Path, metavar="PNG", help="draw paths, coloured by type")
     add_json(parser)
@@ -28,7 +40,11 @@ def _add_toolpath(commands: Commands) -> None:
 def _add_post(commands: Commands) -> None:
     """Add the command ``stepnc post``."""
     parser = commands.add_parser("post", help="write NC code for a control")
-    add_file(parser)
+    parser.fill = _post_options
+
+
+def _post_options(parser: argparse.ArgumentParser) -> None:
+    add_program(parser)
     parser.add_argument("--control", required=True, metavar="NAME", help=CONTROLS)
     parser.add_argument(
         "-o",
@@ -69,7 +85,7 @@ def _toolpath(options: argparse.Namespace) -> int:
     from service.terminal import tell, write_out
 
     paths = toolpaths.tool_paths(
-        options.file, units=options.units, keep_going=options.keep_going, tell=tell
+        options.file, program_request(options), keep_going=options.keep_going, tell=tell
     )
     if options.plot is not None:
         toolpaths.plot(paths, options.file, options.plot)
@@ -94,7 +110,7 @@ def _post(options: argparse.Namespace) -> int:
         toolpaths.PostRequest(
             file=options.file,
             control=options.control,
-            units=options.units,
+            program=program_request(options),
             output=options.output,
             cycles=options.cycles,
             keep_going=options.keep_going,

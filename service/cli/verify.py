@@ -1,7 +1,6 @@
 """``stepnc verify``: the part that logged positions left, against the programmed one."""
 
 import argparse
-import re
 from pathlib import Path
 
 from service.cli.options import LIMIT_EXCEEDED, OK, Commands, add_json
@@ -19,8 +18,6 @@ def _verify_options(parser: argparse.ArgumentParser) -> None:
     from service.requests.fields import add_options
     from service.requests.verification import VerificationRequest
 
-    # Coordinates may be negative: "-3,-3,-40" is not an option.
-    parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
     add(
         "log",

@@ -166,6 +166,7 @@ def control_json(run: ControlRun) -> str:
             for event in run.events
         ],
         "limits_exceeded": list(exceeded(run, found)),
+        "left_out": list(run.faults),
         "findings": [finding_record(finding) for finding in run.findings],
     })
 

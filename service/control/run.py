@@ -92,6 +92,8 @@ class ControlRun:
     """Number of samples written."""
     trace: BucketedRun | None = None
     """Signals for a report, if one was requested."""
+    faults: tuple[str, ...] = ()
+    """Reasons why some workingsteps were left out, or not planned."""
     recorded: str = ""
     """File of the recorded run that was evaluated; empty: it ran on the virtual machine."""
 
@@ -172,6 +174,7 @@ def prepare(
         material=prepared.material,
         mode=Mode(request.mode.value),
         knowledge=knowledge if request.has_corrections else None,
+        left_out=prepared.left_out if request.keep_going else None,
     )
     course = planned_course(prepared, virtual, tell)
     require_teeth(found.hidden, course)
@@ -212,6 +215,10 @@ def prepare(
         advices=advices,
         planned=planned,
         findings=(*prepared.findings, *virtual.findings, *plan.findings),
+        faults=(
+            *map(str, prepared.faults),
+            *(f"'{each.id}' ({each.ref}): {each.reason}" for each in plan.refused),
+        ),
         virtual=virtual.machine,
     )
 
@@ -264,6 +271,7 @@ class Session:
     advices: tuple[Advice | None, ...]
     planned: Mapping[int, PlannedWorkingstep]
     findings: tuple[Finding, ...]
+    faults: tuple[str, ...]
     virtual: Machine
     events: list[LoopEvent] = field(default_factory=list)
     is_lost: bool = False
@@ -341,6 +349,7 @@ class Session:
             planned=self.planned,
             events=tuple(self.events),
             findings=self.findings,
+            faults=self.faults,
             time=self.machine.time,
             time_planned=self.machine.course.duration,
             is_stopped=(self.loop.state.is_stopped and self.files.recorded is None)
@@ -366,6 +375,11 @@ def _plain_run(request: ControlRequest) -> SimulationRequest:
         machine=request.machine,
         material=request.material,
         units=request.units,
+        stock=request.stock,
+        given=request.given,
+        teeth=request.teeth,
+        feed=request.feed,
+        keep_going=request.keep_going,
         control=request.control,
         filter_s=request.filter_s,
         deviation_mm=request.deviation_mm,

@@ -105,8 +105,22 @@ def plan_as_it_is(
     material: MaterialMatch,
     mode: Mode,
     knowledge: str | None,
+    left_out: frozenset[int] | None = None,
 ) -> Plan:
-    """Plan of the unchanged program, corrected by a knowledge base unless that is None."""
+    """Plan of the unchanged program, corrected by a knowledge base unless that is None.
+
+    Parameters
+    ----------
+    program : Program
+    machine : Machine
+    material : MaterialMatch
+    mode : Mode
+    knowledge : str or None
+        Location of the knowledge base; empty: the usual one; None: none.
+    left_out : frozenset of int, optional
+        Instances of workingsteps that are not run. Where some are, another that cannot be
+        planned keeps its feed; None: all are run.
+    """
     factors = (
         ()
         if knowledge is None
@@ -126,8 +140,16 @@ def plan_as_it_is(
         force_factors={each.tool: each.factor for each in factors},
         safety=LEAST_QUANTILE,
         source=from_features,
+        keep_going=left_out is not None,
     )
-    return optimise_program(program, machine=machine, material=material, task=task)
+    without = left_out or frozenset()
+    return optimise_program(
+        program,
+        machine=machine,
+        material=material,
+        task=task,
+        selected=lambda step: int(step.ref) not in without,
+    )
 
 
 def steps_of(

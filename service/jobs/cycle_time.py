@@ -31,7 +31,7 @@ def run(task: RunningJob) -> None:
                 file=program,
                 machine=machine_word(task.data_folder, request.machine),
                 log="" if log is None else str(log.path),
-                units=request.units.value,
+                program=request,
                 control=request.control,
             ),
             tell=lambda message: told(task, with_names(message, names)),

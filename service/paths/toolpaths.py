@@ -1,7 +1,7 @@
 """Tool paths and NC code of a program: commands ``toolpath``, ``post`` and ``canonical``."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from service.files import (
@@ -13,7 +13,8 @@ from service.files import (
 )
 from service.paths.remarks import tell_remarks
 from service.progress import Progress
-from service.reading import Tell, one_of, read_program, silent
+from service.reading import Tell, one_of, read_given, silent
+from service.requests.given import ProgramRequest
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import Setup
 from stepnc_model.errors import Finding, PostError, SchemaError, StepNcError, WriteError
@@ -80,23 +81,38 @@ class PostRequest:
 
     file: Path
     control: str
-    units: str = "iso"
+    program: ProgramRequest = field(default_factory=ProgramRequest)
+    """What is given about the program beyond its file."""
     output: Path | None = None
     cycles: bool = False
     keep_going: bool = False
 
 
 def tool_paths(
-    path: Path, *, units: str = "iso", keep_going: bool = False, tell: Tell = silent
+    path: Path,
+    request: ProgramRequest | None = None,
+    *,
+    keep_going: bool = False,
+    tell: Tell = silent,
 ) -> Paths:
     """Read a program and generate its tool paths, or take those that it contains.
+
+    Parameters
+    ----------
+    path : Path
+    request : ProgramRequest, optional
+        What is given about the program beyond its file.
+    keep_going : bool
+        Whether executables without a path are left out.
+    tell : callable
+        Receives messages.
 
     Raises
     ------
     StepNcError
         At the first executable for which no path can be generated, unless it keeps going.
     """
-    program = read_program(path, units=units, tell=tell)
+    program = read_given(path, request or ProgramRequest(), tell=tell).program
     return with_remarks(paths_of(program, keep_going=keep_going, tell=tell), tell)
 
 
@@ -148,7 +164,7 @@ def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
     control = one_of(Dialect, request.control.lower(), "control")
     output = request.output or beside(request.file, control.suffix)
     require_place(output, apart_from=request.file)
-    program = read_program(request.file, units=request.units, tell=tell)
+    program = read_given(request.file, request.program, tell=tell).program
     error = refusal(program, program.workingsteps)
     if error is not None and not request.keep_going:
         raise error
@@ -160,8 +176,28 @@ def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
     return paths
 
 
-def with_feeds(paths: Paths, *, keep_going: bool, tell: Tell = silent) -> Paths:
+def no_more(_step: ResolvedWorkingstep) -> None:
+    """Require nothing more of a workingstep."""
+
+
+def with_feeds(
+    paths: Paths,
+    *,
+    keep_going: bool,
+    also: Callable[[ResolvedWorkingstep], None] = no_more,
+    tell: Tell = silent,
+) -> Paths:
     """Keep only paths whose technology defines a feed, which a control needs.
+
+    Parameters
+    ----------
+    paths : Paths
+    keep_going : bool
+        Whether other paths are left out; otherwise the first of them is an error.
+    also : callable
+        Raises an error for a workingstep that lacks more.
+    tell : callable
+        Receives messages.
 
     Raises
     ------
@@ -178,6 +214,7 @@ def with_feeds(paths: Paths, *, keep_going: bool, tell: Tell = silent) -> Paths:
             if step is not None and isinstance(item, ToolPath):
                 left_out.require_ready(step, item)
                 _require_numbers(paths.program, step, keep_going=keep_going)
+                also(step)
             items.append(item)
         except SchemaError as fault:
             if not keep_going:

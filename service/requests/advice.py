@@ -2,29 +2,17 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
 from typing import Annotated
 
 from annotated_types import Interval, Len, MaxLen
 
 from optimiser.modes import Free, Mode
 from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE
-from service.requests.fields import LONGEST_NAME, About, Request
+from service.requests.fields import About
+from service.requests.given import Name, ProgramRequest
 from simulator.motion.model_name import ControlModelName
 from stepnc_model.file_profile import FileProfile, RecordChoice
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.units import AUTO, PROFILES
-
-Name = Annotated[str, MaxLen(LONGEST_NAME)]
-
-StockText = Annotated[str, MaxLen(4096)]
-"""Raw part: numbers, or a path of the usual greatest length."""
-
-Units = StrEnum("Units", {name.replace("-", "_"): name for name in (*PROFILES, AUTO)})  # type: ignore[misc]
-"""Unit profiles of files, by name, and ``auto``."""
-
-ISO = Units("iso")
-"""Unit profile that follows the standard."""
 
 MachineName = Annotated[
     Name,
@@ -40,18 +28,10 @@ MaterialName = Annotated[
         flag="--material", examples=("c45",),
     ),
 ]  # fmt: skip
-FileUnits = Annotated[
-    Units,
-    About(
-        "units of feeds and speeds in the file; auto: the only ones in which all numbers are "
-        "plausible",
-        flag="--units",
-    ),
-]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AdviceRequest(Request):
+class AdviceRequest(ProgramRequest):
     """Request to optimise the feeds of a program."""
 
     mode: Annotated[
@@ -62,7 +42,6 @@ class AdviceRequest(Request):
     ] = Mode.TC
     machine: MachineName = ""
     material: MaterialName = ""
-    units: FileUnits = ISO
     roughness_um: Annotated[
         float | None,
         Interval(gt=0.0, le=1000.0),
@@ -124,14 +103,6 @@ class AdviceRequest(Request):
             flag="--confirm",
         ),
     ] = False
-    stock: Annotated[
-        StockText,
-        About(
-            "raw part of NC code, or of a program that defines none, in mm: x0,y0,z0,x1,y1,z1 "
-            "or diameter,z0,z1; on the command line also an STL or STEP file",
-            flag="--stock", metavar="STOCK", examples=("0,0,-30,100,120,5",),
-        ),
-    ] = ""  # fmt: skip
     safety: Annotated[
         float,
         Interval(ge=LEAST_QUANTILE, le=GREATEST_QUANTILE),
@@ -148,31 +119,6 @@ class AdviceRequest(Request):
             "whether tools cut over centre, by their ids", examples=({"END MILL 10MM": True},)
         ),
     ] = field(default_factory=dict, hash=False)
-    given: Annotated[
-        tuple[Name, ...],
-        MaxLen(10_000),
-        About(
-            "value that the file lacks, in its units: #INSTANCE.attribute=value; kept out of "
-            "the file unless --in-place; repeatable",
-            flag="--set", metavar="VALUE", examples=("#46.depth=12",),
-        ),
-    ] = ()  # fmt: skip
-    teeth: Annotated[
-        tuple[Name, ...],
-        MaxLen(1000),
-        About(
-            "number of teeth that the file lacks: TOOL=NUMBER; repeatable",
-            flag="--teeth", metavar="TOOL=N", examples=("T3=2",),
-        ),
-    ] = ()  # fmt: skip
-    feed_mm_min: Annotated[
-        float | None,
-        Interval(gt=0.0, le=1e5),
-        About(
-            "feed of milling technologies that give none, in mm/min", unit="mm/min",
-            name="feed", flag="--feed", metavar="MM_MIN",
-        ),
-    ] = None  # fmt: skip
     ignore_record: Annotated[
         bool,
         About(

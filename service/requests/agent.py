@@ -5,8 +5,8 @@ from typing import Annotated
 
 from annotated_types import Interval, MaxLen
 
-from service.requests.advice import Name
 from service.requests.fields import About
+from service.requests.given import Name
 from service.requests.runs import SimulationRequest
 from simulator.agent.names import NameSet, SchemaVersion
 

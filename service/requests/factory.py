@@ -6,8 +6,8 @@ from typing import Annotated, Any
 from annotated_types import Interval, MaxLen
 
 from service.live.playback import LEAST, MOST
-from service.requests.advice import Name
 from service.requests.fields import About, Request
+from service.requests.given import Name
 from service.requests.runs import PaceOrNone, Seed
 
 MOST_REPLICATIONS = 500

@@ -11,8 +11,9 @@ from controller.orders import Criterion
 from controller.preview import LOOK_AHEAD
 from service.ids import PATTERN
 from service.live.playback import LEAST, MOST, checked_pace
-from service.requests.advice import ISO, FileUnits, MachineName, MaterialName, Name
+from service.requests.advice import MachineName, MaterialName
 from service.requests.fields import LONGEST_NAME, About, Request
+from service.requests.given import Name, ProgramRequest
 from simulator.machine.noise_kind import NoiseKind
 from simulator.motion.model_name import ControlModelName
 
@@ -78,18 +79,26 @@ Seed = Annotated[
 Percent = Interval(gt=0.0, le=1000.0)
 """Bounds of changes, in per cent; larger values are taken for typing errors."""
 
+KeepGoing = Annotated[
+    bool,
+    About(
+        "leave out workingsteps that cannot be run, and those that depend on them; exit code "
+        "3 remains",
+        flag="--keep-going",
+    ),
+]
+
 PACE = "simulated seconds per wall-clock second; 0: as fast as possible"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RunRequest(Request):
+class RunRequest(ProgramRequest):
     """Run of an uploaded or an optimised program on the virtual machine."""
 
     program_id: Annotated[OptionalId, About("an uploaded program")] = None
     advice_id: Annotated[OptionalId, About("or the program optimised by this advice")] = None
     machine: MachineName = ""
     material: MaterialName = ""
-    units: FileUnits = ISO
     control: Annotated[
         ControlModelName,
         About(
@@ -121,6 +130,7 @@ class RunRequest(Request):
 class SimulationRequest(RunRequest):
     """Request of a simulation."""
 
+    keep_going: KeepGoing = False
     seed: Seed = 0
     rate_hz: Annotated[
         float,
@@ -176,6 +186,7 @@ class SimulationRequest(RunRequest):
 class ControlRequest(RunRequest):
     """Request to run a program under force control."""
 
+    keep_going: KeepGoing = False
     seed: Seed = 0
     mode: Annotated[Criterion, About("TC fast, QC programmed chip load", flag="--mode")] = (
         Criterion.TC

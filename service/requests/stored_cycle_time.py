@@ -3,15 +3,16 @@
 from dataclasses import dataclass
 from typing import Annotated
 
-from service.requests.advice import ISO, FileUnits, MachineName
-from service.requests.fields import About, Request
+from service.requests.advice import MachineName
+from service.requests.fields import About
+from service.requests.given import ProgramRequest
 from service.requests.runs import OptionalId
 from service.requests.stored_verification import MonitorName
 from simulator.motion.model_name import ControlModelName
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StoredCycleTimeRequest(Request):
+class StoredCycleTimeRequest(ProgramRequest):
     """Cycle time of a program; with a log, the logged one too."""
 
     program_id: Annotated[
@@ -27,7 +28,6 @@ class StoredCycleTimeRequest(Request):
         About("or the latest run that the agent of this monitored machine still keeps"),
     ] = ""
     machine: MachineName = ""
-    units: FileUnits = ISO
     control: Annotated[
         ControlModelName, About("motion control of the path: exact-stop, junction or fir")
     ] = ControlModelName.FIR

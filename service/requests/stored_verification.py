@@ -5,8 +5,8 @@ from typing import Annotated
 
 from annotated_types import MaxLen
 
-from service.requests.advice import Name
 from service.requests.fields import LONGEST_NAME, About
+from service.requests.given import Name
 from service.requests.runs import OptionalId
 from service.requests.stored_stock import StockId, StockSolid
 from service.requests.verification import VerificationRequest

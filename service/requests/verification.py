@@ -5,20 +5,20 @@ from typing import Annotated
 
 from annotated_types import Interval
 
-from service.requests.advice import ISO, FileUnits, MachineName, MaterialName, Name, StockText
-from service.requests.fields import About, Request
+from service.requests.advice import MachineName, MaterialName
+from service.requests.fields import About
+from service.requests.given import Name, ProgramRequest, StockText
 
 INCH_THOUSANDTH = 0.0254
 """0.001 inch in mm, which paper 004 resolves."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class VerificationRequest(Request):
+class VerificationRequest(ProgramRequest):
     """Request to compare the part that logged positions left with the programmed one."""
 
     machine: MachineName = ""
     material: MaterialName = ""
-    units: FileUnits = ISO
     stock: Annotated[
         StockText,
         About(

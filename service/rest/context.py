@@ -14,7 +14,9 @@ from optimiser.source import why_elsewhere
 from service.errors import Unreadable
 from service.monitor.monitor import MonitorSet
 from service.program_kind import ProgramKind
-from service.reading import read_program, selected
+from service.reading import read_given, selected
+from service.requests.fields import loaded
+from service.requests.given import GIVEN, ProgramRequest
 from service.rest.replies import json_reply
 from service.rest.settings import Settings
 from service.rest.streams import StreamHub
@@ -172,7 +174,8 @@ def _require_possible(data_folder: DataFolder, asked: JobRequest) -> None:
     words = asked.request
     with READING:
         file = data_folder.fetched(data_folder.program_file(asked.program))
-        program = read_program(file, units=words["units"])
+        given = loaded(ProgramRequest, {name: words[name] for name in GIVEN if name in words})
+        program = read_given(file, given).program
         steps = selected(program, tuple(words.get("workingsteps", ())))
         if not words["machine"]:
             return

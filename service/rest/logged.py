@@ -6,6 +6,7 @@ from typing import Any
 from service.errors import NotFound, Unreadable
 from service.jobs.task import SAMPLES
 from service.monitor.monitor import MonitorSet
+from service.requests.given import GIVEN
 from service.rest.results import file_of, require_done
 from service.storage import files, jobs
 from service.storage.files import FIELDS
@@ -61,9 +62,9 @@ def logged_order(
 
 
 def _of_run(run: Job, words: Mapping[str, Any]) -> dict[str, Any]:
-    """Units of a run, and its machine and material where the request names none."""
+    """What was given about the program of a run, and its machine and material if not named."""
     names = [name for name in ("machine", "material") if words.get(name) == ""]
-    return {name: run.request[name] for name in ("units", *names)}
+    return {name: run.request[name] for name in (*GIVEN, *names) if name in run.request}
 
 
 def _run(data_folder: DataFolder, id: str) -> Job:

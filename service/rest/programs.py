@@ -14,8 +14,8 @@ from service.errors import Unreadable
 from service.files import read_bytes
 from service.numbers import tool_numbers_in
 from service.program_kind import ProgramKind, kind_of
-from service.requests.advice import ISO, Name, Units
 from service.requests.fields import dumped
+from service.requests.given import ISO, Name, ProgramRequest, Units
 from service.requests.stored_advice import StoredAdviceRequest
 from service.rest.advice_views import CodeContentsView
 from service.rest.asking import answered
@@ -169,9 +169,7 @@ async def findings(
     if matches(request.headers.get("if-none-match"), tag):
         return tagged(request, b"", tag)
     name = f"{id} {units.value}"
-    body = await _answers(request).get(
-        name, partial(_contents, data_folder, stored, units.value)
-    )
+    body = await _answers(request).get(name, partial(_contents, data_folder, stored, units))
     return tagged(request, body, tag)
 
 
@@ -270,7 +268,7 @@ def _answers(request: Request) -> CheckCache:
     return found
 
 
-def _contents(data_folder: DataFolder, stored: StoredProgram, units: str) -> bytes:
+def _contents(data_folder: DataFolder, stored: StoredProgram, units: Units) -> bytes:
     """Check a stored program and return the findings as JSON bytes.
 
     Raises
@@ -282,7 +280,9 @@ def _contents(data_folder: DataFolder, stored: StoredProgram, units: str) -> byt
     try:
         if stored.kind is ProgramKind.NC_CODE:
             return checked_code(file, name=stored.name)
-        return contents_json(check(file, units=units, name=stored.name)).encode()
+        return contents_json(
+            check(file, ProgramRequest(units=units), name=stored.name)
+        ).encode()
     except StepNcError:
         programs.require_file(data_folder, stored.id)
         raise

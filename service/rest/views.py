@@ -150,6 +150,7 @@ class SimulationView(View):
     samples: int
     workingsteps: list[dict[str, Any]]
     total: RunTotalView
+    left_out: list[str] = []
     findings: list[FindingView]
 
 

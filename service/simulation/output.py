@@ -225,6 +225,7 @@ def simulation_json(simulation: Simulation, *, carbon: CarbonFactor = WORLD) -> 
             "source": carbon.source,
             "total_g": carbon.grams(simulation.whole.energy.total),
         },
+        "left_out": [str(fault) for fault in simulation.faults],
         "findings": [finding_record(finding) for finding in simulation.findings],
     })
 

@@ -12,7 +12,7 @@ from service.numbers import numbers_in
 from service.paths.remarks import tell_remarks
 from service.progress import Ticker, bar
 from service.raw_stock import KEPT_SUFFIX, file_of_stock
-from service.reading import Tell, read_program, silent
+from service.reading import Tell, silent
 from service.requests.fields import require_bounds
 from service.requests.runs import ForceView, SimulationRequest
 from service.run_file import require_suffix
@@ -41,7 +41,7 @@ from simulator.motion.fir import FixedTimeFilter
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import ControlModel, axis_limits
 from simulator.spec import Machine, MaterialMatch
-from stepnc_model.errors import Finding, StepNcError, WriteError
+from stepnc_model.errors import Finding, SchemaError, StepNcError, WriteError
 from stepnc_model.program import Program
 from stepnc_model.units import mm_from_um
 
@@ -58,8 +58,6 @@ class RunFiles:
     """Name of the program; empty: the name of its file."""
     code: CodeRequest | None = None
     """NC code to run instead of the program's own paths."""
-    stock: str = ""
-    """Raw part of a program that defines none; empty: its own."""
     output: Path | None = None
     report: Path | None = None
     kept: Path | None = None
@@ -90,6 +88,8 @@ class Simulation:
     """Signals for a report, if one was requested."""
     deviation: SeededDeviation | None = None
     """Random deviation of motor powers, if one was requested."""
+    faults: tuple[SchemaError, ...] = ()
+    """Reasons why some workingsteps were left out."""
 
     @property
     def whole(self) -> Total:
@@ -149,6 +149,7 @@ def simulate(
         samples=0 if run.file is None else run.file.rows,
         trace=None if run.trace is None else run.trace.trace(),
         deviation=_deviation(request, virtual.machine),
+        faults=prepared.faults,
     )
 
 
@@ -180,7 +181,7 @@ def waiting_machine(
         When :func:`simulate` would raise it.
     """
     require_bounds(request)
-    _require_files(files)
+    _require_files(files, request.stock)
     teeth = _teeth(request)
     prepared = _prepared(request, files, tell)
     return prepared, machine_of(request, prepared, teeth=teeth)
@@ -218,19 +219,12 @@ def place_in(prepared: PreparedRun, virtual: VirtualMachine) -> str:
 
 def _prepared(request: SimulationRequest, files: RunFiles, tell: Tell) -> PreparedRun:
     if files.code is not None:
-        return from_code(
-            files.code,
-            program=files.file,
-            units=request.units,
-            machine=request.machine,
-            material=request.material,
-        )
+        return from_code(files.code, request, program=files.file)
     if files.file is None:
         raise StepNcError("name a STEP-NC program, or NC code with --nc")
-    program = read_program(
-        files.file, units=request.units, name=files.name, stock=files.stock, tell=tell
+    return from_program(
+        files.file, request, name=files.name, keep_going=request.keep_going, tell=tell
     )
-    return from_program(program, machine=request.machine, material=request.material, tell=tell)
 
 
 def machine_of(
@@ -257,7 +251,7 @@ def machine_of(
     )
 
 
-def _require_files(files: RunFiles) -> None:
+def _require_files(files: RunFiles, stock: str) -> None:
     """Refuse invalid combinations of files before anything is read."""
     code = files.code
     if code is not None and files.file is not None and (code.tools or code.stock):
@@ -267,8 +261,8 @@ def _require_files(files: RunFiles) -> None:
     inputs = [files.file]
     if code is not None:
         inputs += [code.code, code.tools, file_of_stock(code.stock)]
-    if files.stock:
-        inputs.append(file_of_stock(files.stock))
+    if stock:
+        inputs.append(file_of_stock(stock))
     if files.kept is not None and files.kept.suffix.lower() != KEPT_SUFFIX:
         raise WriteError(f"must end with {KEPT_SUFFIX}", path=str(files.kept))
     outputs = [files.output, files.report, files.kept]

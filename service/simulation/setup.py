@@ -15,7 +15,8 @@ from service.raw_stock import (
     raw_triangles,
     stock_map,
 )
-from service.reading import Tell, one_of, read_program
+from service.reading import Tell, one_of, read_given
+from service.requests.runs import RunRequest
 from simulator.library import load_machine
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import loaded_tool, table_tool
@@ -25,14 +26,14 @@ from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.read import read_tools
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import Setup
-from stepnc_model.errors import Finding, PostError, Severity, StepNcError
+from stepnc_model.errors import Finding, PostError, SchemaError, Severity, StepNcError
 from stepnc_model.part21.values import Ref
 from stepnc_model.plausibility import refusal
 from stepnc_model.post import blocks as post
 from stepnc_model.post.dialect import SUFFIXES, Dialect
 from stepnc_model.post.dialects import read_blocks
 from stepnc_model.post.neutral import blocks_of, tool_numbers
-from stepnc_model.program import Program, Stock
+from stepnc_model.program import Program, ResolvedWorkingstep, Stock
 from stepnc_model.toolpath.task import stock_of
 
 T = TypeVar("T")
@@ -62,6 +63,10 @@ class PreparedRun:
     findings: tuple[Finding, ...] = ()
     remarks: tuple[Finding, ...] = ()
     """Warnings about the program, the same for every command."""
+    faults: tuple[SchemaError, ...] = ()
+    """Reasons why some workingsteps were left out."""
+    left_out: frozenset[int] = frozenset()
+    """Instances of the workingsteps that were left out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,17 +104,32 @@ class CountedIterator(Generic[T]):
         return min(1.0, self.size / max(1, whole))
 
 
-def from_program(program: Program, *, machine: str, material: str, tell: Tell) -> PreparedRun:
+def from_program(
+    file: Path, request: RunRequest, *, name: str = "", keep_going: bool = False, tell: Tell
+) -> PreparedRun:
     """Prepare a STEP-NC program on a suitable machine.
+
+    Parameters
+    ----------
+    file : Path
+    request : RunRequest
+    name : str
+        Name of the program; empty: the name of its file.
+    keep_going : bool
+        Whether workingsteps that cannot be run, and what depends on them, are left out.
+    tell : callable
+        Receives messages.
 
     Raises
     ------
     StepNcError
         When a name is invalid, or the program cannot be prepared.
     """
-    match = material_for(material, program)
+    program = read_given(file, request, name=name, tell=tell).program
+    match = material_for(request.material, program)
     tell(f"material: {match.reason}")
-    return prepared_program(program, machine_for(machine, program), match, tell=tell)
+    machine = machine_for(request.machine, program)
+    return prepared_program(program, machine, match, keep_going=keep_going, tell=tell)
 
 
 def prepared_program(
@@ -119,6 +139,7 @@ def prepared_program(
     *,
     tell: Tell,
     margin: float = 0.0,
+    keep_going: bool = False,
 ) -> PreparedRun:
     """Prepare a program that is already read, on a suitable machine.
 
@@ -131,6 +152,8 @@ def prepared_program(
         Receives messages.
     margin : float, mm
         Distance by which the stock is larger than the file says.
+    keep_going : bool
+        Whether workingsteps that cannot be run, and what depends on them, are left out.
 
     Raises
     ------
@@ -138,9 +161,15 @@ def prepared_program(
         When a tool path cannot be generated, or the numbers cannot be in the program's units.
     """
     error = refusal(program, program.workingsteps)
-    if error is not None:
+    if error is not None and not keep_going:
         raise error
-    paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
+    paths = paths_of(program, keep_going=keep_going, tell=tell)
+
+    def require_tool(step: ResolvedWorkingstep) -> None:
+        loaded_tool(program, step.tool_ref, 1, match.material)
+
+    paths = with_feeds(paths, keep_going=keep_going, also=require_tool, tell=tell)
+    present = {int(path.workingstep) for path in paths.paths}
     numbers = tool_numbers(paths.paths)
     steps = sum(len(path.steps) for path in paths.paths)
     blocks = CountedIterator(blocks_of(program, paths.items, name=Path(program.name).stem))
@@ -158,13 +187,22 @@ def prepared_program(
         program=program,
         findings=paths.findings,
         remarks=paths.remarks,
+        faults=paths.faults,
+        left_out=frozenset(
+            int(step.ref) for step in program.workingsteps if int(step.ref) not in present
+        ),
     )
 
 
-def from_code(
-    request: CodeRequest, *, program: Path | None, units: str, machine: str, material: str
-) -> PreparedRun:
+def from_code(request: CodeRequest, run: RunRequest, *, program: Path | None) -> PreparedRun:
     """Prepare NC code, with tools and stock of its program or as the user specifies.
+
+    Parameters
+    ----------
+    request : CodeRequest
+    run : RunRequest
+    program : Path, optional
+        STEP-NC program of which the code was made.
 
     Raises
     ------
@@ -172,11 +210,11 @@ def from_code(
         When a file or a name is invalid.
     """
     if program is not None:
-        return _code_of_program(request, program, units=units, names=(machine, material))
-    if not machine:
+        return _code_of_program(request, program, run)
+    if not run.machine:
         raise StepNcError("NC code without a program: name a machine with --machine")
-    chosen = load_machine(machine)
-    match = load_material_named(material) if material else None
+    chosen = load_machine(run.machine)
+    match = load_material_named(run.material) if run.material else None
     tools = None
     findings: tuple[Finding, ...] = ()
     if request.tools is not None:
@@ -206,13 +244,11 @@ def from_code(
     )
 
 
-def _code_of_program(
-    request: CodeRequest, file: Path, *, units: str, names: tuple[str, str]
-) -> PreparedRun:
+def _code_of_program(request: CodeRequest, file: Path, run: RunRequest) -> PreparedRun:
     """Prepare NC code made from a program; tools are numbered in the order of their use."""
-    program = read_program(file, units=units)
-    match = material_for(names[1], program)
-    machine = machine_for(names[0], program)
+    program = read_given(file, run).program
+    match = material_for(run.material, program)
+    machine = machine_for(run.machine, program)
     used = dict.fromkeys(step.tool_ref for step in program.workingsteps)
     numbers = {ref: number for number, ref in enumerate(used, 1)}
     ids = {_plain(step.id): step.id for step in program.workingsteps}

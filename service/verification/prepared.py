@@ -9,7 +9,7 @@ from service.brep.bodies import body_triangles
 from service.chosen import machine_for, material_for
 from service.part_file import PartMesh, read_part
 from service.raw_stock import given_stock, placed_triangles, raw_triangles
-from service.reading import Tell, read_program, silent
+from service.reading import Tell, read_given, silent
 from service.requests.verification import VerificationRequest
 from service.simulation.setup import PreparedRun, prepared_program
 from service.verification.log import ProgramNames
@@ -120,7 +120,7 @@ def prepared(
     StepNcError
         When the program cannot be run, has several setups, or has no stock.
     """
-    read = read_program(program, units=request.units, stock=request.stock, tell=tell)
+    read = read_given(program, request, tell=tell).program
     match = material_for(request.material, read)
     tell(f"material: {match.reason}")
     run = prepared_program(read, machine_for(request.machine, read), match, tell=tell)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from service import usecases
 from service.contents import check
+from service.requests.given import ProgramRequest, Units
 from stepnc_model.errors import StepNcError
 from tests.asking import asked_advice
 
@@ -88,7 +89,7 @@ def read_and_optimise(data: bytes, units: str = "iso") -> None:
         path = Path(folder) / "part.stpnc"
         path.write_bytes(data)
         with suppress(StepNcError):
-            check(path, units=units)
+            check(path, ProgramRequest(units=Units(units)))
         with suppress(StepNcError):
             usecases.optimise(*asked_advice(file=path, units=units, dry_run=True))
         assert [each.name for each in Path(folder).iterdir()] == ["part.stpnc"]

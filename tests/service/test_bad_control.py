@@ -90,7 +90,7 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
         ([SLOT, "--disturb", "material:butter@1s"], "unknown material 'butter'"),
         ([SLOT, "--disturb", "depth:nan@1s"], "'nan' is not a number"),
         ([SLOT, "--deviation-mm", "nan"], "deviation nan mm"),
-        ([SLOT, "--stock", "1,2,3"], "defines its own raw part; omit the stock"),
+        ([SLOT, "--stock", "1,2,3"], "defines its own raw part: omit --stock"),
         (
             [PARTS / "shaft.stpnc", "--machine", "vmc15"],
             "is a turning tool, but the machine is a mill",

@@ -8,10 +8,11 @@ import pytest
 from service.cli.main import main, optimise_main
 from service.paths.toolpaths import PostRequest, post
 from stepnc_model.errors import SchemaError
-from stepnc_model.given import GivenData, completed, without_given
+from stepnc_model.given import GivenData, GivenFeed, completed, without_given
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.technology import programmed
+from stepnc_model.units import FeedUnit
 
 HEAD = [
     "ISO-10303-21;",
@@ -199,7 +200,8 @@ class TestGivenData:
 
     def test_a_feed_is_given_to_those_that_have_none(self) -> None:
         whole = completed(
-            Program(Part21File.from_bytes(program(**NO_FEED))), GivenData(feed=5.0)
+            Program(Part21File.from_bytes(program(**NO_FEED))),
+            GivenData(feed=GivenFeed(value=5.0, unit=FeedUnit.MM_PER_MINUTE)),
         )
         feeds = [
             programmed(whole.program, step.technology_ref).feed.value

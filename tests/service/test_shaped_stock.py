@@ -79,11 +79,11 @@ def test_plan_and_feeds_see_the_shape_of_a_stock(without_raw: Path, half_cut: st
 
 
 def test_a_run_cuts_the_shape_of_a_stock(without_raw: Path, half_cut: str) -> None:
-    request = SimulationRequest(**PLAN)  # type: ignore[arg-type]
-    found = simulate(request, RunFiles(file=without_raw, stock=half_cut))
+    request = SimulationRequest(**PLAN, stock=half_cut)  # type: ignore[arg-type]
+    found = simulate(request, RunFiles(file=without_raw))
     assert found.whole.volume == pytest.approx(HALF, rel=0.02)
-    with pytest.raises(StepNcError, match="defines its own raw part; omit the stock"):
-        simulate(request, RunFiles(file=SLOT, stock=half_cut))
+    with pytest.raises(StepNcError, match="defines its own raw part: omit --stock"):
+        simulate(request, RunFiles(file=SLOT))
 
 
 def test_given_data_keep_the_shape_of_a_stock(without_raw: Path, half_cut: str) -> None:

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from service.cli import options as cli_options
-from service.cli.options import add_file, add_json
+from service.cli.options import add_json, add_program, program_request
+from service.requests.given import ProgramRequest
 from stepnc_model.post.dialect import Dialect
 
 
@@ -23,10 +24,11 @@ def test_every_control_is_named() -> None:
 
 def test_a_file_is_asked_for_and_units_and_json_need_not_be_given() -> None:
     parser = argparse.ArgumentParser()
-    add_file(parser)
+    add_program(parser)
     add_json(parser)
     options = parser.parse_args(["part.stpnc"])
-    assert (options.file, options.units, options.json) == (Path("part.stpnc"), "iso", False)
+    assert (options.file, options.json) == (Path("part.stpnc"), False)
+    assert program_request(options) == ProgramRequest()
     assert parser.parse_args(["part.stpnc", "--units", "rpm-mmin", "--json"]).json
     with pytest.raises(SystemExit):
         parser.parse_args([])

@@ -12,6 +12,7 @@ import httpx
 import pytest
 
 from service.contents import Contents, check
+from service.requests.given import ProgramRequest
 from service.rest.app import application
 from service.rest.settings import Settings
 from service.storage import programs
@@ -162,9 +163,9 @@ def test_who_has_the_findings_needs_no_check(
 ) -> None:
     checks: list[str] = []
 
-    def counted(file: Path, *, units: str, name: str) -> Contents:
-        checks.append(units)
-        return check(file, units=units, name=name)
+    def counted(file: Path, request: ProgramRequest, *, name: str) -> Contents:
+        checks.append(request.units)
+        return check(file, request, name=name)
 
     monkeypatch.setattr("service.rest.programs.check", counted)
     app = application(Settings(data=str(tmp_path)))

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from service.numbers import numbers_in
-from service.reading import read_program, silent
+from service.reading import silent
+from service.requests.runs import RunRequest
 from service.simulation.setup import (
     CodeRequest,
     CountedIterator,
@@ -47,9 +48,7 @@ def test_what_is_handed_on_is_counted() -> None:
 
 
 def program(machine: str = "vmc15") -> PreparedRun:
-    return from_program(
-        read_program(BRACKET, units="iso"), machine=machine, material="", tell=silent
-    )
+    return from_program(BRACKET, RunRequest(machine=machine), tell=silent)
 
 
 def test_a_program_brings_tools_stock_and_material() -> None:
@@ -78,7 +77,7 @@ def test_the_table_of_the_example_holds_the_tools_of_its_program(tmp_path: Path)
     code = tmp_path / "a.ngc"
     code.touch()
     request = CodeRequest(code=code, tools=TOOLS, stock="-3,-3,-40,153,93,2")
-    prepared = from_code(request, program=None, units="iso", machine="vmc15", material="c45")
+    prepared = from_code(request, RunRequest(machine="vmc15", material="c45"), program=None)
     known = program()
     assert prepared.tools == known.tools
     assert prepared.raw == known.raw
@@ -88,7 +87,7 @@ def coded(folder: Path, text: str, name: str = "a.ngc", *, dialect: str = "") ->
     path = folder / name
     path.write_text(text, encoding="ascii")
     request = CodeRequest(code=path, dialect=dialect)
-    return from_code(request, program=None, units="iso", machine="vmc15", material="")
+    return from_code(request, RunRequest(machine="vmc15"), program=None)
 
 
 @pytest.mark.parametrize(
@@ -124,7 +123,7 @@ def test_remarks_that_name_a_workingstep_begin_it(tmp_path: Path) -> None:
     path = tmp_path / "a.ngc"
     path.write_text("(rough-face)\n(mill a slot)\n(MILL SLOT)\n", encoding="ascii")
     request = CodeRequest(code=path)
-    prepared = from_code(request, program=BRACKET, units="iso", machine="vmc15", material="")
+    prepared = from_code(request, RunRequest(machine="vmc15"), program=BRACKET)
     begun = [
         block.workingstep for _, block in prepared.blocks if isinstance(block, post.Comment)
     ]
@@ -135,7 +134,7 @@ def test_a_bar_has_a_diameter_and_two_ends(tmp_path: Path) -> None:
     path = tmp_path / "a.ngc"
     path.write_text("", encoding="ascii")
     request = CodeRequest(code=path, stock="60,-150,2", tools=TOOLS)
-    prepared = from_code(request, program=None, units="iso", machine="lathe22", material="c45")
+    prepared = from_code(request, RunRequest(machine="lathe22", material="c45"), program=None)
     assert prepared.raw is not None
     assert (prepared.raw.low, prepared.raw.high) == ((-30.0, -30.0, -150.0), (30.0, 30.0, 2.0))
     assert prepared.raw.radius == 30.0

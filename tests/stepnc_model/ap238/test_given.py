@@ -10,11 +10,14 @@ from stepnc_model.ap238.view import AimView, is_aim
 from stepnc_model.ap238.writing import spliced_into
 from stepnc_model.draft import Draft
 from stepnc_model.errors import SchemaError
-from stepnc_model.given import Completed, GivenData, completed, without_given
+from stepnc_model.given import Completed, GivenData, GivenFeed, completed, without_given
 from stepnc_model.program import Program
 from stepnc_model.technology import programmed
 from stepnc_model.tool import tool_of
+from stepnc_model.units import FeedUnit
 from tests.stepnc_model.ap238.samples import MILLING, exported, own, public, read
+
+FEED = GivenFeed(value=4.0, unit=FeedUnit.MM_PER_MINUTE)
 
 
 def written(whole: Completed) -> Program:
@@ -91,7 +94,7 @@ def test_withdrawn_data_leave_every_instance_as_it_was(name: str) -> None:
 
 def test_a_feed_is_given_to_the_public_example_in_its_own_unit() -> None:
     data = public(MILLING)
-    whole = completed(Program(read(data)), GivenData(feed=4.0))
+    whole = completed(Program(read(data)), GivenData(feed=FEED))
     program = written(whole)
     assert feed_of(whole.program) == feed_of(program) == pytest.approx(4.0, rel=1e-12)
     left = without_given(program, whole.given)
