@@ -17,8 +17,8 @@ from pathlib import Path
 from pyarrow import parquet
 
 from service.requests.runs import SimulationRequest
+from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles, simulate
-from service.simulation.setup import CodeRequest
 from simulator.motion.model_name import ControlModelName
 
 SPEED = 20.0

@@ -32,8 +32,8 @@ from service.blocks.block_program import write_test
 from service.blocks.cycle_time import CycleTimeRequest, cycle_time
 from service.requests.agent import AgentRequest
 from service.requests.blocks import BlockTestRequest
+from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles
-from service.simulation.setup import CodeRequest
 from simulator.agent.http import application
 from simulator.errors import CalibrationError
 from simulator.library import load_machine

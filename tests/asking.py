@@ -11,8 +11,8 @@ from service.requests.advice import AdviceRequest
 from service.requests.fields import member_of
 from service.requests.given import Units
 from service.requests.runs import ControlRequest, ForceView, SensorChoice, SimulationRequest
+from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles
-from service.simulation.setup import CodeRequest
 from service.usecases import AdviceFiles
 from simulator.machine.noise_kind import NoiseKind
 from simulator.motion.model_name import ControlModelName
@@ -102,6 +102,7 @@ def asked_simulation(
     kc_factor: float = 1.0,
     has_power_deviation: bool = False,
     seed: int = 0,
+    keep_going: bool = False,
     output: Path | None = None,
     report: Path | None = None,
 ) -> AskedSimulation:
@@ -124,6 +125,7 @@ def asked_simulation(
         kc_factor=kc_factor,
         has_power_deviation=has_power_deviation,
         seed=seed,
+        keep_going=keep_going,
     )
     return request, RunFiles(file=file, code=code, output=output, report=report)
 

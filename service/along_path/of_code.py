@@ -12,7 +12,6 @@ from optimiser.along_path.caps import CutBounds
 from optimiser.along_path.tool_bounds import bounds_of_tool
 from optimiser.modes import Mode
 from service.along_path.called_tools import called_tool_findings, with_called_tools
-from service.along_path.code_paths import CodeBlocks, CodePaths
 from service.along_path.course import PathSource
 from service.along_path.plan_run import PartTotals
 from service.along_path.run import FeedsAlongPath, along_path, feed_task
@@ -36,6 +35,7 @@ from service.progress import Ticker
 from service.reading import Tell, silent
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
+from service.simulation.code_paths import CodeBlocks, CodePaths
 from simulator.library import load_machine
 from simulator.spec import Machine, MaterialMatch
 from simulator.tool_files.file_unit import FileUnit
@@ -204,7 +204,7 @@ def _bounds(code: CodePaths, request: AdviceRequest) -> dict[str, CutBounds]:
     roughness = None if request.roughness_um is None else mm_from_um(request.roughness_um)
     found: dict[str, CutBounds] = {}
     for part in code.parts:
-        if part.tool in kept or part.tool not in code.tools:
+        if part.tool in kept or part.tool not in code.tools or code.material is None:
             continue
         is_finishing = part.is_finishing or part.tool in finishing or request.mode is Mode.QC
         bounds = bounds_of_tool(

@@ -9,9 +9,9 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from optimiser.along_path.plan import FeedTask
-from service.along_path.code_paths import CodePaths
 from service.along_path.course import PathSource
 from service.along_path.plan_run import PartTotals, run_plan
+from service.simulation.code_paths import CodePaths
 from stepnc_model.nc.advice import BlockAdvice, RewrittenCode
 from stepnc_model.nc.program import NcProgram, read_program
 from stepnc_model.nc.rewrite import rewrite

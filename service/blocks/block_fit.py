@@ -14,7 +14,7 @@ from service.reading import Tell, silent
 from service.recording.logged_run import read_logged_run
 from service.recording.table import TABLES, batches, headings
 from service.requests.blocks import LengthUnit
-from service.simulation.setup import dialect_of
+from service.simulation.of_code import dialect_of
 from simulator.calibration.block_circles import BlockCircle, circles_of
 from simulator.calibration.block_feed import (
     CircleFeed,

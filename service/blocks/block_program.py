@@ -8,7 +8,7 @@ from service.files import write_lines
 from service.reading import Tell, silent
 from service.requests.blocks import BlockTestRequest, LengthUnit
 from service.requests.fields import require_bounds
-from service.simulation.setup import dialect_of
+from service.simulation.of_code import dialect_of
 from simulator.calibration.block_circles import (
     DWELL,
     LEAST_INCREMENTS,

@@ -159,8 +159,8 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
     StepNcError
         When options of NC code alone are given without --nc.
     """
+    from service.simulation.of_code import CodeRequest
     from service.simulation.run import RunFiles
-    from service.simulation.setup import CodeRequest
     from stepnc_model.errors import StepNcError
 
     code = None

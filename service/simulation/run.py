@@ -17,14 +17,9 @@ from service.requests.fields import require_bounds
 from service.requests.runs import ForceView, SimulationRequest
 from service.run_file import require_suffix
 from service.simulation.gathering import RunCollector, SampleWatcher
+from service.simulation.of_code import CodeRequest, from_code
 from service.simulation.remaining import keep_stock, untouched
-from service.simulation.setup import (
-    CodeRequest,
-    PreparedRun,
-    from_code,
-    from_program,
-    prepared_program,
-)
+from service.simulation.setup import PreparedRun, from_program, prepared_program
 from service.simulation.timeline_file import TimelineFile
 from service.simulation.trace import TraceKeeper
 from simulator.errors import SimulationError
@@ -219,7 +214,7 @@ def place_in(prepared: PreparedRun, virtual: VirtualMachine) -> str:
 
 def _prepared(request: SimulationRequest, files: RunFiles, tell: Tell) -> PreparedRun:
     if files.code is not None:
-        return from_code(files.code, request, program=files.file)
+        return from_code(files.code, request, program=files.file, keep_going=request.keep_going)
     if files.file is None:
         raise StepNcError("name a STEP-NC program, or NC code with --nc")
     return from_program(

@@ -1,37 +1,30 @@
-"""Setup of a simulation: blocks, tools and stock, from a program or from NC code."""
+"""Setup of a simulation: blocks, tools and stock of a STEP-NC program."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, TypeVar
 
-from service.chosen import load_material_named, machine_for, material_for
-from service.files import open_lines
+from service.chosen import machine_for, material_for
 from service.paths.toolpaths import paths_of, with_feeds
 from service.raw_stock import (
     GivenStock,
     larger_stock_map,
-    raw_stock_of,
     raw_triangles,
     stock_map,
 )
-from service.reading import Tell, one_of, read_given
+from service.reading import Tell, read_given
 from service.requests.runs import RunRequest
-from simulator.library import load_machine
 from simulator.machine.interpreter import Numbered
-from simulator.machine.tooling import loaded_tool, table_tool
+from simulator.machine.tooling import loaded_tool
 from simulator.machine.virtual import LoadedTool, StockMap
-from simulator.spec import Machine, MachineKind, MaterialMatch
-from simulator.tool_files.file_unit import FileUnit
-from simulator.tool_files.read import read_tools
+from simulator.spec import Machine, MaterialMatch
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import Setup
-from stepnc_model.errors import Finding, PostError, SchemaError, Severity, StepNcError
+from stepnc_model.errors import Finding, SchemaError
+from stepnc_model.nc.program import NcProgram
 from stepnc_model.part21.values import Ref
 from stepnc_model.plausibility import refusal
-from stepnc_model.post import blocks as post
-from stepnc_model.post.dialect import SUFFIXES, Dialect
-from stepnc_model.post.dialects import read_blocks
 from stepnc_model.post.neutral import blocks_of, tool_numbers
 from stepnc_model.program import Program, ResolvedWorkingstep, Stock
 from stepnc_model.toolpath.task import stock_of
@@ -60,6 +53,8 @@ class PreparedRun:
     """Function that returns the number of the last block read."""
     program: Program | None = None
     """STEP-NC program; None for NC code alone."""
+    code: NcProgram | None = None
+    """NC code that is not plain; None for any other."""
     findings: tuple[Finding, ...] = ()
     remarks: tuple[Finding, ...] = ()
     """Warnings about the program, the same for every command."""
@@ -67,21 +62,6 @@ class PreparedRun:
     """Reasons why some workingsteps were left out."""
     left_out: frozenset[int] = frozenset()
     """Instances of the workingsteps that were left out."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CodeRequest:
-    """NC code, with the data that it lacks."""
-
-    code: Path
-    dialect: str = ""
-    """Dialect of the code; empty: by the file extension."""
-    tools: Path | None = None
-    """Tool table, in any format that is read."""
-    tools_unit: FileUnit | None = None
-    """Unit of a tool table that names none; None: mm."""
-    stock: str = ""
-    """Raw part, as :func:`service.raw_stock.raw_stock_of` reads it; empty: unknown."""
 
 
 class CountedIterator(Generic[T]):
@@ -178,8 +158,8 @@ def prepared_program(
         machine=chosen,
         material=match,
         blocks=((blocks.count, block) for block in blocks),
-        tools=_tools(program, numbers, match),
-        stock=_Clamped(program, chosen, margin).stock,
+        tools=loaded_tools(program, numbers, match),
+        stock=ClampedStock(program, chosen, margin).stock,
         raw=paths.stock,
         # Most steps become one block; the number of other blocks is taken from the examples.
         done=lambda: blocks.share(steps + AROUND_PATH * len(paths.paths) + AROUND_PROGRAM),
@@ -194,82 +174,7 @@ def prepared_program(
     )
 
 
-def from_code(request: CodeRequest, run: RunRequest, *, program: Path | None) -> PreparedRun:
-    """Prepare NC code, with tools and stock of its program or as the user specifies.
-
-    Parameters
-    ----------
-    request : CodeRequest
-    run : RunRequest
-    program : Path, optional
-        STEP-NC program of which the code was made.
-
-    Raises
-    ------
-    StepNcError
-        When a file or a name is invalid.
-    """
-    if program is not None:
-        return _code_of_program(request, program, run)
-    if not run.machine:
-        raise StepNcError("NC code without a program: name a machine with --machine")
-    chosen = load_machine(run.machine)
-    match = load_material_named(run.material) if run.material else None
-    tools = None
-    findings: tuple[Finding, ...] = ()
-    if request.tools is not None:
-        if match is None:
-            raise StepNcError("a tool table without a material: name one with --material")
-        library = read_tools(request.tools, unit=request.tools_unit)
-        findings += library.findings
-        tools = {tool.number: table_tool(tool, match.material) for tool in library.tools}
-    raw = raw_stock_of(request.stock) if request.stock else None
-    size = _size(request.code)
-    lines = CountedIterator(_lines(request.code), len)
-    clamped = None if raw is None else stock_map(chosen, raw)
-    if clamped is None or tools is None:
-        text = "no material is removed without stock, tool table and material: idle power only"
-        findings += (Finding(severity=Severity.WARNING, message=text),)
-    return PreparedRun(
-        name=request.code.name,
-        machine=chosen,
-        material=match,
-        blocks=_read(request, lines, chosen, {}),
-        tools=tools,
-        stock=lambda _: clamped,
-        raw=None if raw is None else raw.bounds,
-        done=lambda: lines.share(size),
-        read=lambda: lines.count,
-        findings=findings,
-    )
-
-
-def _code_of_program(request: CodeRequest, file: Path, run: RunRequest) -> PreparedRun:
-    """Prepare NC code made from a program; tools are numbered in the order of their use."""
-    program = read_given(file, run).program
-    match = material_for(run.material, program)
-    machine = machine_for(run.machine, program)
-    used = dict.fromkeys(step.tool_ref for step in program.workingsteps)
-    numbers = {ref: number for number, ref in enumerate(used, 1)}
-    ids = {_plain(step.id): step.id for step in program.workingsteps}
-    size = _size(request.code)
-    lines = CountedIterator(_lines(request.code), len)
-    setup = next((step.setup for step in program.workingsteps), None)
-    return PreparedRun(
-        name=request.code.name,
-        machine=machine,
-        material=match,
-        blocks=_read(request, lines, machine, ids),
-        tools=_tools(program, numbers, match),
-        stock=_Clamped(program, machine).stock,
-        raw=stock_of(program, setup),
-        done=lambda: lines.share(size),
-        read=lambda: lines.count,
-        program=program,
-    )
-
-
-class _Clamped:
+class ClampedStock:
     """Stock of each setup, updated as it is machined. Running state."""
 
     def __init__(self, program: Program, machine: Machine, margin: float = 0.0) -> None:
@@ -300,69 +205,17 @@ class _Clamped:
         return stock_map(self._machine, raw)
 
 
-def _tools(
+def loaded_tools(
     program: Program, numbers: dict[Ref[Entity], int], match: MaterialMatch
 ) -> dict[int, LoadedTool]:
-    return {
-        number: loaded_tool(program, ref, number, match.material)
-        for ref, number in numbers.items()
-    }
-
-
-def _size(path: Path) -> int:
-    """Size of a file, in bytes; raises an error of the project if it does not exist."""
-    try:
-        return path.stat().st_size
-    except OSError as error:
-        raise StepNcError(f"{path}: {error.strerror}") from error
-    except ValueError as error:
-        raise StepNcError(f"{str(path)!r} is not a valid file name: {error}") from error
-
-
-def _lines(path: Path) -> Iterator[str]:
-    """Yield the lines of a file, which is opened only when the first is requested."""
-    yield from open_lines(path)
-
-
-def _read(
-    request: CodeRequest, lines: CountedIterator[str], machine: Machine, ids: dict[str, str]
-) -> Iterator[Numbered]:
-    """Yield the blocks of NC code; comments that name a workingstep start it."""
-    kind = (
-        post.MachineType.LATHE if machine.kind is MachineKind.LATHE else post.MachineType.MILL
-    )
-    dialect = dialect_of(request.code, request.dialect)
-    try:
-        for block in read_blocks(lines, dialect, machine=kind):
-            if isinstance(block, post.Comment) and _plain(block.text) in ids:
-                name = ids[_plain(block.text)]
-                yield lines.count, post.Comment(text=block.text, workingstep=name)
-            else:
-                yield lines.count, block
-    except PostError as error:
-        raise StepNcError(
-            f"{request.code.name}: {error} (the virtual machine reads plain code; "
-            "`stepnc check` and `optimise` read code of any origin)"
-        ) from error
-
-
-def dialect_of(code: Path, named: str) -> Dialect:
-    """Dialect of NC code: as named, or by the file extension.
+    """Tools of a program by number, with their data for the material.
 
     Raises
     ------
     StepNcError
-        When the name or the extension is unknown.
+        When a tool lacks something that a run needs.
     """
-    if named:
-        return one_of(Dialect, named.lower(), "dialect")
-    for control, suffix in SUFFIXES.items():
-        if code.name.lower().endswith(suffix):
-            return control
-    known = ", ".join(control.value for control in Dialect)
-    raise StepNcError(f"{code}: unknown file extension; add --dialect: {known}")
-
-
-def _plain(text: str) -> str:
-    """Normalise a comment, which controls may spell differently, to capitals and digits."""
-    return "".join(filter(str.isalnum, text)).upper()
+    return {
+        number: loaded_tool(program, ref, number, match.material)
+        for ref, number in numbers.items()
+    }

@@ -259,7 +259,7 @@ class IsoControl:
         elif self.modes.shot is Shot.CENTRE:
             return
         elif self.modes.shot is Shot.DWELL:
-            self.recorder.dwell(self.seconds(words))
+            self._dwell(self.seconds(words))
             if self.dialect is Dialect.LINUXCNC and has_axes and not self.modes.lost:
                 self._interpolate(words)
         elif ",A" in words.values or ",A" in words.macros:
@@ -272,6 +272,11 @@ class IsoControl:
         elif has_axes or self._is_circle(words):
             self._rotary(words)
             self._interpolate(words)
+
+    def _dwell(self, seconds: float) -> None:
+        if seconds < 0.0:
+            self.remarks.lost(self.recorder.block, f"a dwell of {seconds:g} s")
+        self.recorder.dwell(max(seconds, 0.0))
 
     def _set_offsets(self, words: BlockWords) -> None:
         """Take values for frames (G10 L2, L20), or for tools and other tables."""

@@ -391,6 +391,8 @@ class IsoModes:
         if self.shot is Shot.SHIFT and "S" in words.values:
             self._take_limit(words)
         speed = words.values.pop("S", None)
+        if speed is not None and speed < 0.0:
+            self.lose(f"a spindle speed of {speed:g}")
         if "S" in words.macros:
             self.spindle = nan
         elif speed is not None:

@@ -4,6 +4,9 @@ from stepnc_model.errors import Finding, FindingList, Severity
 from stepnc_model.nc.text import NcText
 from stepnc_model.post.words import shown
 
+NOT_UNDERSTOOD = "not understood: "
+"""Beginning of a remark on a block that is not understood."""
+
 
 class Remarks:
     """Collector of the remarks on one program; each block is remarked once for a reason."""
@@ -15,7 +18,7 @@ class Remarks:
 
     def lost(self, block: int, why: str) -> None:
         """Remark that a block is not understood and stays as it is."""
-        self.warn(block, f"not understood: {why}")
+        self.warn(block, NOT_UNDERSTOOD + why)
 
     def warn(self, block: int, why: str) -> None:
         """Remark something about a block that a machinist should see."""

@@ -12,8 +12,8 @@ from kbe.store import open_store
 from service.buckets import BucketedRun
 from service.calibration.run import CalibrationResult, CycleTime
 from service.control.run import ControlRun, control
+from service.simulation.of_code import CodeRequest
 from service.simulation.run import Simulation
-from service.simulation.setup import CodeRequest
 from service.simulation.trace import TraceKeeper
 from simulator.calibration.calibrated import Delay
 from simulator.calibration.features import Calibration, Estimate, Parameter

@@ -129,6 +129,7 @@ def test_the_run_meets_what_was_planned_for_a_sharp_edge(name: str) -> None:
     request = replace(request, safety=0.5)
     found = advised(text, request)
     code = paths_of(text)
+    assert code.material is not None
     for part, step in zip(code.parts, found.along.steps[1:], strict=True):
         bounds = bounds_of_tool(
             code.tools[part.tool], code.machine, code.material.material, quantile=0.5,

@@ -11,8 +11,8 @@ from service.blocks.block_fit import BlockFitRequest, BlockFitResult, fit_blocks
 from service.blocks.block_program import write_test
 from service.requests.blocks import BlockTestRequest, LengthUnit
 from service.requests.runs import SimulationRequest
+from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles, simulate
-from service.simulation.setup import CodeRequest
 from simulator.calibration.block_fit import FeedCause
 from simulator.library import load_machine
 from simulator.machine_file import machine_toml

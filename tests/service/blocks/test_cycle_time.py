@@ -1,14 +1,17 @@
 """The command ``cycletime``: predicted beside logged, and the modified program."""
 
+import re
 from dataclasses import replace
+from math import cos, pi, sin
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from service.blocks.cycle_time import CycleTimeRequest, cycle_time
 from service.requests.runs import SimulationRequest
+from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles, simulate
-from service.simulation.setup import CodeRequest
 from simulator.errors import SimulationError
 from simulator.library import load_machine
 from simulator.machine.block_times import LossCause
@@ -73,6 +76,33 @@ def test_nc_code_of_a_lathe_and_a_log_without_names(tmp_path: Path) -> None:
     )
     result = cycle_time(CycleTimeRequest(file=part, machine="vmc15", log=str(log)))
     assert result.total.actual == pytest.approx(result.total.predicted, rel=0.01)
+
+
+def test_code_of_another_cam_keeps_all_but_its_feeds(tmp_path: Path) -> None:
+    """Short chords of an arc, as Klartext with comments and a blank form."""
+    turn = np.linspace(0.0, pi, 200)
+    feeds = ["", " F6000", *[""] * 198]
+    lines = [
+        f"L X{-20.0 * cos(t):+.3f} Y{20.0 * sin(t):+.3f}{feed} ; {t:.2f}"
+        for t, feed in zip(turn, feeds, strict=True)
+    ]
+    head = [
+        "BEGIN PGM ARC MM",
+        "BLK FORM 0.1 Z X-50. Y-30. Z-20.",
+        "BLK FORM 0.2 X+50. Y+30. Z+1.",
+    ]
+    head += ["TOOL CALL 1 Z S3000", "L X-20. Y+0. R0 FMAX M3", "L Z+5. FMAX", "L Z-1. F400"]
+    text = "\n".join(f"{n} {line}" for n, line in enumerate([*head, *lines, "END PGM ARC MM"]))
+    part, output = tmp_path / "arc.h", tmp_path / "modified.h"
+    part.write_text(text + "\n", encoding="ascii")
+    before = cycle_time(CycleTimeRequest(file=part, machine="vmc15", output=output))
+    assert before.total.predicted > before.total.programmed + 0.2
+    old, new = (re.sub(r" F[0-9.]+", "", each.read_text("ascii")) for each in (part, output))
+    assert new == old
+    after = cycle_time(CycleTimeRequest(file=output, machine="vmc15"))
+    assert after.total.predicted == pytest.approx(before.total.predicted, rel=0.01)
+    assert after.total.programmed == pytest.approx(after.total.predicted, rel=0.03)
+    assert [each.message for each in before.findings if "any origin" in each.message]
 
 
 def test_doubts_are_told(tmp_path: Path) -> None:

@@ -12,8 +12,8 @@ import pytest
 
 from service.calibration.run import CalibrationRequest, CalibrationResult, calibrate
 from service.cli.main import main
+from service.simulation.of_code import CodeRequest
 from service.simulation.run import simulate
-from service.simulation.setup import CodeRequest
 from simulator.calibration.features import Parameter
 from simulator.library import load_machine
 from simulator.machine.transients import USUAL_DELAY

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from service.simulation.gathering import MOST_SECONDS
+from service.simulation.of_code import CodeRequest
 from service.simulation.run import simulate
-from service.simulation.setup import CodeRequest
 from simulator.errors import SimulationError
 from simulator.machine.samples import Samples
 from tests.asking import asked_simulation

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from service.raw_stock import raw_stock_of
+from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles, Simulation, simulate
-from service.simulation.setup import CodeRequest
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from stepnc_model.errors import StepNcError, WriteError

@@ -11,8 +11,8 @@ from pyarrow import parquet
 from optimiser.problem import LimitName
 from service import progress, usecases
 from service.paths import toolpaths
+from service.simulation.of_code import CodeRequest
 from service.simulation.run import Simulation, simulate
-from service.simulation.setup import CodeRequest
 from simulator.errors import SimulationError
 from simulator.machine.totals import Total
 from simulator.motion.segments import Floats

@@ -13,11 +13,11 @@ from re import IGNORECASE, compile
 
 import numpy as np
 
-from service.along_path.plan_run import BRIDGE
 from service.raw_stock import GivenStock, larger_stock_map, raw_stock_of, stock_map
 from service.simulation.setup import CountedIterator, PreparedRun
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import table_tool
+from simulator.machine.virtual import LoadedTool, StockMap
 from simulator.motion.segments import Bools, Ints
 from simulator.removal.cutter import Cutter, Insert
 from simulator.spec import Machine, MachineKind, MaterialMatch
@@ -50,6 +50,9 @@ from stepnc_model.toolpath.path import Point
 SURFACE = compile(rb"[(;][^)\r\n]*?(FINISH|ROUGH)", IGNORECASE)
 """Comment that says whether what follows leaves final surfaces."""
 
+BRIDGE = 0
+"""Line of moves that stand for those that are left out: what they meet is no fault."""
+
 NOT_PLACED = (
     MoveFlag.COMPENSATED
     | MoveFlag.TRANSFORMED
@@ -80,20 +83,34 @@ class ToolPart:
 
 
 class CodePaths:
-    """Moves of an NC program that can be run, with its tools and stock."""
+    """Moves of an NC program that can be run, with its tools and stock.
+
+    Parameters
+    ----------
+    program : NcProgram
+    machine : Machine
+    material : MaterialMatch or None
+        None: nothing is cut.
+    name : str
+    tools : dict or None
+        Tools by number; None: any tool may run, and nothing is cut.
+    stock : str
+        Raw part, as :func:`service.raw_stock.raw_stock_of` reads it; empty: nothing is cut.
+    """
 
     def __init__(
         self,
         program: NcProgram,
         machine: Machine,
-        material: MaterialMatch,
+        material: MaterialMatch | None,
         *,
         name: str,
-        tools: dict[int, TableTool],
+        tools: dict[int, TableTool] | None,
         stock: str,
     ) -> None:
         self.machine, self.material = machine, material
-        self.name, self.tools, self.stock = name, tools, stock
+        self.name, self.stock = name, stock
+        self.tools = tools or {}
         self._mesh: GivenStock | None = None
         """Stock that serves several runs: only its map is cut."""
         self._is_linuxcnc = program.dialect is Dialect.LINUXCNC
@@ -107,7 +124,8 @@ class CodePaths:
         frame = int(moves.frame[fed[0]]) if len(fed) else 0
         self.frame = moves.frames[frame]
         """Frame in which the stock stands: that of the first cut."""
-        is_here, is_known = moves.frame == frame, np.isin(moves.tool, list(tools))
+        is_here = (moves.frame == frame) | (not stock)
+        is_known = np.isin(moves.tool, list(self.tools)) | (tools is None)
         is_sure = ~_is_uncertain(moves)
         is_placed = is_here & ((moves.flags & int(NOT_PLACED)) == 0) & is_sure
         is_placed &= moves.kind != MoveKind.UNKNOWN
@@ -130,7 +148,7 @@ class CodePaths:
         self.can_split = self.can_change & (count == 1)
         """Whether each line may be split, (L,)."""
         self.can_split[lines[~moves.is_splittable]] = False
-        reasons = {
+        self._reasons = {
             "the tool is not in the tool table": ~is_known & (moves.tool >= 0),
             "no tool is known": moves.tool < 0,
             f"the stock stands in {self.frame}, not in their frame": ~is_here,
@@ -145,8 +163,26 @@ class CodePaths:
             for flag, name in REASONS.items()
             if flag & (NOT_PLACED | UNADVISED)
         }
-        self.findings = (*self._findings(is_fed & ~chosen, reasons), *self._beside())
+        self._is_kept = is_fed & ~chosen
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
         """Lines whose feeds stay as they are, and why."""
+        kept = self._findings(self._is_kept, "the feeds of {} stay as programmed: {}")
+        return (*kept, *self.beside)
+
+    @property
+    def left_out(self) -> tuple[Finding, ...]:
+        """Lines of feed moves that do not run, and why."""
+        moves = self.program.moves
+        is_fed = np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC, MoveKind.THREAD))
+        is_left = is_fed & ~(self._is_run & moves.is_known)
+        return tuple(self._findings(is_left, "{} left out of the run: {}"))
+
+    @property
+    def beside(self) -> tuple[Finding, ...]:
+        """Lines at which the tool goes beside a compensated contour."""
+        return tuple(self._beside())
 
     def _radius(self, setting: ModalSetting) -> float | None:
         """Radius by which a contour is offset, mm; None if it is not known."""
@@ -161,7 +197,6 @@ class CodePaths:
         return 0.5 * shape.diameter if isinstance(shape, Cutter) else None
 
     def _beside(self) -> Iterator[Finding]:
-        """Lines at which the tool goes beside a compensated contour."""
         moves, text = self.program.moves, self.program.text
         is_beside = (moves.flags & int(MoveFlag.BESIDE)) != 0
         rows = np.flatnonzero(is_beside & np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC)))
@@ -182,13 +217,7 @@ class CodePaths:
         StepNcError
             When the stock is invalid.
         """
-        raw = self._mesh or raw_stock_of(self.stock)
-        if raw.triangles is not None:
-            self._mesh = raw
-        if margin > 0.0:
-            clamped = larger_stock_map(self.machine, raw, margin)
-        else:
-            clamped = stock_map(self.machine, raw)
+        raw = self._raw()
         moves = replace(self.program.moves, rows=self.program.moves.rows[self._is_run])
         beginning = {
             part.row: Comment(text=part.name, workingstep=part.name) for part in self.parts
@@ -196,24 +225,42 @@ class CodePaths:
         blocks = CountedIterator(
             neutral_blocks(replace(self.program, moves=moves), name=self.name, before=beginning)
         )
-        tools = {
-            number: table_tool(tool, self.material.material)
-            for number, tool in self.tools.items()
-        }
-        is_lathe = self.machine.kind is MachineKind.LATHE
-        inserts = {n for n, tool in tools.items() if is_lathe and _is_outside(tool.shape)}
-        detour = _Detour(raw.bounds, inserts)
+        material = self.material
+        tools = None
+        if material is not None:
+            tools = {n: table_tool(tool, material.material) for n, tool in self.tools.items()}
+        clamped = None if raw is None else self._map(raw, margin)
         return PreparedRun(
             name=self.name,
             machine=self.machine,
-            material=self.material,
-            blocks=detour.led_around(blocks),
-            tools=tools,
+            material=material,
+            blocks=iter(blocks) if raw is None else self._detour(raw, tools).led_around(blocks),
+            tools=tools or None,
             stock=lambda _: clamped,
-            raw=raw.bounds,
+            raw=None if raw is None else raw.bounds,
             done=lambda: blocks.share(len(moves)),
             read=lambda: blocks.count,
         )
+
+    def _raw(self) -> GivenStock | None:
+        """Raw part; None if it is not known."""
+        if not self.stock:
+            return None
+        raw = self._mesh or raw_stock_of(self.stock)
+        if raw.triangles is not None:
+            self._mesh = raw
+        return raw
+
+    def _map(self, raw: GivenStock, margin: float) -> StockMap:
+        if margin > 0.0:
+            return larger_stock_map(self.machine, raw, margin)
+        return stock_map(self.machine, raw)
+
+    def _detour(self, raw: GivenStock, tools: dict[int, LoadedTool] | None) -> "_Detour":
+        is_lathe = self.machine.kind is MachineKind.LATHE
+        known = (tools or {}).items()
+        inserts = {number for number, tool in known if is_lathe and _is_outside(tool.shape)}
+        return _Detour(raw.bounds, inserts)
 
     def line(self, part: ToolPart) -> int:
         """Line of the first move of a part."""
@@ -254,7 +301,7 @@ class CodePaths:
             tool = int(tools[row])
             names[tool] = names.get(tool, 0) + 1
             yield ToolPart(
-                name=f"T{tool}" if names[tool] == 1 else f"T{tool} ({names[tool]})",
+                name=_part_name(tool, names[tool]),
                 tool=tool,
                 row=row,
                 is_finishing=begins[row],
@@ -288,17 +335,17 @@ class CodePaths:
                 at[row] = found[high - 1][1].upper() == b"FINISH"
         return at
 
-    def _findings(self, is_left: Bools, reasons: dict[str, Bools]) -> Iterator[Finding]:
-        """Lines whose feeds stay as they are, by reason."""
+    def _findings(self, is_left: Bools, message: str) -> Iterator[Finding]:
+        """Lines of some moves by reason; the message has a place for both."""
         moves, text = self.program.moves, self.program.text
-        for reason, is_so in reasons.items():
+        for reason, is_so in self._reasons.items():
             rows = np.flatnonzero(is_left & is_so)
             if not len(rows):
                 continue
             lines = np.unique(text.lines[moves.block[rows]])
             yield Finding(
                 severity=Severity.WARNING,
-                message=f"the feeds of {_spans(lines)} stay as programmed: {reason}",
+                message=message.format(_spans(lines), reason),
                 line=int(lines[0]),
             )
 
@@ -313,6 +360,12 @@ def _defined(moves: NcMoves, dialect: Dialect) -> NcMoves:
     table = moves.rows.copy()
     table["block"][rows] = table["fed_by"][rows]
     return replace(moves, rows=table)
+
+
+def _part_name(tool: int, count: int) -> str:
+    """Name of the n-th part with a tool; a negative number is none."""
+    name = f"T{tool}" if tool >= 0 else "no tool"
+    return name if count == 1 else f"{name} ({count})"
 
 
 def _is_uncertain(moves: NcMoves) -> Bools:
