@@ -11,7 +11,6 @@ from pathlib import Path
 from optimiser.along_path.caps import CutBounds
 from optimiser.along_path.tool_bounds import bounds_of_tool
 from optimiser.modes import Mode
-from service.along_path.called_tools import called_tool_findings, with_called_tools
 from service.along_path.course import PathSource
 from service.along_path.plan_run import PartTotals
 from service.along_path.run import FeedsAlongPath, along_path, feed_task
@@ -35,6 +34,7 @@ from service.progress import Ticker
 from service.reading import Tell, silent
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
+from service.simulation.called_tools import called_tool_findings, with_called_tools
 from service.simulation.code_paths import CodeBlocks, CodePaths
 from simulator.library import load_machine
 from simulator.spec import Machine, MaterialMatch

@@ -13,6 +13,7 @@ from service.files import open_lines, read_bytes
 from service.raw_stock import raw_stock_of, stock_map
 from service.reading import one_of, read_given
 from service.requests.runs import RunRequest
+from service.simulation.called_tools import called_tool_findings, with_called_tools
 from service.simulation.code_paths import CodePaths
 from service.simulation.setup import (
     ClampedStock,
@@ -158,8 +159,14 @@ def _paths_of_any_origin(
             f"{request.code.name}: this is code for a {found.value}, and {machine.name} is a "
             f"{machine.kind.value}"
         )
+    program = read_program(data, dialect=dialect, machine=found)
+    if library is not None:
+        called = called_tool_findings(program, library)
+        program = replace(
+            with_called_tools(program, library), findings=(*program.findings, *called)
+        )
     return CodePaths(
-        read_program(data, dialect=dialect, machine=found),
+        program,
         machine,
         material,
         name=request.code.name,
