@@ -24,6 +24,7 @@ SLOW = (
     "optimiser/test_side_by_side.py",
     "properties",
     "service/agent/test_run.py",
+    "service/along_path/test_nc_samples.py",
     "service/along_path/test_of_code.py",
     "service/brep",
     "service/calibration/test_run.py",

@@ -122,6 +122,13 @@ def test_feeds_in_inches_are_rounded_down() -> None:
     assert slower.data == b"G20 G90\nG0 X0 Y0 Z0\nG1 X1.5 F8.28\n"
 
 
+@pytest.mark.parametrize("feed", [0.0567, 0.2677, 1.987, 19.87, 198.76, 1987.6])
+def test_rounding_of_a_feed_takes_at_most_one_per_cent(feed: float) -> None:
+    code = b"G20 G90\nG0 X0 Y0 Z0\nG1 X1.5 F10.5\n"
+    result = rewritten(code, Dialect.LINUXCNC, (2, (1.0,), (25.4 * feed,)))
+    assert 0.99 * feed < float(result.data.split(b"F")[1]) <= feed
+
+
 @pytest.mark.parametrize(
     ("code", "block", "reason"),
     [
