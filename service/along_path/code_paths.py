@@ -18,7 +18,7 @@ from service.raw_stock import GivenStock, larger_stock_map, raw_stock_of, stock_
 from service.simulation.setup import CountedIterator, PreparedRun
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import table_tool
-from simulator.motion.segments import Bools, Ints
+from simulator.motion.segments import Bools, Floats, Ints
 from simulator.removal.cutter import Cutter, Insert
 from simulator.spec import Machine, MachineKind, MaterialMatch
 from simulator.tool_table import TableTool
@@ -100,7 +100,7 @@ class CodePaths:
         moves = program.moves
         if program.machine is MachineType.MILL:
             moves = tool_moves(moves, self._radius, is_square=self._is_linuxcnc)
-        moves = _defined(moves, program.dialect)
+        moves = _with_length_wear(_defined(moves, program.dialect))
         self.program = replace(program, moves=moves)
         is_fed = np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC, MoveKind.THREAD))
         fed = np.flatnonzero(moves.is_advisable)
@@ -110,7 +110,7 @@ class CodePaths:
         is_here, is_known = moves.frame == frame, np.isin(moves.tool, list(tools))
         is_sure = ~_is_uncertain(moves)
         is_placed = is_here & ((moves.flags & int(NOT_PLACED)) == 0) & is_sure
-        is_placed &= moves.kind != MoveKind.UNKNOWN
+        is_placed &= (moves.kind != MoveKind.UNKNOWN) & ~np.isnan(_length_wear(moves))
         has_feed = ~np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC)) | (moves.feed > 0.0)
         self._is_run = is_placed & is_known & has_feed
         self.parts = tuple(self._parts())
@@ -139,6 +139,7 @@ class CodePaths:
             "the feed of a cycle serves other moves as well": is_defined,
             "their feed is the lead of a thread": moves.kind == MoveKind.THREAD,
             "the spindle speed is not known": np.isnan(moves.spindle),
+            "the length of the tool (DL) is not known": np.isnan(_length_wear(moves)),
             "their start or end is not known": ~moves.is_known,
         } | {
             name: (moves.flags & int(flag)) != 0
@@ -158,7 +159,9 @@ class CodePaths:
             number = side.number
         tool = None if number is None else self.tools.get(number)
         shape = None if tool is None else tool.shape
-        return 0.5 * shape.diameter if isinstance(shape, Cutter) else None
+        if not isinstance(shape, Cutter):
+            return None
+        return 0.5 * shape.diameter + setting.radius_wear
 
     def _beside(self) -> Iterator[Finding]:
         """Lines at which the tool goes beside a compensated contour."""
@@ -312,6 +315,24 @@ def _defined(moves: NcMoves, dialect: Dialect) -> NcMoves:
         return moves
     table = moves.rows.copy()
     table["block"][rows] = table["fed_by"][rows]
+    return replace(moves, rows=table)
+
+
+def _length_wear(moves: NcMoves) -> Floats:
+    """Distance along Z of the tip from the programmed place, (N,), mm."""
+    stated = np.array([each.length_wear for each in moves.settings] or [0.0])
+    wear: Floats = stated[moves.rows["setting"]]
+    return wear
+
+
+def _with_length_wear(moves: NcMoves) -> NcMoves:
+    """Moves at the places where the tip of the tool goes."""
+    wear = _length_wear(moves)
+    if not np.any(wear):
+        return moves
+    table = moves.rows.copy()
+    for name in ("start", "end"):
+        table[name][:, 2] += wear
     return replace(moves, rows=table)
 
 

@@ -184,6 +184,10 @@ class ModalSetting:
     """Whether I, J and K are coordinates rather than distances from the start (G90.1)."""
     side: CompensationSide | None = None
     """Side of the contour on which the tool goes; None without compensation."""
+    radius_wear: float = 0.0
+    """Radius beyond that of the tool table by which contours are offset (DR), mm."""
+    length_wear: float = 0.0
+    """Distance along Z of the tip from the programmed place (DL), mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
