@@ -7,6 +7,7 @@ module anew, which counts too. ``pytest --durations=0`` tells what belongs here.
 
 SLOW = (
     "benchmarks/logged_path/test_smart_mill.py",
+    "benchmarks/test_both_ways.py",
     "benchmarks/test_spiral.py",
     "closed_loop",
     "controller/laws/test_choice.py",

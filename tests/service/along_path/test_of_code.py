@@ -313,37 +313,20 @@ def test_messages_of_the_planned_run_name_lines_of_the_file() -> None:
 
 
 @pytest.fixture(scope="module")
-def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, float], CodeAdvice]:
-    """Times of the bracket along its paths, as STEP-NC by workingstep and as NC code."""
-    folder = tmp_path_factory.mktemp("both")
+def own(tmp_path_factory: pytest.TempPathFactory) -> CodeAdvice:
+    """Advice for our own NC code of the bracket."""
+    folder = tmp_path_factory.mktemp("own")
     request = AdviceRequest(machine="vmc15", nc_control=Dialect.LINUXCNC)
     optimise(request, AdviceFiles(file=BRACKET, output=folder / "one.stpnc"))
-    along = optimise(
-        replace(request, is_along_path=True),
-        AdviceFiles(file=BRACKET, output=folder / "along.stpnc"),
-    ).along
-    assert along is not None
     tools = BRACKET.parents[1] / "tools" / "bracket.toml"
-    code = optimise_code(
+    return optimise_code(
         AdviceRequest(machine="vmc15", material="c45", stock="-3,-3,-40,153,93,2"),
         CodeFiles(file=folder / "one.ngc", tools=tools, dry_run=True),
     )
-    return {step.name: step.after.duration for step in along.steps}, code
 
 
-def test_a_workingstep_has_the_same_plan_as_nc_code(
-    both: tuple[dict[str, float], CodeAdvice],
-) -> None:
-    # Roughing a face knows the same limits both ways: no tolerance, no roughness.
-    times, code = both
-    first = next(step for step in code.along.steps if step.name == "T1")
-    assert first.after.duration == pytest.approx(times["ROUGH FACE"], rel=0.01)
-
-
-def test_our_own_code_is_left_by_a_second_run(
-    both: tuple[dict[str, float], CodeAdvice], tmp_path: Path
-) -> None:
-    _, code = both
+def test_our_own_code_is_left_by_a_second_run(own: CodeAdvice, tmp_path: Path) -> None:
+    code = own
     file = tmp_path / "again.ngc"
     file.write_bytes(code.rewritten.data)
     again = optimise_code(
