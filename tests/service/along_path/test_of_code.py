@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from optimiser.along_path.caps import CapName
 from optimiser.along_path.tool_bounds import bounds_of_tool
 from service.along_path.code_output import code_advice_json, print_code_advice
 from service.along_path.of_code import CodeAdvice, CodeFiles, optimise_code
@@ -243,6 +244,29 @@ def test_what_is_missing_is_told_and_the_bytes_stay(what: str) -> None:
     said = "\n".join(each.message for each in found.findings)
     assert what in said
     assert "no feed of this program may be chosen" in said
+
+
+HELIX = (
+    "G21 G90 G17 G54\nT2 M6\nS3000 M3\nG0 X51. Y40. Z5.\nZ1.\n{turns}"
+    "G3 I-1. J0. F300.\nG0 Z20.\nM2\n"
+)
+
+
+@pytest.mark.parametrize("depth", [3.0, 12.0])
+def test_a_helix_of_many_turns_has_the_time_of_its_turns(depth: float) -> None:
+    """The steeper one is limited by its plunge, the other by the chip."""
+    request = replace(MILL, dialect=Dialect.LINUXCNC)
+    bottom = 1.0 - depth
+    ends = [1.0 - depth * turn / 3.0 for turn in (1, 2, 3)]
+    single = "".join(f"G3 X51. Y40. Z{z:.4f} I-1. J0. F300.\n" for z in ends)
+    joined = f"G3 X51. Y40. Z{bottom:.4f} I-1. J0. P3 F300.\n"
+    one, other = (advised(HELIX.format(turns=turns), request) for turns in (joined, single))
+    plan = one.along.steps[1].plan
+    assert plan is not None
+    names = {name for name, (length, _) in plan.shares.items() if length > 10.0}
+    assert (CapName.PLUNGE in names) is (depth > 10.0)
+    assert one.along.time_after == pytest.approx(other.along.time_after, rel=0.02)
+    assert one.rewritten.added > 0
 
 
 def test_a_program_that_calls_itself_is_refused_with_the_line() -> None:
