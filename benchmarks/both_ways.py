@@ -17,7 +17,6 @@ from optimiser.advice import Advice, AdviceStatus
 from optimiser.along_path.bounds import bounds_of
 from optimiser.along_path.caps import CutBounds
 from optimiser.along_path.tool_bounds import bounds_of_tool
-from service.along_path.code_paths import CodeBlocks, CodePaths
 from service.along_path.course import Part, PathSource
 from service.along_path.of_program import along_program
 from service.along_path.run import FeedsAlongPath, along_path
@@ -25,6 +24,7 @@ from service.along_path.task import task_of
 from service.paths.toolpaths import paths_of
 from service.reading import read_program
 from service.requests.advice import AdviceRequest
+from service.simulation.code_paths import CodeBlocks, CodePaths
 from service.usecases import AdviceFiles, OptimiseResult, optimise
 from simulator.edge_material import edge_material
 from simulator.removal.tool_shape import THREADS, shape_of, tool_kind

@@ -3,19 +3,24 @@
 ``python -m benchmarks.nc_samples FOLDER`` takes all programs in a folder, such as LinuxCNC's
 ``nc_files``. They state no tools and no stock, so each gets end mills (a lathe gets inserts)
 and a block around its moves; programs that start no spindle get ``S3000 M3`` in their first
-line.
+line. The output is run by ``simulate --nc --foreign`` as well; the last column says what the
+strict readers of ``simulate --nc`` refuse first.
 """
 
 import argparse
+import re
 import tempfile
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from service.along_path.of_code import CodeAdvice, CodeFiles, optimise_code
 from service.requests.advice import AdviceRequest
+from service.requests.runs import SimulationRequest
+from service.simulation.run import RunFiles, Simulation, simulate
+from service.simulation.setup import CodeRequest
 from stepnc_model.errors import StepNcError
 from stepnc_model.nc.program import NcProgram, read_program
 from stepnc_model.post.blocks import MachineType
@@ -40,12 +45,45 @@ class Sample:
     tools: str
     """Tool table as CSV."""
 
-    def advised(self, data: bytes, folder: Path) -> CodeAdvice:
-        """Feeds along the paths of the program, or of what became of it."""
+    def simulated(self, data: bytes, folder: Path) -> Simulation:
+        """Run of the program, or of what became of it."""
+        request = SimulationRequest(
+            machine=self.request.machine or "", material=self.request.material or ""
+        )
+        return simulate(request, RunFiles(code=self._code(data, folder)))
+
+    def refusal(self, data: bytes, folder: Path) -> str:
+        """Why the strict readers refuse the program; empty if they take it."""
+        request = replace(self._code(data, folder), is_foreign=False)
+        try:
+            simulate(
+                SimulationRequest(
+                    machine=self.request.machine or "", material=self.request.material or ""
+                ),
+                RunFiles(code=request),
+            )
+        except StepNcError as error:
+            return reason_of(str(error))
+        return ""
+
+    def _code(self, data: bytes, folder: Path) -> CodeRequest:
         file, tools = folder / self.name, folder / "tools.csv"
         file.write_bytes(data)
         tools.write_text(self.tools)
-        return optimise_code(self.request, CodeFiles(file=file, tools=tools, dry_run=True))
+        dialect = self.request.dialect
+        return CodeRequest(
+            code=file,
+            dialect="" if dialect is None else dialect.value,
+            tools=tools,
+            stock=self.request.stock,
+            is_foreign=True,
+        )
+
+    def advised(self, data: bytes, folder: Path) -> CodeAdvice:
+        """Feeds along the paths of the program, or of what became of it."""
+        code = self._code(data, folder)
+        files = CodeFiles(file=code.code, tools=code.tools, dry_run=True)
+        return optimise_code(self.request, files)
 
 
 def sample_of(
@@ -122,12 +160,35 @@ def _bar(program: NcProgram) -> str:
     return f"{2.0 * max(high[0], 1.0):g},{low[2] - 10.0:g},{high[2] - 1.0:g}"
 
 
+REASONS = {
+    r"[0-9]: '[(;]": "comments",
+    r"'[on][0-9]+ ?(sub|call|while|if)": "subprograms and flow",
+    r"'[a-z]": "words in small letters",
+    r"unknown G code": "G codes of inches, of the path mode and the like",
+}
+"""What strict readers refuse first, by the message."""
+
+
+def reason_of(message: str) -> str:
+    """Reason of a refusal without its place."""
+    for pattern, reason in REASONS.items():
+        if re.search(pattern, message):
+            return reason
+    return re.sub(r"^.*?line [0-9]+: ", "", message.partition(" (the virtual")[0])
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Row:
     """One sample in the table."""
 
     name: str
     advice: CodeAdvice
+    run: float
+    """Time of ``simulate --nc`` on the output, s."""
+    left_out: int
+    """Number of reasons for which lines are left out of this run."""
+    refusal: str
+    """Why the strict readers refuse the program."""
     is_same: bool
     """Whether a second run on the output leaves all bytes."""
 
@@ -142,11 +203,20 @@ def rows_of(folder: Path) -> Iterator[Row | str]:
             with tempfile.TemporaryDirectory() as place:
                 first = sample.advised(sample.data, Path(place))
                 second = sample.advised(first.rewritten.data, Path(place))
+                run = sample.simulated(first.rewritten.data, Path(place))
+                refusal = sample.refusal(sample.data, Path(place))
         except StepNcError as error:
             yield f"{file.name}: {error}"
             continue
         is_same = second.rewritten.data == first.rewritten.data
-        yield Row(name=file.name, advice=first, is_same=is_same)
+        yield Row(
+            name=file.name,
+            advice=first,
+            run=run.whole.duration,
+            left_out=sum("are left out" in each.message for each in run.findings),
+            refusal=refusal,
+            is_same=is_same,
+        )
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -156,7 +226,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     given = parser.parse_args(arguments)
     print(
         f"{'program':52s} {'changed':>7s} {'added':>5s} {'before s':>9s} {'after s':>9s} "
-        "run/plan  2nd run"
+        f"run/plan 2nd run {'simulated s':>11s} left out  strict readers refuse"
     )
     for row in rows_of(given.folder):
         if isinstance(row, str):
@@ -165,8 +235,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
         along, code = row.advice.along, row.advice.rewritten
         print(
             f"{row.name:52s} {code.changed:7d} {code.added:5d} {along.time_before:9.2f} "
-            f"{along.time_after:9.2f} {along.time_after / along.planned_time:8.4f}  "
-            f"{'same' if row.is_same else 'CHANGED'}"
+            f"{along.time_after:9.2f} {along.time_after / along.planned_time:8.4f} "
+            f"{'same' if row.is_same else 'CHANGED':>7s} {row.run:11.2f} {row.left_out:8d}  "
+            f"{row.refusal}"
         )
 
 

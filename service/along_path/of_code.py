@@ -11,8 +11,6 @@ from pathlib import Path
 from optimiser.along_path.caps import CutBounds
 from optimiser.along_path.tool_bounds import bounds_of_tool
 from optimiser.modes import Mode
-from service.along_path.called_tools import called_tool_findings, with_called_tools
-from service.along_path.code_paths import CodeBlocks, CodePaths
 from service.along_path.course import PathSource
 from service.along_path.run import FeedsAlongPath
 from service.along_path.task import task_of
@@ -34,6 +32,8 @@ from service.numbers import tool_numbers_in
 from service.reading import Tell, silent
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
+from service.simulation.called_tools import called_tool_findings, with_called_tools
+from service.simulation.code_paths import CodeBlocks, CodePaths
 from simulator.library import load_machine
 from simulator.spec import Machine, MaterialMatch
 from simulator.tool_files.file_unit import FileUnit

@@ -18,6 +18,7 @@ from optimiser.along_path.stretch import PathStretch
 from service.along_path.course import NumberedBlocks, PathSource, stretches_of
 from service.along_path.trace import PathTrace, PathTraceKeeper
 from service.progress import Ticker, bar
+from service.simulation.code_paths import BRIDGE
 from simulator.machine.samples import Episode
 from simulator.machine.totals import Total, added
 from simulator.machine.virtual import VirtualMachine
@@ -25,9 +26,6 @@ from simulator.motion.segments import Bools, Ints
 from stepnc_model.errors import Finding
 from stepnc_model.post.block_feeds import with_feeds
 from stepnc_model.post.blocks import Block
-
-BRIDGE = 0
-"""Line of moves that stand for those that are left out: what they meet is no fault."""
 
 LEAST_GAP = 1e-6
 """Length below which two parts of the path follow each other, mm."""

@@ -10,7 +10,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from optimiser.along_path.plan import PERMITTED, BlockFeeds, lowered
-from service.along_path.code_paths import CodePaths
 from service.along_path.course import PathSource
 from service.along_path.plan_run import PartTotals, run_plan
 from service.along_path.run import (
@@ -24,6 +23,7 @@ from service.along_path.run import (
 )
 from service.progress import Ticker
 from service.reading import Tell, silent
+from service.simulation.code_paths import CodePaths
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.nc.advice import BlockAdvice, RewrittenCode
 from stepnc_model.nc.program import NcProgram, read_program

@@ -40,6 +40,12 @@ def add_code(parser: argparse.ArgumentParser) -> None:
     )
     add("--tools-unit", default="", metavar="UNIT", help="unit of a tool.tbl: mm or inch")
     add(
+        "--foreign",
+        action="store_true",
+        help="run what is understood of NC code of any origin, as `optimise` reads it, and "
+        "list the rest; needs --tools, --stock and --material",
+    )
+    add(
         "--stock",
         default="",
         metavar="STOCK",
@@ -174,8 +180,11 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
     from stepnc_model.errors import StepNcError
 
     code = None
-    if options.nc is None and (options.dialect or options.tools or options.stock):
-        raise StepNcError("--dialect, --tools and --stock need NC code: name it with --nc")
+    given = options.dialect or options.tools or options.stock or options.foreign
+    if options.nc is None and given:
+        raise StepNcError(
+            "--dialect, --tools, --stock and --foreign need NC code: name it with --nc"
+        )
     if options.tools_unit and options.tools is None:
         raise StepNcError("--tools-unit needs a tool table: name it with --tools")
     if options.nc is not None:
@@ -185,6 +194,7 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
             tools=options.tools,
             tools_unit=length_unit(options.tools_unit),
             stock=options.stock,
+            is_foreign=options.foreign,
         )
     return RunFiles(
         file=file,

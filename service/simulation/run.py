@@ -16,6 +16,7 @@ from service.reading import Tell, silent
 from service.requests.fields import require_bounds
 from service.requests.runs import ForceView, SimulationRequest
 from service.run_file import require_suffix
+from service.simulation.foreign import from_foreign_code
 from service.simulation.gathering import RunCollector, SampleWatcher
 from service.simulation.remaining import keep_stock, untouched
 from service.simulation.setup import (
@@ -216,6 +217,10 @@ def place_in(prepared: PreparedRun, virtual: VirtualMachine) -> str:
 
 def _prepared(request: SimulationRequest, files: RunFiles, tell: Tell) -> PreparedRun:
     if files.code is not None:
+        if files.code.is_foreign:
+            return from_foreign_code(
+                files.code, machine=request.machine, material=request.material
+            )
         return from_code(
             files.code,
             program=files.file,
@@ -262,6 +267,8 @@ def machine_of(
 def _require_files(files: RunFiles) -> None:
     """Refuse invalid combinations of files before anything is read."""
     code = files.code
+    if code is not None and files.file is not None and code.is_foreign:
+        raise StepNcError("--foreign runs NC code without a program: omit the program")
     if code is not None and files.file is not None and (code.tools or code.stock):
         raise StepNcError("the program defines tools and stock; omit --tools and --stock")
     if files.output is not None:

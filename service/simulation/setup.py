@@ -77,6 +77,8 @@ class CodeRequest:
     """Unit of a tool table that names none; None: mm."""
     stock: str = ""
     """Raw part, as :func:`service.raw_stock.raw_stock_of` reads it; empty: unknown."""
+    is_foreign: bool = False
+    """Whether what is understood of code of any origin runs, and the rest is listed."""
 
 
 class CountedIterator(Generic[T]):
@@ -308,8 +310,9 @@ def _read(
                 yield lines.count, block
     except PostError as error:
         raise StepNcError(
-            f"{request.code.name}: {error} (the virtual machine reads plain code; "
-            "`stepnc check` and `optimise` read code of any origin)"
+            f"{request.code.name}: {error} (the virtual machine reads plain code; --foreign "
+            "runs what is understood of code of any origin, as `stepnc check` and `optimise` "
+            "read it)"
         ) from error
 
 

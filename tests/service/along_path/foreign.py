@@ -5,10 +5,10 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from service.along_path.code_paths import CodePaths
 from service.along_path.of_code import CodeAdvice, CodeFiles, optimise_code
 from service.chosen import load_material_named
 from service.requests.advice import AdviceRequest
+from service.simulation.code_paths import CodePaths
 from simulator.library import load_machine
 from simulator.tool_files.read import read_tools
 from stepnc_model.nc.program import read_program

@@ -5,9 +5,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from service.along_path.code_paths import CodePaths
 from service.along_path.course import BlockLog, stretches_of
-from service.along_path.plan_run import BRIDGE
+from service.simulation.code_paths import BRIDGE, CodePaths
 from simulator.motion.control import control_model
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import axis_limits

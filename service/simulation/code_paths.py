@@ -13,7 +13,6 @@ from re import IGNORECASE, compile
 
 import numpy as np
 
-from service.along_path.plan_run import BRIDGE
 from service.raw_stock import GivenStock, larger_stock_map, raw_stock_of, stock_map
 from service.simulation.setup import CountedIterator, PreparedRun
 from simulator.machine.interpreter import Numbered
@@ -59,6 +58,9 @@ NOT_PLACED = (
     | MoveFlag.SKIPPABLE
 )
 """Flags of moves whose place over the stock is not known, or that may not be executed."""
+
+BRIDGE = 0
+"""Line of moves that stand for those that are left out: what they meet is no fault."""
 
 CLEARANCE = 5.0
 """Distance from the stock at which the tool goes around moves that are left out, mm."""
@@ -146,8 +148,15 @@ class CodePaths:
             for flag, name in REASONS.items()
             if flag & (NOT_PLACED | UNADVISED)
         }
-        self.findings = (*self._findings(is_fed & ~chosen, reasons), *self._beside())
+        stay = "the feeds of {} stay as programmed"
+        self.findings = (*self._findings(is_fed & ~chosen, reasons, stay), *self._beside())
         """Lines whose feeds stay as they are, and why."""
+        out = "{} are left out of the run, and remove nothing"
+        self.left_out = (
+            *self._findings(is_fed & ~self._is_run, reasons, out),
+            *self._beside(),
+        )
+        """Lines that do not run, and why."""
 
     def _radius(self, setting: ModalSetting) -> float | None:
         """Radius by which a contour is offset, mm; None if it is not known."""
@@ -291,8 +300,10 @@ class CodePaths:
                 at[row] = found[high - 1][1].upper() == b"FINISH"
         return at
 
-    def _findings(self, is_left: Bools, reasons: dict[str, Bools]) -> Iterator[Finding]:
-        """Lines whose feeds stay as they are, by reason."""
+    def _findings(
+        self, is_left: Bools, reasons: dict[str, Bools], words: str
+    ) -> Iterator[Finding]:
+        """Lines of some moves, by the reason why they are left."""
         moves, text = self.program.moves, self.program.text
         for reason, is_so in reasons.items():
             rows = np.flatnonzero(is_left & is_so)
@@ -301,7 +312,7 @@ class CodePaths:
             lines = np.unique(text.lines[moves.block[rows]])
             yield Finding(
                 severity=Severity.WARNING,
-                message=f"the feeds of {_spans(lines)} stay as programmed: {reason}",
+                message=f"{words.format(_spans(lines))}: {reason}",
                 line=int(lines[0]),
             )
 
