@@ -7,6 +7,7 @@ module anew, which counts too. ``pytest --durations=0`` tells what belongs here.
 
 SLOW = (
     "benchmarks/logged_path/test_smart_mill.py",
+    "benchmarks/test_both_ways.py",
     "benchmarks/test_spiral.py",
     "closed_loop",
     "controller/laws/test_choice.py",
@@ -24,6 +25,7 @@ SLOW = (
     "optimiser/test_side_by_side.py",
     "properties",
     "service/agent/test_run.py",
+    "service/along_path/test_nc_samples.py",
     "service/along_path/test_of_code.py",
     "service/brep",
     "service/calibration/test_run.py",

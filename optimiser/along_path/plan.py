@@ -119,6 +119,11 @@ class FeedPlanner:
         self._locked: list[float] = []
         """Greatest feed of each run that may not be chosen, mm/s."""
 
+    @property
+    def excess(self) -> Mapping[str, float]:
+        """Greatest programmed feed over what the process permits, by part of the program."""
+        return self._excess
+
     def add(self, stretch: PathStretch) -> None:
         """Plan the feeds of a stretch.
 

@@ -159,7 +159,8 @@ class _Along:
 
     def __init__(self, stations: Stations, offsets: Floats) -> None:
         ends = offsets[stations.segment] + stations.station
-        self.ends: Floats = np.maximum.accumulate(ends)
+        # A sum of lengths may pass the end of the stretch by a rounding error.
+        self.ends: Floats = np.minimum(np.maximum.accumulate(ends), offsets[-1])
         self._cuts = stations.peak_section > 0.0
 
     def rows(self, ends: Floats) -> Ints:

@@ -12,10 +12,9 @@ from optimiser.along_path.caps import CutBounds
 from optimiser.along_path.tool_bounds import bounds_of_tool
 from optimiser.modes import Mode
 from service.along_path.course import PathSource
-from service.along_path.plan_run import PartTotals
-from service.along_path.run import FeedsAlongPath, along_path, feed_task
+from service.along_path.run import FeedsAlongPath
 from service.along_path.task import task_of
-from service.along_path.written_code import block_advice, settled
+from service.along_path.written_code import CodeSource, written_code
 from service.chosen import (
     DEFAULT_LATHE,
     DEFAULT_MILL,
@@ -30,7 +29,6 @@ from service.files import (
     write_atomically,
 )
 from service.numbers import tool_numbers_in
-from service.progress import Ticker
 from service.reading import Tell, silent
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
@@ -43,7 +41,6 @@ from simulator.tool_files.read import ToolLibrary, read_tools
 from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
 from stepnc_model.nc.advice import RewrittenCode
 from stepnc_model.nc.program import NcProgram, read_program
-from stepnc_model.nc.rewrite import rewrite
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.units import mm_from_um
 
@@ -116,28 +113,20 @@ def optimise_code(
         )
 
     code = paths_of(program)
-    source_of = partial(_source, request)
     task = replace(
         task_of(request, machine), keeps_traces=files.report is not None, keeps_idle=True
     )
-    along = along_path(source_of(code), task, tell=tell)
-    advice = (block_advice(code, line, parts) for line, parts in along.feeds.items())
-    rewritten = rewrite(program, advice, mark=request.is_marked)
-    if rewritten.changed:
-        whole = along.time_after
-        rewritten = settled(
-            rewritten,
-            program,
-            source_of=source_of,
+    written = written_code(
+        CodeSource(
+            program=program,
             paths_of=paths_of,
-            task=feed_task(machine, task),
-            totals=PartTotals(
-                Ticker(tell),
-                "checking the written program",
-                share=lambda now: min(now / whole, 1.0),
-                keeps_trace=False,
-            ),
-        )
+            source_of=partial(_source, request),
+            mark=request.is_marked,
+        ),
+        task,
+        tell=tell,
+    )
+    along, rewritten = written.along, written.rewritten
     found = CodeAdvice(
         program=name,
         machine=machine,
@@ -154,6 +143,7 @@ def optimise_code(
             *_idle(code, along),
             *_unchanged(rewritten),
             *along.findings,
+            *written.findings,
         ),
         written=None if files.dry_run else output,
     )

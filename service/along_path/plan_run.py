@@ -88,6 +88,15 @@ class PartTotals:
         """Signals of the run; None unless they were kept."""
         return None if self._keeper is None else self._keeper.trace()
 
+    @property
+    def duration(self) -> float:
+        """Time of the run so far, s."""
+        return sum(total.duration for total in self._totals)
+
+    def share_of_time(self, now: float) -> float:
+        """Share of this run that a time of the machine in s is, 0 to 1."""
+        return min(now / max(self.duration, 1.0), 1.0)
+
     def rows(self) -> list[tuple[str, Total]]:
         """Names and totals of the parts, in the order of execution."""
         return list(zip(self._names, self._totals, strict=False))

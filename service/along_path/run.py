@@ -10,7 +10,9 @@ from dataclasses import dataclass
 from optimiser.along_path.free import FASTEST_ALONE, FreeProfile, FreeTask
 from optimiser.along_path.pieces import PieceRules
 from optimiser.along_path.plan import (
+    PERMITTED,
     BlockFeeds,
+    FeedPlan,
     FeedPlanner,
     FeedTask,
     PartPlan,
@@ -19,7 +21,7 @@ from optimiser.along_path.plan import (
 )
 from optimiser.along_path.runs import MachineFeeds
 from service.along_path.course import PathSource, stretches_of
-from service.along_path.plan_run import LimitStretch, PartTotals, run_plan
+from service.along_path.plan_run import LimitStretch, PartTotals, PlanRun, run_plan
 from service.along_path.trace import PathTrace
 from service.progress import Ticker
 from service.reading import Tell, silent
@@ -129,6 +131,25 @@ class FeedsAlongPath:
         return sum(len(parts) - 1 for parts in self.feeds.values())
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PathPlan:
+    """Planned feeds of a program before the plan was run."""
+
+    planner: FeedPlanner
+    before: PartTotals
+    """Run at the given feeds."""
+    kept: frozenset[str]
+    """Parts of the program that keep their feeds."""
+    plan: FeedPlan
+    feeds: BlockFeeds
+    """Feeds of the blocks that change."""
+
+    @property
+    def excess(self) -> float:
+        """Greatest given feed over the greatest that the process permits."""
+        return max(self.planner.excess.values(), default=0.0)
+
+
 def along_path(
     source: PathSource, task: AlongPathTask, *, tell: Tell = silent
 ) -> FeedsAlongPath:
@@ -147,10 +168,31 @@ def along_path(
         When the machine cannot run the program.
     """
     ticker = Ticker(tell)
+    return run_of(planned(source, task, ticker=ticker), source, task, ticker=ticker)
+
+
+def planned(
+    source: PathSource, task: AlongPathTask, *, ticker: Ticker, what: str = "planning"
+) -> PathPlan:
+    """Plan the feeds along the paths of a program.
+
+    Parameters
+    ----------
+    source : PathSource
+    task : AlongPathTask
+    ticker : Ticker
+    what : str
+        Name of the run in messages.
+
+    Raises
+    ------
+    StepNcError
+        When the machine cannot run the program.
+    """
     given = source.prepare(0.0)
     planner = FeedPlanner(feed_task(given.machine, task))
     before = PartTotals(
-        ticker, "planning", share=lambda _: given.done(), keeps_trace=task.keeps_traces
+        ticker, what, share=lambda _: given.done(), keeps_trace=task.keeps_traces
     )
     for stretch in stretches_of(
         given,
@@ -161,35 +203,91 @@ def along_path(
         watch=before.add,
     ):
         planner.add(stretch)
-    idle = _idle(before) if task.keeps_idle else frozenset[str]()
-    plan = planner.plan(kept=idle)
-    feeds: BlockFeeds = dict(block_feeds(plan))
-    whole = max(sum(total.duration for _, total in before.rows()), 1.0)
-    for left in reversed(range(MOST_ROUNDS)):
-        after = PartTotals(
-            ticker,
-            "running the plan",
-            share=lambda now: min(now / whole, 1.0),
-            keeps_trace=task.keeps_traces,
-        )
-        splits = left >= UNSPLIT_ROUNDS
-        run = run_plan(source, feeds, task=planner.task, splits=splits, totals=after)
-        if not run.slower or not left:
-            break
-        feeds = lowered(feeds, run.slower, blocks=run.blocks, levels=task.levels)
-    parts = {part.name: part for part in plan.parts}
+    return _path_plan(planner, before, _idle(before) if task.keeps_idle else frozenset())
+
+
+def _path_plan(planner: FeedPlanner, before: PartTotals, kept: frozenset[str]) -> PathPlan:
+    """Plan in which some parts keep their feeds."""
+    plan = planner.plan(kept=kept)
+    return PathPlan(
+        planner=planner, before=before, kept=kept, plan=plan, feeds=dict(block_feeds(plan))
+    )
+
+
+def run_of(
+    path_plan: PathPlan, source: PathSource, task: AlongPathTask, *, ticker: Ticker
+) -> FeedsAlongPath:
+    """Run a plan, with slower feeds where it is too fast.
+
+    A part of the program that is permitted as given and hardly gains stays as it is.
+
+    Raises
+    ------
+    StepNcError
+        When the machine cannot run the program.
+    """
+    feeds, run = _permitted(path_plan, source, task, ticker)
+    without_gain = _without_gain(path_plan, run)
+    if without_gain:
+        kept = path_plan.kept | without_gain
+        path_plan = _path_plan(path_plan.planner, path_plan.before, kept)
+        feeds, run = _permitted(path_plan, source, task, ticker)
+    before, after = path_plan.before, run.totals
+    parts = {part.name: part for part in path_plan.plan.parts}
     return FeedsAlongPath(
         feeds=feeds,
         steps=tuple(
             AlongPathStep(name=name, before=one, after=other, plan=parts.get(name))
             for (name, one), (_, other) in zip(before.rows(), after.rows(), strict=True)
         ),
-        idle=tuple(sorted(idle)),
+        idle=tuple(sorted(_idle(before))) if task.keeps_idle else (),
         findings=tuple(after.findings),
         before_trace=before.trace(),
         after_trace=after.trace(),
         limits=run.limits,
     )
+
+
+def _permitted(
+    path_plan: PathPlan, source: PathSource, task: AlongPathTask, ticker: Ticker
+) -> tuple[BlockFeeds, PlanRun]:
+    """Feeds of a plan, slower where its runs find them too fast, and their run."""
+    feeds, left = path_plan.feeds, MOST_ROUNDS
+    while True:
+        left -= 1
+        totals = PartTotals(
+            ticker,
+            "running the plan",
+            share=path_plan.before.share_of_time,
+            keeps_trace=task.keeps_traces,
+        )
+        run = run_plan(
+            source,
+            feeds,
+            task=path_plan.planner.task,
+            splits=left >= UNSPLIT_ROUNDS,
+            totals=totals,
+        )
+        if not run.slower or not left:
+            return feeds, run
+        feeds = lowered(feeds, run.slower, blocks=run.blocks, levels=task.levels)
+
+
+def _without_gain(path_plan: PathPlan, run: PlanRun) -> frozenset[str]:
+    """Changed parts that are permitted as given, and whose run takes hardly less time."""
+    planner, after = path_plan.planner, dict(run.totals.rows())
+    plans = {part.name: part for part in path_plan.plan.parts}
+    kept_loss = planner.task.rules.kept_loss
+    found = set()
+    for name, given in path_plan.before.rows():
+        plan = plans.get(name)
+        if plan is None or name in path_plan.kept or plan.time == plan.programmed_time:
+            continue
+        gain = given.duration - after[name].duration
+        is_small = gain <= kept_loss * (plan.programmed_time - gain)
+        if is_small and planner.excess[name] <= PERMITTED:
+            found.add(name)
+    return frozenset(found)
 
 
 def _idle(totals: PartTotals) -> frozenset[str]:

@@ -18,7 +18,7 @@ from service.simulation.setup import CountedIterator, PreparedRun
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import table_tool
 from simulator.machine.virtual import LoadedTool, StockMap
-from simulator.motion.segments import Bools, Ints
+from simulator.motion.segments import Bools, Floats, Ints
 from simulator.removal.cutter import Cutter, Insert
 from simulator.spec import Machine, MachineKind, MaterialMatch
 from simulator.tool_table import TableTool
@@ -62,6 +62,9 @@ NOT_PLACED = (
     | MoveFlag.SKIPPABLE
 )
 """Flags of moves whose place over the stock is not known, or that may not be executed."""
+
+BRIDGE = 0
+"""Line of moves that stand for those that are left out: what they meet is no fault."""
 
 CLEARANCE = 5.0
 """Distance from the stock at which the tool goes around moves that are left out, mm."""
@@ -117,7 +120,7 @@ class CodePaths:
         moves = program.moves
         if program.machine is MachineType.MILL:
             moves = tool_moves(moves, self._radius, is_square=self._is_linuxcnc)
-        moves = _defined(moves, program.dialect)
+        moves = _with_length_wear(_defined(moves, program.dialect))
         self.program = replace(program, moves=moves)
         is_fed = np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC, MoveKind.THREAD))
         fed = np.flatnonzero(moves.is_advisable)
@@ -128,7 +131,7 @@ class CodePaths:
         is_known = np.isin(moves.tool, list(self.tools)) | (tools is None)
         is_sure = ~_is_uncertain(moves)
         is_placed = is_here & ((moves.flags & int(NOT_PLACED)) == 0) & is_sure
-        is_placed &= moves.kind != MoveKind.UNKNOWN
+        is_placed &= (moves.kind != MoveKind.UNKNOWN) & ~np.isnan(_length_wear(moves))
         has_feed = ~np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC)) | (moves.feed > 0.0)
         self._is_run = is_placed & is_known & has_feed
         self.parts = tuple(self._parts())
@@ -157,6 +160,7 @@ class CodePaths:
             "the feed of a cycle serves other moves as well": is_defined,
             "their feed is the lead of a thread": moves.kind == MoveKind.THREAD,
             "the spindle speed is not known": np.isnan(moves.spindle),
+            "the length of the tool (DL) is not known": np.isnan(_length_wear(moves)),
             "their start or end is not known": ~moves.is_known,
         } | {
             name: (moves.flags & int(flag)) != 0
@@ -194,7 +198,9 @@ class CodePaths:
             number = side.number
         tool = None if number is None else self.tools.get(number)
         shape = None if tool is None else tool.shape
-        return 0.5 * shape.diameter if isinstance(shape, Cutter) else None
+        if not isinstance(shape, Cutter):
+            return None
+        return 0.5 * shape.diameter + setting.radius_wear
 
     def _beside(self) -> Iterator[Finding]:
         moves, text = self.program.moves, self.program.text
@@ -366,6 +372,24 @@ def _part_name(tool: int, count: int) -> str:
     """Name of the n-th part with a tool; a negative number is none."""
     name = f"T{tool}" if tool >= 0 else "no tool"
     return name if count == 1 else f"{name} ({count})"
+
+
+def _length_wear(moves: NcMoves) -> Floats:
+    """Distance along Z of the tip from the programmed place, (N,), mm."""
+    stated = np.array([each.length_wear for each in moves.settings] or [0.0])
+    wear: Floats = stated[moves.rows["setting"]]
+    return wear
+
+
+def _with_length_wear(moves: NcMoves) -> NcMoves:
+    """Moves at the places where the tip of the tool goes."""
+    wear = _length_wear(moves)
+    if not np.any(wear):
+        return moves
+    table = moves.rows.copy()
+    for name in ("start", "end"):
+        table[name][:, 2] += wear
+    return replace(moves, rows=table)
 
 
 def _is_uncertain(moves: NcMoves) -> Bools:

@@ -1,8 +1,10 @@
 """Advice on the feeds of NC code, block by block, and what became of it."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import isfinite
+
+from stepnc_model.nc.written_lines import WrittenLines
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,6 +58,8 @@ class RewrittenCode:
     restored: int
     """Number of blocks that got the programmed feed back."""
     unchanged: tuple[UnchangedBlock, ...]
+    lines: WrittenLines = field(default_factory=WrittenLines)
+    """Lines of the program that the rewritten lines come from."""
 
 
 def least_of(advice: Iterable[BlockAdvice]) -> dict[int, BlockAdvice]:

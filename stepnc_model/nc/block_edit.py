@@ -21,6 +21,8 @@ RELATIVE = {"U", "W", "IX", "IY", "IZ"}
 CENTRES = {"I": 0, "J": 1, "K": 2}
 FEEDS = {"F", "FU"}
 RADII = {Dialect.SINUMERIK: "CR"}
+TURNS = {Dialect.LINUXCNC: ("P", 0), Dialect.SINUMERIK: ("TURN", 1)}
+"""Word that counts the turns of an arc, and the turns beyond its number."""
 KLARTEXT_HEADS = {"L", "C", "CR"}
 KLARTEXT_KEPT = KLARTEXT_HEADS | {"DR+", "DR-"}
 BEFORE_FEED = {"R0", "RL", "RR", "DR+", "DR-", "FMAX"}
@@ -262,7 +264,7 @@ def _first(text: str, found: Sequence[Token], words: _PieceWords, form: BlockFor
             continue
         if _is_motion(token, form) or (_is_geometry(token, form) and token.name in AXES):
             axes_end = len(parts) + 1
-        elif _is_geometry(token, form):
+        elif _is_geometry(token, form) and not _counts_turns(token, form):
             centres_start = centres_start or len(parts)
             centres_end = len(parts) + 1
         parts.append(_replaced(text, token, words, form))
@@ -305,7 +307,7 @@ def _further(
 
 def _ordered(words: Sequence[str]) -> list[str]:
     """Words with the axes before centres and radius, each in the order X, Y, Z."""
-    order = ("X", "U", "IX", "Y", "IY", "Z", "W", "IZ", "I", "J", "K", "R", "CR")
+    order = ("X", "U", "IX", "Y", "IY", "Z", "W", "IZ", "I", "J", "K", "R", "CR", "P", "TU")
 
     def place(word: str) -> int:
         letters = word[:2].upper() if word[:2].upper() in order else word[:1].upper()
@@ -326,7 +328,14 @@ def _is_motion(token: Token, form: BlockForm) -> bool:
 
 def _is_geometry(token: Token, form: BlockForm) -> bool:
     names = {*AXES, *CENTRES, RADII.get(form.dialect, "R")}
-    return token.kind is TokenKind.WORD and token.name in names
+    is_named = token.kind is TokenKind.WORD and token.name in names
+    return is_named or _counts_turns(token, form)
+
+
+def _counts_turns(token: Token, form: BlockForm) -> bool:
+    """Whether a token is the number of turns of an arc."""
+    name, _ = TURNS.get(form.dialect, ("", 0))
+    return bool(form.arc) and token.kind is TokenKind.WORD and token.name == name
 
 
 def _is_late(token: Token, dialect: Dialect) -> bool:
@@ -341,6 +350,8 @@ def _replaced(text: str, token: Token, words: _PieceWords, form: BlockForm) -> s
     if not _is_geometry(token, form):
         return written
     head = written[: len(written) - len(token.value)]
+    if _counts_turns(token, form):
+        return f"{head}{words.piece.turns - TURNS[form.dialect][1]}"
     if token.name in AXES:
         is_relative = form.is_relative or token.name in RELATIVE
         return head + words.axis(AXES[token.name], is_relative=is_relative, written=token.value)

@@ -13,6 +13,7 @@ from stepnc_model.nc.arcs import centre_of_radius, turn_of
 from stepnc_model.nc.drilling import cycle_moves, drilling
 from stepnc_model.nc.flow import BEHIND_THE_END, ProgramFlow, places
 from stepnc_model.nc.klartext_datum import KlartextDatum
+from stepnc_model.nc.klartext_wear import with_wear
 from stepnc_model.nc.klartext_words import KlartextWords, klartext_words
 from stepnc_model.nc.moves import CompensationSide, FeedMode, MoveFlag, MoveKind
 from stepnc_model.nc.recorder import MoveRecorder
@@ -277,6 +278,7 @@ class HeidenhainControl:
             self.spindle = words.values.get("S", nan)
             self._turn()
         self._feed(words)
+        self.recorder.setting = with_wear(self.recorder.setting, words, scale=self.scale)
         if words.numbers:
             tool = int(words.numbers[0])
             self.recorder.setting = replace(self.recorder.setting, tool=tool, tool_name="")

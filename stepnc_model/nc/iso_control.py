@@ -378,10 +378,8 @@ class IsoControl:
             self.recorder.unknown()
             self.recorder.at = end
             return
-        turns = self.turns(words)
-        if turns:
-            self.recorder.flags |= MoveFlag.MANY_TURNS.value
-        self.recorder.arc(end, centre, turn=turn + sense * turns * FULL, plane=plane)
+        turn += sense * self.turns(words) * FULL
+        self.recorder.arc(end, centre, turn=turn, plane=plane)
 
     def radius(self, words: BlockWords) -> float | None:
         """Radius that the block gives for an arc, mm, or None."""

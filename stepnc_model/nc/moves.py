@@ -74,8 +74,6 @@ class MoveFlag(IntFlag):
     """An F word was executed since the previous row."""
     MACHINE = 1 << 12
     """Move in coordinates of the machine, such as G28 or G53."""
-    MANY_TURNS = 1 << 13
-    """Arc whose turns are counted by a word of the block."""
     FIXED = 1 << 14
     """The block holds words that act once at a time that is not known."""
     POLAR = 1 << 15
@@ -110,7 +108,6 @@ UNSPLIT = (
     | MoveFlag.MACRO
     | MoveFlag.TARGET
     | MoveFlag.CYCLE
-    | MoveFlag.MANY_TURNS
     | MoveFlag.FIXED
     | MoveFlag.POLAR
     | MoveFlag.OFFSET
@@ -131,7 +128,6 @@ REASONS = {
     MoveFlag.NO_FEED: "no feed in force",
     MoveFlag.MACRO_FEED: "a feed from a variable",
     MoveFlag.MACHINE: "coordinates of the machine",
-    MoveFlag.MANY_TURNS: "an arc of counted turns",
     MoveFlag.FIXED: "words that act once",
     MoveFlag.POLAR: "polar or other ends",
     MoveFlag.OFFSET: "a change of offset",
@@ -184,6 +180,10 @@ class ModalSetting:
     """Whether I, J and K are coordinates rather than distances from the start (G90.1)."""
     side: CompensationSide | None = None
     """Side of the contour on which the tool goes; None without compensation."""
+    radius_wear: float = 0.0
+    """Radius beyond that of the tool table by which contours are offset (DR), mm."""
+    length_wear: float = 0.0
+    """Distance along Z of the tip from the programmed place (DL), mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -64,7 +64,7 @@ class NumberStyle:
         """Text of a feed, rounded down; ``0`` if it is below the resolution."""
         places = max(self.feed_places, FINE_FEED.get(mode, 0))
         if mode is FeedMode.PER_MINUTE:
-            places = max(places, 0 if value >= 100.0 else 1 if value >= 10.0 else 2)
+            places = max(places, _feed_places(value))
         exact = Decimal(value)
         step = Decimal(1).scaleb(-places)
         number = (exact + exact * SURPLUS).quantize(step, rounding=ROUND_FLOOR)
@@ -72,6 +72,15 @@ class NumberStyle:
         if "." in text:
             text = text.rstrip("0").rstrip(".")
         return text + "." if self.is_feed_pointed and "." not in text else text
+
+
+def _feed_places(value: float) -> int:
+    """Decimal places of a feed per minute of which rounding takes at most 1 %."""
+    if value >= 100.0:
+        return 0 if value >= 1000.0 else 1
+    if value >= 1.0:
+        return 2
+    return 3 if value >= 0.1 else 4
 
 
 def style_of(text: NcText, dialect: Dialect, *, unit: float) -> NumberStyle:

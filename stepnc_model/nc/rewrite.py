@@ -38,6 +38,7 @@ from stepnc_model.nc.number_style import style_of
 from stepnc_model.nc.program import NcProgram
 from stepnc_model.nc.split import MovePiece, WordScale, divided
 from stepnc_model.nc.token import TokenKind, tokens
+from stepnc_model.nc.written_lines import WrittenLines, line_ends
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.units import mm_min_from_speed
 
@@ -370,6 +371,7 @@ class _Rewriting:
         # Views, so that what stays is copied once.
         text, data = self.program.text, memoryview(self.program.text.data)
         parts: list[bytes | memoryview] = []
+        lines = WrittenLines()
         behind = changed = added = 0
         for block in sorted({*self.plans, *self.cycle_feeds, *trace.restored}):
             old = text.block(block)
@@ -378,10 +380,15 @@ class _Rewriting:
                 changed += new != old
             elif block in self.plans:
                 new = self._changed(self.plans[block], old)
+                pieces = self.plans[block].pieces
                 changed += new != old
-                added += new.count("\n") - old.count("\n") if new != old else 0
+                if len(pieces) > 1:
+                    added += len(pieces) - 1
+                    lines.divide(text.line(block), [piece.length for piece in pieces])
             else:
                 new = self._restored(block, old, trace.restored[block])
+            if block not in self.plans and line_ends(new) > line_ends(old):
+                lines.put_before(text.line(block))
             begin, end = int(text.starts[block]), int(text.starts[block + 1])
             parts += (data[behind:begin], new.encode("latin-1"))
             behind = end
@@ -392,6 +399,7 @@ class _Rewriting:
             added=added,
             restored=len(trace.restored),
             unchanged=tuple(sorted(self.unchanged, key=lambda each: each.block)),
+            lines=lines,
         )
 
     def _changed(self, plan: _Plan, text: str) -> str:

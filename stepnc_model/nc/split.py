@@ -8,11 +8,12 @@ arc runs.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
-from math import copysign, cos, hypot, isnan, pi, sin
+from math import ceil, copysign, cos, hypot, isnan, pi, sin
 
 from stepnc_model.nc.arcs import centre_of_radius, turn_of
 from stepnc_model.nc.moves import MoveKind, NcMove
 from stepnc_model.nc.number_style import NumberStyle
+from stepnc_model.post.grid import FULL
 from stepnc_model.toolpath.path import Point
 
 SHORTEST = 5
@@ -20,6 +21,9 @@ SHORTEST = 5
 
 SLACK = 4.0
 """Greatest deviation of a piece from its arc in steps of the resolution."""
+
+WHOLE = 1e-9
+"""Part of a turn below which an arc has only whole turns."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,6 +40,11 @@ class MovePiece:
     """Feed, mm/s."""
     length: float
     """Length, mm."""
+
+    @property
+    def turns(self) -> int:
+        """Number of turns of an arc, the last one full or in part."""
+        return max(1, ceil(abs(self.turn) / FULL - WHOLE))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -223,7 +232,7 @@ def _is_sound(move: NcMove, piece: MovePiece, scale: WordScale, by_radius: bool)
         return False
     sense = copysign(1.0, piece.turn)
     if by_radius:
-        if abs(abs(piece.turn) - pi) < 0.05 * pi:
+        if abs(move.turn) > FULL or abs(abs(piece.turn) - pi) < 0.05 * pi:
             return False
         radius = hypot(
             move.start[first] - move.centre[first], move.start[second] - move.centre[second]
@@ -237,6 +246,7 @@ def _is_sound(move: NcMove, piece: MovePiece, scale: WordScale, by_radius: bool)
     turn = turn_of(start, end, centre, plane, sense=sense)
     if isnan(turn):
         return False
+    turn += sense * (piece.turns - 1) * FULL
     size = hypot(start[first] - centre[first], start[second] - centre[second])
     if size * abs(turn - piece.turn) > SLACK * scale.step:
         return False

@@ -13,7 +13,7 @@ NOUNS = {
 """folders whose modules are tested together"""
 
 TOGETHER = {
-    "service/along_path/written_code.py": "run in tests/service/along_path/test_of_code.py",
+    "service/along_path/written_code.py": "run in tests/service/along_path/test_nc_samples.py",
     "stepnc_model/ap238/building.py": "builds whole programs in tests/.../test_export.py",
     "stepnc_model/ap238/completing.py": "held against the long form in test_export.py",
     "stepnc_model/ap238/converted.py": "a noun; read in test_reading.py",

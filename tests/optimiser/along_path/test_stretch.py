@@ -48,6 +48,12 @@ def test_the_chip_is_reduced_on_the_way_in() -> None:
     assert names_at(stretch(met), [10.2])[0] is CapName.ENTRY
 
 
+def test_a_station_that_ends_behind_the_path_by_rounding_is_on_its_last_segment() -> None:
+    caps = place_caps(stretch(half_cut([10.0, 30.000000000000004], [False, True])))
+    assert caps.ends[-1] == 30.0
+    assert caps.segment.max() == 0
+
+
 def test_a_place_near_the_stock_is_no_air() -> None:
     met = half_cut([10.0, 30.0], [False, True])
     near = half_cut([6.0, 30.0], [False, True])

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from optimiser.along_path.caps import CapName
 from optimiser.along_path.tool_bounds import bounds_of_tool
 from service.along_path.code_output import code_advice_json, print_code_advice
 from service.along_path.of_code import CodeAdvice, CodeFiles, optimise_code
@@ -109,7 +110,7 @@ def test_the_rewritten_program_takes_the_planned_time_and_stays(name: str) -> No
     assert first.rewritten.changed > 0
     assert first.along.time_after == pytest.approx(first.along.planned_time, rel=0.005)
     assert again.rewritten.changed == again.rewritten.added == 0
-    assert again.along.time_before == pytest.approx(first.along.time_after, rel=0.01)
+    assert again.along.time_before == pytest.approx(first.along.time_after)
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
@@ -247,6 +248,29 @@ def test_what_is_missing_is_told_and_the_bytes_stay(what: str) -> None:
     assert "no feed of this program may be chosen" in said
 
 
+HELIX = (
+    "G21 G90 G17 G54\nT2 M6\nS3000 M3\nG0 X51. Y40. Z5.\nZ1.\n{turns}"
+    "G3 I-1. J0. F300.\nG0 Z20.\nM2\n"
+)
+
+
+@pytest.mark.parametrize("depth", [3.0, 12.0])
+def test_a_helix_of_many_turns_has_the_time_of_its_turns(depth: float) -> None:
+    """The steeper one is limited by its plunge, the other by the chip."""
+    request = replace(MILL, dialect=Dialect.LINUXCNC)
+    bottom = 1.0 - depth
+    ends = [1.0 - depth * turn / 3.0 for turn in (1, 2, 3)]
+    single = "".join(f"G3 X51. Y40. Z{z:.4f} I-1. J0. F300.\n" for z in ends)
+    joined = f"G3 X51. Y40. Z{bottom:.4f} I-1. J0. P3 F300.\n"
+    one, other = (advised(HELIX.format(turns=turns), request) for turns in (joined, single))
+    plan = one.along.steps[1].plan
+    assert plan is not None
+    names = {name for name, (length, _) in plan.shares.items() if length > 10.0}
+    assert (CapName.PLUNGE in names) is (depth > 10.0)
+    assert one.along.time_after == pytest.approx(other.along.time_after, rel=0.02)
+    assert one.rewritten.added > 0
+
+
 def test_a_program_that_calls_itself_is_refused_with_the_line() -> None:
     with pytest.raises(StepNcError, match=r"line 6: .*nested more than 50 deep"):
         advised(HEAD + "M98 P1\n" + END)
@@ -315,37 +339,20 @@ def test_messages_of_the_planned_run_name_lines_of_the_file() -> None:
 
 
 @pytest.fixture(scope="module")
-def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, float], CodeAdvice]:
-    """Times of the bracket along its paths, as STEP-NC by workingstep and as NC code."""
-    folder = tmp_path_factory.mktemp("both")
+def own(tmp_path_factory: pytest.TempPathFactory) -> CodeAdvice:
+    """Advice for our own NC code of the bracket."""
+    folder = tmp_path_factory.mktemp("own")
     request = AdviceRequest(machine="vmc15", nc_control=Dialect.LINUXCNC)
     optimise(request, AdviceFiles(file=BRACKET, output=folder / "one.stpnc"))
-    along = optimise(
-        replace(request, is_along_path=True),
-        AdviceFiles(file=BRACKET, output=folder / "along.stpnc"),
-    ).along
-    assert along is not None
     tools = BRACKET.parents[1] / "tools" / "bracket.toml"
-    code = optimise_code(
+    return optimise_code(
         AdviceRequest(machine="vmc15", material="c45", stock="-3,-3,-40,153,93,2"),
         CodeFiles(file=folder / "one.ngc", tools=tools, dry_run=True),
     )
-    return {step.name: step.after.duration for step in along.steps}, code
 
 
-def test_a_workingstep_has_the_same_plan_as_nc_code(
-    both: tuple[dict[str, float], CodeAdvice],
-) -> None:
-    # Roughing a face knows the same limits both ways: no tolerance, no roughness.
-    times, code = both
-    first = next(step for step in code.along.steps if step.name == "T1")
-    assert first.after.duration == pytest.approx(times["ROUGH FACE"], rel=0.01)
-
-
-def test_our_own_code_is_left_by_a_second_run(
-    both: tuple[dict[str, float], CodeAdvice], tmp_path: Path
-) -> None:
-    _, code = both
+def test_our_own_code_is_left_by_a_second_run(own: CodeAdvice, tmp_path: Path) -> None:
+    code = own
     file = tmp_path / "again.ngc"
     file.write_bytes(code.rewritten.data)
     again = optimise_code(

@@ -188,3 +188,36 @@ def test_the_plain_program_runs_whole() -> None:
     assert not code.findings
     assert volume(code) == pytest.approx(SLOT, rel=0.01)
     assert np.flatnonzero(code.can_change).tolist() == lines_of(PLAIN, "G1 X110.")
+
+
+WORN = (
+    "0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S3000 F300{wear}\n2 L X-20 Y+40 R0 FMAX M3\n"
+    "3 L Z+5 FMAX\n4 L Z-4 FMAX\n5 L X-10 Y+40 {side} F300\n6 L X+110\n7 L X+130 Y+50 R0\n"
+    "8 L Z+50 FMAX M30\n9 END PGM A MM\n"
+)
+
+
+def worn(wear: str, side: str = "R0") -> CodePaths:
+    """Pass through the block with a tool whose call states its wear."""
+    return paths_of(WORN.format(wear=wear, side=side), dialect=Dialect.HEIDENHAIN)
+
+
+@pytest.mark.parametrize("length", [0.5, -0.25])
+def test_a_tool_call_with_a_length_cuts_that_much_higher(length: float) -> None:
+    removed = volume(worn(f" DL{length:+g}"))
+    assert removed == pytest.approx((4.0 - length) / 4.0 * volume(worn("")), rel=0.002)
+
+
+@pytest.mark.parametrize("radius", [0.0, 0.05, -0.05])
+def test_a_tool_call_with_a_radius_goes_that_much_farther_from_the_contour(
+    radius: float,
+) -> None:
+    moves = worn(f" DR{radius:+g}" if radius else "", "RL").program.moves
+    row = int(np.flatnonzero(moves.end[:, 0] == 110.0)[0])
+    assert moves.end[row, 1] == pytest.approx(40.0 + 6.0 + radius)
+
+
+def test_moves_with_a_length_from_a_variable_are_left_out_and_told() -> None:
+    code = worn(" DLQ5")
+    assert volume(code) == 0.0
+    assert "the length of the tool (DL) is not known" in reasons(code)

@@ -1,5 +1,6 @@
 """Blocks, tools and stock from NC code, of our own or of any origin."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -15,8 +16,9 @@ from simulator.removal.lathe import TurningStock
 from stepnc_model.errors import StepNcError
 from stepnc_model.post import blocks as post
 from tests.asking import asked_simulation
-from tests.service.along_path.foreign import BOX, END, HEAD, slot
+from tests.service.along_path.foreign import BAR, BOX, END, HEAD, INSERTS, slot
 from tests.service.along_path.foreign import TOOLS as TABLE
+from tests.service.along_path.test_of_code import PROGRAMS
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 BRACKET = EXAMPLES / "parts" / "bracket.stpnc"
@@ -185,3 +187,31 @@ def test_code_for_another_kind_of_machine_is_refused(tmp_path: Path) -> None:
         simulate(
             *asked_simulation(code=written(tmp_path, CAM), machine="lathe22", material="c45")
         )
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_code_of_many_origins_runs(name: str, tmp_path: Path) -> None:
+    text, request = PROGRAMS[name]
+    code = written(tmp_path, text)
+    if request.machine == "lathe22":
+        (tmp_path / "tools.csv").write_text(INSERTS, encoding="ascii")
+        code = replace(code, stock=BAR)
+    asked = asked_simulation(
+        code=code, machine=request.machine, material="c45", keep_going=True
+    )
+    assert simulate(*asked).whole.volume > 0.0
+
+
+def test_small_letters_remove_what_plain_code_removes(tmp_path: Path) -> None:
+    text = HEAD + slot(40.0) + END
+    plain, foreign = (
+        simulate(
+            *asked_simulation(code=written(tmp_path, words), machine="vmc15", material="c45")
+        )
+        for words in (text, text.lower().replace("o0001", "; small"))
+    )
+    assert plain.whole.volume == pytest.approx(4800.0, rel=0.002)
+    assert foreign.whole.volume == pytest.approx(plain.whole.volume)
+    assert foreign.whole.cutting_time == pytest.approx(plain.whole.cutting_time)
+    origins = ["any origin" in "".join(map(str, each.findings)) for each in (plain, foreign)]
+    assert origins == [False, True]

@@ -94,6 +94,23 @@ def test_a_full_circle_gets_the_ends_that_its_pieces_need() -> None:
     assert result.data == ISO + b"G2 X20 Y0 I10 J0 F50\nG2 X0 Y0 I-10 J0 F70\n"
 
 
+@pytest.mark.parametrize(
+    ("control", "word", "first", "second"),
+    [(Dialect.LINUXCNC, "P3", "P1", "P3"), (Dialect.SINUMERIK, "TURN=2", "TURN=0", "TURN=2")],
+)
+def test_the_pieces_of_a_helix_count_their_own_turns(
+    control: Dialect, word: str, first: str, second: str
+) -> None:
+    head = b"G710 G90 G17\nT1 M6\nS900 M3\nG0 X0 Y0 Z0\n"
+    if control is Dialect.LINUXCNC:
+        head = head.replace(b"G710", b"G21")
+    code = head + f"G2 X0 Y0 Z-3 I10 J0 {word} F100\n".encode()
+    result = rewritten(code, control, (4, (0.25, 1.0), (50.0, 70.0)))
+    assert result.data == head + (
+        f"G2 X10 Y-10 Z-0.75 I10 J0 {first} F50\nG2 X0 Y0 Z-3 I0 J10 {second} F70\n".encode()
+    )
+
+
 def test_inverse_time_counts_the_time_of_each_piece() -> None:
     code = b"G21 G90\nG0 X0 Y0 Z0\nG93 G1 X30 F2\n"
     result = rewritten(code, Dialect.LINUXCNC, (2, (0.5, 1.0), (30.0, 60.0)))
@@ -120,6 +137,13 @@ def test_feeds_in_inches_are_rounded_down() -> None:
     assert result.data == b"G20 G90\nG0 X0 Y0 Z0\nG1 X1.5 F8.29\n"
     slower = rewritten(code, Dialect.LINUXCNC, (2, (1.0,), (25.4 * 8.2899,)))
     assert slower.data == b"G20 G90\nG0 X0 Y0 Z0\nG1 X1.5 F8.28\n"
+
+
+@pytest.mark.parametrize("feed", [0.0567, 0.2677, 1.987, 19.87, 198.76, 1987.6])
+def test_rounding_of_a_feed_takes_at_most_one_per_cent(feed: float) -> None:
+    code = b"G20 G90\nG0 X0 Y0 Z0\nG1 X1.5 F10.5\n"
+    result = rewritten(code, Dialect.LINUXCNC, (2, (1.0,), (25.4 * feed,)))
+    assert 0.99 * feed < float(result.data.split(b"F")[1]) <= feed
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 """Foreign programs, read and rewritten, are what LinuxCNC's interpreter executes."""
 
 import random
-from math import hypot, isnan
+from math import atan2, copysign, hypot, isnan, pi
 from pathlib import Path
 
 import numpy as np
@@ -114,6 +114,48 @@ def test_only_feeds_change_and_pieces_end_on_the_path(
         at = old.end
     assert place == len(after)
     assert pieces == result.added
+
+
+HELICES = (
+    b"G21 G90 G17\nG0 X60 Y40 Z1\nG3 I-10 J0 Z-6 P3 F300\nG2 X40 Y40 I-10 J0 Z-8 P2\n"
+    b"G18\nG0 X0 Y0 Z0\nG2 X10 Z10 Y-3 I10 K0 P4\nG91 G17\nG3 X5 Y5 I5 J0 P2\nM2\n"
+)
+
+
+def turn_of(start: tuple[float, float, float], move: CanonicalMove) -> float:
+    """Angle of an arc as LinuxCNC executes it, in turns."""
+    assert move.centre is not None
+    first, second = move.axes[:2]
+    u, v = move.centre
+    begin = atan2(start[second] - v, start[first] - u)
+    end = atan2(move.end[second] - v, move.end[first] - u)
+    part = (copysign(1.0, move.rotation) * (end - begin) / (2.0 * pi)) % 1.0
+    return copysign(part + abs(move.rotation) - 1.0 + (part < 1e-6), move.rotation)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_arcs_of_many_turns_are_divided_into_as_many_turns(seed: int, linuxcnc: Oracle) -> None:
+    program = read_program(HELICES, dialect=Dialect.LINUXCNC)
+    result = rewrite(program, advice_for(program, seed))
+    before, after = linuxcnc(HELICES), linuxcnc(result.data)
+    at, place = (0.0, 0.0, 0.0), 0
+    for old in before:
+        turns, start = 0.0, at
+        while True:
+            new, place = after[place], place + 1
+            if new.centre is not None:
+                assert new.centre == pytest.approx(old.centre, abs=1e-3)
+                turns += turn_of(start, new)
+            start = new.end
+            if new.end == pytest.approx(old.end, abs=1e-6) and (
+                old.centre is None or abs(turns) > abs(turn_of(at, old)) - 0.5
+            ):
+                break
+        if old.centre is not None:
+            assert turns == pytest.approx(turn_of(at, old), abs=1e-4)
+        at = old.end
+    assert place == len(after)
+    assert len(after) == len(before) + result.added
 
 
 def off_path(
