@@ -127,6 +127,12 @@ def test_locked_workingsteps_keep_their_feed(folder: Path) -> None:
     assert ream.after.duration == pytest.approx(ream.before.duration)
 
 
+def test_a_smoothest_profile_without_a_path_is_refused(tmp_path: Path) -> None:
+    files = AdviceFiles(file=SHAFT, output=tmp_path / "s.stpnc")
+    with pytest.raises(StepNcError, match="--smooth needs --along-path"):
+        optimise(AdviceRequest(smooth_share=0.1), files)
+
+
 def test_levels_without_a_path_are_refused(tmp_path: Path) -> None:
     with pytest.raises(StepNcError, match="need --along-path"):
         optimise(AdviceRequest(levels=3), AdviceFiles(file=SHAFT, output=tmp_path / "s.stpnc"))
