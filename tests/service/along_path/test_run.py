@@ -46,9 +46,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize("sample", [BRACKET, SHAFT], ids=["bracket", "shaft"])
 def test_the_run_takes_the_planned_time(sample: Path, folder: Path) -> None:
     along = found(sample, folder)
-    assert along.time_after == pytest.approx(along.planned_time, rel=0.01)
+    assert along.time_after == pytest.approx(along.planned_time, rel=0.001)
     for step in along.steps:
-        assert step.after.duration == pytest.approx(step.planned_time, rel=0.01), step.name
+        # Parts that the run finds too fast are slower than planned, in one step up to 0.3 %.
+        assert step.after.duration == pytest.approx(step.planned_time, rel=0.005), step.name
 
 
 @pytest.mark.parametrize("sample", [BRACKET, SHAFT], ids=["bracket", "shaft"])
