@@ -273,9 +273,13 @@ def _write_views(
 def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
     """Refuse numbers out of bounds, and options that have no effect."""
     require_bounds(request)
-    if not request.is_along_path and (request.levels is not None or files.feeds is not None):
+    if request.is_along_path:
+        return
+    if request.levels is not None or files.feeds is not None:
         raise StepNcError("--levels and --feeds-csv need --along-path")
-    if request.writes_toolpaths and not request.is_along_path:
+    if request.smooth_share is not None:
+        raise StepNcError("--smooth needs --along-path")
+    if request.writes_toolpaths:
         raise StepNcError("--write-toolpaths needs --along-path")
 
 

@@ -69,7 +69,8 @@ const numeric = (id) => (byId(id).value === "" ? null : byId(id).valueAsNumber);
 
 /** Return the options of feeds along the path. */
 function alongWish() {
-  return { levels: numeric("levels"), max_feed_mm_min: numeric("max-feed"),
+  const smooth = numeric("smooth");
+  return { smooth_share: smooth === null ? null : smooth / 100, levels: numeric("levels"), max_feed_mm_min: numeric("max-feed"),
     stock_margin_mm: numeric("stock-margin"), corner_tolerance_mm: numeric("corner-tolerance") };
 }
 
@@ -111,6 +112,7 @@ function recall(request) {
     ["tool-change", "tool_change_s"], ["stock", "stock"], ["levels", "levels"], ["max-feed", "max_feed_mm_min"]]) put(id, request[name]);
   put("stock-margin", request.stock_margin_mm ?? 1);
   put("corner-tolerance", request.corner_tolerance_mm ?? 0.05);
+  put("smooth", request.smooth_share ? Number((100 * request.smooth_share).toFixed(6)) : null);
   byId("along").checked = request.is_along_path ?? false;
   byId("write-toolpaths").checked = request.writes_toolpaths ?? false;
   showAlongFields();

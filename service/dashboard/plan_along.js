@@ -51,12 +51,16 @@ function figures(along) {
   const { before, after } = along.time_s, longer = Math.max(before, after);
   const one = (name, ...shown) => el("div", { class: "figure" }, el("div", { class: "name" }, name), el("div", {}, shown));
   const value = (text) => el("span", { class: "value" }, text);
+  const smooth = along.free_profile.smoothest;
+  const smoothest = smooth && one("Smoothest profile", value(duration(smooth.time_s, longer)),
+    el("span", { class: "unit" }, `${fixed(smooth.unevenness_ratio, 3)} times as uneven as the fastest, ${duration(smooth.fastest_time_s, longer)}`));
   return [
     one("Time, simulated", el("span", { class: "was" }, duration(before, longer)),
       el("span", { class: "was arrow", "aria-label": "becomes" }, "→"), value(duration(after, longer))),
     one("Ratio of times", value(before ? fixed(after / before, 3) : "–")),
     one("Blocks changed", value(String(along.blocks)), el("span", { class: "unit" }, `${along.splits} splits`)),
     one("Run over plan", value(along.planned_time_s ? fixed(after / along.planned_time_s, 4) : "–")),
+    ...(smoothest ? [smoothest] : []),
   ];
 }
 

@@ -58,7 +58,7 @@ ROUTES = APIRouter(prefix="/v1/programs", tags=["programs"])
 OF_CODE = ("tools_id", "stock", "material")
 """Fields that advice on NC code needs."""
 
-OF_PATHS = ("levels", "writes_toolpaths")
+OF_PATHS = ("levels", "smooth_share", "writes_toolpaths")
 """Fields that need feeds along the paths."""
 
 EXAMPLES = FilePath(__file__).parents[2] / "examples" / "parts"

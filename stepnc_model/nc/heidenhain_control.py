@@ -13,8 +13,9 @@ from stepnc_model.nc.arcs import centre_of_radius, turn_of
 from stepnc_model.nc.drilling import cycle_moves, drilling
 from stepnc_model.nc.flow import BEHIND_THE_END, ProgramFlow, places
 from stepnc_model.nc.klartext_datum import KlartextDatum
+from stepnc_model.nc.klartext_parameters import KlartextParameters
 from stepnc_model.nc.klartext_wear import with_wear
-from stepnc_model.nc.klartext_words import KlartextWords, klartext_words
+from stepnc_model.nc.klartext_words import KlartextWords, flags_of, klartext_words
 from stepnc_model.nc.moves import CompensationSide, FeedMode, MoveFlag, MoveKind
 from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.nc.remarks import Remarks
@@ -73,6 +74,7 @@ class HeidenhainControl:
         self.spindle = 0.0
         self.sense = 0.0
         self.datum = KlartextDatum(self.recorder)
+        self.parameters = KlartextParameters()
         self.cycle: tuple[str, dict[str, float], int] | None = None
         self.rotary: dict[str, float] = {}
         self.is_called_always = False
@@ -104,7 +106,9 @@ class HeidenhainControl:
         words = klartext_words(self.text.block(block))
         recorder = self.recorder
         recorder.block = block
-        recorder.flags = self._flags(words).value
+        is_sure = not (words.is_skippable or recorder.standing & MoveFlag.CONDITIONAL)
+        self.parameters.take(words, is_sure=is_sure)
+        recorder.flags = flags_of(words).value
         head = words.names[0] if words.names else ""
         if not words.is_empty:
             following = self._steered(words, block)
@@ -132,21 +136,6 @@ class HeidenhainControl:
         self.remarks.lost(self.recorder.block, why)
         self.recorder.unknown()
 
-    def _flags(self, words: KlartextWords) -> MoveFlag:
-        flags = MoveFlag(0)
-        if words.macros:
-            flags |= MoveFlag.MACRO
-        if "F" in words.values or "F" in words.macros or "FU" in words.values:
-            flags |= MoveFlag.OWN_FEED
-        if any(
-            code not in {30, 40, 50, 80, 90, 130, 140, 0, 10, 20, 300}
-            for code in words.functions
-        ):
-            flags |= MoveFlag.FIXED
-        if words.is_skippable:
-            flags |= MoveFlag.SKIPPABLE
-        return flags
-
     # Flow.
 
     def _steered(self, words: KlartextWords, block: int) -> int | None:
@@ -161,6 +150,7 @@ class HeidenhainControl:
             return self._called(words, block)
         if head[:1] == ["CALL"] or (head[:1] == ["SEL"] and "PGM" in head):
             self.remarks.lost(block, "another program is called")
+            self.parameters.forget()
             self.recorder.unknown()
             self._forget_feed()
             return block + 1
@@ -178,6 +168,11 @@ class HeidenhainControl:
         return None
 
     def _condition(self, block: int) -> int:
+        is_sure = not self.recorder.standing & MoveFlag.CONDITIONAL
+        if is_sure and not self.flow.is_worn_out:
+            following = self.parameters.jumped(self.text.block(block), block, self._labels)
+            if following is not None:
+                return following
         self.remarks.lost(block, "conditions and jumps are not evaluated")
         self.recorder.unknown()
         self.recorder.standing |= MoveFlag.CONDITIONAL.value
@@ -227,6 +222,9 @@ class HeidenhainControl:
                 recorder.word = value * self.scale / (MINUTE if per_minute else 1.0)
                 recorder.fed_by, recorder.is_fresh = recorder.block, True
                 recorder.standing &= ~MoveFlag.MACRO_FEED.value
+                if name in words.evaluated:
+                    # Its number is known, but no word of the program says it.
+                    recorder.standing |= MoveFlag.MACRO_FEED.value
         if "FZ" in words.values or "FT" in words.values:
             self._forget_feed()
         return "FMAX" in words.names or "MAX" in words.names

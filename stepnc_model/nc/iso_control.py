@@ -112,8 +112,7 @@ class IsoControl:
         words = words_of(text, self.dialect)
         self.modes.shot, self.modes.lost = None, ""
         sets_frame = words.assignments and FRAME_PARAMETERS.search(text)
-        if words.macros or words.assignments:
-            self._evaluate(words)
+        self.evaluate(words)
         following = self.steering.follow(words, block)
         if following is not None:
             return following
@@ -138,9 +137,9 @@ class IsoControl:
             self.recorder.unknown()
         return self.steering.ended(words, block)
 
-    def _evaluate(self, words: BlockWords) -> None:
+    def evaluate(self, words: BlockWords) -> None:
         """Compute words from variables as far as they are known, then set variables."""
-        if self.dialect is Dialect.SINUMERIK:
+        if not (words.macros or words.assignments):
             return
         for name, text in list(words.macros.items()):
             value = evaluate(text, self.variables)

@@ -1,13 +1,28 @@
 """Words of one block of Heidenhain Klartext."""
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from stepnc_model.nc.token import NUMBER, TokenKind, tokens
+from stepnc_model.nc.moves import MoveFlag
+from stepnc_model.nc.token import NUMBER, Token, TokenKind, tokens
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.words import LARGEST
 
 PLAIN = re.compile(NUMBER)
+
+FORMULA_ENDS = {
+    TokenKind.COMMENT,
+    TokenKind.CONTINUATION,
+    TokenKind.LINE_END,
+    TokenKind.ASSIGNMENT,
+}
+"""Kinds of tokens at which the value of a Q parameter ends."""
+
+BLANK = {TokenKind.SPACE, TokenKind.LINE_END, TokenKind.COMMENT}
+
+PLAIN_FUNCTIONS = {0, 10, 20, 30, 40, 50, 80, 90, 130, 140, 300}
+"""M functions in tenths that a divided block may hold."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -24,6 +39,10 @@ class KlartextWords:
     """Variable of each address that takes its value from one."""
     assigned: dict[str, float] = field(default_factory=dict)
     """Values given to Q parameters, as far as they are numbers."""
+    formulas: dict[str, str] = field(default_factory=dict)
+    """Values given to Q parameters, as written."""
+    evaluated: set[str] = field(default_factory=set)
+    """Addresses whose number was computed from Q parameters."""
     functions: list[int] = field(default_factory=list)
     """M codes in tenths."""
     texts: list[str] = field(default_factory=list)
@@ -63,9 +82,7 @@ def klartext_words(text: str) -> KlartextWords:
     """
     words = KlartextWords()
     is_first = True
-    for kind, start, end, name, value in tokens(text, Dialect.HEIDENHAIN):
-        if kind in {TokenKind.SPACE, TokenKind.LINE_END, TokenKind.COMMENT}:
-            continue
+    for kind, start, end, name, value in _apart_from_formulas(text, words):
         if kind is TokenKind.NUMBER:
             if not is_first:
                 _number(words, value)
@@ -85,6 +102,35 @@ def klartext_words(text: str) -> KlartextWords:
             words.strange.append(text[start:end])
         is_first = False
     return words
+
+
+def _apart_from_formulas(text: str, words: KlartextWords) -> Iterator[Token]:
+    """Yield what is not blank in a block; what follows an equals sign becomes a formula."""
+    assigned, begin = "", 0
+    for token in tokens(text, Dialect.HEIDENHAIN):
+        if assigned and token.kind in FORMULA_ENDS:
+            words.formulas[assigned], assigned = text[begin : token.start], ""
+        if assigned or token.kind in BLANK:
+            continue
+        if token.kind is TokenKind.ASSIGNMENT:
+            assigned, begin = token.name, token.end - len(token.value)
+        yield token
+    if assigned:
+        words.formulas[assigned] = text[begin:]
+
+
+def flags_of(words: KlartextWords) -> MoveFlag:
+    """Flags that concern the whole block."""
+    flags = MoveFlag(0)
+    if words.macros or words.evaluated:
+        flags |= MoveFlag.MACRO
+    if "F" in words.values or "F" in words.macros or "FU" in words.values:
+        flags |= MoveFlag.OWN_FEED
+    if set(words.functions) - PLAIN_FUNCTIONS:
+        flags |= MoveFlag.FIXED
+    if words.is_skippable:
+        flags |= MoveFlag.SKIPPABLE
+    return flags
 
 
 def _word(words: KlartextWords, name: str, text: str) -> None:

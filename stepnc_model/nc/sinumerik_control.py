@@ -4,12 +4,12 @@ After Siemens, "SINUMERIK 840D sl Fundamentals" and "Job Planning".
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from math import inf, isnan, nan
 
 from stepnc_model.nc import iso_codes
-from stepnc_model.nc.block_words import BlockWords
+from stepnc_model.nc.block_words import BlockWords, take_word
 from stepnc_model.nc.drilling import cycle_moves, drilling
 from stepnc_model.nc.flow import places
 from stepnc_model.nc.iso_control import IsoControl
@@ -17,6 +17,7 @@ from stepnc_model.nc.iso_flow import IsoFlow, Steered
 from stepnc_model.nc.iso_modes import INCH, CodeTable, IsoModes
 from stepnc_model.nc.iso_motions import ModalMotion, Shot
 from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind
+from stepnc_model.nc.parameters import SINUMERIK, Parameters, plain_name
 from stepnc_model.nc.text import NcText
 from stepnc_model.nc.token import NUMBER
 from stepnc_model.post.blocks import MachineType
@@ -27,7 +28,14 @@ from stepnc_model.units import rev_s_from_rpm
 
 LABELS = re.compile(rb"^[ \t]*/?[ \t]*(?:N[0-9]+[ \t]*)?([A-Z_]{2}[A-Z0-9_]*):", re.M | re.I)
 REPEAT = re.compile(r"REPEAT\s+([A-Z_]{2}\w*)(?:\s+P\s*=?\s*([0-9]+))?", re.I)
+NUMBERS = re.compile(rb"^[ \t]*/?[ \t]*(N[0-9]+)", re.M | re.I)
+JUMP = re.compile(r"(?:IF\s*(.+?)\s*)?\bGOTO([FBC]?)\s+([A-Z_][A-Z0-9_]*)\s*", re.I | re.S)
+JUMP_TARGETS = re.compile(rb"GOTO[FBC]?[ \t]+(N[0-9]+)", re.I)
 END_LABEL = "ENDLABEL"
+R, R_NAMES = re.compile(r"R[0-9]+"), re.compile(r"\bR[0-9]+\b")
+NESTED = re.compile(r"(IC|AC)\((.+)\)", re.I)
+"""Component of an end with an expression."""
+
 COMPONENT = re.compile(rf"(IC|AC)\(\s*({NUMBER})\s*\)", re.I)
 
 CYCLES = {
@@ -56,17 +64,46 @@ STRANGE_ENDS = ("ANG", "AP", "RP", "I1", "J1", "K1")
 class SinumerikFlow(IsoFlow):
     """Steering of one Sinumerik program: repeats by label. Running state."""
 
-    def __init__(self, control: Steered) -> None:
+    def __init__(self, control: Steered, parameters: Callable[[], Parameters]) -> None:
         super().__init__(control)
+        self._parameters = parameters
+        self._targets: list[tuple[str, int]] = []
+        """Labels and block numbers that jumps may lead to, in the order of the program."""
+        if b"GOTO" in control.text.data.upper():
+            self._targets = [*places(control.text, LABELS), *places(control.text, NUMBERS)]
+            self._targets.sort(key=lambda target: target[1])
+            jumps = JUMP_TARGETS.findall(control.text.data)
+            self.targets = {int(name[1:]) for name in jumps if name[1:].isdigit()}
         self._labels = dict(reversed(list(places(control.text, LABELS))))
 
     def statement(self, text: str, block: int) -> int:
         """Repeat from a label to this block; other statements depend on conditions."""
+        jump = JUMP.fullmatch(text)
+        if jump is not None and self._is_sure:
+            following = self._jumped(jump, block)
+            if following is not None:
+                return following
         found = REPEAT.fullmatch(text)
         target = self._labels.get(found[1].upper()) if found is not None else None
         if found is None or target is None or target > block:
+            # A loop may change what it counts with.
+            self._parameters().forget()
             return super().statement(text, block)
         return self._flow.repeat(block, target, times=int(found[2] or 1))
+
+    def _jumped(self, jump: re.Match[str], block: int) -> int | None:
+        """Next block by a jump or its condition; None: not evaluated."""
+        value = 1.0 if jump[1] is None else self._parameters().evaluate(jump[1])
+        if isnan(value) or self._flow.is_worn_out:
+            return None
+        if value == 0.0:
+            return block + 1
+        target, way = jump[3].upper(), jump[2].upper()
+        places = [place for name, place in self._targets if name == target]
+        ahead = [place for place in places if place > block]
+        behind = [place for place in reversed(places) if place <= block]
+        found = {"F": ahead, "B": behind}.get(way, ahead + behind)
+        return found[0] if found else None
 
     def ended(self, words: BlockWords, block: int) -> int:
         """Block after this one; M17 and RET return to the program that called."""
@@ -111,7 +148,49 @@ class SinumerikControl(IsoControl):
 
     def __init__(self, text: NcText, dialect: Dialect, machine: MachineType) -> None:
         super().__init__(text, dialect, machine)
-        self._modal_call: tuple[str, str] | None = None
+        self.parameters = Parameters(SINUMERIK)
+        self._modal_call: tuple[str, list[float]] | None = None
+
+    def forget(self) -> None:
+        """Forget position, modal state and R parameters, which another program may change."""
+        super().forget()
+        self.parameters.forget()
+
+    def evaluate(self, words: BlockWords) -> None:
+        """Compute words from R parameters as far as they are known, then set parameters."""
+        given: dict[str, str] = {}
+        for name in [name for name in words.macros if R.fullmatch(name)]:
+            given[plain_name(name)] = words.macros.pop(name)
+        for name in [name for name in words.values if R.fullmatch(name)]:
+            given[plain_name(name)] = f"{words.values.pop(name):.9f}"
+        is_sure = not (words.is_skippable or words.strange)
+        is_sure = is_sure and not self.recorder.standing & MoveFlag.CONDITIONAL
+        values = {name: self.parameters.evaluate(text) for name, text in given.items()}
+        # What a word is that names a parameter of its own block depends on the order.
+        named = {
+            name: set(map(plain_name, R_NAMES.findall(text.upper())))
+            for name, text in given.items()
+        }
+        for name in given:
+            self.parameters.set(name, nan)
+        for name, text in list(words.macros.items()):
+            self._compute(words, name, text)
+        for name, value in values.items():
+            is_own = not (named[name] & given.keys()) - {name}
+            self.parameters.set(name, value if is_sure and is_own else nan)
+
+    def _compute(self, words: BlockWords, name: str, text: str) -> None:
+        """Compute one word, or the number within its IC() or AC(), if it is known."""
+        found = NESTED.fullmatch(text)
+        value = self.parameters.evaluate(text if found is None else found[2])
+        if isnan(value) or abs(value) > LARGEST:
+            return
+        if found is not None:
+            words.macros[name] = f"{found[1]}({value:.9f})"
+            return
+        del words.macros[name]
+        words.evaluated.add(name)
+        take_word(words, name, value)
 
     def settle(self, words: BlockWords) -> None:
         """Take names and assignments, then the words of ISO 6983."""
@@ -146,7 +225,7 @@ class SinumerikControl(IsoControl):
 
     def steer(self) -> IsoFlow:
         """Steering of the program."""
-        return SinumerikFlow(self)
+        return SinumerikFlow(self, lambda: self.parameters)
 
     def _dwell_words(self, words: BlockWords) -> None:
         """Drop the words of a dwell, which are no coordinates."""
@@ -177,7 +256,7 @@ class SinumerikControl(IsoControl):
             return
         elif not name.startswith("%_N_") and name != END_LABEL:
             self.modes.lose(f"the program or keyword {name} is not known")
-            self.modes.forget()
+            self.forget()
 
     def _trans(self, words: BlockWords, *, is_added: bool) -> None:
         """Shift the coordinates by TRANS or ATRANS."""
@@ -211,7 +290,7 @@ class SinumerikControl(IsoControl):
         if "L" in words.values or "L" in words.macros:
             number = words.values.get("L", nan)
             self.modes.lose(f"the subprogram L{number:g} is not in this file")
-            self.modes.forget()
+            self.forget()
         for name in STRANGE_ENDS:
             if name in words.values or name in words.macros:
                 self.modes.lose(f"ends given by {name} are not understood")
@@ -220,25 +299,30 @@ class SinumerikControl(IsoControl):
         """Take a cycle or another name with arguments."""
         is_modal = name.startswith("MCALL")
         cycle = name.removeprefix("MCALL")
+        numbers = [self._argument(each) for each in arguments.split(",")]
         if is_modal:
-            self._modal_call = cycle, arguments
+            self._modal_call = cycle, numbers
         elif cycle in CYCLES:
-            self._drill_here(cycle, arguments)
+            self._drill_here(cycle, numbers)
         elif cycle in iso_codes.SINUMERIK_TRANSFORMS:
             self.modes.transform(bool(arguments.strip()))
         elif cycle not in iso_codes.SINUMERIK_QUIET:
             self.modes.lose(f"the cycle or program {cycle} is not expanded")
-            self.modes.forget()
+            self.forget()
 
     def _move(self, words: BlockWords) -> None:
         super()._move(words)
         if self._modal_call is not None and self.has_axes(words) and not self.modes.lost:
             self._drill_here(*self._modal_call)
 
-    def _drill_here(self, name: str, arguments: str) -> None:
+    def _argument(self, text: str) -> float:
+        """Argument of a cycle: infinite if it is left out, NaN if it is not known."""
+        value = self.parameters.evaluate(text) if text.strip() else inf
+        return value if abs(value) <= LARGEST or value == inf else nan
+
+    def _drill_here(self, name: str, arguments: Sequence[float]) -> None:
         """Execute a drilling cycle at the position of the tool."""
-        numbers = [_number(each) for each in arguments.split(",")]
-        numbers += [inf] * (DEPTH_OF_PECK + 10 - len(numbers))
+        numbers = [*arguments, *[inf] * (DEPTH_OF_PECK + 10 - len(arguments))]
         back, surface, safe, bottom, depth = numbers[:5]
         if name not in CYCLES or isnan(sum(v for v in numbers[:5] if v != inf)):
             self.modes.lose(f"the cycle {name} is not expanded")
@@ -307,15 +391,6 @@ class SinumerikControl(IsoControl):
     def turns(self, words: BlockWords) -> int:
         """Full turns of an arc by TURN=."""
         return max(0, min(int(words.values.get("TURN", 0.0)), 1000))
-
-
-def _number(text: str) -> float:
-    """Argument of a cycle: infinite if it is left out, NaN if it is no number."""
-    text = text.strip()
-    if not text:
-        return inf
-    value = float(text) if re.fullmatch(NUMBER, text) else nan
-    return value if abs(value) <= LARGEST else nan
 
 
 def _given(value: float, default: float) -> float:

@@ -8,8 +8,8 @@ import pytest
 from service.along_path.run import FeedsAlongPath
 from service.requests.advice import AdviceRequest
 from service.requests.runs import SimulationRequest
-from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles, simulate
+from service.simulation.setup import CodeRequest
 from service.usecases import AdviceFiles, OptimiseResult, optimise
 from simulator.motion.model_name import ControlModelName
 from stepnc_model.errors import StepNcError
@@ -46,8 +46,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize("sample", [BRACKET, SHAFT], ids=["bracket", "shaft"])
 def test_the_run_takes_the_planned_time(sample: Path, folder: Path) -> None:
     along = found(sample, folder)
-    assert along.time_after == pytest.approx(along.planned_time, rel=0.002)
+    assert along.time_after == pytest.approx(along.planned_time, rel=0.001)
     for step in along.steps:
+        # Parts that the run finds too fast are slower than planned, in one step up to 0.3 %.
         assert step.after.duration == pytest.approx(step.planned_time, rel=0.005), step.name
 
 
@@ -125,6 +126,12 @@ def test_locked_workingsteps_keep_their_feed(folder: Path) -> None:
     assert steps["REAM HOLE 1"].plan is None
     ream = steps["REAM HOLE 1"]
     assert ream.after.duration == pytest.approx(ream.before.duration)
+
+
+def test_a_smoothest_profile_without_a_path_is_refused(tmp_path: Path) -> None:
+    files = AdviceFiles(file=SHAFT, output=tmp_path / "s.stpnc")
+    with pytest.raises(StepNcError, match="--smooth needs --along-path"):
+        optimise(AdviceRequest(smooth_share=0.1), files)
 
 
 def test_levels_without_a_path_are_refused(tmp_path: Path) -> None:

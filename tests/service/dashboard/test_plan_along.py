@@ -71,6 +71,7 @@ def test_a_program_gets_feeds_along_its_paths(page: Page) -> None:
     expect(page.locator("#levels")).to_be_hidden()
     page.locator("#along").check()
     page.locator("#levels").fill("3")
+    page.locator("#smooth").fill("5")
     page.locator("#more-options summary").click()
     page.locator("#simulate-after").uncheck()
     page.locator("#optimise").click()
@@ -79,6 +80,8 @@ def test_a_program_gets_feeds_along_its_paths(page: Page) -> None:
     expect(parts).to_contain_text("ROUGH THE FACE")
     expect(page.locator("#steps tr.step")).to_have_count(1)
     expect(page.locator("#along-figures")).to_contain_text("splits")
+    smoothest = page.locator("#along-figures .figure", has_text="Smoothest profile")
+    expect(smoothest).to_contain_text("times as uneven as the fastest")
     expect(drawn(page)).to_have_count(6)
     page.locator("#along-axis [data-value=time_s]").click()
     expect(page.locator("#along-plot")).to_contain_text("time, s")
@@ -88,6 +91,7 @@ def test_a_program_gets_feeds_along_its_paths(page: Page) -> None:
     page.reload()
     expect(page.locator("#along")).to_be_checked()
     expect(page.locator("#levels")).to_have_value("3")
+    expect(page.locator("#smooth")).to_have_value("5")
 
 
 def test_advice_without_the_option_shows_no_path_feeds(page: Page) -> None:

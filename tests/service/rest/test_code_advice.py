@@ -157,7 +157,7 @@ def test_a_program_of_the_wrong_kind_is_refused_in_words(
 def test_a_step_nc_program_gets_feeds_along_its_paths(client: httpx.Client, done: Done) -> None:
     wish = {
         "machine": "vmc15", "is_along_path": True, "levels": 3, "nc_control": "linuxcnc",
-        "max_feed_mm_min": 5000.0,
+        "max_feed_mm_min": 5000.0, "smooth_share": 0.05,
     }  # fmt: skip
     path = f"/v1/programs/{done.program}/advice"
     id = made(client.post(path, json=wish))
@@ -165,6 +165,10 @@ def test_a_step_nc_program_gets_feeds_along_its_paths(client: httpx.Client, done
     view = AdviceView.model_validate(client.get(f"/v1/advice/{id}").json())
     assert view.along_path is not None
     assert [part.id for part in view.along_path.parts if part.feeds] == ["ROUGH THE FACE"]
+    smoothest = view.along_path.free_profile.smoothest
+    assert smoothest is not None
+    assert smoothest.fastest_time_s < smoothest.time_s <= 1.05 * smoothest.fastest_time_s
+    assert smoothest.unevenness_ratio < 1.0
     assert all((part.feeds or 0) <= 3 for part in view.along_path.parts)
     assert client.get(f"/v1/advice/{id}/feeds").text.startswith("block,part,")
     CurvesView.model_validate(client.get(f"/v1/advice/{id}/curves").json())
@@ -180,8 +184,10 @@ def test_advice_without_feeds_along_the_path_has_none(client: httpx.Client, done
     for path in ("feeds", "curves"):
         found = is_problem(client.get(f"/v1/advice/{done.advice}/{path}"), 404, "not-found")
         assert "is_along_path" in found["detail"]
-    answer = client.post(f"/v1/programs/{done.program}/advice", json={"levels": 3})
-    assert "levels has no effect without is_along_path" in is_problem(answer, 422)["detail"]
+    for name, value in (("levels", 3), ("smooth_share", 0.1)):
+        answer = client.post(f"/v1/programs/{done.program}/advice", json={name: value})
+        words = f"{name} has no effect without is_along_path"
+        assert words in is_problem(answer, 422)["detail"]
 
 
 @pytest.mark.parametrize(
