@@ -9,6 +9,7 @@ rev/s.
 from dataclasses import dataclass
 from enum import StrEnum
 from math import isfinite, pi
+from typing import Any
 
 from stepnc_model.entities.adaptive import (
     AdaptiveMillingTechnology,
@@ -135,14 +136,14 @@ def _milling(program: Program, ref: Ref[Entity], technology: MillingTechnology) 
     if feed is None:
         raise program.error(
             "neither feedrate nor feedrate_per_tooth is given (ISO 14649-11 WR2); "
-            f"{_gives(int(ref), 'feedrate')}",
+            f"{_gives(program, ref, 'feedrate')}",
             ref,
             "feedrate",
         )
     if speed is None:
         raise program.error(
             "neither cutspeed nor spindle is given (ISO 14649-11 WR1); "
-            f"{_gives(int(ref), 'spindle')}",
+            f"{_gives(program, ref, 'spindle')}",
             ref,
             "spindle",
         )
@@ -181,7 +182,7 @@ def _adaptive(
     )
     if feed is None or speed is None:
         owner = technology.its_feed if feed is None else technology.its_speed
-        text = f"the technology has no feed or no speed; {_gives(int(owner), 'value')}"
+        text = f"the technology has no feed or no speed; {_gives(program, owner, 'value')}"
         raise program.error(text, owner, "value")
     inhibition = "adaptive_allowed is false" if not feed_entity.adaptive_allowed else ""
     if technology.inhibit_feedrate_override:
@@ -204,13 +205,14 @@ def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) 
     if feed is None:
         raise program.error(
             "neither feedrate nor feed_per_revolution is given; "
-            f"{_gives(int(ref), 'feedrate')}",
+            f"{_gives(program, ref, 'feedrate')}",
             ref,
             "feedrate",
         )
     if technology.spindle_speed is None:
         raise program.error(
-            f"the technology has no spindle speed; {_gives(int(ref), 'spindle_speed', '#ID')}",
+            "the technology has no spindle speed; "
+            f"{_gives(program, ref, 'spindle_speed', '#ID')}",
             ref,
             "spindle_speed",
         )
@@ -228,7 +230,7 @@ def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) 
     )
     if speed is None:
         attribute = "rot_speed" if is_constant else "speed"
-        text = f"no speed value is given; {_gives(int(spindle), attribute)}"
+        text = f"no speed value is given; {_gives(program, spindle, attribute)}"
         raise program.error(text, spindle, attribute)
     top = entity.max_speed if isinstance(entity, ConstCuttingSpeed) else None
     return Programmed(
@@ -264,7 +266,7 @@ def _number(
     if not isfinite(size) or size <= 0.0:
         message = f"{quantity.value} {written:g} is not valid: it must be positive"
         is_lacking = written == 0.0 and attribute in _FEEDS
-        message += f"; {_gives(int(ref), 'feedrate' if is_lacking else attribute)}"
+        message += f"; {_gives(program, ref, 'feedrate' if is_lacking else attribute)}"
         raise program.error(message, ref, attribute)
     return Number(
         ref=ref,
@@ -279,8 +281,9 @@ _FEEDS = ("feedrate", "feedrate_per_tooth", "feed_per_revolution")
 """Attributes that ``--feed`` gives where they are missing or 0."""
 
 
-def _gives(number: int, attribute: str, value: str = "VALUE") -> str:
+def _gives(program: Program, ref: Ref[Any], attribute: str, value: str = "VALUE") -> str:
     """Option that gives what a technology lacks."""
     if attribute == "feedrate":
         return "--feed gives one, as --feed 240 (mm/min) or --feed 0.1mm/tooth"
-    return f'--set "#{number}.{attribute}={value}" gives one'
+    number = program.label(ref).split()[0]
+    return f'--set "{number}.{attribute}={value}" gives one'

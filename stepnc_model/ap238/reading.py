@@ -148,7 +148,7 @@ class AimReader:
 
     def _number(self, place: Place, rule: Rule) -> Ref[object]:
         """Number of the instance that a place stands for; it is converted once."""
-        scale = self._geometry_factor(place.context) if _is_scaled(rule) else 1.0
+        scale = self.geometry_factor(place.context) if _is_scaled(rule) else 1.0
         key = place.id, rule.entity.keyword, scale
         if key not in self._numbers:
             number = place.id
@@ -263,7 +263,7 @@ class AimReader:
         if kind is Kind.UNIT:
             return self._unit_name(place)
         if kind is Kind.COORDINATES:
-            return _scaled(place.value, self._geometry_factor(place.context))
+            return _scaled(place.value, self.geometry_factor(place.context))
         return self._measured(start, place, ending, attribute)
 
     def _verbatim(self, start: Place, attribute: str, slot: AttributeSlot) -> Value:
@@ -368,7 +368,7 @@ class AimReader:
             return self.units.unit(int(ref))
         return None
 
-    def _geometry_factor(self, context: int | None) -> float:
+    def geometry_factor(self, context: int | None) -> float:
         """Factor from the lengths of a context to mm."""
         return conversion(self.units.length_in(context), MEASURES[Kind.LENGTH]).factor
 

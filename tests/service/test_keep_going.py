@@ -198,6 +198,30 @@ class TestGivenData:
         assert whole.program.file.data != data
         assert without_given(whole.program, whole.given) == data
 
+    def test_a_number_is_replaced_where_it_stands(self) -> None:
+        """The plane is moved, the measure keeps its tolerance: no instance is added."""
+        data = program().replace(b"LENGTH_MEASURE(10.,$)", b"LENGTH_MEASURE(10.,#95)")
+        given = ("#31.depth=12", "#31.diameter=8.5")
+        whole = completed(Program(Part21File.from_bytes(data)), GivenData(values=given))
+        changed = data.replace(b"(0.,0.,-15.)", b"(0.,0.,-12.)").replace(
+            b"MEASURE(10.,#95)", b"MEASURE(8.5,#95)"
+        )
+        # Three holes share the plane and the measure: one gets its own.
+        assert whole.program.file.data != changed
+        assert without_given(whole.program, whole.given) == data
+        one = data.replace(
+            b"#30=ROUND_HOLE('GOOD',#6,(),#80,#91,#93", b"#30=ROUND_HOLE('GOOD',#6,(),#80,$,$"
+        )
+        one = one.replace(
+            b"#32=ROUND_HOLE('AFTER',#6,(),#85,#91,#93", b"#32=ROUND_HOLE('AFTER',#6,(),#85,$,$"
+        )
+        assert one != data
+        whole = completed(Program(Part21File.from_bytes(one)), GivenData(values=given))
+        assert whole.program.file.data == one.replace(b"(0.,0.,-15.)", b"(0.,0.,-12.)").replace(
+            b"MEASURE(10.,#95)", b"MEASURE(8.5,#95)"
+        )
+        assert without_given(whole.program, whole.given) == one
+
     def test_a_feed_is_given_to_those_that_have_none(self) -> None:
         whole = completed(
             Program(Part21File.from_bytes(program(**NO_FEED))),
