@@ -7,6 +7,7 @@ from optimiser.advice import RefusedWorkingstep
 from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.plausibility import refusal
 from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.remedy import error_of
 from stepnc_model.writeback import WorkingstepUpdate
 
 
@@ -75,7 +76,7 @@ def require_usable(
     require_any(chosen)
     for finding in findings:
         if finding.severity is Severity.ERROR:
-            raise _error_of(finding)
+            raise error_of(finding)
     error = refusal(program, chosen)
     if error is not None:
         raise error
@@ -123,14 +124,5 @@ def _refusal_of(program: Program, step: ResolvedWorkingstep) -> SchemaError | No
         near.append(step.functions_ref)
     fault = program.model.fault_near(*near)
     if fault is not None and fault.severity is Severity.ERROR:
-        return _error_of(fault)
+        return error_of(fault)
     return refusal(program, (step,))
-
-
-def _error_of(finding: Finding) -> SchemaError:
-    return SchemaError(
-        finding.message,
-        entity=finding.entity,
-        attribute=finding.attribute,
-        line=finding.line,
-    )

@@ -292,7 +292,9 @@ def _tell_conflicts(plan: Plan, tell: Tell) -> None:
         tell(f"left as programmed: '{each.id}' ({each.ref}): {each.reason}")
     conflicts = [each for each in plan.advices if each.status is AdviceStatus.INFEASIBLE]
     if conflicts:
-        names = ", ".join(f"'{each.workingstep.id}'" for each in conflicts)
+        names = ", ".join(
+            f"'{each.workingstep.id}' ({each.workingstep.ref})" for each in conflicts
+        )
         tell(f"infeasible, left as programmed: {names}")
 
 

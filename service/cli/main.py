@@ -230,7 +230,7 @@ def _run(options: argparse.Namespace) -> None:
         code = options.run(options)
         sys.stdout.flush()
     except StepNcError as error:
-        tell(f"error: {error}")
+        tell(f"error: {error}{_alternative(error, options)}")
         code = _exit_code(error)
     except KeyboardInterrupt:
         tell("interrupted")
@@ -242,6 +242,17 @@ def _run(options: argparse.Namespace) -> None:
             tell(f"error: stdout: {error.strerror}")
             code = BAD_INPUT
     sys.exit(code)
+
+
+def _alternative(error: Exception, options: argparse.Namespace) -> str:
+    """Option that helps where one instance is at fault and no other option is named."""
+    from stepnc_model.errors import SchemaError
+
+    is_local = isinstance(error, SchemaError) and bool(error.entity)
+    can_keep_going = getattr(options, "keep_going", None) is False
+    if not is_local or not can_keep_going or " --" in str(error):
+        return ""
+    return "; --keep-going leaves out what depends on it"
 
 
 def _exit_code(error: Exception) -> int:

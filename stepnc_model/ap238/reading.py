@@ -86,6 +86,8 @@ class AimReader:
         self._reading = AimReading()
         self._visited: set[int] = set()
         """Instances on the ways to all values read."""
+        self._without_rule: dict[tuple[str, str], list[int]] = {}
+        """Instances that no rule describes, by what they are and where they stand."""
 
     def read(self) -> AimReading:
         """Convert all programs of the file."""
@@ -103,6 +105,7 @@ class AimReader:
             self._convert(number, origin)
         converted = self._reading.converted
         self._reading.converted = upright(converted, self._paths, first=self._next)
+        self._tell_unknown()
         self._note_unread()
         self._reading.findings = self._paths.findings.all()
         return self._reading
@@ -241,10 +244,16 @@ class AimReader:
             )
             described = self.instances.value(place.id, "description")
             name = f" '{described}'" if isinstance(described, str) else ""
-            message = f"{keyword}{name} has no counterpart in ISO 14649 that is supported here"
-            self._paths.remark(Severity.WARNING, message, place.id, attribute)
+            self._without_rule.setdefault((f"{keyword}{name}", attribute), []).append(place.id)
         number = self._numbers.get(key)
         return None if number is None else Ref(number)
+
+    def _tell_unknown(self) -> None:
+        """Warn of instances that no rule describes, once for each kind."""
+        for (what, attribute), ids in self._without_rule.items():
+            count = f" ({len(ids)} instances)" if len(ids) > 1 else ""
+            text = f"{what}{count} has no counterpart in ISO 14649 that is supported here"
+            self._paths.remark(Severity.WARNING, text, ids[0], attribute)
 
     def _value(self, start: Place, place: Place, ending: Ending, attribute: str) -> Value:
         """Value of ISO 14649 for a place; None if it has none."""

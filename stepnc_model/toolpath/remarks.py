@@ -57,7 +57,10 @@ def _of_stock(program: Program) -> Iterator[Finding]:
         if unused is not None:
             yield unused
         if not is_known:
-            text = "no stock is known: engagement is estimated, collisions are not found"
+            text = (
+                "no stock is known (--stock names one): engagement is estimated, collisions "
+                "are not found"
+            )
             setup = step.ref if step.setup is None else step.setup
             at = setup if int(setup) in program.file else step.ref
             yield program.finding(Severity.WARNING, text, at)
