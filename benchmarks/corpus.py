@@ -3,8 +3,7 @@
 ``python -m benchmarks.corpus [FOLDER ...]`` runs each command on each program of the folders
 (default: the public programs beside the project) and prints Markdown. Where a command refuses a
 program, it is run again with the option that its refusal names (units, a material, a spindle
-speed), then with those that leave workingsteps out or add what the program does not say; NC
-code, simulation and control are tried on the optimised program too. Refusals are printed as the
+speed, a feed), then with the one that leaves workingsteps out; NC code, simulation and control are tried on the optimised program too. Refusals are printed as the
 commands print them.
 """
 
@@ -35,7 +34,7 @@ MATERIAL: Options = ("--material", "c45")
 KEEP: Options = ("--keep-going",)
 FEED: Options = ("--feed", "240")
 
-EXAMPLES = {"spindle": "-16."}
+EXAMPLES = {"spindle": "-16.", "feed_per_revolution": "0.2"}
 """Values for attributes that a refusal asks for, in the units of the standard."""
 
 MOST_ATTEMPTS = 8
@@ -214,7 +213,14 @@ def _next(command: Command, error: str, options: Options) -> Options | None:
         return ("--set", value) if value not in options else None
     if "--material" in error and "--material" not in options:
         return MATERIAL
-    return next((each for each in command.helps if each[0] not in options), None)
+    return next(
+        (
+            each
+            for each in command.helps
+            if each[0] not in options and (each is KEEP or each[0] in error)
+        ),
+        None,
+    )
 
 
 def table(rows: dict[str, dict[str, Entry]]) -> str:

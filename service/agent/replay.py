@@ -13,6 +13,7 @@ import numpy as np
 import pyarrow as pa
 
 from service.agent.play import MICRO
+from service.files import require_regular
 from service.reading import Tell
 from service.recording.table import TABLES, batches, headings
 from simulator.agent.agent import Agent
@@ -94,6 +95,7 @@ def read_log(
     StepNcError
         When the file cannot be read, is damaged, or has nothing for this device model.
     """
+    require_regular(path)
     suffix = path.suffix.lower()
     try:
         if suffix in TABLES:
