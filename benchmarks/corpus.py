@@ -3,8 +3,8 @@
 ``python -m benchmarks.corpus [FOLDER ...]`` runs each command on each program of the folders
 (default: the public programs beside the project) and prints Markdown. Where a command refuses a
 program, it is run again with the option that its refusal names (units, a material, a spindle
-speed, a feed), then with the one that leaves workingsteps out; NC code, simulation and control are tried on the optimised program too. Refusals are printed as the
-commands print them.
+speed, a feed), then with the one that leaves workingsteps out; NC code, simulation and control
+are tried on the optimised program too. Refusals are printed as the commands print them.
 """
 
 import argparse

@@ -30,12 +30,13 @@ from simulator.spec import Certainty, Machine, MaterialMatch
 from stepnc_model import writeback
 from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
 from stepnc_model.file_profile import FileProfile, RecordChoice
-from stepnc_model.given import Completed, without_given
+from stepnc_model.given import Completed
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.task import stock_of
 from stepnc_model.units import mm_from_um
+from stepnc_model.withdrawal import without_given
 
 if TYPE_CHECKING:
     from service.along_path.run import FeedsAlongPath
@@ -82,6 +83,8 @@ class OptimiseResult:
     """Feeds along the paths; None if they were not requested."""
     told: tuple[Finding, ...] = ()
     """Warnings about the program that were told already."""
+    is_advised: bool = True
+    """Whether there is advice that is written, or would be without a dry run."""
 
 
 def optimise(
@@ -132,8 +135,14 @@ def optimise(
     plan = replace(plan, refused=(*possible.refused, *plan.refused))
     told = _remarks(program, tell)
     plan = _with_file_findings(plan, (*findings, *notes, *told), match)
-    changes = apart_from(program, changes_of(plan), plan.refused)
-    data = writeback.write(program, changes, profile) if changes else program.source.data
+    writable = apart_from(program, changes_of(plan), plan.refused)
+    changes = writable.changes
+    plan = replace(plan, findings=(*plan.findings, *writable.findings))
+    for each in writable.findings:
+        tell(f"warning: {each}".replace("warning: warning: ", "warning: "))
+    data = (
+        writeback.write(writable.program, changes, profile) if changes else program.source.data
+    )
     if changes and factors and profile is FileProfile.OPTIMISATION:
         data = with_corrections(_read_again(program, data), factors)
     confirmation = _confirmed(request, program, plan, data, tell)
@@ -154,7 +163,12 @@ def optimise(
     _write_views(files, plan, along, tell)
     _tell_conflicts(plan, tell)
     return OptimiseResult(
-        plan=plan, written=written, confirmation=confirmation, along=along, told=told
+        plan=plan,
+        written=written,
+        confirmation=confirmation,
+        along=along,
+        told=told,
+        is_advised=bool(changes),
     )
 
 
@@ -195,7 +209,7 @@ def _without_given(whole: Completed, data: bytes) -> bytes:
     """Bytes of an advised program without the data that the request gave."""
     if not whole.given:
         return data
-    return without_given(_read_again(whole.program, data), whole.given)
+    return without_given(_read_again(whole.program, data), whole)
 
 
 def _factors(

@@ -8,12 +8,10 @@ advised on its basis does. Units are those of the file.
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import isclose
 from typing import Any, TypeGuard
 
 from stepnc_model.ap238.converted import Converted
 from stepnc_model.ap238.view import AimView
-from stepnc_model.ap238.writing import spliced_into
 from stepnc_model.binding import Model
 from stepnc_model.draft import Draft
 from stepnc_model.entities.conversion import AttributeSlot, slots_of
@@ -134,109 +132,6 @@ def _changed(draft: Draft, given: Sequence[SetAttribute]) -> Program:
     return found
 
 
-def without_given(program: Program, given: Sequence[SetAttribute]) -> bytes:
-    """Bytes of a program with given data withdrawn, where they were not changed since.
-
-    Parameters
-    ----------
-    program : Program
-        Program that holds the given data, and perhaps advice.
-    given : sequence of SetAttribute
-
-    Returns
-    -------
-    bytes
-    """
-    if isinstance(program.file, AimView):
-        withdrawal = _AimWithdrawal(program, program.file)
-        for each in given:
-            withdrawal.withdraw(each)
-        return withdrawal.apply()
-    draft = Draft(program)
-    for each in given:
-        if all(_is_kept(program, other) for other in _together(given, each)):
-            draft.put(each.ref, each.attribute, each.before)
-            draft.remove(each.added)
-    return draft.edits.apply()
-
-
-def _together(given: Sequence[SetAttribute], one: SetAttribute) -> Iterator[SetAttribute]:
-    """Set attribute, with the one beside which alone it is withdrawn."""
-    yield one
-    for other in given:
-        if other.ref == one.ref and other.attribute == one.only_beside:
-            yield other
-
-
-def _is_kept(program: Program, given: SetAttribute) -> bool:
-    """Whether an attribute still has the value that was given."""
-    place = program.model.position(given.ref, given.attribute)
-    return program.file.parameters(int(given.ref))[place] == given.value
-
-
-class _AimWithdrawal:
-    """Withdrawal from an AP238 program whose numbers may have changed. Running state."""
-
-    def __init__(self, program: Program, view: AimView) -> None:
-        self._draft = Draft(program)
-        self._view = view
-        self._remembered: list[Converted] = []
-
-    def withdraw(self, given: SetAttribute) -> None:
-        """Withdraw one attribute, if it still has the value that was given."""
-        view = self._view
-        number = None if given.origin is None else view.number_of(given.origin)
-        if number is None:
-            return
-        ref: Ref[object] = Ref(number)
-        place = self._draft.program.model.position(ref, given.attribute)
-        value = view.parameters(number)[place]
-        if not self._is_kept(value, given):
-            return
-        self._draft.put(ref, given.attribute, self._before(given))
-        if given.added and isinstance(value, Ref):
-            self._draft.remove(tuple(_below(view, value)))
-
-    def _is_kept(self, value: Value, given: SetAttribute) -> bool:
-        """Whether a value is the one that was given."""
-        if not isinstance(value, Ref) or not isinstance(given.value, Ref):
-            return _is_same(value, given.value)
-        origin = given.value_origin
-        return origin is None or self._view.number_of(origin) == int(value)
-
-    def _before(self, given: SetAttribute) -> Value:
-        """What stood there before, under the number that it has now."""
-        origin = given.before_origin
-        if origin is None:
-            return given.before
-        number = self._view.number_of(origin)
-        if number is None:
-            # Nothing leads to it any more, so that the program as it is does not have it.
-            number = int(self._draft.edits.add(origin.keyword, ()))
-            self._remembered.append(replace(origin, number=number, rule=None))
-        return Ref(number)
-
-    def apply(self) -> bytes:
-        """Bytes of the AP238 file."""
-        view = self._view.remembering(self._remembered)
-        return spliced_into(view, self._draft.edits.apply(), self._draft.removed)
-
-
-def _is_same(one: Value, other: Value) -> bool:
-    """Whether two values are the same, but for the digits that a change of unit costs."""
-    if isinstance(one, int | float) and isinstance(other, int | float):
-        return isclose(one, other, rel_tol=1e-12)
-    return one == other
-
-
-def _below(file: Part21File, ref: Ref[object]) -> Iterator[int]:
-    """Instance and all that it refers to."""
-    yield int(ref)
-    for value in file.parameters(int(ref)):
-        if isinstance(value, Ref):
-            yield from _below(file, value)
-
-
 def _read(program: Program, data: bytes) -> Program:
     """Program with changed text; one of AP238 stays one."""
     file = Part21File.from_bytes(data, name=program.name)
@@ -316,13 +211,13 @@ def _put(
         before=before,
         value=value,
         added=added,
-        origin=_origin(draft.program, ref),
-        before_origin=_origin(draft.program, before),
-        value_origin=_origin(draft.program, value),
+        origin=origin_in(draft.program, ref),
+        before_origin=origin_in(draft.program, before),
+        value_origin=origin_in(draft.program, value),
     )
 
 
-def _origin(program: Program, value: Value) -> Converted | None:
+def origin_in(program: Program, value: Value) -> Converted | None:
     """What an instance stands for in an AP238 file."""
     if not isinstance(value, Ref) or not isinstance(program.file, AimView):
         return None

@@ -1,8 +1,8 @@
 """Command line: ``optimise`` and ``stepnc``, a thin layer above :mod:`service.usecases`.
 
 Data goes to stdout, messages and progress to stderr. Exit codes: 0 ok, 2 usage, 3 bad input,
-4 infeasible, 5 limit exceeded, 130 interrupted. Slow imports stay inside the commands, so that
-``--help`` answers at once.
+4 infeasible, 5 limit exceeded, 6 nothing to advise, 130 interrupted. Slow imports stay inside
+the commands, so that ``--help`` answers at once.
 """
 
 import argparse
@@ -24,6 +24,7 @@ from service.cli.options import (
     INFEASIBLE,
     INTERRUPTED,
     LIMIT_EXCEEDED,
+    NOTHING_ADVISED,
     OK,
     CommandParser,
     Commands,
@@ -307,7 +308,9 @@ def _optimise(options: argparse.Namespace) -> int:
     if outcome.plan.is_infeasible:
         return INFEASIBLE
     is_passed = confirmation is not None and bool(confirmation.passed)
-    return LIMIT_EXCEEDED if is_passed or outcome.plan.faults else OK
+    if is_passed or outcome.plan.faults:
+        return LIMIT_EXCEEDED
+    return OK if outcome.is_advised else NOTHING_ADVISED
 
 
 def _optimise_folder(options: argparse.Namespace) -> int:

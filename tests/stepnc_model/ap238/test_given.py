@@ -14,12 +14,13 @@ from stepnc_model.entities.executables import Setup
 from stepnc_model.entities.features import RoundHole, Step
 from stepnc_model.entities.geometry import Block
 from stepnc_model.errors import SchemaError
-from stepnc_model.given import Completed, GivenData, GivenFeed, completed, without_given
+from stepnc_model.given import Completed, GivenData, GivenFeed, completed
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from stepnc_model.technology import programmed
 from stepnc_model.tool import tool_of
 from stepnc_model.units import FeedUnit
+from stepnc_model.withdrawal import without_given
 from tests.stepnc_model.ap238.samples import MILLING, exported, own, public, read
 
 FEED = GivenFeed(value=4.0, unit=FeedUnit.MM_PER_MINUTE)
@@ -94,7 +95,7 @@ def test_given_data_are_read_and_written_in_place_as_ap238(name: str) -> None:
 def test_withdrawn_data_leave_every_instance_as_it_was(name: str) -> None:
     data, words, _, _ = cases()[name]
     whole = completed(Program(read(data)), words)
-    assert instances(without_given(written(whole), whole.given)) == instances(data)
+    assert instances(without_given(written(whole), whole)) == instances(data)
 
 
 def test_a_feed_is_given_to_the_public_example_in_its_own_unit() -> None:
@@ -102,7 +103,7 @@ def test_a_feed_is_given_to_the_public_example_in_its_own_unit() -> None:
     whole = completed(Program(read(data)), GivenData(feed=FEED))
     program = written(whole)
     assert feed_of(whole.program) == feed_of(program) == pytest.approx(4.0, rel=1e-12)
-    left = without_given(program, whole.given)
+    left = without_given(program, whole)
     kept, before = instances(left), instances(data)
     # The measures were there without a number; a feed that is withdrawn leaves none.
     assert before.keys() - kept.keys() == {*range(3821, 3825), *range(4121, 4125)}
@@ -149,7 +150,7 @@ class TestWhatTheFileHas:
         after = instances(program.source.data)
         assert sum(after[id] != text for id, text in instances(data).items()) == 1
         assert len(after) - len(instances(data)) == added
-        left = instances(without_given(program, whole.given))
+        left = instances(without_given(program, whole))
         assert all(left[id] == text for id, text in instances(data).items())
 
     def test_a_reference_is_replaced(self) -> None:
@@ -164,7 +165,7 @@ class TestWhatTheFileHas:
         found = written(whole)
         assert found.workingsteps[0].tool_ref == last.tool_ref
         assert found.workingsteps[-1].features == first.features
-        left = Program(read(without_given(found, whole.given)))
+        left = Program(read(without_given(found, whole)))
         assert left.workingsteps[0].tool_ref == first.tool_ref
         assert left.workingsteps[-1].features == last.features
         texts = instances(left.source.data)
