@@ -22,8 +22,8 @@ from service.knowledge.corrected import factors_for, finding_of, with_correction
 from service.knowledge.place import named_place, require_apart
 from service.progress import Progress
 from service.reading import Tell, read_given, read_program, selected, silent
-from service.records import changes_of
-from service.refusals import advisable, apart_from
+from service.records import changes_of, lost_plunge_feeds
+from service.refusals import Writable, advisable, apart_from
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
 from simulator.spec import Certainty, Machine, MaterialMatch
@@ -137,9 +137,8 @@ def optimise(
     plan = _with_file_findings(plan, (*findings, *notes, *told), match)
     writable = apart_from(program, changes_of(plan), plan.refused)
     changes = writable.changes
-    plan = replace(plan, findings=(*plan.findings, *writable.findings))
-    for each in writable.findings:
-        tell(f"warning: {each}".replace("warning: warning: ", "warning: "))
+    unwritten = _unwritten(program, plan, writable, profile, tell)
+    plan, told = replace(plan, findings=(*plan.findings, *unwritten)), (*told, *unwritten)
     data = (
         writeback.write(writable.program, changes, profile) if changes else program.source.data
     )
@@ -170,6 +169,17 @@ def optimise(
         told=told,
         is_advised=bool(changes),
     )
+
+
+def _unwritten(
+    program: Program, plan: Plan, writable: Writable, profile: FileProfile | None, tell: Tell
+) -> tuple[Finding, ...]:
+    """Tell what is advised and not written."""
+    lost = () if profile is not None else lost_plunge_feeds(program, plan)
+    found = (*writable.findings, *lost)
+    for each in found:
+        tell(str(each))
+    return found
 
 
 def _confirmed(
