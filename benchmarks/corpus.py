@@ -2,9 +2,9 @@
 
 ``python -m benchmarks.corpus [FOLDER ...]`` runs each command on each program of the folders
 (default: the public programs beside the project) and prints Markdown. Where a command refuses a
-program, it is run again with the option that its refusal names (units, a material), then with
-those that leave workingsteps out or add what the program does not say; NC code, simulation and
-control are tried on the optimised program too. Refusals are printed as the commands print them.
+program, it is run again with the option that its refusal names (units, a material, a spindle
+speed, a feed), then with the one that leaves workingsteps out; NC code, simulation and control
+are tried on the optimised program too. Refusals are printed as the commands print them.
 """
 
 import argparse
@@ -34,6 +34,9 @@ MATERIAL: Options = ("--material", "c45")
 KEEP: Options = ("--keep-going",)
 FEED: Options = ("--feed", "240")
 
+EXAMPLES = {"spindle": "-16.", "feed_per_revolution": "0.2"}
+"""Values for attributes that a refusal asks for, in the units of the standard."""
+
 MOST_ATTEMPTS = 8
 """Greatest number of runs of one command on one file."""
 
@@ -49,12 +52,13 @@ class Command:
     helps: tuple[Options, ...] = ()
 
 
-OPTIMISE = Command(name="optimise", output=".stpnc", helps=(FEED, KEEP))
+HELPS = (FEED, KEEP)
+OPTIMISE = Command(name="optimise", output=".stpnc", helps=HELPS)
 BEFORE = (Command(name="check"), Command(name="toolpath", helps=(KEEP,)))
 AFTER = (
-    Command(name="post", options=("--control", "linuxcnc"), output=".ngc", helps=(KEEP,)),
-    Command(name="simulate", output=".csv"),
-    Command(name="control", output=".csv"),
+    Command(name="post", options=("--control", "linuxcnc"), output=".ngc", helps=HELPS),
+    Command(name="simulate", output=".csv", helps=HELPS),
+    Command(name="control", output=".csv", helps=HELPS),
 )
 """Commands that are tried on the optimised program too."""
 
@@ -200,9 +204,23 @@ def _next(command: Command, error: str, options: Options) -> Options | None:
     named = re.search(r"--units ([a-z-]+)", error)
     if named and "--units" not in options:
         return "--units", named[1]
+    given = re.search(r"give this one so, as --feed (\S+)", error)
+    if given and given[1] not in options:
+        return "--feed", given[1]
+    asked = re.search(r'--set "(#\d+\.(\w+))=VALUE"', error)
+    if asked and asked[2] in EXAMPLES:
+        value = f"{asked[1]}={EXAMPLES[asked[2]]}"
+        return ("--set", value) if value not in options else None
     if "--material" in error and "--material" not in options:
         return MATERIAL
-    return next((each for each in command.helps if each[0] not in options), None)
+    return next(
+        (
+            each
+            for each in command.helps
+            if each[0] not in options and (each is KEEP or each[0] in error)
+        ),
+        None,
+    )
 
 
 def table(rows: dict[str, dict[str, Entry]]) -> str:
@@ -254,7 +272,7 @@ def _cell(name: str, found: Entry, notes: dict[str, int]) -> str:
 
 def _words(options: Options) -> str:
     """Options as they are typed."""
-    return " ".join(options)
+    return " ".join(f'"{word}"' if "#" in word else word for word in options)
 
 
 if __name__ == "__main__":

@@ -127,7 +127,9 @@ def milling_cut(
         The findings state what was assumed.
     """
     if not step.features:
-        raise program.error("has no feature: what to cut cannot be determined", step.ref)
+        raise program.error(
+            "has no feature: what to cut cannot be determined", step.ref, "its_feature"
+        )
     region = region_of(program, step.features[0])
     sweep, findings = _sweep(program, step, region, tool)
     is_facemill = tool.keyword == "FACEMILL" and tool.diameter >= LEAST_FACEMILL
@@ -409,7 +411,9 @@ def _depth_and_count(
 ) -> tuple[float, int]:
     """Depth of the hole, mm, and number of holes in its pattern."""
     if not step.features:
-        raise program.error("has no feature: the depth to drill cannot be determined", step.ref)
+        raise program.error(
+            "has no feature: the depth to drill cannot be determined", step.ref, "its_feature"
+        )
     reference: Ref[Entity] = step.features[0]
     feature: Entity = program.get(reference)
     count = 1

@@ -108,7 +108,8 @@ def _grooving_cut(
     shape = _shape(program, step)
     width = tool.width
     if not width:
-        raise program.error("a grooving tool must state its cutting width", step.tool_ref)
+        message = "a grooving tool must state its cutting width"
+        raise program.error(message, step.tool_ref, "cutting_width")
     infeed = shape.outer_radius - shape.inner_radius
     is_off = isinstance(step.operation, CuttingIn)
     plunges = 1 if is_off else passes_for(shape.length, width)
@@ -198,7 +199,9 @@ def _stock_in_front(program: Program) -> float:
 def _shape(program: Program, step: ResolvedWorkingstep) -> Revolved:
     """Combined radii and length of all features of the workingstep."""
     if not step.features:
-        raise program.error("has no feature: what to turn cannot be determined", step.ref)
+        raise program.error(
+            "has no feature: what to turn cannot be determined", step.ref, "its_features"
+        )
     shapes = [_revolved(program, feature) for feature in step.features]
     outer = max(shape.outer_radius for shape in shapes)
     if isinstance(step.operation, ContouringRough):

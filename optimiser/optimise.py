@@ -47,7 +47,7 @@ from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.record_limits import NO_LIMITS, RecordLimits, record_limits
-from stepnc_model.technology import programmed
+from stepnc_model.technology import Programmed, programmed
 from stepnc_model.tool import Tool, tool_of
 
 _Outcome = Advice | RefusedWorkingstep | None
@@ -211,7 +211,7 @@ def advise(
     if conditions.inhibition:
         reason = f"{conditions.inhibition}: the program locks this feed"
         advice = _kept(untouched, reason, why_too_fast(cut, at))
-        findings += _too_fast(program, advice)
+        findings += [_lock(program, step, conditions), *_too_fast(program, advice)]
     else:
         try:
             asked = AdviceContext(step=step, at=at, task=task, cuts=cuts)
@@ -281,6 +281,17 @@ def _estimates(program: Program, advices: Sequence[Advice]) -> list[Finding]:
     return [
         program.finding(Severity.NOTE, text, refs[tool]) for tool, text in estimate_texts(told)
     ]
+
+
+def _lock(program: Program, step: ResolvedWorkingstep, conditions: Programmed) -> Finding:
+    """Note that names what locks a feed, and the option that unlocks it."""
+    is_override = conditions.inhibition == "inhibit_feedrate_override"
+    ref = step.technology_ref if is_override else conditions.feed.ref
+    attribute = conditions.inhibition.split()[0]
+    number = program.label(ref).split()[0]
+    value = ".F." if is_override else ".T."
+    text = f'locks the feed; --set "{number}.{attribute}={value}" unlocks it'
+    return program.finding(Severity.NOTE, text, ref, attribute)
 
 
 def _why_idle(cut: Cut) -> str:

@@ -4,15 +4,15 @@ import os
 import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from stat import S_IFBLK, S_IFCHR, S_IFIFO, S_IFMT, S_IFSOCK
 
 from stepnc_model.errors import StepNcError, WriteError
+from stepnc_model.regular_file import why_irregular
 
 
 def read_bytes(path: Path) -> bytes:
     """Read all bytes of a file; raise StepNcError when it cannot be read."""
     try:
-        _require_no_pipe(path)
+        require_regular(path)
         return path.read_bytes()
     except OSError as error:
         raise StepNcError(f"{path}: {_reason(error)}") from error
@@ -20,18 +20,19 @@ def read_bytes(path: Path) -> bytes:
         raise StepNcError(f"{str(path)!r} is not a valid file name: {error}") from error
 
 
-PIPES = {S_IFCHR: "device", S_IFBLK: "device", S_IFIFO: "pipe", S_IFSOCK: "socket"}
-"""Kinds of files that may never end, or block for ever."""
+def require_regular(path: Path) -> None:
+    """Refuse what is no regular file before it is opened: opening a pipe waits for a writer.
 
-
-def _require_no_pipe(path: Path) -> None:
-    """Refuse what is no regular file before it is opened: opening a pipe waits for a writer."""
+    Raises
+    ------
+    StepNcError
+    """
     try:
-        kind = S_IFMT(path.stat().st_mode)
-    except FileNotFoundError:
-        return
-    if kind in PIPES:
-        raise StepNcError(f"{path}: is a {PIPES[kind]}, not a regular file")
+        reason = why_irregular(path)
+    except ValueError as error:
+        raise StepNcError(f"{str(path)!r} is not a valid file name: {error}") from error
+    if reason:
+        raise StepNcError(f"{path}: {reason}")
 
 
 LONGEST_LINE = 100_000
@@ -41,7 +42,7 @@ LONGEST_LINE = 100_000
 def open_lines(path: Path) -> Iterator[str]:
     """Yield the lines of a text file lazily; errors of opening are raised at once."""
     try:
-        _require_no_pipe(path)
+        require_regular(path)
         file = path.open(encoding="utf-8", errors="replace")
     except OSError as error:
         raise StepNcError(f"{path}: {_reason(error)}") from error

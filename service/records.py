@@ -9,10 +9,12 @@ from optimiser.modes import Mode
 from optimiser.problem import BoundSide, LimitName
 from simulator.physics.engagement import Engagement
 from stepnc_model.edit_conditions import rounded
+from stepnc_model.errors import Finding, Severity
+from stepnc_model.program import Program
 from stepnc_model.record import GENERATOR, AdviceRecord
 from stepnc_model.record_limits import NO_LIMITS, RecordLimits
 from stepnc_model.technology import ProgrammedQuantity
-from stepnc_model.units import deg_from_rad, kw_from_watts, um_from_mm
+from stepnc_model.units import deg_from_rad, kw_from_watts, mm_min_from_speed, um_from_mm
 from stepnc_model.writeback import WorkingstepUpdate
 
 UNCHANGED = 1e-9
@@ -26,6 +28,33 @@ def changes_of(plan: Plan) -> list[WorkingstepUpdate]:
         for each in plan.advices
         if each.status is AdviceStatus.ADVISED and each.cut and each.before and each.after
     ]
+
+
+def lost_plunge_feeds(program: Program, plan: Plan) -> tuple[Finding, ...]:
+    """Warnings about plunge feeds that a file without records does not hold.
+
+    ISO 14649-11 gives an operation one feed, and its approach strategies none, so that only a
+    record keeps the second one.
+
+    Parameters
+    ----------
+    program : Program
+    plan : Plan
+    """
+    return tuple(
+        program.finding(
+            Severity.WARNING,
+            f"the plunge feed of {mm_min_from_speed(each.after.plunge_feed):.3g} mm/min is not "
+            "written, as only a record can hold it (--records none): NC code made of this file "
+            f"plunges at {mm_min_from_speed(each.after.feed):.3g} mm/min",
+            each.workingstep.operation_ref,
+        )
+        for each in plan.advices
+        if each.status is AdviceStatus.ADVISED
+        and each.after is not None
+        and each.after.plunge_feed is not None
+        and each.after.plunge_feed < each.after.feed
+    )
 
 
 @dataclass(frozen=True, slots=True)

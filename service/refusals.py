@@ -1,12 +1,14 @@
 """Reasons to refuse a program or single workingsteps before their feeds are optimised."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from optimiser.advice import RefusedWorkingstep
 from stepnc_model.errors import Finding, SchemaError, Severity
+from stepnc_model.own_operation import can_be_copied, with_own_operations
 from stepnc_model.plausibility import refusal
 from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.remedy import error_of
 from stepnc_model.writeback import WorkingstepUpdate
 
 
@@ -47,15 +49,67 @@ def advisable(
     return Advisable(steps=steps, refused=refused)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Writable:
+    """Updates that can be written without touching a refused workingstep."""
+
+    program: Program
+    """Program that takes them: operations shared with a refused workingstep are copied."""
+    changes: tuple[WorkingstepUpdate, ...]
+    findings: tuple[Finding, ...] = ()
+    """Warnings about updates that cannot be written."""
+
+
 def apart_from(
     program: Program,
     changes: Sequence[WorkingstepUpdate],
     refused: Sequence[RefusedWorkingstep],
-) -> list[WorkingstepUpdate]:
-    """Updates of operations that no refused workingstep shares, which must stay as it is."""
+) -> Writable:
+    """Updates that leave the operations of refused workingsteps as they are.
+
+    A workingstep that shares its operation with a refused one gets a copy of it. Operations of
+    AP238 are not copied: their advice is shown, with a warning that it is not written.
+
+    Parameters
+    ----------
+    program : Program
+    changes : sequence of WorkingstepUpdate
+    refused : sequence of RefusedWorkingstep
+    """
     refs = {int(each.ref) for each in refused}
-    kept = {int(step.operation_ref) for step in program.workingsteps if int(step.ref) in refs}
-    return [each for each in changes if int(each.workingstep.operation_ref) not in kept]
+    kept = {
+        int(step.operation_ref): step for step in program.workingsteps if int(step.ref) in refs
+    }
+    shared = [each for each in changes if int(each.workingstep.operation_ref) in kept]
+    if not shared:
+        return Writable(program=program, changes=tuple(changes))
+    if not can_be_copied(program):
+        findings = tuple(
+            _not_written(program, each, kept[int(each.workingstep.operation_ref)])
+            for each in shared
+        )
+        rest = tuple(each for each in changes if each not in shared)
+        return Writable(program=program, changes=rest, findings=findings)
+    split = with_own_operations(program, {int(each.workingstep.ref) for each in shared})
+    steps = {int(step.ref): step for step in split.workingsteps}
+    return Writable(
+        program=split,
+        changes=tuple(
+            replace(each, workingstep=steps[int(each.workingstep.ref)]) for each in changes
+        ),
+    )
+
+
+def _not_written(
+    program: Program, change: WorkingstepUpdate, refused: ResolvedWorkingstep
+) -> Finding:
+    """Warning about advice that would change the operation of a refused workingstep."""
+    step = change.workingstep
+    text = (
+        f"the advice for '{step.id}' is not written: {program.label(step.operation_ref)} is "
+        f"also the operation of '{refused.id}' ({refused.ref}), which stays as it is"
+    )
+    return program.finding(Severity.WARNING, text, step.ref, "its_operation")
 
 
 def require_usable(
@@ -75,7 +129,7 @@ def require_usable(
     require_any(chosen)
     for finding in findings:
         if finding.severity is Severity.ERROR:
-            raise _error_of(finding)
+            raise error_of(finding)
     error = refusal(program, chosen)
     if error is not None:
         raise error
@@ -123,14 +177,5 @@ def _refusal_of(program: Program, step: ResolvedWorkingstep) -> SchemaError | No
         near.append(step.functions_ref)
     fault = program.model.fault_near(*near)
     if fault is not None and fault.severity is Severity.ERROR:
-        return _error_of(fault)
+        return error_of(fault)
     return refusal(program, (step,))
-
-
-def _error_of(finding: Finding) -> SchemaError:
-    return SchemaError(
-        finding.message,
-        entity=finding.entity,
-        attribute=finding.attribute,
-        line=finding.line,
-    )

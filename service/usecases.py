@@ -22,20 +22,21 @@ from service.knowledge.corrected import factors_for, finding_of, with_correction
 from service.knowledge.place import named_place, require_apart
 from service.progress import Progress
 from service.reading import Tell, read_given, read_program, selected, silent
-from service.records import changes_of
-from service.refusals import advisable, apart_from
+from service.records import changes_of, lost_plunge_feeds
+from service.refusals import Writable, advisable, apart_from
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
 from simulator.spec import Certainty, Machine, MaterialMatch
 from stepnc_model import writeback
 from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
 from stepnc_model.file_profile import FileProfile, RecordChoice
-from stepnc_model.given import Completed, without_given
+from stepnc_model.given import Completed
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.task import stock_of
 from stepnc_model.units import mm_from_um
+from stepnc_model.withdrawal import without_given
 
 if TYPE_CHECKING:
     from optimiser.clamped import StockMap
@@ -85,6 +86,8 @@ class OptimiseResult:
     """Feeds along the paths; None if they were not requested."""
     told: tuple[Finding, ...] = ()
     """Warnings about the program that were told already."""
+    is_advised: bool = True
+    """Whether there is advice that is written, or would be without a dry run."""
 
 
 def optimise(
@@ -135,8 +138,13 @@ def optimise(
     plan = replace(plan, refused=(*possible.refused, *plan.refused))
     told = _remarks(program, tell)
     plan = _with_file_findings(plan, (*findings, *notes, *told), match)
-    changes = apart_from(program, changes_of(plan), plan.refused)
-    data = writeback.write(program, changes, profile) if changes else program.source.data
+    writable = apart_from(program, changes_of(plan), plan.refused)
+    changes = writable.changes
+    unwritten = _unwritten(program, plan, writable, profile, tell)
+    plan, told = replace(plan, findings=(*plan.findings, *unwritten)), (*told, *unwritten)
+    data = (
+        writeback.write(writable.program, changes, profile) if changes else program.source.data
+    )
     if changes and factors and profile is FileProfile.OPTIMISATION:
         data = with_corrections(_read_again(program, data), factors)
     confirmation = _confirmed(request, program, plan, data, tell)
@@ -157,8 +165,24 @@ def optimise(
     _write_views(files, plan, along, tell)
     _tell_conflicts(plan, tell)
     return OptimiseResult(
-        plan=plan, written=written, confirmation=confirmation, along=along, told=told
+        plan=plan,
+        written=written,
+        confirmation=confirmation,
+        along=along,
+        told=told,
+        is_advised=bool(changes),
     )
+
+
+def _unwritten(
+    program: Program, plan: Plan, writable: Writable, profile: FileProfile | None, tell: Tell
+) -> tuple[Finding, ...]:
+    """Tell what is advised and not written."""
+    lost = () if profile is not None else lost_plunge_feeds(program, plan)
+    found = (*writable.findings, *lost)
+    for each in found:
+        tell(str(each))
+    return found
 
 
 def _confirmed(
@@ -198,7 +222,7 @@ def _without_given(whole: Completed, data: bytes) -> bytes:
     """Bytes of an advised program without the data that the request gave."""
     if not whole.given:
         return data
-    return without_given(_read_again(whole.program, data), whole.given)
+    return without_given(_read_again(whole.program, data), whole)
 
 
 def _factors(
@@ -299,7 +323,9 @@ def _tell_conflicts(plan: Plan, tell: Tell) -> None:
         tell(f"left as programmed: '{each.id}' ({each.ref}): {each.reason}")
     conflicts = [each for each in plan.advices if each.status is AdviceStatus.INFEASIBLE]
     if conflicts:
-        names = ", ".join(f"'{each.workingstep.id}'" for each in conflicts)
+        names = ", ".join(
+            f"'{each.workingstep.id}' ({each.workingstep.ref})" for each in conflicts
+        )
         tell(f"infeasible, left as programmed: {names}")
 
 

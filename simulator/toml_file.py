@@ -19,6 +19,7 @@ from msgspec import inspect
 
 from simulator.errors import LibraryError
 from simulator.toml_bounds import MOST_BYTES, require_bounded
+from stepnc_model.regular_file import why_irregular
 
 LONGEST_SHOWN = 80
 """characters of a value or a key in a message"""
@@ -158,10 +159,8 @@ def read_text(path: Path) -> str:
 def read_bounded(path: Path, *, most: int = MOST_BYTES) -> bytes:
     """Bytes of a library file, which is small."""
     try:
-        if path.is_char_device() or path.is_block_device():
-            raise LibraryError("is a device, not a file", path=str(path))
-        if path.is_fifo() or path.is_socket():
-            raise LibraryError("is a pipe or socket, not a file", path=str(path))
+        if reason := why_irregular(path):
+            raise LibraryError(reason, path=str(path))
         with path.open("rb") as file:
             data = file.read(most + 1)
     except ValueError as error:

@@ -388,12 +388,12 @@ def _unknown_findings(file: Part21File) -> Iterator[Finding]:
     """One note for each keyword without an entity class."""
     unknown: dict[str, list[int]] = {}
     for id in file.ids():
-        keyword = file.keyword(id)
+        keyword = file.keyword(id) or _complex_name(file, id)
         if keyword not in classes():
             unknown.setdefault(keyword, []).append(id)
     for keyword, ids in unknown.items():
         count = f" ({len(ids)} instances)" if len(ids) > 1 else ""
-        text = f"{keyword or 'a complex instance'}{count} is not supported and kept unchanged"
+        text = f"{keyword}{count} is not supported and kept unchanged"
         yield _finding(
             file, ids[0], "", remark=ConversionRemark(Severity.NOTE, text), rule="ISO 14649"
         )
@@ -416,3 +416,10 @@ def _finding(
 def _rule(cls: type[Entity]) -> str:
     """Standard that defines an entity class."""
     return _PARTS.get(cls.__module__.rpartition(".")[2], "ISO 14649-10")
+
+
+def _complex_name(file: Part21File, id: int) -> str:
+    """Name of a complex instance in messages: its entities, the first three of them."""
+    names = [keyword for keyword, _ in file.parts(id)]
+    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+    return f"the complex instance ({' '.join(names[:3])}{more})"

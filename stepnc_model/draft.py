@@ -76,6 +76,10 @@ class Draft:
         self._lengths[int(owner)] = self._length(int(owner)) - 1
         self._gaps[int(owner)] = place
 
+    def uses(self, ref: Ref[Any]) -> int:
+        """Number of references to an instance in the file."""
+        return self._use_counts()[int(ref)]
+
     def remove(self, numbers: Sequence[int]) -> None:
         """Remove instances from the file, each once."""
         for number in numbers:

@@ -8,15 +8,15 @@ advised on its basis does. Units are those of the file.
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import isclose
+from typing import Any, TypeGuard
 
 from stepnc_model.ap238.converted import Converted
 from stepnc_model.ap238.view import AimView
-from stepnc_model.ap238.writing import spliced_into
 from stepnc_model.binding import Model
 from stepnc_model.draft import Draft
 from stepnc_model.entities.conversion import AttributeSlot, slots_of
 from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.geometry import Plane
 from stepnc_model.entities.measures import TolerancedLengthMeasure
 from stepnc_model.entities.technology import MillingTechnology
 from stepnc_model.entities.tools import MillingCuttingTool
@@ -73,6 +73,10 @@ class SetAttribute:
     """Instances that were added for it."""
     origin: Converted | None = None
     """What stands for ``ref`` in an AP238 file, where its own number is not kept."""
+    before_origin: Converted | None = None
+    """What stands there for the instance that was referred to before."""
+    value_origin: Converted | None = None
+    """What stands there for an instance of the file that is referred to now."""
     only_beside: str = ""
     """Attribute of ``ref`` that must be withdrawn too; empty: this one stands alone."""
 
@@ -128,74 +132,6 @@ def _changed(draft: Draft, given: Sequence[SetAttribute]) -> Program:
     return found
 
 
-def without_given(program: Program, given: Sequence[SetAttribute]) -> bytes:
-    """Bytes of a program with given data withdrawn, where they were not changed since.
-
-    Parameters
-    ----------
-    program : Program
-        Program that holds the given data, and perhaps advice.
-    given : sequence of SetAttribute
-
-    Returns
-    -------
-    bytes
-    """
-    draft, view = Draft(program), program.file
-    if isinstance(view, AimView):
-        for each in given:
-            _withdraw_from_view(draft, view, each)
-        return spliced_into(view, draft.edits.apply(), draft.removed)
-    for each in given:
-        if all(_is_kept(program, other) for other in _together(given, each)):
-            draft.put(each.ref, each.attribute, each.before)
-            draft.remove(each.added)
-    return draft.edits.apply()
-
-
-def _together(given: Sequence[SetAttribute], one: SetAttribute) -> Iterator[SetAttribute]:
-    """Set attribute, with the one beside which alone it is withdrawn."""
-    yield one
-    for other in given:
-        if other.ref == one.ref and other.attribute == one.only_beside:
-            yield other
-
-
-def _is_kept(program: Program, given: SetAttribute) -> bool:
-    """Whether an attribute still has the value that was given."""
-    place = program.model.position(given.ref, given.attribute)
-    return program.file.parameters(int(given.ref))[place] == given.value
-
-
-def _withdraw_from_view(draft: Draft, view: AimView, given: SetAttribute) -> None:
-    """Withdraw one attribute from a program whose numbers may have changed in between."""
-    number = None if given.origin is None else view.number_of(given.origin)
-    if number is None:
-        return
-    ref: Ref[object] = Ref(number)
-    value = view.parameters(number)[draft.program.model.position(ref, given.attribute)]
-    if isinstance(value, Ref) and isinstance(given.value, Ref):
-        draft.put(ref, given.attribute, given.before)
-        draft.remove(tuple(_below(view, value)))
-    elif _is_same(value, given.value):
-        draft.put(ref, given.attribute, given.before)
-
-
-def _is_same(one: Value, other: Value) -> bool:
-    """Whether two values are the same, but for the digits that a change of unit costs."""
-    if isinstance(one, int | float) and isinstance(other, int | float):
-        return isclose(one, other, rel_tol=1e-12)
-    return one == other
-
-
-def _below(file: Part21File, ref: Ref[object]) -> Iterator[int]:
-    """Instance and all that it refers to."""
-    yield int(ref)
-    for value in file.parameters(int(ref)):
-        if isinstance(value, Ref):
-            yield from _below(file, value)
-
-
 def _read(program: Program, data: bytes) -> Program:
     """Program with changed text; one of AP238 stays one."""
     file = Part21File.from_bytes(data, name=program.name)
@@ -209,15 +145,50 @@ def _set(draft: Draft, text: str) -> SetAttribute:
     program, found = draft.program, _PLACE.fullmatch(text)
     if found is None:
         raise SchemaError(f"'{text}': expected #INSTANCE.attribute=value")
-    number, attribute, written = int(found[1]), found[2], found[3].strip()
+    attribute, written = found[2], found[3].strip()
+    number = _numbered(program, int(found[1]), attribute)
     ref: Ref[object] = Ref(number)
     entity = program.model.get(ref)
     slots = slots_of(type(entity))  # type: ignore[arg-type]
     if attribute not in slots:
         known = ", ".join(slots)
         raise program.error(f"has no attribute '{attribute}'; known: {known}", Ref(number))
-    value, added = _fitting(draft, slots[attribute], _value(written, text))
+    value, slot = _value(written, text), slots[attribute]
+    present = getattr(entity, attribute)
+    if isinstance(present, Ref) and _is_number(value):
+        inside = _in_place(draft, present, attribute, value)
+        if inside is not None:
+            return inside
+    value, added = _fitting(draft, slot, value, attribute)
     return _put(draft, ref, attribute, value, added)
+
+
+def _height(attribute: str, number: float) -> float:
+    """Height of the plane that a number means: a depth is that of one below."""
+    return -float(number) if attribute == "depth" else float(number)
+
+
+def _in_place(
+    draft: Draft, present: Ref[Any], attribute: str, number: float
+) -> SetAttribute | None:
+    """Set the number of a length or a plane where it stands; None if others use it too."""
+    program = draft.program
+    if isinstance(program.get(present), TolerancedLengthMeasure):
+        if draft.uses(present) > 1:
+            return None
+        return _put(draft, present, "theoretical_size", Real(number))
+    plane = program.get(present)
+    if not isinstance(plane, Plane):
+        return None
+    place = program.get(plane.position)
+    axis = (0.0, 0.0, 1.0) if place.axis is None else program.get(place.axis).direction_ratios
+    is_level = len(axis) == 3 and axis[0] == axis[1] == 0.0
+    chain = (present, plane.position, place.location)
+    point = program.get(place.location).coordinates
+    if not is_level or len(point) != 3 or any(draft.uses(each) > 1 for each in chain):
+        return None
+    moved = (Real(point[0]), Real(point[1]), Real(_height(attribute, number)))
+    return _put(draft, place.location, "coordinates", moved)
 
 
 def _put(
@@ -227,20 +198,24 @@ def _put(
     values = draft.program.file.parameters(int(ref))
     place = draft.program.model.position(ref, attribute)
     before = values[place] if place < len(values) else None
-    file = draft.program.file
-    if isinstance(file, AimView) and isinstance(before, Ref):
-        text = "is in the file: only what an AP238 file lacks can be set"
-        raise draft.program.error(text, Ref(int(ref)), attribute)
     draft.put(ref, attribute, value)
-    origin = file.origins.get(int(ref)) if isinstance(file, AimView) else None
     return SetAttribute(
         ref=ref,
         attribute=attribute,
         before=before,
         value=value,
         added=added,
-        origin=origin,
+        origin=origin_in(draft.program, ref),
+        before_origin=origin_in(draft.program, before),
+        value_origin=origin_in(draft.program, value),
     )
+
+
+def origin_in(program: Program, value: Value) -> Converted | None:
+    """What an instance stands for in an AP238 file."""
+    if not isinstance(value, Ref) or not isinstance(program.file, AimView):
+        return None
+    return program.file.origins.get(int(value))
 
 
 def _value(written: str, text: str) -> Value:
@@ -257,25 +232,48 @@ def _value(written: str, text: str) -> Value:
     return values[0]
 
 
-def _fitting(draft: Draft, slot: AttributeSlot, value: Value) -> tuple[Value, tuple[int, ...]]:
+def _numbered(program: Program, number: int, attribute: str) -> int:
+    """Number of the instance with an attribute, of those that have the same one in AP238."""
+    file = program.file
+    if not isinstance(file, AimView) or number not in file.origins:
+        return number
+    origin = file.origins[number].origin
+    alike = [
+        each.number
+        for each in file.origins.values()
+        if each.origin == origin
+        and each.rule is not None
+        and attribute in slots_of(each.rule.entity)
+    ]
+    return alike[0] if len(alike) == 1 else number
+
+
+def _is_number(value: Value) -> TypeGuard[int | float]:
+    """Whether a value is a number; references are whole numbers in Python, too."""
+    return isinstance(value, int | float) and not isinstance(value, Ref)
+
+
+def _fitting(
+    draft: Draft, slot: AttributeSlot, value: Value, attribute: str
+) -> tuple[Value, tuple[int, ...]]:
     """Value for a slot, with instances added where a number stands for a length or a plane."""
-    is_number = isinstance(value, (int, float)) and not isinstance(value, Ref)
-    if not is_number:
+    is_count = int in slot.plain and float not in slot.plain
+    if is_count or not _is_number(value):
         return value, ()
-    number = float(value)  # type: ignore[arg-type]
-    if int in slot.plain and float not in slot.plain:
-        return value, ()
+    number = float(value)
     if slot.plain or not slot.references:
         return Real(number), ()
     if TolerancedLengthMeasure in slot.references:
         added = draft.edits.add("TOLERANCED_LENGTH_MEASURE", (Real(number), None))
         return added, (int(added),)
     if any("SURFACE" in each.keyword or each.keyword == "PLANE" for each in slot.references):
-        point = draft.edits.add("CARTESIAN_POINT", ("", (Real(0.0), Real(0.0), Real(-number))))
+        point = draft.edits.add(
+            "CARTESIAN_POINT", ("", (Real(0.0), Real(0.0), Real(_height(attribute, number))))
+        )
         place = draft.edits.add("AXIS2_PLACEMENT_3D", ("", point, None, None))
         plane = draft.edits.add("PLANE", ("", place))
         return plane, (int(point), int(place), int(plane))
-    return value, ()
+    return Real(number), ()
 
 
 def _teeth(draft: Draft, text: str) -> Iterator[SetAttribute]:

@@ -7,6 +7,7 @@ paths, as areas and lengths for estimates.
 from math import pi
 from typing import Any
 
+from stepnc_model.entities.conversion import slots_of
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.measures import NumericParameter, TolerancedLengthMeasure
 from stepnc_model.part21.values import Ref
@@ -37,7 +38,7 @@ def size(
         If the size is missing or is not a valid length.
     """
     if ref is None:
-        raise program.path_error("a required size is missing", owner)
+        raise program.path_error("a required size is missing", owner, _missing(program, owner))
     return _length(program, ref, "theoretical_size", what="size ")
 
 
@@ -101,6 +102,14 @@ def vee_angle(written: float | None) -> float:
     """Included angle of a vee, rad; values below π are already radians, as in some files."""
     angle = written or 0.0
     return angle if angle < pi else rad_from_deg(angle)
+
+
+def _missing(program: Program, owner: Ref[Entity]) -> str:
+    """First required length that an entity does not give."""
+    entity = program.get(owner)
+    slots = slots_of(type(entity)).items()
+    sizes = (name for name, slot in slots if TolerancedLengthMeasure in slot.references)
+    return next((name for name in sizes if getattr(entity, name) is None), "")
 
 
 def _length(program: Program, ref: Ref[Entity], attribute: str, what: str = "") -> float:

@@ -7,12 +7,13 @@ tooth or per revolution, and only somebody who knows the program can tell.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isclose, pi
 
 from stepnc_model.entities.enums import Hand
 from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.remedy import error_of
 from stepnc_model.technology import Number, Programmed, ProgrammedQuantity, programmed
 from stepnc_model.tool import hand_of, tool_of
 from stepnc_model.units import ISO, PROFILES, UnitProfile, m_min_from_speed, rpm_from_rev_s
@@ -76,12 +77,7 @@ def refusal(program: Program, steps: Sequence[ResolvedWorkingstep]) -> SchemaErr
                     if words
                     else "no unit profile makes all numbers plausible"
                 )
-                return SchemaError(
-                    f"{finding.message}; {advice}",
-                    entity=finding.entity,
-                    attribute=finding.attribute,
-                    line=finding.line,
-                )
+                return error_of(replace(finding, message=f"{finding.message}; {advice}"))
     return None
 
 

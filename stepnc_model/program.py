@@ -33,6 +33,7 @@ from stepnc_model.entities.workpiece import Material, Workpiece
 from stepnc_model.errors import Finding, FindingList, PathError, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
+from stepnc_model.remedy import error_of, with_remedy
 from stepnc_model.units import ISO, UnitProfile
 
 
@@ -223,16 +224,16 @@ class Program:
         return self.file.label(int(ref))
 
     def error(self, message: str, ref: Ref[Entity], attribute: str = "") -> SchemaError:
-        """Create an error about one instance."""
+        """Create an error about one instance, with the option that sets the attribute."""
+        text = with_remedy(message, self.label(ref), attribute)
         return SchemaError(
-            message, entity=self.label(ref), attribute=attribute, line=self.line(ref)
+            text, entity=self.label(ref), attribute=attribute, line=self.line(ref)
         )
 
     def path_error(self, message: str, ref: Ref[Entity], attribute: str = "") -> PathError:
         """Create an error that no tool path can be made because of one instance."""
-        return PathError(
-            message, entity=self.label(ref), attribute=attribute, line=self.line(ref)
-        )
+        text = with_remedy(message, self.label(ref), attribute)
+        return PathError(text, entity=self.label(ref), attribute=attribute, line=self.line(ref))
 
     def finding(
         self, severity: Severity, message: str, ref: Ref[Entity], attribute: str = ""
@@ -263,9 +264,7 @@ class Program:
             if fault is None:
                 message = "a required attribute is missing, of the wrong type, or out of range"
                 raise self.error(message, ref) from error
-            raise SchemaError(
-                fault.message, entity=fault.entity, attribute=fault.attribute, line=fault.line
-            ) from error
+            raise error_of(fault) from error
 
     @property
     def faults(self) -> tuple[SchemaError, ...]:

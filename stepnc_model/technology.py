@@ -134,17 +134,13 @@ def _milling(program: Program, ref: Ref[Entity], technology: MillingTechnology) 
     speed = spindle or cutspeed
     if feed is None:
         raise program.error(
-            "neither feedrate nor feedrate_per_tooth is given (ISO 14649-11 WR2); "
-            f"{_gives(int(ref), 'feedrate')}",
+            f"neither feedrate nor feedrate_per_tooth is given (ISO 14649-11 WR2); {_REMEDY}",
             ref,
             "feedrate",
         )
     if speed is None:
         raise program.error(
-            "neither cutspeed nor spindle is given (ISO 14649-11 WR1); "
-            f"{_gives(int(ref), 'spindle')}",
-            ref,
-            "spindle",
+            "neither cutspeed nor spindle is given (ISO 14649-11 WR1)", ref, "spindle"
         )
     inhibited = "inhibit_feedrate_override" if technology.inhibit_feedrate_override else ""
     return Programmed(
@@ -181,8 +177,7 @@ def _adaptive(
     )
     if feed is None or speed is None:
         owner = technology.its_feed if feed is None else technology.its_speed
-        text = f"the technology has no feed or no speed; {_gives(int(owner), 'value')}"
-        raise program.error(text, owner, "value")
+        raise program.error("the technology has no feed or no speed", owner, "value")
     inhibition = "adaptive_allowed is false" if not feed_entity.adaptive_allowed else ""
     if technology.inhibit_feedrate_override:
         inhibition = "inhibit_feedrate_override"
@@ -203,17 +198,10 @@ def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) 
     )
     if feed is None:
         raise program.error(
-            "neither feedrate nor feed_per_revolution is given; "
-            f"{_gives(int(ref), 'feedrate')}",
-            ref,
-            "feedrate",
+            f"neither feedrate nor feed_per_revolution is given; {_REMEDY}", ref, "feedrate"
         )
     if technology.spindle_speed is None:
-        raise program.error(
-            f"the technology has no spindle speed; {_gives(int(ref), 'spindle_speed', '#ID')}",
-            ref,
-            "spindle_speed",
-        )
+        raise program.error("the technology has no spindle speed", ref, "spindle_speed")
     spindle = technology.spindle_speed
     entity: Entity = program.get(spindle)
     if not isinstance(entity, (ConstSpindleSpeed, ConstCuttingSpeed)):
@@ -228,8 +216,7 @@ def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) 
     )
     if speed is None:
         attribute = "rot_speed" if is_constant else "speed"
-        text = f"no speed value is given; {_gives(int(spindle), attribute)}"
-        raise program.error(text, spindle, attribute)
+        raise program.error("no speed value is given", spindle, attribute)
     top = entity.max_speed if isinstance(entity, ConstCuttingSpeed) else None
     return Programmed(
         feed=feed,
@@ -263,8 +250,8 @@ def _number(
     size = abs(written) if quantity is ProgrammedQuantity.SPINDLE_SPEED else written
     if not isfinite(size) or size <= 0.0:
         message = f"{quantity.value} {written:g} is not valid: it must be positive"
-        is_lacking = written == 0.0 and attribute in _FEEDS
-        message += f"; {_gives(int(ref), 'feedrate' if is_lacking else attribute)}"
+        if written == 0.0 and attribute in _FEEDS:
+            message += f"; {_REMEDY}"
         raise program.error(message, ref, attribute)
     return Number(
         ref=ref,
@@ -278,9 +265,4 @@ def _number(
 _FEEDS = ("feedrate", "feedrate_per_tooth", "feed_per_revolution")
 """Attributes that ``--feed`` gives where they are missing or 0."""
 
-
-def _gives(number: int, attribute: str, value: str = "VALUE") -> str:
-    """Option that gives what a technology lacks."""
-    if attribute == "feedrate":
-        return "--feed gives one, as --feed 240 (mm/min) or --feed 0.1mm/tooth"
-    return f'--set "#{number}.{attribute}={value}" gives one'
+_REMEDY = "--feed gives one, as --feed 240 (mm/min) or --feed 0.1mm/tooth"

@@ -124,6 +124,8 @@ def _rotating(program: Program, ref: Ref[Entity], tool: MillingCuttingTool) -> T
     teeth = body.number_of_teeth
     if teeth is not None and not 1 <= teeth <= MAX_TEETH:
         message = f"{teeth} teeth: a cutter must have 1 to {MAX_TEETH}"
+        if tool.its_id:
+            message += f'; --teeth "{tool.its_id}=N" gives another number'
         raise program.error(message, tool.its_tool_body, "number_of_teeth")
     radius = 0.5 * diameter if isinstance(body, BallEndmill) else dimension.edge_radius
     return Tool(

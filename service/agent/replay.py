@@ -13,6 +13,7 @@ import numpy as np
 import pyarrow as pa
 
 from service.agent.play import MICRO
+from service.files import require_regular
 from service.reading import Tell
 from service.recording.table import TABLES, batches, headings
 from simulator.agent.agent import Agent
@@ -66,7 +67,15 @@ class RecordedRun:
         """Add nothing: a recorded run has no assets."""
 
 
-def read_log(path: Path, model: DeviceModel, *, tell: Tell) -> RecordedRun:
+BY_MACHINE = "name the machine with --machine"
+
+BY_MODEL = f"{BY_MACHINE}, or its device model with --device"
+"""Options of commands that read logs, for messages."""
+
+
+def read_log(
+    path: Path, model: DeviceModel, *, tell: Tell, option: str = BY_MODEL
+) -> RecordedRun:
     """Read the recorded run of a file, by its suffix.
 
     Parameters
@@ -78,12 +87,15 @@ def read_log(path: Path, model: DeviceModel, *, tell: Tell) -> RecordedRun:
         Data items that the values belong to.
     tell : callable
         Takes what is left out.
+    option : str
+        What helps where nothing in the file belongs to the device model.
 
     Raises
     ------
     StepNcError
         When the file cannot be read, is damaged, or has nothing for this device model.
     """
+    require_regular(path)
     suffix = path.suffix.lower()
     try:
         if suffix in TABLES:
@@ -91,6 +103,8 @@ def read_log(path: Path, model: DeviceModel, *, tell: Tell) -> RecordedRun:
         if suffix in DOCUMENTS:
             return _document(path, model, tell)
         return _lines(path, model, tell)
+    except NothingKnown as error:
+        raise StepNcError(f"{error}: {option}") from error
     except OSError as error:
         raise StepNcError(f"{path}: cannot be read: {error}") from error
 
@@ -272,12 +286,15 @@ def _texts(path: Path) -> Iterator[str]:
                 yield text
 
 
+class NothingKnown(StepNcError):
+    """No value of a log belongs to a data item of the device model."""
+
+
 def _require_some(path: Path, found: Sequence[object], names: Sequence[str]) -> None:
     if not found:
-        raise StepNcError(
+        raise NothingKnown(
             f"{path}: nothing in it belongs to a data item of the device model "
-            f"({_listed(names) or 'the file is empty'}): name the machine with --machine, "
-            "or its device model with --device"
+            f"({_listed(names) or 'the file is empty'})"
         )
 
 

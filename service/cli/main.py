@@ -1,8 +1,8 @@
 """Command line: ``optimise`` and ``stepnc``, a thin layer above :mod:`service.usecases`.
 
 Data goes to stdout, messages and progress to stderr. Exit codes: 0 ok, 2 usage, 3 bad input,
-4 infeasible, 5 limit exceeded, 130 interrupted. Slow imports stay inside the commands, so that
-``--help`` answers at once.
+4 infeasible, 5 limit exceeded, 6 nothing to advise, 130 interrupted. Slow imports stay inside
+the commands, so that ``--help`` answers at once.
 """
 
 import argparse
@@ -24,6 +24,7 @@ from service.cli.options import (
     INFEASIBLE,
     INTERRUPTED,
     LIMIT_EXCEEDED,
+    NOTHING_ADVISED,
     OK,
     CommandParser,
     Commands,
@@ -230,7 +231,7 @@ def _run(options: argparse.Namespace) -> None:
         code = options.run(options)
         sys.stdout.flush()
     except StepNcError as error:
-        tell(f"error: {error}")
+        tell(f"error: {error}{_alternative(error, options)}")
         code = _exit_code(error)
     except KeyboardInterrupt:
         tell("interrupted")
@@ -242,6 +243,17 @@ def _run(options: argparse.Namespace) -> None:
             tell(f"error: stdout: {error.strerror}")
             code = BAD_INPUT
     sys.exit(code)
+
+
+def _alternative(error: Exception, options: argparse.Namespace) -> str:
+    """Option that helps where one instance is at fault and no other option is named."""
+    from stepnc_model.errors import SchemaError
+
+    is_local = isinstance(error, SchemaError) and bool(error.entity)
+    can_keep_going = getattr(options, "keep_going", None) is False
+    if not is_local or not can_keep_going or " --" in str(error):
+        return ""
+    return "; --keep-going leaves out what depends on it"
 
 
 def _exit_code(error: Exception) -> int:
@@ -296,7 +308,9 @@ def _optimise(options: argparse.Namespace) -> int:
     if outcome.plan.is_infeasible:
         return INFEASIBLE
     is_passed = confirmation is not None and bool(confirmation.passed)
-    return LIMIT_EXCEEDED if is_passed or outcome.plan.faults else OK
+    if is_passed or outcome.plan.faults:
+        return LIMIT_EXCEEDED
+    return OK if outcome.is_advised else NOTHING_ADVISED
 
 
 def _optimise_folder(options: argparse.Namespace) -> int:

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, INTERRUPTED = 0, 3, 4, 5, 130
+OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED, INTERRUPTED = 0, 3, 4, 5, 6, 130
+"""Exit codes; with ``NOTHING_ADVISED`` ``optimise`` says that it wrote no program."""
 
 CONTROLS = "linuxcnc, fanuc, haas, sinumerik, heidenhain or canonical"
 

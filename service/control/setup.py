@@ -31,6 +31,8 @@ from simulator.plant.hidden import HiddenQuantity, HiddenTruth
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program
+from stepnc_model.technology import ProgrammedQuantity, programmed
+from stepnc_model.units import mm_min_from_speed
 
 MOST_SECONDS = 86_400.0
 """Longest program under control, in s; its course takes 10 MB of memory per 1000 s."""
@@ -47,8 +49,7 @@ def planned_course(prepared: PreparedRun, virtual: VirtualMachine, tell: Tell) -
         for episode in virtual.run(interpret(prepared.blocks, virtual.machine)):
             require_sense(episode)
             if episode.end > MOST_SECONDS:
-                text = f"{episode.end:.3g} s of machining exceeds {MOST_SECONDS:g} s,"
-                raise ProgramFault(f"{text} the limit under control", episode.state.line)
+                raise _too_long(prepared, virtual, episode)
             ticker(lambda: f"{bar(prepared.done())}  planning the run")
             yield episode
 
@@ -56,6 +57,23 @@ def planned_course(prepared: PreparedRun, virtual: VirtualMachine, tell: Tell) -
         return course_of(episodes(), virtual.machine)
     except SimulationError as error:
         raise SimulationError(f"{place_in(prepared, virtual)}: {error}") from error
+
+
+def _too_long(prepared: PreparedRun, virtual: VirtualMachine, episode: Episode) -> StepNcError:
+    """Error that names the workingstep at which a program becomes too long, and its feed."""
+    text = (
+        f"{episode.end:.3g} s of machining exceeds {MOST_SECONDS:g} s, the limit under control"
+    )
+    program = prepared.program
+    at = virtual.workingsteps[-1] if virtual.workingsteps else ""
+    steps = () if program is None else program.workingsteps
+    step = next((each for each in steps if each.id == at), None)
+    if program is None or step is None:
+        return ProgramFault(text, episode.state.line)
+    feed = programmed(program, step.technology_ref).feed
+    if feed.quantity is ProgrammedQuantity.FEED:
+        text += f": the feed of '{step.id}' is {mm_min_from_speed(feed.value):.3g} mm/min"
+    return program.error(text, feed.ref, feed.attribute)
 
 
 def require_teeth(hidden: HiddenTruth, course: NominalCourse) -> None:

@@ -12,7 +12,7 @@ from pyarrow import csv, parquet
 
 from service.dataset.folder import MANIFEST, DatasetFolder
 from service.dataset.rows import SCHEMA
-from service.files import read_bytes
+from service.files import read_bytes, require_regular
 from stepnc_model.errors import StepNcError
 
 PIECE = 16_384
@@ -125,6 +125,7 @@ def _opened(path: Path) -> parquet.ParquetFile:
     StepNcError
         When it is none.
     """
+    require_regular(path)
     try:
         return parquet.ParquetFile(path, pre_buffer=False)
     except pa.ArrowInvalid as error:

@@ -12,6 +12,7 @@ import pyarrow as pa
 from pyarrow import csv as arrow_csv
 from pyarrow import parquet
 
+from service.files import require_regular
 from stepnc_model.errors import StepNcError
 
 TABLES = frozenset({".parquet", ".csv"})
@@ -77,6 +78,7 @@ def batches(path: Path, kinds: Mapping[str, pa.DataType]) -> Iterator[pa.RecordB
 
 
 def _pieces(path: Path, kinds: Mapping[str, pa.DataType]) -> Iterator[pa.RecordBatch]:
+    require_regular(path)
     if path.suffix.lower() == ".parquet":
         # Buffers of the reader would keep the columns of the whole file.
         with parquet.ParquetFile(path, pre_buffer=False) as file:
@@ -98,6 +100,7 @@ def _pieces(path: Path, kinds: Mapping[str, pa.DataType]) -> Iterator[pa.RecordB
 
 
 def _first_line(path: Path) -> str:
+    require_regular(path)
     with path.open(encoding="utf-8-sig", newline="") as file:
         return file.readline(LONGEST_HEADING)
 

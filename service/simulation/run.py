@@ -112,7 +112,9 @@ def simulate(
     prepared, virtual = waiting_machine(request, files, tell=tell)
     tell_remarks(prepared.remarks, tell)
     if files.kept is not None and prepared.raw is None:
-        raise StepNcError(f"{files.kept}: no stock is known that could be kept")
+        raise StepNcError(
+            f"{files.kept}: no stock is known that could be kept: name one with --stock"
+        )
     disturbance = _disturbance(request, virtual.machine)
     run = RunCollector(virtual, disturbance, rate=request.rate_hz, watchers=watchers)
     if files.report is not None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
-from service.agent.replay import DOCUMENTS, LINES, items_by_column, read_log
+from service.agent.replay import BY_MACHINE, DOCUMENTS, LINES, items_by_column, read_log
 from service.reading import silent
 from simulator.agent.buffer import Value
 from simulator.agent.machine_feed import RunFeed
@@ -46,7 +46,7 @@ def table_of(path: Path, machine: Machine, columns: Sequence[str]) -> pa.Table:
     for names in NameSet:
         model = machine_model(machine, names=names).model
         try:
-            feeds = read_log(path, model, tell=silent).feeds()
+            feeds = read_log(path, model, tell=silent, option=BY_MACHINE).feeds()
             return _table(_joined(feeds), model, columns)
         except StepNcError as error:
             refused = refused or error

@@ -8,6 +8,7 @@ from xml.parsers import expat
 from pyarrow import parquet
 
 from service.agent.replay import LONGEST_LINE
+from service.files import require_regular
 from service.part_file import require_part, require_part_form
 from service.recording.signals import POSITIONS
 from service.recording.table import TABLES, headings
@@ -82,6 +83,7 @@ def _require_document(path: Path) -> None:
 
     parser.StartElementHandler = begin
     parser.StartDoctypeDeclHandler = refuse
+    require_regular(path)
     try:
         with path.open("rb") as file:
             parser.ParseFile(file)
@@ -91,6 +93,7 @@ def _require_document(path: Path) -> None:
 
 def _require_lines(path: Path) -> None:
     """Refuse a text without a line of SHDR: a timestamp, a key and a value."""
+    require_regular(path)
     with path.open(encoding="utf-8", errors="replace") as file:
         for _ in range(LOOKED_AT):
             fields = file.readline(LONGEST_LINE).split("|")

@@ -125,7 +125,7 @@ def prepared(
     tell(f"material: {match.reason}")
     run = prepared_program(read, machine_for(request.machine, read), match, tell=tell)
     if run.program is None or run.raw is None or run.material is None:
-        raise StepNcError(f"{program}: the program has no stock")
+        raise StepNcError(f"{program}: the program has no stock: name one with --stock")
     if len({step.setup for step in run.program.workingsteps}) > 1:
         raise StepNcError(f"{program}: several setups: only one can be verified at a time")
     features = {step.id: _feature(run, step.features) for step in run.program.workingsteps}

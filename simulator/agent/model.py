@@ -18,6 +18,7 @@ from typing import Any
 from lxml import etree
 
 from simulator.errors import AgentError
+from stepnc_model.regular_file import why_irregular
 
 MOST_BYTES = 1 << 22
 """of a device model"""
@@ -229,12 +230,7 @@ def read_model(path: Path) -> DeviceModel:
     AgentError
         When the file cannot be read or is no document of devices.
     """
-    try:
-        with path.open("rb") as file:
-            data = file.read(MOST_BYTES + 1)
-    except OSError as error:
-        raise AgentError(f"{path}: cannot be read: {error.strerror}") from error
-    root = parsed(data, what=str(path))
+    root = parsed(_content(path, most=MOST_BYTES), what=str(path))
     found = re.fullmatch(r"\{urn:mtconnect\.org:MTConnectDevices:(\d+\.\d+)\}.*", root.tag)
     if found is None:
         raise AgentError(f"{path}: root element {root.tag}; expected MTConnectDevices")
@@ -253,16 +249,22 @@ def read_streams_root(path: Path) -> Any:
     AgentError
         When the file cannot be read or is not a document of streams.
     """
-    try:
-        with path.open("rb") as file:
-            data = file.read(MOST_STREAMS + 1)
-    except OSError as error:
-        raise AgentError(f"{path}: cannot be read: {error.strerror}") from error
-    root = parsed(data, what=str(path), most=MOST_STREAMS)
+    root = parsed(_content(path, most=MOST_STREAMS), what=str(path), most=MOST_STREAMS)
     name = etree.QName(root).localname
     if name != "MTConnectStreams":
         raise AgentError(f"{path}: root element {name}; expected MTConnectStreams")
     return root
+
+
+def _content(path: Path, *, most: int) -> bytes:
+    """Content of a file, and one byte more than the most."""
+    try:
+        if reason := why_irregular(path):
+            raise AgentError(f"{path}: {reason}")
+        with path.open("rb") as file:
+            return file.read(most + 1)
+    except OSError as error:
+        raise AgentError(f"{path}: cannot be read: {error.strerror}") from error
 
 
 def devices_text(model: DeviceModel) -> str:

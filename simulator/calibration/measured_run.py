@@ -19,6 +19,7 @@ import numpy as np
 from simulator.errors import CalibrationError
 from simulator.motion.segments import Floats, Ints
 from stepnc_model.errors import Finding, Severity
+from stepnc_model.regular_file import why_irregular
 
 TIME = "time_s"
 POSITIONS = tuple(f"{axis}_axis_position_actual" for axis in "xyz")
@@ -159,6 +160,8 @@ def read_columns(
 def _rows(path: Path) -> Iterator[list[str]]:
     """Rows of a CSV file, read lazily; the heading determines the separator."""
     try:
+        if reason := why_irregular(path):
+            raise CalibrationError(reason, path=str(path))
         with path.open(encoding="utf-8-sig", newline="") as stream:
             heading = stream.readline()
             mark = next((each for each in SEPARATORS if each in heading), ",")

@@ -86,6 +86,8 @@ class AimReader:
         self._reading = AimReading()
         self._visited: set[int] = set()
         """Instances on the ways to all values read."""
+        self._without_rule: dict[tuple[str, str], list[int]] = {}
+        """Instances that no rule describes, by what they are and where they stand."""
 
     def read(self) -> AimReading:
         """Convert all programs of the file."""
@@ -103,6 +105,7 @@ class AimReader:
             self._convert(number, origin)
         converted = self._reading.converted
         self._reading.converted = upright(converted, self._paths, first=self._next)
+        self._tell_unknown()
         self._note_unread()
         self._reading.findings = self._paths.findings.all()
         return self._reading
@@ -148,7 +151,7 @@ class AimReader:
 
     def _number(self, place: Place, rule: Rule) -> Ref[object]:
         """Number of the instance that a place stands for; it is converted once."""
-        scale = self._geometry_factor(place.context) if _is_scaled(rule) else 1.0
+        scale = self.geometry_factor(place.context) if _is_scaled(rule) else 1.0
         key = place.id, rule.entity.keyword, scale
         if key not in self._numbers:
             number = place.id
@@ -241,10 +244,16 @@ class AimReader:
             )
             described = self.instances.value(place.id, "description")
             name = f" '{described}'" if isinstance(described, str) else ""
-            message = f"{keyword}{name} has no counterpart in ISO 14649 that is supported here"
-            self._paths.remark(Severity.WARNING, message, place.id, attribute)
+            self._without_rule.setdefault((f"{keyword}{name}", attribute), []).append(place.id)
         number = self._numbers.get(key)
         return None if number is None else Ref(number)
+
+    def _tell_unknown(self) -> None:
+        """Warn of instances that no rule describes, once for each kind."""
+        for (what, attribute), ids in self._without_rule.items():
+            count = f" ({len(ids)} instances)" if len(ids) > 1 else ""
+            text = f"{what}{count} has no counterpart in ISO 14649 that is supported here"
+            self._paths.remark(Severity.WARNING, text, ids[0], attribute)
 
     def _value(self, start: Place, place: Place, ending: Ending, attribute: str) -> Value:
         """Value of ISO 14649 for a place; None if it has none."""
@@ -263,7 +272,7 @@ class AimReader:
         if kind is Kind.UNIT:
             return self._unit_name(place)
         if kind is Kind.COORDINATES:
-            return _scaled(place.value, self._geometry_factor(place.context))
+            return _scaled(place.value, self.geometry_factor(place.context))
         return self._measured(start, place, ending, attribute)
 
     def _verbatim(self, start: Place, attribute: str, slot: AttributeSlot) -> Value:
@@ -368,7 +377,7 @@ class AimReader:
             return self.units.unit(int(ref))
         return None
 
-    def _geometry_factor(self, context: int | None) -> float:
+    def geometry_factor(self, context: int | None) -> float:
         """Factor from the lengths of a context to mm."""
         return conversion(self.units.length_in(context), MEASURES[Kind.LENGTH]).factor
 

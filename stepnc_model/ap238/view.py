@@ -5,6 +5,7 @@ numbers, lines and findings are those of the AP238 file, so that whatever reads 
 14649 reads an AP238 program too, and names the right places of it.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Self
@@ -69,6 +70,10 @@ class AimView(Part21File):
     def changed(self, text: Part21File) -> Self:
         """The view with changed text, which is written with the next changes of the file."""
         return replace(self, data=text.data, structure=text.structure)
+
+    def remembering(self, origins: Iterable[Converted]) -> Self:
+        """The view with instances that stand for others of the file, by their numbers."""
+        return replace(self, origins=self.origins | {each.number: each for each in origins})
 
     def number_of(self, origin: Converted) -> int | None:
         """Number of the instance for which the same AIM instance stands as in another view."""

@@ -15,7 +15,7 @@ from stepnc_model.ap238.following import RULE, Place
 from stepnc_model.ap238.loose import hang, loose_numbers, without
 from stepnc_model.ap238.quantity import MEASURES, conversion
 from stepnc_model.ap238.reading import AimReader, measure_kind
-from stepnc_model.ap238.table import Ending, Kind, Path, PathMove, Row
+from stepnc_model.ap238.table import Ending, Kind, Path, PathMove, PathStep, Row
 from stepnc_model.ap238.view import AimView
 from stepnc_model.entities.conversion import AttributeSlot, slots_of
 from stepnc_model.errors import SchemaError
@@ -44,7 +44,11 @@ def spliced_into(view: AimView, changed: bytes, removed: Iterable[int] = ()) -> 
     SchemaError
         If AP238 cannot express a change.
     """
-    return _Splice(view, Part21File.from_bytes(changed, name=view.name), set(removed)).apply()
+    splice = _Splice(view, Part21File.from_bytes(changed, name=view.name), set(removed))
+    data = splice.apply()
+    if splice.redirected:
+        splice.require_taken(AimView.of(Part21File.from_bytes(data, name=view.name)))
+    return data
 
 
 class _Splice:
@@ -64,6 +68,18 @@ class _Splice:
         }
         self._kept = kept
         self._builder = Builder(new, self._draft, kept)
+        self.redirected: list[tuple[Converted, Row, int]] = []
+        """Attributes that lead to another instance of the AP238 file, with its number."""
+
+    def require_taken(self, view: AimView) -> None:
+        """Refuse a reference that the changed file, as it is read, does not have."""
+        for each, row, target in self.redirected:
+            number = view.number_of(each)
+            place = list(slots_of(each.rule.entity)).index(row.attribute) if each.rule else 0
+            value = None if number is None else view.parameters(number)[place]
+            found = view.origins.get(int(value)) if isinstance(value, Ref) else None
+            if found is None or found.origin != target:
+                raise self._refusal(each.number, row.attribute)
 
     def apply(self) -> bytes:
         """Bytes of the AP238 file with all changes."""
@@ -135,7 +151,7 @@ class _Splice:
         if slot.items is not None and slot.items.references:
             self._change_list(each, row, found, value)
         elif isinstance(value, Ref) and found:
-            self._redirect(found[0], value)
+            self._redirect(each, row, found[0], value)
         elif found and value is not None:
             self._edit(each, row, found[0], value)
         elif found:
@@ -160,20 +176,37 @@ class _Splice:
             refs = tuple(Ref[object](number) for number in new)
             self._builder.write_row(each.number, each.origin, row, refs)
 
-    def _redirect(self, found: tuple[Path, Place], value: Ref[object]) -> None:
+    def _redirect(
+        self, each: Converted, row: Row, found: tuple[Path, Place], value: Ref[object]
+    ) -> None:
         """Let the last step of a path lead to another instance."""
         path, place = found
         target = self._builder.build(int(value))
-        if target is None or not path.steps:
-            raise self._refusal(int(value), "")
+        if target is None or not path.steps or len(place.way) < 2:
+            raise self._refusal(each.number, row.attribute)
+        is_geometry = "LENGTH_MEASURE" not in self._new.keyword(int(value))
+        scale = self._reader.geometry_factor(place.context)
+        if self._draft.is_new(target) and is_geometry and scale != 1.0:
+            # New geometry is in mm, and would be read in the unit of the file's.
+            raise self._refusal(each.number, row.attribute)
+        self.redirected.append((each, row, target))
         last, holder = path.steps[-1], place.way[-2]
+        if self._draft.is_new(target):
+            self._name(target, last)
         if last.move is PathMove.BACK:
             if last.attribute in LISTS:
                 self._draft.take(place.id, last.attribute, holder)
             self._draft.put(target, last.attribute, holder)
             return
         holder = self._unshared(place.way[:-1])
-        self._draft.set(holder, last.attribute, Ref(target))
+        present = self._draft.get(holder, last.attribute)
+        self._draft.set(holder, last.attribute, _replaced(present, place.id, target))
+
+    def _name(self, target: int, step: PathStep) -> None:
+        """Give a new instance the texts by which a path finds it."""
+        for condition in step.conditions:
+            if len(condition.attributes) == 1 and condition.texts:
+                self._draft.set(target, condition.attributes[0], condition.texts[0])
 
     def _edit(self, each: Converted, row: Row, found: tuple[Path, Place], value: Value) -> None:
         """Replace a text or a number where it stands."""
@@ -187,6 +220,11 @@ class _Splice:
             if text is None:
                 raise self._refusal(each.number, row.attribute)
             self._draft.set(self._unshared(place.way), "description", text)
+        elif ending.kind in (Kind.COORDINATES, Kind.VERBATIM) and row.attribute != "name":
+            scale = self._reader.geometry_factor(place.context)
+            is_length = ending.kind is Kind.COORDINATES and scale != 1.0
+            written = _divided(value, scale) if is_length else value
+            self._draft.set(self._unshared(place.way), path.steps[-1].attribute, written)
         elif ending.kind is Kind.LENGTHS:
             self._edit_list(each, row, path, value)
         elif ending.kind is Kind.WRITTEN:
@@ -228,15 +266,17 @@ class _Splice:
         return Real(float(f"{number / factor:.12g}"))
 
     def _unshared(self, way: tuple[int, ...]) -> int:
-        """Last instance of a way, copied as far as others use the way too."""
-        draft, holder = self._draft, way[0]
-        for before, id in pairwise(way):
-            attributes = [
-                name for name in _FORWARD if Ref(id) in _targets(draft.get(before, name))
-            ]
-            if not attributes:
-                holder = id
-                continue
+        """Last instance of a way, copied as far as others use the way too.
+
+        What refers back to the way is its own; so is all before it.
+        """
+        draft = self._draft
+        moves = [
+            (before, id, self._attributes_between(before, id)) for before, id in pairwise(way)
+        ]
+        own = max((row for row, (*_, found) in enumerate(moves, 1) if not found), default=0)
+        holder = way[own]
+        for before, id, attributes in moves[own:]:
             if holder == before and draft.uses(id) < 2:
                 holder = id
                 continue
@@ -245,6 +285,11 @@ class _Splice:
             draft.set(holder, attributes[0], _replaced(present, id, copy))
             holder = copy
         return holder
+
+    def _attributes_between(self, before: int, id: int) -> list[str]:
+        """Attributes by which an instance refers to the next one of a way."""
+        draft = self._draft
+        return [name for name in _FORWARD if Ref(id) in _targets(draft.get(before, name))]
 
     def _refusal(self, number: int, attribute: str) -> SchemaError:
         """Error about something that AP238 cannot express."""
@@ -269,6 +314,15 @@ _FORWARD = (
     "of_product",
 )
 """Attributes through which several instances may come to share what they lead to."""
+
+
+def _divided(value: Value, scale: float) -> Value:
+    """Lengths in the unit of the file's geometry; twelve digits, as all that are written."""
+    if isinstance(value, tuple):
+        return tuple(_divided(item, scale) for item in value)
+    if not isinstance(value, int | float):
+        raise TypeError(f"{value!r} is not a length")
+    return Real(float(f"{value / scale:.12g}"))
 
 
 def _targets(value: Value) -> tuple[Value, ...]:

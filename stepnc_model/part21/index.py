@@ -30,6 +30,7 @@ from stepnc_model.part21.grammar import (
 from stepnc_model.part21.places import Slips, SyntaxSlip, error_at, excerpt
 from stepnc_model.part21.record import parse_record
 from stepnc_model.part21.tidy import is_tidy
+from stepnc_model.part21.tokens import MAX_ID_DIGITS
 
 _ITEM = re.compile(
     rb"\s*+\#([0-9]{1,18}+)\s*+=\s*+([!A-Za-z0-9_]{0,400}+)\s*+(?=\()"
@@ -57,7 +58,6 @@ _JUNK = re.compile(
 )
 _STRING_OR_COMMENT = re.compile(STRING + rb"|" + COMMENT)
 _SECTION_END = re.compile(SECTION_END)
-_MAX_ID_DIGITS = 18
 _MAX_KEYWORD = 400
 _MAX_KEYWORDS = 10_000
 """Greatest number of entity names in one file; the largest schemas define 2000."""
@@ -125,8 +125,9 @@ class IndexBuilder:
     def _unusual(self, head: re.Match[bytes]) -> int:
         """Parse an unusual instance piece by piece; return the offset behind it."""
         data, start = self._data, head.start()
-        if len(head[1]) > _MAX_ID_DIGITS:
-            raise error_at(data, start, f"instance name too long: #{head[1][:20].decode()}…")
+        if len(head[1]) > MAX_ID_DIGITS:
+            text = f"instance name #{head[1][:20].decode()}… has {len(head[1])} digits"
+            raise error_at(data, start, f"{text}: at most {MAX_ID_DIGITS} are read")
         stop = run_end(_BODY, data, head.end())
         name = f"#{int(head[1])}"
         if data.startswith(b";", stop):

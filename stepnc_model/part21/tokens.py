@@ -18,6 +18,9 @@ ENUMERATION = r"\.[A-Za-z_][A-Za-z0-9_]*+\."
 BINARY = r'"[0-3][0-9A-F]*+"'
 COMMENT = r"(?>/\*(?s:.*?)\*/)"
 
+MAX_ID_DIGITS = 18
+"""Greatest number of digits of an instance name."""
+
 _MAX_DIGITS = 4000
 TOKEN = re.compile(
     rf"(?P<blank>\s++|{COMMENT}|\\[NF]\\)"
@@ -79,8 +82,10 @@ def scalar(match: re.Match[str], *, slips: Slips) -> Value:
 
 def _reference(match: re.Match[str]) -> Ref[object]:
     """Instance reference from a token; an error if its number is too long."""
-    if len(match[0]) > 19:
-        raise MalformedError(match.start(), f"instance name too long: {shown(match)}")
+    digits = len(match[0]) - 1
+    if digits > MAX_ID_DIGITS:
+        text = f"instance name {shown(match)} has {digits} digits: at most {MAX_ID_DIGITS}"
+        raise MalformedError(match.start(), f"{text} are read")
     return Ref(match[0][1:])
 
 
@@ -90,7 +95,8 @@ def _number(match: re.Match[str], *, slips: Slips) -> Value:
     if _INTEGER.fullmatch(token):
         if len(token) > _MAX_DIGITS:
             raise MalformedError(
-                match.start(), f"an integer of {len(token)} digits is too long"
+                match.start(),
+                f"an integer of {len(token)} digits: at most {_MAX_DIGITS} are read",
             )
         return int(token)
     if not _STANDARD_REAL.fullmatch(token):

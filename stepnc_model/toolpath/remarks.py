@@ -62,7 +62,10 @@ def _of_stock(program: Program) -> Iterator[Finding]:
             is_said = True
             yield Finding(severity=Severity.NOTE, message=_shape_words(stock))
         if stock is None:
-            text = "no stock is known: engagement is estimated, collisions are not found"
+            text = (
+                "no stock is known (--stock names one): engagement is estimated, collisions "
+                "are not found"
+            )
             setup = step.ref if step.setup is None else step.setup
             at = setup if int(setup) in program.file else step.ref
             yield program.finding(Severity.WARNING, text, at)

@@ -1,10 +1,22 @@
 """The table of programs and commands."""
 
+import re
 from pathlib import Path
 
 import pytest
 
-from benchmarks.corpus import AFTER, BEFORE, OPTIMISE, Entry, entry, main, table
+from benchmarks.corpus import (
+    AFTER,
+    BEFORE,
+    FOLDERS,
+    OPTIMISE,
+    Entry,
+    attempt,
+    entry,
+    main,
+    programs,
+    table,
+)
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 CHECK, TOOLPATH = BEFORE
@@ -39,13 +51,15 @@ def test_what_works_needs_no_option(part: Path) -> None:
 def test_a_refusal_is_kept_with_the_option_that_helps(part: Path) -> None:
     without_feed(part)
     assert entry(part, TOOLPATH).works
-    refused = entry(part, POST)
-    assert not refused.works
-    assert "MILLING_TECHNOLOGY.feedrate: neither feedrate nor" in refused.error
-    helped = entry(part, OPTIMISE)
-    assert helped.works
-    assert helped.options == ("--feed", "240")
-    assert helped.error == refused.error
+    assert (
+        "MILLING_TECHNOLOGY.feedrate: neither feedrate nor"
+        in attempt(part, POST, (), output=None).error
+    )
+    for command in (POST, OPTIMISE):
+        helped = entry(part, command)
+        assert helped.works
+        assert helped.options == ("--feed", "240")
+        assert "MILLING_TECHNOLOGY.feedrate: neither feedrate nor" in helped.error
 
 
 def test_a_refusal_is_printed_once_with_its_number() -> None:
@@ -73,3 +87,48 @@ def test_a_folder_without_programs_says_so(
 ) -> None:
     main([str(tmp_path)])
     assert capsys.readouterr().out == "no program in these folders: nothing to print\n"
+
+
+PLACE = re.compile(r"line \d+: #\d+ \w+")
+OPTION = re.compile(
+    r" --(set|teeth|stock|feed|units|keep-going|machine|material|part)\b",
+)
+SIMULATE = AFTER[1]
+REFUSING = (SIMULATE, OPTIMISE)
+
+
+def refusals(program: Path) -> dict[str, str]:
+    """First refusal of each command; what `post` takes would only take long."""
+    tried = {POST.name: attempt(program, POST, (), output=None)}
+    if not tried[POST.name].error:
+        return {}
+    tried |= {each.name: attempt(program, each, (), output=None) for each in REFUSING}
+    return {name: each.error for name, each in tried.items() if each.error}
+
+
+@pytest.mark.parametrize(
+    "program", [each for folder in FOLDERS for each in programs(folder)], ids=lambda p: p.name
+)
+def test_each_refusal_names_a_place_and_the_option_that_helps(program: Path) -> None:
+    found = refusals(program)
+    for command, text in found.items():
+        assert OPTION.search(text), f"{command}: {text}"
+        # A material that no instance names has no place.
+        assert PLACE.search(text) or "names no workpiece material" in text, f"{command}: {text}"
+
+
+def test_what_has_no_tool_path_is_refused_so_too() -> None:
+    for program in (FOLDERS[0] / "testePrecedencias.p21", FOLDERS[0] / "nine_workingsteps.p21"):
+        if not program.exists():
+            pytest.skip(f"{program.name} is not beside the project")
+        refused = attempt(program, TOOLPATH, (), output=None).error
+        assert PLACE.search(refused)
+        assert OPTION.search(refused)
+
+
+def test_a_program_without_a_feed_is_refused_by_all(part: Path) -> None:
+    """The test above does not only pass because nothing is refused."""
+    without_feed(part)
+    found = refusals(part)
+    assert set(found) == {"post", "simulate", "optimise"}
+    assert all("; --feed gives one" in text for text in found.values())

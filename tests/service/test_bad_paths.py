@@ -160,7 +160,7 @@ FEED = "#304=MILLING_TECHNOLOGY(0.0064,.TCP.,$,-40."
         ((POCKET, "'ROUGH POCKET',#43,#999,#206,$"), "#999: is referenced, but"),
         (
             (POCKET, "'ROUGH POCKET',#43,$,#206,$"),
-            "#16 MACHINING_WORKINGSTEP: the workingstep has no feature",
+            "#16 MACHINING_WORKINGSTEP.its_feature: the workingstep has no feature",
         ),
         (
             (POCKET, "'ROUGH POCKET',#44,#140,#206,$"),
@@ -273,7 +273,7 @@ def test_what_is_no_program_is_refused(part: Path, refused: Refused) -> None:
     for data in (b"", bytes(range(256)) * 20):
         junk.write_bytes(data)
         assert "line 1" in refused("post", junk, "--control", "fanuc")
-    assert "irectory" in refused("post", part.parent, "--control", "fanuc")
+    assert "is a folder" in refused("post", part.parent, "--control", "fanuc")
     assert "is not a file" in refused("post", ".", "--control", "fanuc")
     assert "No such file" in refused("post", "nowhere", "--control", "fanuc")
     assert "unknown control 'x'" in refused("post", part, "--control", "x")

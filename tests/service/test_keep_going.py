@@ -7,12 +7,15 @@ import pytest
 
 from service.cli.main import main, optimise_main
 from service.paths.toolpaths import PostRequest, post
+from stepnc_model.ap238.export import to_ap238
 from stepnc_model.errors import SchemaError
-from stepnc_model.given import GivenData, GivenFeed, completed, without_given
+from stepnc_model.given import GivenData, GivenFeed, completed
 from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from stepnc_model.technology import programmed
 from stepnc_model.units import FeedUnit
+from stepnc_model.withdrawal import without_given
 
 HEAD = [
     "ISO-10303-21;",
@@ -21,7 +24,7 @@ HEAD = [
     "ENDSEC;",
     "DATA;",
 ]
-BAD_INPUT = 3
+BAD_INPUT, NOTHING_ADVISED = 3, 6
 
 OTHER = {
     "#31": "#31=ROUND_HOLE('BAD',#6,(),#90,#91,#93,$,#94);",
@@ -196,7 +199,31 @@ class TestGivenData:
             Program(Part21File.from_bytes(data)), GivenData(values=("#31.depth=12",))
         )
         assert whole.program.file.data != data
-        assert without_given(whole.program, whole.given) == data
+        assert without_given(whole.program, whole) == data
+
+    def test_a_number_is_replaced_where_it_stands(self) -> None:
+        """The plane is moved, the measure keeps its tolerance: no instance is added."""
+        data = program().replace(b"LENGTH_MEASURE(10.,$)", b"LENGTH_MEASURE(10.,#95)")
+        given = ("#31.depth=12", "#31.diameter=8.5")
+        whole = completed(Program(Part21File.from_bytes(data)), GivenData(values=given))
+        changed = data.replace(b"(0.,0.,-15.)", b"(0.,0.,-12.)").replace(
+            b"MEASURE(10.,#95)", b"MEASURE(8.5,#95)"
+        )
+        # Three holes share the plane and the measure: one gets its own.
+        assert whole.program.file.data != changed
+        assert without_given(whole.program, whole) == data
+        one = data.replace(
+            b"#30=ROUND_HOLE('GOOD',#6,(),#80,#91,#93", b"#30=ROUND_HOLE('GOOD',#6,(),#80,$,$"
+        )
+        one = one.replace(
+            b"#32=ROUND_HOLE('AFTER',#6,(),#85,#91,#93", b"#32=ROUND_HOLE('AFTER',#6,(),#85,$,$"
+        )
+        assert one != data
+        whole = completed(Program(Part21File.from_bytes(one)), GivenData(values=given))
+        assert whole.program.file.data == one.replace(b"(0.,0.,-15.)", b"(0.,0.,-12.)").replace(
+            b"MEASURE(10.,#95)", b"MEASURE(8.5,#95)"
+        )
+        assert without_given(whole.program, whole) == one
 
     def test_a_feed_is_given_to_those_that_have_none(self) -> None:
         whole = completed(
@@ -236,3 +263,70 @@ def test_post_keeps_its_exit_code(part: Path) -> None:
     with pytest.raises(SystemExit) as stopped:
         main(["post", str(part), "--control", "linuxcnc", "--keep-going"])
     assert stopped.value.code == BAD_INPUT
+
+
+class TestSharedOperation:
+    """GOOD runs the operation of BAD, whose hole has no depth."""
+
+    DATA = program(**NO_DEPTH).replace(
+        b"#3=MACHINING_WORKINGSTEP('GOOD',$,#30,#40,$)",
+        b"#3=MACHINING_WORKINGSTEP('GOOD',$,#30,#41,$)",
+    )
+
+    def test_the_advised_workingstep_gets_a_copy_and_the_other_stays(
+        self, part: Path, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        part.write_bytes(self.DATA)
+        assert optimised(part, "--keep-going") == BAD_INPUT
+        assert "advised" in capsys.readouterr().out
+        file = Part21File.from_bytes(part.with_suffix(".optimised.stpnc").read_bytes())
+        before = Part21File.from_bytes(self.DATA)
+        for number in (4, 31, 41, 51, 61, 63):
+            old, new = before.span(number), file.span(number)
+            assert self.DATA[slice(*old)] == file.data[slice(*new)]
+        found = Program(file)
+        good, bad, _ = (step.operation_ref for step in found.workingsteps)
+        assert bad == Ref(41)
+        assert good != Ref(41)
+        feeds = [
+            programmed(found, step.technology_ref).feed.value for step in found.workingsteps
+        ]
+        assert feeds[0] > feeds[1] == 4.0
+
+    def test_of_ap238_it_is_told_that_the_advice_is_not_written(
+        self, part: Path, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        part.write_bytes(to_ap238(Part21File.from_bytes(self.DATA)).data)
+        assert optimised(part, "--keep-going", "--json") == BAD_INPUT
+        out, told = capsys.readouterr()
+        text = "the advice for 'GOOD' is not written"
+        assert text in told
+        assert any(text in each["message"] for each in json.loads(out)["findings"])
+
+    def test_a_copied_technology_is_without_the_given_data(self, part: Path) -> None:
+        """Two workingsteps share a technology without a spindle speed, and one is advised."""
+        data = program(_61="#61=MILLING_TECHNOLOGY(0.004,.TCP.,$,$,$,.F.,.F.,.F.,$);").replace(
+            b"'OP AFTER',10.,$,#50,#62,", b"'OP AFTER',10.,$,#50,#61,"
+        )
+        part.write_bytes(data)
+        options = ("--set", "#61.spindle=-16.", "--workingstep", "BAD")
+        assert optimised(part, *options) == 0
+        file = Part21File.from_bytes(part.with_suffix(".optimised.stpnc").read_bytes())
+        technologies = [file.parameters(id) for id in file.ids_of("MILLING_TECHNOLOGY")]
+        lacking = [each for each in technologies if each[3] is None]
+        assert len(lacking) == 2
+        assert len(technologies) == 4
+
+
+def test_nothing_to_advise_has_an_exit_code_of_its_own(
+    part: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """All three workingsteps lock their feeds."""
+    locked = program().replace(b"$,-16.,$,.F.,.F.,.F.", b"$,-16.,$,.F.,.T.,.F.")
+    part.write_bytes(locked)
+    assert optimised(part) == NOTHING_ADVISED
+    assert "nothing was written: no workingstep was advised" in capsys.readouterr().err
+    assert [each.name for each in part.parent.iterdir()] == [part.name]
+    assert optimised(part, "--dry-run") == NOTHING_ADVISED
+    assert optimised(part, "--in-place") == NOTHING_ADVISED
+    assert part.read_bytes() == locked

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from service.paths.toolpaths import nc_lines, paths_of, with_feeds
 from service.reading import read_program
 from service.usecases import OptimiseResult
 from stepnc_model import writeback
-from stepnc_model.file_profile import FileProfile
+from stepnc_model.file_profile import FileProfile, RecordChoice
 from stepnc_model.post.dialect import Dialect
 from tests.asking import asked_advice
 
@@ -188,3 +189,25 @@ def test_a_plunge_feed_that_is_not_positive_is_refused(
     assert "plunge feed -0.025 mm/tooth must be positive" in error
     assert "BOTTOM_AND_SIDE_ROUGH_MILLING" in error
     assert not output.exists()
+
+
+def test_a_file_without_records_says_what_it_loses(part: Path, tmp_path: Path) -> None:
+    """The feed at which its NC code plunges is the one that is told."""
+    told: list[str] = []
+    request, files = asked_advice(file=part, machine="vmc15", output=tmp_path / "out.stpnc")
+    plain = usecases.optimise(
+        replace(request, records=RecordChoice.NONE), files, tell=told.append
+    )
+    lost = [text for text in told if "the plunge feed of" in text]
+    plunging = [each for each in plain.plan.advices if each.after and each.after.plunge_feed]
+    assert len(lost) == len(plunging) > 0
+    paths = paths_of(read_program(written(plain), units="iso"))
+    feeds = [float(each) for each in re.findall(r"F([\d.]+)", "\n".join(
+        nc_lines(paths, Dialect.LINUXCNC)
+    ))]  # fmt: skip
+    for text in lost:
+        assert "only a record can hold it (--records none)" in text
+        slow, fast = (float(each) for each in re.findall(r"([\d.]+) mm/min", text))
+        assert slow < fast
+        assert any(feed == pytest.approx(fast, rel=0.005) for feed in feeds)
+        assert not any(feed == pytest.approx(slow, rel=0.005) for feed in feeds)

@@ -170,7 +170,9 @@ class TestAdvice:
 
     def test_numbers_that_fit_no_profile_are_said_to(self) -> None:
         error = refused("1.E9,.TCP.,$,-1.E9,$,.F.,.F.,.F.")
-        assert str(error).endswith("no unit profile makes all numbers plausible")
+        assert str(error).endswith(
+            'no unit profile makes all numbers plausible; set it with --set "#6.spindle=VALUE"'
+        )
 
     def test_only_the_workingsteps_asked_for_matter(self) -> None:
         program = program_of("0.02,.TCP.,$,-301.,$,.F.,.F.,.F.")

@@ -83,7 +83,7 @@ def back_holes(job: ToolPathTask) -> Iterator[Hole]:
         If there is no bore, its axis is not parallel to the tool, or a size is missing.
     """
     if not job.step.features:
-        raise job.fault("the workingstep has no feature to bore", job.step.ref)
+        raise job.fault("the workingstep has no feature to bore", job.step.ref, "its_feature")
     for feature in job.step.features:
         for placed in placements(job.program, job.step.setup, feature):
             with job.program.using(placed.feature):

@@ -110,7 +110,7 @@ def holes_of(job: ToolPathTask, operation: DrillingTypeOperation) -> Iterator[Ho
         If there is no hole, its axis is not parallel to the tool, or a size is missing.
     """
     if not job.step.features:
-        raise job.fault("the workingstep has no feature to drill", job.step.ref)
+        raise job.fault("the workingstep has no feature to drill", job.step.ref, "its_feature")
     for feature in job.step.features:
         for placed in placements(job.program, job.step.setup, feature):
             yield _hole(job, operation, placed)

@@ -89,7 +89,7 @@ def milling_path(job: ToolPathTask) -> ToolPath:
         for shape in shapes(job, placed.feature, placed.frame)
     ]
     if not found:
-        raise job.fault("the workingstep has no feature to mill", job.step.ref)
+        raise job.fault("the workingstep has no feature to mill", job.step.ref, "its_feature")
     first = found[0][1][0].passes[0].start
     course = PathBuilder(job, (first.real, first.imag, job.security_z))
     for finding in way.findings:

@@ -328,7 +328,7 @@ def outlines_of(job: ToolPathTask) -> tuple[FeatureOutline, ...]:
         If there is none, or one cannot be turned.
     """
     if not job.step.features:
-        raise job.fault("the workingstep has no feature to turn", job.step.ref)
+        raise job.fault("the workingstep has no feature to turn", job.step.ref, "its_features")
     reach = _reach(job)
     found = tuple(
         outline_of(job, threaded_feature(job, ref), reach) for ref in job.step.features

@@ -8,8 +8,8 @@ import pytest
 from service.along_path.run import FeedsAlongPath
 from service.requests.advice import AdviceRequest
 from service.requests.runs import SimulationRequest
+from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles, simulate
-from service.simulation.setup import CodeRequest
 from service.usecases import AdviceFiles, OptimiseResult, optimise
 from simulator.motion.model_name import ControlModelName
 from stepnc_model.errors import StepNcError

@@ -9,11 +9,12 @@ from service.numbers import feed_in
 from service.reading import given_data
 from service.requests.given import ProgramRequest
 from stepnc_model.errors import StepNcError
-from stepnc_model.given import completed, without_given
+from stepnc_model.given import completed
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.technology import programmed
 from stepnc_model.units import PROFILES, FeedUnit
+from stepnc_model.withdrawal import without_given
 from tests.service.test_keep_going import NO_DEPTH, NO_FEED, NO_TEETH, program
 
 OK, BAD_INPUT = 0, 3
@@ -136,7 +137,7 @@ class TestFeed:
         step = whole.program.workingsteps[1]
         found = programmed(whole.program, step.technology_ref)
         assert found.feed_per_tooth(16.0, 2) == pytest.approx(feed)
-        assert without_given(whole.program, whole.given) == data
+        assert without_given(whole.program, whole) == data
 
     def test_a_feed_by_time_needs_a_file_that_has_such_feeds(self) -> None:
         data = program(**NO_FEED)

@@ -49,6 +49,14 @@ def test_a_log_without_positions_says_so(tmp_path: Path) -> None:
         list(LogFile(path=path, names=ONE, machine=VMC15).pieces())
 
 
+def test_lines_of_another_machine_name_the_option_that_verify_has(tmp_path: Path) -> None:
+    path = lines_of(tmp_path, "2026-01-01T00:00:00.000Z|elsewhere|1.0\n")
+    with pytest.raises(StepNcError) as refused:
+        table_of(path, VMC15, POSITIONS)
+    assert "(elsewhere): name the machine with --machine" in str(refused.value)
+    assert "--device" not in str(refused.value)
+
+
 def test_a_damaged_document_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "run.xml"
     path.write_text("<a>", encoding="utf-8")

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import cache
+from typing import Any
 
 import pytest
 
@@ -9,12 +10,17 @@ from stepnc_model.ap238.export import to_ap238
 from stepnc_model.ap238.view import AimView, is_aim
 from stepnc_model.ap238.writing import spliced_into
 from stepnc_model.draft import Draft
+from stepnc_model.entities.executables import Setup
+from stepnc_model.entities.features import RoundHole, Step
+from stepnc_model.entities.geometry import Block
 from stepnc_model.errors import SchemaError
-from stepnc_model.given import Completed, GivenData, GivenFeed, completed, without_given
+from stepnc_model.given import Completed, GivenData, GivenFeed, completed
+from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from stepnc_model.technology import programmed
 from stepnc_model.tool import tool_of
 from stepnc_model.units import FeedUnit
+from stepnc_model.withdrawal import without_given
 from tests.stepnc_model.ap238.samples import MILLING, exported, own, public, read
 
 FEED = GivenFeed(value=4.0, unit=FeedUnit.MM_PER_MINUTE)
@@ -89,7 +95,7 @@ def test_given_data_are_read_and_written_in_place_as_ap238(name: str) -> None:
 def test_withdrawn_data_leave_every_instance_as_it_was(name: str) -> None:
     data, words, _, _ = cases()[name]
     whole = completed(Program(read(data)), words)
-    assert instances(without_given(written(whole), whole.given)) == instances(data)
+    assert instances(without_given(written(whole), whole)) == instances(data)
 
 
 def test_a_feed_is_given_to_the_public_example_in_its_own_unit() -> None:
@@ -97,7 +103,7 @@ def test_a_feed_is_given_to_the_public_example_in_its_own_unit() -> None:
     whole = completed(Program(read(data)), GivenData(feed=FEED))
     program = written(whole)
     assert feed_of(whole.program) == feed_of(program) == pytest.approx(4.0, rel=1e-12)
-    left = without_given(program, whole.given)
+    left = without_given(program, whole)
     kept, before = instances(left), instances(data)
     # The measures were there without a number; a feed that is withdrawn leaves none.
     assert before.keys() - kept.keys() == {*range(3821, 3825), *range(4121, 4125)}
@@ -112,11 +118,76 @@ def test_messages_name_the_instances_of_the_file() -> None:
     assert program.line(ref) == read(data).line(int(ref))
 
 
-def test_what_the_file_has_is_not_set() -> None:
-    data = exported("bracket")
-    words = GivenData(values=(f"#{first_feature(data)}.depth=7.5",))
-    with pytest.raises(SchemaError, match=r"depth: is in the file: only what an AP238"):
-        completed(Program(read(data)), words)
+class TestWhatTheFileHas:
+    """Values that the file gives are replaced where they stand, and put back."""
+
+    @pytest.mark.parametrize(
+        ("feature", "attribute", "value", "added"),
+        [
+            (Step, "depth", "7.5", 0),
+            (RoundHole, "depth", "7.5", 3),
+            (RoundHole, "diameter", "11.5", 1),
+        ],
+    )
+    def test_a_number_is_replaced(
+        self, feature: type[Step | RoundHole], attribute: str, value: str, added: int
+    ) -> None:
+        """The step has a plane of its own; two holes share their plane and their measure."""
+        data = exported("bracket")
+        number = int(next(ref for ref, _ in Program(read(data)).model.of_type(feature)))
+        whole = completed(
+            Program(read(data)), GivenData(values=(f"#{number}.{attribute}={value}",))
+        )
+        program = written(whole)
+        for each in (whole.program, program):
+            hole: Any = each.model.get(Ref(number))
+            found = (
+                each.get(each.get(each.get(hole.depth).position).location).coordinates[2]
+                if attribute == "depth"
+                else -each.get(hole.diameter).theoretical_size
+            )
+            assert found == -float(value)
+        after = instances(program.source.data)
+        assert sum(after[id] != text for id, text in instances(data).items()) == 1
+        assert len(after) - len(instances(data)) == added
+        left = instances(without_given(program, whole))
+        assert all(left[id] == text for id, text in instances(data).items())
+
+    def test_a_reference_is_replaced(self) -> None:
+        data = exported("bracket")
+        program = Program(read(data))
+        first, last = program.workingsteps[0], program.workingsteps[-1]
+        words = (
+            f"{first.operation_ref}.its_tool={last.tool_ref}",
+            f"{last.ref}.its_feature={first.features[0]}",
+        )
+        whole = completed(program, GivenData(values=words))
+        found = written(whole)
+        assert found.workingsteps[0].tool_ref == last.tool_ref
+        assert found.workingsteps[-1].features == first.features
+        left = Program(read(without_given(found, whole)))
+        assert left.workingsteps[0].tool_ref == first.tool_ref
+        assert left.workingsteps[-1].features == last.features
+        texts = instances(left.source.data)
+        assert texts.keys() == instances(data).keys()
+        # Tools list their users, in no order.
+        differing = {id for id, text in instances(data).items() if texts[id] != text}
+        assert all(b"MACHINING_TOOL" in texts[id] for id in differing)
+
+    def test_the_number_of_a_tool_stands_for_its_body_too(self) -> None:
+        data = exported("bracket")
+        tool = Program(read(data)).workingsteps[0].tool_ref
+        whole = completed(Program(read(data)), GivenData(values=(f"{tool}.number_of_teeth=9",)))
+        assert teeth_of(whole.program) == teeth_of(written(whole)) == 9.0
+
+    def test_what_ap238_cannot_say_is_refused_and_not_lost(self) -> None:
+        data = exported("bracket")
+        (block,) = Program(read(data)).model.of_type(Block)
+        ((_, setup),) = list(Program(read(data)).model.of_type(Setup))[:1]
+        place = setup.its_origin
+        words = GivenData(values=(f"{block[0]}.position={place}",))
+        with pytest.raises(SchemaError, match=r"BLOCK.position: cannot be written into an AP"):
+            written(completed(Program(read(data)), words))
 
 
 def feed_is_missing(program: Program) -> bool:

@@ -172,8 +172,8 @@ class TestTwin:
                     programmed(program, step.technology_ref)
                 assert str(refused.value).partition(": ")[2] == (
                     f"{number} MILLING_TECHNOLOGY.feedrate: neither feedrate nor "
-                    "feedrate_per_tooth is given (ISO 14649-11 WR2); optimise --feed MM_MIN "
-                    "gives one"
+                    "feedrate_per_tooth is given (ISO 14649-11 WR2); --feed gives one, as "
+                    "--feed 240 (mm/min) or --feed 0.1mm/tooth"
                 )
 
     def test_speeds_are_those_of_the_twin(self) -> None:

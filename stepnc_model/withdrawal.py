@@ -1,0 +1,152 @@
+"""Withdrawal of given data from a program that was advised on their basis.
+
+What was given then stands nowhere in the file, and what was advised does.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from math import isclose
+from typing import Any
+
+from stepnc_model.ap238.converted import Converted
+from stepnc_model.ap238.view import AimView
+from stepnc_model.ap238.writing import spliced_into
+from stepnc_model.draft import Draft
+from stepnc_model.given import Completed, SetAttribute, origin_in
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.values import Ref, Value
+from stepnc_model.program import Program
+
+
+def without_given(program: Program, whole: Completed) -> bytes:
+    """Bytes of a program with given data withdrawn, where they were not changed since.
+
+    What was copied for a workingstep, such as a technology that others use too, is without
+    them as well. In an AP238 file, users of a tool and the like may be listed in another order.
+
+    Parameters
+    ----------
+    program : Program
+        Program that holds the given data, and perhaps advice.
+    whole : Completed
+        The program as it was with the given data, and these.
+
+    Returns
+    -------
+    bytes
+    """
+    given = (*whole.given, *_of_copies(program, whole))
+    if isinstance(program.file, AimView):
+        withdrawal = _AimWithdrawal(program, program.file)
+        for each in given:
+            withdrawal.withdraw(each)
+        return withdrawal.apply()
+    draft = Draft(program)
+    for each in given:
+        if all(_is_kept(program, other) for other in _together(given, each)):
+            draft.put(each.ref, each.attribute, each.before)
+            draft.remove(each.added)
+    return draft.edits.apply()
+
+
+def _of_copies(program: Program, whole: Completed) -> Iterator[SetAttribute]:
+    """Given data in the copies that a workingstep has instead of what they were given to."""
+    before = {int(step.ref): step for step in whole.program.workingsteps}
+    seen: set[tuple[int, str]] = set()
+    for step in program.workingsteps:
+        old = before.get(int(step.ref))
+        if old is None:
+            continue
+        for name in ("operation_ref", "technology_ref", "functions_ref"):
+            one, other = getattr(old, name), getattr(step, name)
+            if one is None or _is_alike(program, other, whole.program, one):
+                continue
+            for each in whole.given:
+                if each.ref == one and (int(other), each.attribute) not in seen:
+                    seen.add((int(other), each.attribute))
+                    yield replace(each, ref=other, origin=origin_in(program, other))
+
+
+def _is_alike(program: Program, ref: Ref[Any], before: Program, old: Ref[Any]) -> bool:
+    """Whether an instance of a changed program is the one that it was before."""
+    now, then = origin_in(program, ref), origin_in(before, old)
+    if now is None or then is None:
+        return ref == old
+    return (now.origin, now.keyword) == (then.origin, then.keyword)
+
+
+def _together(given: Sequence[SetAttribute], one: SetAttribute) -> Iterator[SetAttribute]:
+    """Set attribute, with the one beside which alone it is withdrawn."""
+    yield one
+    for other in given:
+        if other.ref == one.ref and other.attribute == one.only_beside:
+            yield other
+
+
+def _is_kept(program: Program, given: SetAttribute) -> bool:
+    """Whether an attribute still has the value that was given."""
+    place = program.model.position(given.ref, given.attribute)
+    return program.file.parameters(int(given.ref))[place] == given.value
+
+
+class _AimWithdrawal:
+    """Withdrawal from an AP238 program whose numbers may have changed. Running state."""
+
+    def __init__(self, program: Program, view: AimView) -> None:
+        self._draft = Draft(program)
+        self._view = view
+        self._remembered: list[Converted] = []
+
+    def withdraw(self, given: SetAttribute) -> None:
+        """Withdraw one attribute, if it still has the value that was given."""
+        view = self._view
+        number = None if given.origin is None else view.number_of(given.origin)
+        if number is None:
+            return
+        ref: Ref[object] = Ref(number)
+        place = self._draft.program.model.position(ref, given.attribute)
+        value = view.parameters(number)[place]
+        if not self._is_kept(value, given):
+            return
+        self._draft.put(ref, given.attribute, self._before(given))
+        if given.added and isinstance(value, Ref):
+            self._draft.remove(tuple(_below(view, value)))
+
+    def _is_kept(self, value: Value, given: SetAttribute) -> bool:
+        """Whether a value is the one that was given."""
+        if not isinstance(value, Ref) or not isinstance(given.value, Ref):
+            return _is_same(value, given.value)
+        origin = given.value_origin
+        return origin is None or self._view.number_of(origin) == int(value)
+
+    def _before(self, given: SetAttribute) -> Value:
+        """What stood there before, under the number that it has now."""
+        origin = given.before_origin
+        if origin is None:
+            return given.before
+        number = self._view.number_of(origin)
+        if number is None:
+            # Nothing leads to it any more, so that the program as it is does not have it.
+            number = int(self._draft.edits.add(origin.keyword, ()))
+            self._remembered.append(replace(origin, number=number, rule=None))
+        return Ref(number)
+
+    def apply(self) -> bytes:
+        """Bytes of the AP238 file."""
+        view = self._view.remembering(self._remembered)
+        return spliced_into(view, self._draft.edits.apply(), self._draft.removed)
+
+
+def _is_same(one: Value, other: Value) -> bool:
+    """Whether two values are the same, but for the digits that a change of unit costs."""
+    if isinstance(one, int | float) and isinstance(other, int | float):
+        return isclose(one, other, rel_tol=1e-12)
+    return one == other
+
+
+def _below(file: Part21File, ref: Ref[object]) -> Iterator[int]:
+    """Instance and all that it refers to."""
+    yield int(ref)
+    for value in file.parameters(int(ref)):
+        if isinstance(value, Ref):
+            yield from _below(file, value)
