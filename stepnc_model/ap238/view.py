@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Self
 
+from stepnc_model.ap238.carrying import BODY, carried, with_bodies
 from stepnc_model.ap238.converted import Converted
 from stepnc_model.ap238.reading import AimReader
 from stepnc_model.errors import Finding
@@ -65,6 +66,16 @@ class AimView(Part21File):
             origins={each.number: each for each in reading.converted},
             remarks=reading.findings,
         )
+
+    def with_bodies(self) -> tuple[bytes, tuple[Finding, ...]]:
+        """Bytes of the program of ISO 14649 with the B-rep bodies, and what is left out."""
+        roots = (
+            (each.origin, number)
+            for number, each in self.origins.items()
+            if each.keyword == BODY
+        )
+        bodies = carried(self.source, roots)
+        return with_bodies(self.data, bodies), bodies.findings
 
     def changed(self, text: Part21File) -> Self:
         """The view with changed text, which is written with the next changes of the file."""
