@@ -41,5 +41,6 @@ def convert_to(path: Path, *, standard: Standard, output: Path) -> tuple[Finding
         write_atomically(output, exported.data)
         return exported.findings
     view = AimView.of(file)
-    write_atomically(output, view.data)
-    return view.remarks
+    data, left_out = view.with_bodies()
+    write_atomically(output, data)
+    return (*view.remarks, *left_out)

@@ -31,6 +31,12 @@ MOST_MEMORY = 6 << 30
 
 MOST_TRIANGLES = 200_000
 
+MOST_SOLIDS = 1000
+"""Most solids of a file, each of which is measured."""
+
+LARGEST = 1e5
+"""Greatest extent of a solid, mm."""
+
 WIDEST = 0.3
 """Greatest angle between neighbouring facets of a curved surface, rad."""
 
@@ -136,7 +142,7 @@ def tessellate(
         place.write_bytes(data)
         words = json.dumps({
             "file": str(place), "kept": str(kept), "sag": sag, "longest": longest,
-            **asdict(choice),
+            "most_memory": MOST_MEMORY, "most_solids": MOST_SOLIDS, **asdict(choice),
         })  # fmt: skip
         _run([sys.executable, "-m", "service.brep.tessellation", words], name, longest)
         with np.load(kept, allow_pickle=False) as found:
@@ -167,7 +173,10 @@ def _run(words: list[str], name: str, longest: float) -> None:
         )
     if done.returncode < 0:
         reason = signal.Signals(-done.returncode).name
-        raise StepNcError(f"{name}: Open CASCADE crashes on this file ({reason})")
+        raise StepNcError(
+            f"{name}: Open CASCADE crashes on this file ({reason}): it is damaged, or needs "
+            f"more than {MOST_MEMORY / (1 << 30):.2g} GB"
+        )
     if done.returncode == REFUSED:
         raise StepNcError(f"{name}: {done.stderr.decode(errors='replace').strip()}")
     if done.returncode:
@@ -179,7 +188,7 @@ def main() -> int:
     """Read the file that the command line names, within the limits; return the exit code."""
     words = json.loads(sys.argv[1])
     seconds = int(words["longest"]) + 1
-    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
+    resource.setrlimit(resource.RLIMIT_AS, (words["most_memory"],) * 2)
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     # Open CASCADE tells its progress there.
@@ -194,21 +203,23 @@ def main() -> int:
 def _keep(words: dict[str, Any]) -> int:
     """Tessellate and write what was found; return the exit code."""
     choice = Choice(**{each.name: words[each.name] for each in fields(Choice)})
-    np.savez(words["kept"], **_tessellated(words["file"], choice, words["sag"]))
+    np.savez(words["kept"], **_tessellated(words, choice))
     return 0
 
 
-def _tessellated(file: str, choice: Choice, sag: float) -> dict[str, Any]:
+def _tessellated(words: dict[str, Any], choice: Choice) -> dict[str, Any]:
     """Arrays of :class:`Tessellation`, and the count of triangles."""
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
     from OCP.TopAbs import TopAbs_ShapeEnum
 
-    reader = _reader(file)
+    reader, most = _reader(words["file"]), words["most_solids"]
     shape = _shape(reader, (choice.root,))
     if choice.root == ALL and shape.NbChildren() == 0:
         # A file without products.
         shape = _shape(reader, choice.solids)
     solids = _within(shape, TopAbs_ShapeEnum.TopAbs_SOLID)
+    if len(solids) > most:
+        raise StepNcError(f"{len(solids)} solids; at most {most} are accepted")
     number = _numbers(reader, solids, choice.solids)
     if choice.place:
         rows = [choice.place - 1] if choice.place <= len(solids) else []
@@ -216,12 +227,13 @@ def _tessellated(file: str, choice: Choice, sag: float) -> dict[str, Any]:
         rows = [
             row for row, each in enumerate(number) if not choice.wanted or each in choice.wanted
         ]
+    sizes = np.array([_size(solid) for solid in solids]).reshape(-1, 8)
     triangles, count = np.zeros((0, 3, 3)), 0
     if len(rows) == 1:
         solid = solids[rows[0]]
-        BRepMesh_IncrementalMesh(solid, sag, False, WIDEST, False)
+        _require_small(sizes[rows[0]])
+        BRepMesh_IncrementalMesh(solid, words["sag"], False, WIDEST, False)
         triangles, count = _triangles(solid)
-    sizes = np.array([_size(solid) for solid in solids]).reshape(-1, 8)
     shell, within = TopAbs_ShapeEnum.TopAbs_SHELL, TopAbs_ShapeEnum.TopAbs_SOLID
     return {
         "number": np.array(number, dtype=np.int64), "volume": sizes[:, 0], "area": sizes[:, 1],
@@ -229,6 +241,16 @@ def _tessellated(file: str, choice: Choice, sag: float) -> dict[str, Any]:
         "chosen": rows[0] if len(rows) == 1 else -1,
         "shells": len(_within(shape, shell, outside=within)),
     }  # fmt: skip
+
+
+def _require_small(size: Floats) -> None:
+    """Refuse a solid whose triangles would take hours: its unit is usually wrong."""
+    span = float((size[5:] - size[2:5]).max())
+    if not span <= LARGEST:
+        raise StepNcError(
+            f"the solid spans {span:.6g} mm; at most {LARGEST:g} mm are accepted: is its unit "
+            "right?"
+        )
 
 
 def _reader(file: str) -> Any:

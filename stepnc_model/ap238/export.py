@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from stepnc_model.ap238.building import Builder, Unsayable
+from stepnc_model.ap238.carrying import BODY, CONTEXT, ITEMS, Carried, carried, with_bodies
 from stepnc_model.ap238.completing import complete
 from stepnc_model.ap238.drafting import AimDraft
 from stepnc_model.ap238.instances import Instances
@@ -63,9 +64,12 @@ def to_ap238(file: Part21File) -> Exported:
                 builder.build(number)
     _hang_loose(file, draft, builder)
     complete(draft)
+    roots = [number for number in file.ids_of(BODY) if number in builder.built]
+    bodies = carried(file, [(number, builder.built[number]) for number in roots])
     findings = FindingList()
-    findings.extend(_findings(file, builder))
-    return Exported(data=draft.apply(), findings=findings.all())
+    findings.extend(bodies.findings)
+    findings.extend(_findings(file, builder, bodies))
+    return Exported(data=with_bodies(draft.apply(), bodies), findings=findings.all())
 
 
 def _hang_loose(file: Part21File, draft: AimDraft, builder: Builder) -> None:
@@ -77,12 +81,15 @@ def _hang_loose(file: Part21File, draft: AimDraft, builder: Builder) -> None:
         hang(draft, file, items, builder.built[workplans[0]])
 
 
-def _findings(file: Part21File, builder: Builder) -> Iterator[Finding]:
+def _findings(file: Part21File, builder: Builder, bodies: Carried) -> Iterator[Finding]:
     """Findings about what was left out, each once."""
+    whole = {place.root for place in bodies.places}
     for each in dict.fromkeys(builder.unsayable):
-        yield _finding(file, each)
+        if each.number not in whole or each.attribute not in (ITEMS, CONTEXT):
+            yield _finding(file, each)
+    copied = set(bodies.ids)
     for number in file.ids():
-        if number not in builder.built:
+        if number not in builder.built and number not in copied:
             each = Unsayable(number=number, attribute="")
             if each not in builder.unsayable:
                 yield _finding(file, each, "nothing that AP238 expresses refers to it")

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 
 from stepnc_model.ap238.instances import Instances, references
 from stepnc_model.ap238.quantity import number_of
@@ -27,6 +28,12 @@ class Place:
     """Representation context that gives the units of geometry."""
     way: tuple[int, ...] = ()
     """Instances passed, from the one of the rule on."""
+
+
+@cache
+def _folded(texts: tuple[str, ...]) -> frozenset[str]:
+    """Texts regardless of the case of letters."""
+    return frozenset(text.casefold() for text in texts)
 
 
 class PathFollower:
@@ -131,10 +138,12 @@ class PathFollower:
         for name in condition.attributes:
             values = [value for id in ids for value in self._instances.values(id, name)]
             ids = [int(ref) for value in values for ref in references(value)]
+            if not values:
+                return False
         if condition.type:
             return any(self._instances.is_a(id, condition.type) for id in ids)
         if condition.texts:
-            wanted = {text.casefold() for text in condition.texts}
+            wanted = _folded(condition.texts)
             return any(isinstance(v, str) and v.strip().casefold() in wanted for v in values)
         return any(value not in (None, (), "") for value in values)
 

@@ -4,8 +4,9 @@ Simple and complex instances look alike here: an attribute is found by the entit
 it, in whichever part of the instance that entity stands.
 """
 
-from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from array import array
+from bisect import bisect_left
+from collections.abc import Iterator
 from functools import cache
 from typing import TypeAlias
 
@@ -47,7 +48,7 @@ class Instances:
     def __init__(self, file: Part21File) -> None:
         self.file = file
         self._parts: dict[int, tuple[Part, ...]] = {}
-        self._referrers: dict[tuple[str, str], Mapping[int, list[int]]] = {}
+        self._referrers: dict[tuple[str, str], tuple[array[int], array[int]]] = {}
         self._complex: dict[str, list[int]] | None = None
 
     def __contains__(self, id: int) -> bool:
@@ -86,35 +87,60 @@ class Instances:
 
     def values(self, id: int, attribute: str) -> tuple[Value, ...]:
         """Values of an attribute; several where supertypes share its name."""
+        keyword = self.file.keyword(id)
+        if keyword and not _places(keyword, attribute):
+            # Most instances are asked for attributes that they do not have: nothing is parsed.
+            return ()
         parts = self.parts(id)
         if len(parts) == 1:
             keyword, values = parts[0]
             places = _places(keyword, attribute)
+            if len(places) == 1:
+                return values[places[0] : places[0] + 1]
             return tuple([values[place] for place in places if place < len(values)])
         return tuple(parts[part][1][place] for part, place in self.slots(id, attribute))
 
     def value(self, id: int, attribute: str) -> Value:
         """Value of an attribute: the last that is neither ``$`` nor empty, else None."""
-        found = self.values(id, attribute)
-        return next((value for value in reversed(found) if value not in (None, "")), None)
+        for value in reversed(self.values(id, attribute)):
+            if value is not None and value != "":
+                return value
+        return None
 
     def of_entity(self, name: str) -> Iterator[int]:
         """Instances of an entity and its subtypes, in file order."""
-        found = [id for keyword in subtypes(name) for id in self.file.ids_of(keyword)]
+        parts = [ids for keyword in subtypes(name) if len(ids := self.file.ids_of(keyword))]
         complexes = self._complexes()
-        found += {id for keyword in subtypes(name) for id in complexes.get(keyword, ())}
-        return iter(sorted(found, key=self.file.span))
+        others = {id for keyword in subtypes(name) for id in complexes.get(keyword, ())}
+        if len(parts) == 1 and not others:
+            return iter(parts[0])
+        found = [id for ids in parts for id in ids]
+        return iter(sorted((*found, *others), key=self.file.span))
 
     def referrers(self, id: int, name: str, attribute: str) -> list[int]:
         """Instances of an entity whose attribute refers to an instance, in file order."""
         key = name, attribute
         if key not in self._referrers:
-            found: defaultdict[int, list[int]] = defaultdict(list)
-            for other in self.of_entity(name):
-                for target in self._targets(other, attribute):
-                    found[target].append(other)
-            self._referrers[key] = found
-        return self._referrers[key].get(id, [])
+            self._referrers[key] = self._backwards(name, attribute)
+        targets, others = self._referrers[key]
+        first = bisect_left(targets, id)
+        last = first
+        while last < len(targets) and targets[last] == id:
+            last += 1
+        return others[first:last].tolist()
+
+    def _backwards(self, name: str, attribute: str) -> "tuple[array[int], array[int]]":
+        """Targets of an attribute in ascending order, and the instances that refer to them."""
+        targets, others = array("q"), array("q")
+        for other in self.of_entity(name):
+            for target in self._targets(other, attribute):
+                targets.append(target)
+                others.append(other)
+        order = sorted(range(len(targets)), key=targets.__getitem__)
+        return (
+            array("q", map(targets.__getitem__, order)),
+            array("q", map(others.__getitem__, order)),
+        )
 
     def _targets(self, id: int, attribute: str) -> Iterator[int]:
         """Instances that an attribute refers to, each once."""

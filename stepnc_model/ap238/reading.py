@@ -10,9 +10,10 @@ from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from stepnc_model.ap238.converted import Converted
+from stepnc_model.ap238.converted import Converted, ConvertedText
 from stepnc_model.ap238.following import PathFollower, Place
 from stepnc_model.ap238.instances import Instances, references
+from stepnc_model.ap238.numbering import AimNumbering, what
 from stepnc_model.ap238.quantity import (
     MEASURES,
     AimMeasure,
@@ -57,11 +58,8 @@ class Origin:
 class AimReading:
     """Instances of ISO 14649 read from an AP238 file, and the findings on the way."""
 
-    converted: list[Converted] = field(default_factory=list)
+    converted: list[ConvertedText] = field(default_factory=list)
     findings: tuple[Finding, ...] = ()
-
-
-_Key = tuple[int, str, float]
 
 
 class AimReader:
@@ -79,15 +77,18 @@ class AimReader:
         self.units = Units(self.instances)
         self._paths = PathFollower(self.instances)
         self._file = file
-        self._numbers: dict[_Key, int] = {}
-        self._taken: set[int] = set()
-        self._next = max(file.ids(), default=0) + 1
+        self._numbers = AimNumbering(max(file.ids(), default=0) + 1)
         self._waiting: deque[tuple[int, Origin]] = deque()
         self._reading = AimReading()
         self._visited: set[int] = set()
-        """Instances on the ways to all values read."""
+        """Properties and items of tool bodies on the ways to all values read."""
         self._without_rule: dict[tuple[str, str], list[int]] = {}
         """Instances that no rule describes, by what they are and where they stand."""
+        self._watched = self._to_watch()
+        # Rules are few and stay for good: their identity is quicker than their hash.
+        self._by_rule: dict[int, list[tuple[Row | None, AttributeSlot]]] = {}
+        self._factors: dict[int | None, float] = {}
+        self._scaled: dict[int, bool] = {}
 
     def read(self) -> AimReading:
         """Convert all programs of the file."""
@@ -98,13 +99,13 @@ class AimReader:
                         if self._paths.matches(id, rule):
                             self._number(Place(id=id), rule)
         for place in self.loose():
-            self._visited.update(place.way)
+            self._visit(place)
             self._reference(place, AttributeSlot(references=(loose_rule().entity,)), "items")
         while self._waiting:
             number, origin = self._waiting.popleft()
             self._convert(number, origin)
         converted = self._reading.converted
-        self._reading.converted = upright(converted, self._paths, first=self._next)
+        self._reading.converted = upright(converted, self._paths, first=self._numbers.next)
         self._tell_unknown()
         self._note_unread()
         self._reading.findings = self._paths.findings.all()
@@ -124,9 +125,21 @@ class AimReader:
             for place in self._paths.follow(Place(id=id, way=(id,)), rule.proof)
         ]
 
+    def _to_watch(self) -> frozenset[int]:
+        """Instances of which it matters whether they are read."""
+        watched = {id for name, _ in _PROPERTIES for id in self.instances.of_entity(name)}
+        for body in self.instances.of_entity("MACHINING_TOOL_BODY_REPRESENTATION"):
+            values = self.instances.values(body, "items")
+            watched |= {body, *(int(ref) for value in values for ref in references(value))}
+        return frozenset(watched)
+
+    def _visit(self, place: Place) -> None:
+        """Note that the instances on a way are read."""
+        self._visited.update(id for id in place.way if id in self._watched)
+
     def _note_unread(self) -> None:
         """Note the properties of converted instances that no path has led to."""
-        known = {each.origin for each in self._reading.converted}
+        known = self._numbers
         for entity, owner in _PROPERTIES:
             for id in self.instances.of_entity(entity):
                 ref = self.instances.value(id, owner)
@@ -151,37 +164,42 @@ class AimReader:
 
     def _number(self, place: Place, rule: Rule) -> Ref[object]:
         """Number of the instance that a place stands for; it is converted once."""
-        scale = self.geometry_factor(place.context) if _is_scaled(rule) else 1.0
-        key = place.id, rule.entity.keyword, scale
-        if key not in self._numbers:
-            number = place.id
-            if number in self._taken:
-                number = self._next
-                self._next += 1
-            self._taken.add(number)
-            self._numbers[key] = number
+        is_scaled = self._scaled.get(id(rule))
+        if is_scaled is None:
+            is_scaled = self._scaled[id(rule)] = _is_scaled(rule)
+        scale = self.geometry_factor(place.context) if is_scaled else 1.0
+        kind = what(rule.entity.keyword, scale)
+        number = self._numbers.known(place.id, kind)
+        if number is None:
+            number = self._numbers.new(place.id, kind)
             origin = Origin(id=place.id, rule=rule, context=place.context)
             self._waiting.append((number, origin))
-        return Ref(self._numbers[key])
+        return Ref(number)
 
     def _convert(self, number: int, origin: Origin) -> None:
         """Convert one instance by its rule."""
-        rows = {row.attribute: row for row in origin.rule.rows}
         start = Place(id=origin.id, context=origin.context, way=(origin.id,))
-        parameters = tuple(
-            self._parameter(start, rows[name], slot) if name in rows else _empty(slot)
-            for name, slot in slots_of(origin.rule.entity).items()
+        parameters = tuple([
+            _empty(slot) if row is None else self._parameter(start, row, slot)
+            for row, slot in self._columns(origin.rule)
+        ])
+        instance = Converted(
+            number=number,
+            keyword=origin.rule.entity.keyword,
+            origin=origin.id,
+            rule=origin.rule,
+            context=origin.context,
         )
-        self._reading.converted.append(
-            Converted(
-                number=number,
-                keyword=origin.rule.entity.keyword,
-                parameters=parameters,
-                origin=origin.id,
-                rule=origin.rule,
-                context=origin.context,
-            )
-        )
+        self._reading.converted.append(ConvertedText.of(instance, parameters))
+
+    def _columns(self, rule: Rule) -> list[tuple[Row | None, AttributeSlot]]:
+        """Slot of each attribute of an entity, with its row if it has one."""
+        if id(rule) not in self._by_rule:
+            rows = {row.attribute: row for row in rule.rows}
+            self._by_rule[id(rule)] = [
+                (rows.get(name), slot) for name, slot in slots_of(rule.entity).items()
+            ]
+        return self._by_rule[id(rule)]
 
     def _parameter(self, start: Place, row: Row, slot: AttributeSlot) -> Value:
         """Value of one attribute, by the first of its paths that gives one."""
@@ -206,7 +224,7 @@ class AimReader:
         """Values that a path leads to."""
         places = self._paths.follow(start, path.steps)
         for place in places:
-            self._visited.update(place.way)
+            self._visit(place)
         if path.ending.kind is Kind.REFERENCE:
             inner = slot.items or slot
             found = (self._reference(place, inner, attribute) for place in places)
@@ -228,31 +246,25 @@ class AimReader:
 
     def _unknown(self, place: Place, attribute: str) -> Ref[object] | None:
         """Reference to an instance that no rule describes, kept under a name of its own."""
-        key = place.id, "", 1.0
-        if key not in self._numbers and place.id not in self._taken:
+        kind = what("", 1.0)
+        if place.id not in self._numbers:
             keyword = self._file.keyword(place.id) or "COMPLEX_INSTANCE"
-            self._numbers[key] = place.id
-            self._taken.add(place.id)
-            self._reading.converted.append(
-                Converted(
-                    number=place.id,
-                    keyword=f"AIM_{keyword}",
-                    parameters=(),
-                    origin=place.id,
-                    rule=None,
-                )
+            self._numbers.new(place.id, kind)
+            instance = Converted(
+                number=place.id, keyword=f"AIM_{keyword}", origin=place.id, rule=None
             )
+            self._reading.converted.append(ConvertedText.of(instance, ()))
             described = self.instances.value(place.id, "description")
             name = f" '{described}'" if isinstance(described, str) else ""
             self._without_rule.setdefault((f"{keyword}{name}", attribute), []).append(place.id)
-        number = self._numbers.get(key)
+        number = self._numbers.known(place.id, kind)
         return None if number is None else Ref(number)
 
     def _tell_unknown(self) -> None:
         """Warn of instances that no rule describes, once for each kind."""
-        for (what, attribute), ids in self._without_rule.items():
+        for (kind, attribute), ids in self._without_rule.items():
             count = f" ({len(ids)} instances)" if len(ids) > 1 else ""
-            text = f"{what}{count} has no counterpart in ISO 14649 that is supported here"
+            text = f"{kind}{count} has no counterpart in ISO 14649 that is supported here"
             self._paths.remark(Severity.WARNING, text, ids[0], attribute)
 
     def _value(self, start: Place, place: Place, ending: Ending, attribute: str) -> Value:
@@ -379,7 +391,10 @@ class AimReader:
 
     def geometry_factor(self, context: int | None) -> float:
         """Factor from the lengths of a context to mm."""
-        return conversion(self.units.length_in(context), MEASURES[Kind.LENGTH]).factor
+        if context not in self._factors:
+            unit = self.units.length_in(context)
+            self._factors[context] = conversion(unit, MEASURES[Kind.LENGTH]).factor
+        return self._factors[context]
 
     def _remark_unit(
         self, id: int, measure: AimMeasure, found: Conversion, attribute: str

@@ -10,11 +10,12 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Self
 
-from stepnc_model.ap238.converted import Converted
+from stepnc_model.ap238.carrying import BODY, carried, with_bodies
+from stepnc_model.ap238.converted import Converted, ConvertedText
 from stepnc_model.ap238.reading import AimReader
 from stepnc_model.errors import Finding
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.part21.writer import described_as, format_value
+from stepnc_model.part21.writer import described_as
 
 SCHEMAS = ("MODEL_BASED_INTEGRATED_MANUFACTURING_SCHEMA", "INTEGRATED_CNC_SCHEMA")
 """Schemas of AP238: of its second and later editions, and of the first."""
@@ -47,6 +48,8 @@ class AimView(Part21File):
 
     source: Part21File
     """AP238 file as it was read."""
+    read: Part21File
+    """Instances of ISO 14649 as they were read, without later changes."""
     origins: dict[int, Converted] = field(default_factory=dict)
     """What each instance was converted from, by its number."""
     remarks: tuple[Finding, ...] = ()
@@ -57,15 +60,28 @@ class AimView(Part21File):
         """Convert an AP238 file."""
         reading = AimReader(source).read()
         text = _text(source, reading.converted)
+        origins = {each.instance.number: each.instance for each in reading.converted}
+        reading.converted.clear()
         plain = Part21File.from_bytes(text, name=source.name)
         return cls(
             data=plain.data,
             name=source.name,
             structure=plain.structure,
             source=source,
-            origins={each.number: each for each in reading.converted},
+            read=plain,
+            origins=origins,
             remarks=reading.findings,
         )
+
+    def with_bodies(self) -> tuple[bytes, tuple[Finding, ...]]:
+        """Bytes of the program of ISO 14649 with the B-rep bodies, and what is left out."""
+        roots = (
+            (each.origin, number)
+            for number, each in self.origins.items()
+            if each.keyword == BODY
+        )
+        bodies = carried(self.source, roots)
+        return with_bodies(self.data, bodies), bodies.findings
 
     def changed(self, text: Part21File) -> Self:
         """The view with changed text, which is written with the next changes of the file."""
@@ -104,11 +120,7 @@ class AimView(Part21File):
         return self.source.findings + self.remarks
 
 
-def _text(source: Part21File, converted: list[Converted]) -> bytes:
+def _text(source: Part21File, converted: list[ConvertedText]) -> bytes:
     """File of ISO 14649 with the description and the name of the source."""
-    lines = (
-        b"#%d=%s%s;"
-        % (each.number, each.keyword.encode("ascii"), format_value(each.parameters))
-        for each in converted
-    )
+    lines = (each.line for each in converted)
     return described_as(source, ("MACHINING_SCHEMA", "MILLING_SCHEMA", "TURNING_SCHEMA"), lines)

@@ -123,12 +123,12 @@ class _Splice:
         """Bring the changed attributes of one instance into the file."""
         if each.rule is None:
             return
-        new = self._new.parameters(each.number)
-        if new == each.parameters:
+        new, before = (file.parameters(each.number) for file in (self._new, self._view.read))
+        if new == before:
             return
         rows = {row.attribute: row for row in each.rule.rows}
         for place, (name, slot) in enumerate(slots_of(each.rule.entity).items()):
-            old = each.parameters[place]
+            old = before[place]
             value = new[place] if place < len(new) else None
             if value == old:
                 continue

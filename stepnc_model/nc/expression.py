@@ -147,7 +147,7 @@ class Variables:
         return self.frames[-1] if is_local else self.shared
 
 
-class _Unreadable(Exception):
+class UnreadableExpression(Exception):
     """Text that is no expression."""
 
 
@@ -164,23 +164,23 @@ def evaluate(text: str, variables: Variables) -> float:
     nan
     """
     try:
-        return _Reader(text, variables).whole()
-    except (_Unreadable, ArithmeticError, ValueError):
+        return _VariableReader(text, variables).whole()
+    except (UnreadableExpression, ArithmeticError, ValueError):
         return nan
 
 
 def target_of(text: str, variables: Variables) -> int | str | None:
     """Variable that an assignment sets, by the text before its equals sign; None: not known."""
     try:
-        reader = _Reader(text, variables)
+        reader = _VariableReader(text, variables)
         reader.take("#")
         name = reader.variable()
-    except (_Unreadable, ArithmeticError, ValueError):
+    except (UnreadableExpression, ArithmeticError, ValueError):
         return None
     return name if reader.is_done else None
 
 
-class _Reader:
+class _VariableReader:
     """Reader of one expression. Running state."""
 
     def __init__(self, text: str, variables: Variables) -> None:
@@ -192,7 +192,7 @@ class _Reader:
         while at < len(stripped):
             found = PIECE.match(stripped, at)
             if found is None:
-                raise _Unreadable
+                raise UnreadableExpression
             self._pieces.append(found[0].strip().lower())
             at = found.end()
         self._at = 0
@@ -211,7 +211,7 @@ class _Reader:
         """Take the next piece, which may have to be a certain one."""
         found = self.next
         if not found or (piece and found != piece):
-            raise _Unreadable
+            raise UnreadableExpression
         self._at += 1
         return found
 
@@ -219,7 +219,7 @@ class _Reader:
         """Value of the whole text."""
         value = self._level(0)
         if not self.is_done or abs(value) == inf:
-            raise _Unreadable
+            raise UnreadableExpression
         return float(value)
 
     def _level(self, level: int) -> float:
@@ -253,7 +253,7 @@ class _Reader:
     def _bracket(self) -> float:
         self._depth += 1
         if self._depth > DEEPEST:
-            raise _Unreadable
+            raise UnreadableExpression
         self.take("[")
         value = self._level(0)
         self.take("]")
@@ -268,7 +268,7 @@ class _Reader:
             return degrees(atan2(above, below))
         function = self._functions.get(name)
         if function is None:
-            raise _Unreadable
+            raise UnreadableExpression
         value = self._bracket()
         return nan if isnan(value) else function(value)
 
@@ -285,7 +285,7 @@ class _Reader:
         elif piece.isdigit():
             number = float(self.take())
         else:
-            raise _Unreadable
+            raise UnreadableExpression
         if isnan(number) or number != floor(number):
-            raise _Unreadable
+            raise UnreadableExpression
         return int(number)

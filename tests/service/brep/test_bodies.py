@@ -20,10 +20,13 @@ from simulator.library import load_machine
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from stepnc_model.errors import StepNcError
+from stepnc_model.part21.reader import Part21File
 from stepnc_model.toolpath.task import finished_body, raw_body, stock_of
 from tests.service.brep.programs import solid_instances, with_instances
 from tests.service.brep.shapes import block, bore, revolved, without, write_step
 from tests.service.brep.test_solid import STEPPED, stepped, volume
+from tests.stepnc_model.ap238.long_form import deviations, schema
+from tests.stepnc_model.ap238.samples import long_form
 
 PARTS = Path("examples/parts")
 SLOT = PARTS / "paper003_case1.stpnc"
@@ -194,11 +197,67 @@ def test_a_program_without_bodies_asks_for_nothing() -> None:
     assert isinstance(program.bodies, ProgramBodies)
 
 
-def test_a_body_is_left_out_of_a_conversion_and_told(tmp_path: Path) -> None:
-    path = finished(tmp_path, slotted())
-    output = tmp_path / "slot.238"
-    told = convert_to(path, standard=Standard.AP238, output=output)
-    assert ("items", 87) in {(each.attribute, each.line) for each in told}
+def both_ways(path: Path, folder: Path) -> tuple[Path, Path]:
+    """A program by AP238, and back by ISO 14649, with nothing left out of its geometry."""
+    there, back = folder / "there.238", folder / "back.stpnc"
+    told = convert_to(path, standard=Standard.AP238, output=there)
+    # Products around the solid, to which the program does not refer.
+    assert {each.message for each in told} <= {
+        "nothing that AP238 expresses refers to it",
+    }
+    assert not [each for each in told if "ADVANCED" in each.entity or "FACE" in each.entity]
+    assert (
+        list(deviations(Part21File.from_bytes(there.read_bytes()), schema(long_form()))) == []
+    )
+    assert convert_to(there, standard=Standard.ISO14649, output=back) == ()
+    return there, back
+
+
+def test_a_finished_part_is_converted_both_ways(tmp_path: Path) -> None:
+    program = finished(tmp_path, slotted(aside=0.15))
+    ready = prepared(SLOT, REQUEST)
+    log = run_log(ready, rate=10.0, feed=lambda speed: np.full_like(speed, FAST))
+    path = log.write(tmp_path / "log.parquet", ready)
+    for each in both_ways(program, tmp_path):
+        found = verify(path, each, REQUEST)
+        assert _nominal(found, 46.8) == pytest.approx(-0.15, abs=2e-3)
+        assert _nominal(found, 54.8) == pytest.approx(0.15, abs=2e-3)
+
+
+def test_a_raw_part_is_converted_both_ways(tmp_path: Path) -> None:
+    casting = without(block(*PLATE), block((-1.0, 46.8, -6.0), (50.8, 54.8, 1.0)))
+    program = cast(tmp_path, casting, SLOT, "0.1,$,$,#13,", "0.1,#99000,$,$,")
+    exact = 101.6 * 101.6 * 12.7 - 50.8 * 8.0 * 6.0
+    for path in (program, *both_ways(program, tmp_path)):
+        read = read_program(path, units="iso")
+        body = raw_body(read)
+        assert body is not None
+        triangles = body_triangles(read.file, body, tolerance=0.0254)
+        assert volume(triangles) == pytest.approx(exact, rel=1e-6)
+        around = stock_of(read, read.workingsteps[0].setup)
+        assert around is not None
+        assert (*around.low, *around.high) == pytest.approx((*PLATE[0], *PLATE[1]), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("CLOSED_SHELL('',(", "CLOSED_SHELL('',(#7,", "#7 does not exist"),
+        ("CYLINDRICAL_SURFACE(", "HELICAL_SURFACE(", "514 has no HELICAL_SURFACE"),
+    ],
+)
+def test_a_body_that_cannot_be_carried_is_told(
+    old: str, new: str, told: str, tmp_path: Path
+) -> None:
+    casting = without(block(*PLATE), bore((20.0, 20.0, 1.0), radius=10.0, depth=20.0))
+    path, output = finished(tmp_path, casting), tmp_path / "slot.238"
+    text = path.read_text("utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new), "utf-8")
+    found = convert_to(path, standard=Standard.AP238, output=output)
+    [reason] = [each for each in found if "faces of the body are left out" in each.message]
+    assert told in reason.message
+    assert reason.entity.endswith("ADVANCED_BREP_SHAPE_REPRESENTATION")
     assert read_program(output, units="iso").workingsteps[0].id == "MILL SLOT"
 
 

@@ -11,7 +11,7 @@ from stepnc_model.part21.values import Derived, Enumeration, Ref, Typed, Value
 
 _ENTITY = re.compile(r"\bENTITY (\w+)\b(.*?)END_ENTITY;", re.DOTALL)
 _TYPE = re.compile(r"\bTYPE (\w+) = (.*?)END_TYPE;", re.DOTALL)
-_PARTS = re.compile(r"\b(?:DERIVE|WHERE|INVERSE|UNIQUE)\b")
+_PARTS = re.compile(r"\b(?:DERIVE|WHERE|INVERSE)\b|\bUNIQUE\b(?=\s*\w+\s*:)")
 _ATTRIBUTE = re.compile(r"\s*(\w+(?:\s*,\s*\w+)*)\s*:\s*(.*)", re.DOTALL)
 _AGGREGATE = re.compile(r"(?:SET|LIST|BAG|ARRAY)\b(?:\s*\[[^\]]*\])?\s*OF\s*(?:UNIQUE\s*)?")
 
