@@ -159,8 +159,8 @@ class Parameters:
         nan
         """
         try:
-            value = _Reader(text, self).whole()
-        except (_Unreadable, ArithmeticError, ValueError):
+            value = _FormulaReader(text, self).whole()
+        except (_NoFormula, ArithmeticError, ValueError):
             return nan
         return nan if abs(value) == inf else value
 
@@ -171,11 +171,11 @@ def plain_name(name: str) -> str:
     return f"{letters}{int(name[len(letters) :])}"
 
 
-class _Unreadable(Exception):
+class _NoFormula(Exception):
     """Text that is no expression."""
 
 
-class _Reader:
+class _FormulaReader:
     """Reader of one expression. Running state."""
 
     def __init__(self, text: str, parameters: Parameters) -> None:
@@ -186,7 +186,7 @@ class _Reader:
         while at < len(stripped):
             found = PIECE.match(stripped, at)
             if found is None:
-                raise _Unreadable
+                raise _NoFormula
             self._pieces.append((found.lastgroup or "", found[found.lastgroup or 0]))
             at = found.end()
 
@@ -199,7 +199,7 @@ class _Reader:
         """Value of the whole text."""
         value = self._level(0)
         if self.next:
-            raise _Unreadable
+            raise _NoFormula
         return float(value)
 
     def _level(self, level: int) -> float:
@@ -217,7 +217,7 @@ class _Reader:
     def _signed(self) -> float:
         self._depth += 1
         if self._depth > DEEPEST:
-            raise _Unreadable
+            raise _NoFormula
         value = self._operand()
         self._depth -= 1
         return value
@@ -244,7 +244,7 @@ class _Reader:
             return degrees(atan2(above, below))
         function = self._arithmetic.functions.get(name)
         if function is None or (self._arithmetic is SINUMERIK and self.next != "("):
-            raise _Unreadable
+            raise _NoFormula
         value = self._signed()
         return nan if isnan(value) else function(value)
 
@@ -260,11 +260,11 @@ class _Reader:
 
     def _require(self, piece: str) -> None:
         if self._take() != piece:
-            raise _Unreadable
+            raise _NoFormula
 
     def _take(self) -> str:
         piece = self.next
         if not piece:
-            raise _Unreadable
+            raise _NoFormula
         self._at += 1
         return piece
