@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from math import isclose, isfinite, pi
 
 from stepnc_model.ap238.instances import Instances, references
-from stepnc_model.ap238.table import Kind
+from stepnc_model.ap238.table import Ending, Kind
 from stepnc_model.part21.values import Enumeration, Ref, Typed, Value
 
 _PREFIXES = {
@@ -269,3 +269,27 @@ def _defined(factor: float) -> float:
     """Defined factor that a factor with fewer digits stands for, else the factor itself."""
     near = (known for known in _DEFINED if isclose(factor, known, rel_tol=_CLOSE))
     return next(near, factor)
+
+
+_MEASURE_OF: Mapping[Kind, Kind] = {
+    Kind.LENGTH: Kind.LENGTH,
+    Kind.LENGTHS: Kind.LENGTH,
+    Kind.OWN_LENGTH: Kind.LENGTH,
+    Kind.RADIUS: Kind.LENGTH,
+    Kind.WRITTEN: Kind.LENGTH,
+    Kind.ANGLE: Kind.ANGLE,
+    Kind.LIP_ANGLE: Kind.ANGLE,
+    Kind.RATIO: Kind.RATIO,
+    Kind.PROFILE: Kind.RATIO,
+    Kind.COUNT: Kind.COUNT,
+    Kind.TIME: Kind.TIME,
+    Kind.SPEED: Kind.SPEED,
+    Kind.ROTATION: Kind.ROTATION,
+    Kind.PRESSURE: Kind.PRESSURE,
+    Kind.ROUGHNESS: Kind.ROUGHNESS,
+}
+
+
+def measure_kind(ending: Ending) -> Kind:
+    """Kind of measure that an ending gives, in the units of ``MEASURES``."""
+    return ending.measure if ending.kind is Kind.TYPED else _MEASURE_OF[ending.kind]

@@ -7,7 +7,6 @@ others get numbers above the largest of the file. Deviations are findings; readi
 """
 
 from collections import deque
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from stepnc_model.ap238.converted import Converted, ConvertedText
@@ -21,6 +20,7 @@ from stepnc_model.ap238.quantity import (
     Unit,
     Units,
     conversion,
+    measure_kind,
     number_of,
 )
 from stepnc_model.ap238.table import (
@@ -96,7 +96,8 @@ class AimReader:
             if rule.is_root:
                 for name in rule.base.types[:1]:
                     for id in self.instances.of_entity(name):
-                        if self._paths.matches(id, rule):
+                        # The first rule that describes an instance is the closest one.
+                        if id not in self._numbers and self._paths.matches(id, rule):
                             self._number(Place(id=id), rule)
         for place in self.loose():
             self._visit(place)
@@ -428,29 +429,6 @@ _WRITTEN_NAMES = {
     "pascal": "Pa",
 }
 """Names of units in the files of ISO 14649; their numbers are not converted."""
-
-_MEASURE_OF: Mapping[Kind, Kind] = {
-    Kind.LENGTH: Kind.LENGTH,
-    Kind.LENGTHS: Kind.LENGTH,
-    Kind.OWN_LENGTH: Kind.LENGTH,
-    Kind.RADIUS: Kind.LENGTH,
-    Kind.WRITTEN: Kind.LENGTH,
-    Kind.ANGLE: Kind.ANGLE,
-    Kind.LIP_ANGLE: Kind.ANGLE,
-    Kind.RATIO: Kind.RATIO,
-    Kind.PROFILE: Kind.RATIO,
-    Kind.COUNT: Kind.COUNT,
-    Kind.TIME: Kind.TIME,
-    Kind.SPEED: Kind.SPEED,
-    Kind.ROTATION: Kind.ROTATION,
-    Kind.PRESSURE: Kind.PRESSURE,
-    Kind.ROUGHNESS: Kind.ROUGHNESS,
-}
-
-
-def measure_kind(ending: Ending) -> Kind:
-    """Kind of measure that an ending gives, in the units of ``MEASURES``."""
-    return ending.measure if ending.kind is Kind.TYPED else _MEASURE_OF[ending.kind]
 
 
 def _is_scaled(rule: Rule) -> bool:

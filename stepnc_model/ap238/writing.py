@@ -13,8 +13,8 @@ from stepnc_model.ap238.converted import Converted
 from stepnc_model.ap238.drafting import LISTS, AimDraft
 from stepnc_model.ap238.following import RULE, Place
 from stepnc_model.ap238.loose import hang, loose_numbers, without
-from stepnc_model.ap238.quantity import MEASURES, conversion
-from stepnc_model.ap238.reading import AimReader, measure_kind
+from stepnc_model.ap238.quantity import MEASURES, conversion, measure_kind
+from stepnc_model.ap238.reading import AimReader
 from stepnc_model.ap238.table import Ending, Kind, Path, PathMove, PathStep, Row
 from stepnc_model.ap238.view import AimView
 from stepnc_model.entities.conversion import AttributeSlot, slots_of

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from optimiser.clamped import ClampedStocks
-from service.paths.remarks import program_remarks
 from service.raw_stock import body_map, given_stock
-from service.reading import read_program
+from service.reading import given_data, read_program
 from service.requests.advice import AdviceRequest
+from service.requests.given import ProgramRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, simulate
 from service.usecases import AdviceFiles, OptimiseResult, optimise
@@ -18,6 +18,7 @@ from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from simulator.removal.stock_file import stock_bytes
 from stepnc_model.errors import Severity, StepNcError
+from stepnc_model.given import completed
 from stepnc_model.program import Stock
 from tests.service.verification.files import write_stl
 from tests.simulator.verification.box import box
@@ -88,11 +89,14 @@ def test_a_run_cuts_the_shape_of_a_stock(without_raw: Path, half_cut: str) -> No
 
 def test_given_data_keep_the_shape_of_a_stock(without_raw: Path, half_cut: str) -> None:
     program = read_program(without_raw, units="iso", stock=half_cut)
-    again = program.changed(program.source)
-    assert body_map(again, None, is_turning=False, cell=0.5) is not None
-    assert [each.message for each in program_remarks(again)] == [
-        each.message for each in program_remarks(program)
-    ]
+    technology = program.workingsteps[0].technology_ref
+    request = ProgramRequest(given=(f"{technology}.feedrate=0.005",))
+    whole = completed(program, given_data(request))
+    assert whole.given
+    for each in (program, whole.program):
+        cut = body_map(each, None, is_turning=False, cell=0.5)
+        assert isinstance(cut, MillingStock)
+        assert cut.map.volume == pytest.approx(101.6 * 101.6 * 12.7 - HALF, rel=5e-3)
 
 
 def test_a_body_that_cannot_be_turned_counts_as_the_bar_around_it(tmp_path: Path) -> None:

@@ -112,6 +112,11 @@ class Comparison:
         self._instances(self._one.ids_of("PROJECT")[0], self._other.ids_of("PROJECT")[0])
         return self.found
 
+    def between(self, one: int, other: int) -> dict[str, tuple[object, object]]:
+        """Compare an instance with one of the other program; return all differences."""
+        self._instances(one, other)
+        return self.found
+
     def _instances(self, one: int, other: int) -> None:
         if (one, other) in self._seen:
             return

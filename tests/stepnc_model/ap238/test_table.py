@@ -11,6 +11,7 @@ from tests.stepnc_model.ap238.samples import long_form
 WITHOUT_PATH = {
     "ADVANCED_BREP_SHAPE_REPRESENTATION": {"items", "context_of_items"},
     "BORING_TOOL": {"is_adjustable"},
+    "CIRCULAR_PATTERN": {"relocated_base_feature", "missing_base_feature"},
     "CUTTING_COMPONENT": {"technological_data", "its_technology"},
     "CUTTING_EDGE_PROPERTIES": {"its_technology", "tool_cutting_edge_angle_type"},
     "MACHINING_WORKINGSTEP": {"its_effect"},
@@ -20,11 +21,12 @@ WITHOUT_PATH = {
     },
     "MILLING_TECHNOLOGY": {"its_adaptive_control"},
     "PROJECT": {"its_owner", "its_release", "its_status"},
+    "RECTANGULAR_PATTERN": {"relocated_base_feature", "missing_base_feature"},
     "SURFACE_TEXTURE_PARAMETER": {"parameter_index"},
     "TURNING_TECHNOLOGY": {"its_adaptive_control"},
     "TURNING_WORKINGSTEP": {"its_effect"},
     "WORKPIECE_SETUP": {"its_offset", "its_restricted_area", "its_instructions"},
-    "WORKPLAN": {"its_channel", "its_effect"},
+    "WORKPLAN": {"its_effect"},
 }
 """Attributes of mapped entities that have no path; a conversion lists them."""
 
