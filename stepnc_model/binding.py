@@ -195,6 +195,9 @@ class Model:
         if id not in self.file:
             return SchemaError("is referenced, but does not exist in the file", entity=f"#{id}")
         message = "this entity type is not supported"
+        if not self.file.keyword(id):
+            text = f"{_complex_name(self.file, id)} is not supported"
+            return SchemaError(text, entity=self.file.label(id), line=self.file.line(id))
         try:
             self.file.parameters(id)
         except Part21Error as error:

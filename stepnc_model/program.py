@@ -346,9 +346,10 @@ class Program:
         inner = {int(element) for plan in plans.values() for element in plan.its_elements}
         outer = [ref for ref in plans if int(ref) not in inner]
         if len(outer) != 1:
+            names = ", ".join(f"line {self.line(ref)}: {self.label(ref)}" for ref in outer[:5])
             raise SchemaError(
-                f"no PROJECT, and {len(outer)} workplans that are not nested in another: "
-                "a program needs one main workplan"
+                f"no PROJECT, and {len(outer)} workplans that are not nested in another "
+                f"({names}): a program needs one main workplan"
             )
         return outer[0]
 

@@ -23,6 +23,7 @@ from service.control.disturbances import TimedOrder, disturbances
 from service.control.holding import HoldTallies, HoldTally
 from service.control.planned import PlannedWorkingstep, planned_steps, with_hardest
 from service.control.setup import (
+    advices_in_order,
     hardness_against,
     plan_as_it_is,
     planned_course,
@@ -187,8 +188,7 @@ def prepare(
         else RecordedMachine(course, signals)
     )
     planned = planned_steps(course)
-    by_id = {advice.workingstep.id: advice for advice in plan.advices}
-    advices = tuple(by_id.get(name) for name in virtual.workingsteps)
+    advices = advices_in_order(virtual.workingsteps, plan.advices)
     steps, preview = steps_of(planned, advices), preview_of(course)
     planned = with_hardest(planned, course, equivalent(preview, steps, settings).weight)
     loop = Loop(
