@@ -34,7 +34,7 @@ MATERIAL: Options = ("--material", "c45")
 KEEP: Options = ("--keep-going",)
 FEED: Options = ("--feed", "240")
 
-EXAMPLES = {"spindle": "-16.", "feed_per_revolution": "0.2"}
+EXAMPLES = {"spindle": "-16."}
 """Values for attributes that a refusal asks for, in the units of the standard."""
 
 MOST_ATTEMPTS = 8
