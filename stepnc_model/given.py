@@ -126,17 +126,19 @@ def _changed(draft: Draft, given: Sequence[SetAttribute]) -> Program:
     """Program read again with what was set; refused if an attribute cannot hold its value."""
     if not given:
         return draft.program
-    found = _read(draft.program, draft.edits.apply())
+    found = _read(draft.program, draft.edits.apply(), given)
     for each in given:
         _require_taken(found.model, each)
     return found
 
 
-def _read(program: Program, data: bytes) -> Program:
+def _read(program: Program, data: bytes, given: Sequence[SetAttribute]) -> Program:
     """Program with changed text; one of AP238 stays one."""
     file = Part21File.from_bytes(data, name=program.name)
     if isinstance(program.file, AimView):
-        file = program.file.changed(file)
+        view = program.file
+        settled = {(view.label(int(each.ref)), each.attribute) for each in given}
+        file = view.changed(file, settled)
     return Program(
         file,
         units=program.units,

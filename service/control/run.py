@@ -32,6 +32,7 @@ from service.control.setup import (
     steps_of,
 )
 from service.control.trace import ControlTrace, control_schema
+from service.paths.remarks import tell_remarks
 from service.progress import Ticker, bar
 from service.reading import Tell, silent
 from service.recording.signals import read_signals
@@ -166,6 +167,7 @@ def prepare(
         request = _evaluating(request, signals)
     law, settings = request.law, _settings(request)
     prepared, virtual = waiting_machine(_plain_run(request), files, tell=tell)
+    tell_remarks(prepared.remarks, tell)
     if prepared.material is None or prepared.program is None:
         raise StepNcError("control needs a STEP-NC program: NC code states no cutting limits")
     found = disturbances(request.disturbances, hardness=hardness_against(prepared.material))
