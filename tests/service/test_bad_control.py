@@ -59,7 +59,7 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
     [
         ([], "name a STEP-NC program, or NC code with --nc"),
         (["nowhere.stpnc"], "nowhere.stpnc: No such file"),
-        ([PARTS], "Is a directory"),
+        ([PARTS], "is a folder, not a regular file"),
         (["a\0b"], "is not a valid file name"),
         ([SLOT, "--machine", "titanic"], "unknown machine 'titanic'"),
         ([SLOT, "--material", "butter"], "unknown material 'butter'"),
@@ -90,7 +90,7 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
         ([SLOT, "--disturb", "material:butter@1s"], "unknown material 'butter'"),
         ([SLOT, "--disturb", "depth:nan@1s"], "'nan' is not a number"),
         ([SLOT, "--deviation-mm", "nan"], "deviation nan mm"),
-        ([SLOT, "--stock", "1,2,3"], "need NC code: name it with --nc"),
+        ([SLOT, "--stock", "1,2,3"], "defines its own raw part: omit --stock"),
         (
             [PARTS / "shaft.stpnc", "--machine", "vmc15"],
             "is a turning tool, but the machine is a mill",
