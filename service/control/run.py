@@ -179,6 +179,8 @@ def prepare(
         knowledge=knowledge if request.has_corrections else None,
         left_out=prepared.left_out if request.keep_going else None,
     )
+    for each in plan.refused:
+        tell(f"left as programmed: '{each.id}' ({each.ref}): {each.reason}")
     course = planned_course(prepared, virtual, tell)
     require_teeth(found.hidden, course)
     bench = replace(
