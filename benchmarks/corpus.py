@@ -34,8 +34,8 @@ MATERIAL: Options = ("--material", "c45")
 KEEP: Options = ("--keep-going",)
 FEED: Options = ("--feed", "240")
 
-EXAMPLES = {"spindle": "-16.", "feed_per_revolution": "0.2"}
-"""Values for attributes that a refusal asks for, in the units of the standard."""
+SPINDLE = "-16.", "-960."
+"""Spindle speed that is given where a refusal asks for one, in rev/s and in rpm."""
 
 MOST_ATTEMPTS = 8
 """Greatest number of runs of one command on one file."""
@@ -207,9 +207,10 @@ def _next(command: Command, error: str, options: Options) -> Options | None:
     given = re.search(r"give this one so, as --feed (\S+)", error)
     if given and given[1] not in options:
         return "--feed", given[1]
-    asked = re.search(r'--set "(#\d+\.(\w+))=VALUE"', error)
-    if asked and asked[2] in EXAMPLES:
-        value = f"{asked[1]}={EXAMPLES[asked[2]]}"
+    asked = re.search(r'--set "(#\d+\.spindle)=VALUE"', error)
+    if asked:
+        is_rpm = any(word.startswith("rpm-") for word in options)
+        value = f"{asked[1]}={SPINDLE[is_rpm]}"
         return ("--set", value) if value not in options else None
     if "--material" in error and "--material" not in options:
         return MATERIAL

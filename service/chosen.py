@@ -9,7 +9,7 @@ from simulator.library import load_machine, load_material, machine_names, materi
 from simulator.matching import match_material
 from simulator.spec import Certainty, Machine, MachineKind, MaterialMatch, WorkMaterial
 from stepnc_model.entities.turning import TurningMachiningOperation
-from stepnc_model.errors import StepNcError
+from stepnc_model.errors import SchemaError, StepNcError
 from stepnc_model.program import Program
 
 DEFAULT_MILL, DEFAULT_LATHE = "vmc15", "lathe22"
@@ -31,9 +31,18 @@ def library_entry(kind: str, name: str) -> Machine | WorkMaterial:
 
 
 def machine_for(name: str, program: Program) -> Machine:
-    """Load the named machine, or a default that suits the program's first workingstep."""
+    """Load the named machine, or a default that suits the program's first workingstep.
+
+    Raises
+    ------
+    StepNcError
+        When the machine is not valid, or a default has no workingstep to suit.
+    """
     if name:
         return load_machine(name)
+    if not program.workingsteps:
+        lacking = SchemaError("the program has no machining workingstep")
+        raise next(iter(program.faults), lacking)
     first = program.workingsteps[0].operation
     is_turning = isinstance(first, TurningMachiningOperation)
     return load_machine(DEFAULT_LATHE if is_turning else DEFAULT_MILL)

@@ -14,8 +14,8 @@ def write_out(text: str) -> None:
 
 
 def tell(message: str) -> None:
-    """Write a progress or error message to stderr."""
-    sys.stderr.write(clean(message) + "\n")
+    """Write a progress or error message to stderr, in one line: names may contain others."""
+    sys.stderr.write(clean(message).replace("\n", " ") + "\n")
 
 
 def clean(text: str) -> str:

@@ -89,6 +89,10 @@ class Inspection:
     """Ids of referenced instances, except the optimisation, which refers back to operations."""
 
 
+_DISPENSABLE = ("its_secplane", "implicit_tolerance")
+"""Required attributes that many files lack, and that are read as not given."""
+
+
 class Model:
     """Entities of one file, bound on request.
 
@@ -175,16 +179,25 @@ class Model:
         """Nearest error among instances and their references, else a warning, or None.
 
         Referenced operations are skipped, because features list the operations of others.
+        Attributes that programs are read without are the last to be named.
         """
         queue, warning = list(dict.fromkeys(map(int, refs))), None
         known = set(queue)
+        of_file = {
+            each.entity: each
+            for each in self.file.findings
+            if each.severity is Severity.ERROR and each.entity
+        }
         for id in queue:
+            if of_file and id in self.file and self.file.label(id) in of_file:
+                return of_file[self.file.label(id)]
             inspection = _inspect(self.file, id) or Inspection(findings=(), references=())
             for finding in inspection.findings:
                 if finding.severity is Severity.ERROR:
                     return finding
-                is_warning = finding.severity is Severity.WARNING
-                warning = finding if is_warning and warning is None else warning
+                is_better = warning is None or warning.attribute in _DISPENSABLE
+                if finding.severity is Severity.WARNING and is_better:
+                    warning = finding
             new = [other for other in inspection.references if other not in known]
             known.update(new)
             queue += (n for n in new if not isinstance(self.entity(n), MachiningOperation))
@@ -195,6 +208,9 @@ class Model:
         if id not in self.file:
             return SchemaError("is referenced, but does not exist in the file", entity=f"#{id}")
         message = "this entity type is not supported"
+        if not self.file.keyword(id):
+            text = f"{_complex_name(self.file, id)} is not supported"
+            return SchemaError(text, entity=self.file.label(id), line=self.file.line(id))
         try:
             self.file.parameters(id)
         except Part21Error as error:

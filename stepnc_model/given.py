@@ -126,17 +126,19 @@ def _changed(draft: Draft, given: Sequence[SetAttribute]) -> Program:
     """Program read again with what was set; refused if an attribute cannot hold its value."""
     if not given:
         return draft.program
-    found = _read(draft.program, draft.edits.apply())
+    found = _read(draft.program, draft.edits.apply(), given)
     for each in given:
         _require_taken(found.model, each)
     return found
 
 
-def _read(program: Program, data: bytes) -> Program:
+def _read(program: Program, data: bytes, given: Sequence[SetAttribute]) -> Program:
     """Program with changed text; one of AP238 stays one."""
     file = Part21File.from_bytes(data, name=program.name)
     if isinstance(program.file, AimView):
-        file = program.file.changed(file)
+        view = program.file
+        settled = {(view.label(int(each.ref)), each.attribute) for each in given}
+        file = view.changed(file, settled)
     return program.changed(file)
 
 
@@ -173,22 +175,33 @@ def _in_place(
 ) -> SetAttribute | None:
     """Set the number of a length or a plane where it stands; None if others use it too."""
     program = draft.program
-    if isinstance(program.get(present), TolerancedLengthMeasure):
-        if draft.uses(present) > 1:
-            return None
-        return _put(draft, present, "theoretical_size", Real(number))
-    plane = program.get(present)
-    if not isinstance(plane, Plane):
+    try:
+        with program.using(present):
+            if isinstance(program.get(present), TolerancedLengthMeasure):
+                chain: tuple[Ref[Any], ...] = (present,)
+            else:
+                chain = _level_plane(program, present)
+    except SchemaError:
         return None
+    if not chain or any(draft.uses(each) > 1 for each in chain):
+        return None
+    if len(chain) == 1:
+        return _put(draft, present, "theoretical_size", Real(number))
+    x, y, _ = program.get(chain[-1]).coordinates
+    moved = (Real(x), Real(y), Real(_height(attribute, number)))
+    return _put(draft, chain[-1], "coordinates", moved)
+
+
+def _level_plane(program: Program, ref: Ref[Any]) -> tuple[Ref[Any], ...]:
+    """Plane, placement and point of a plane across z; empty for another surface."""
+    plane = program.get(ref)
+    if not isinstance(plane, Plane):
+        return ()
     place = program.get(plane.position)
     axis = (0.0, 0.0, 1.0) if place.axis is None else program.get(place.axis).direction_ratios
-    is_level = len(axis) == 3 and axis[0] == axis[1] == 0.0
-    chain = (present, plane.position, place.location)
     point = program.get(place.location).coordinates
-    if not is_level or len(point) != 3 or any(draft.uses(each) > 1 for each in chain):
-        return None
-    moved = (Real(point[0]), Real(point[1]), Real(_height(attribute, number)))
-    return _put(draft, place.location, "coordinates", moved)
+    is_level = len(axis) == 3 and axis[0] == axis[1] == 0.0 and len(point) == 3
+    return (ref, plane.position, place.location) if is_level else ()
 
 
 def _put(

@@ -308,7 +308,9 @@ class Program:
         """Required textures of a feature, each with the surface that it applies to."""
         if self._textures is None:
             self._textures = {}
-            for texture in self._all(SurfaceTextureParameter):
+            for texture in (
+                entity for _, entity in self.model.of_type(SurfaceTextureParameter)
+            ):
                 for surface in map(self.get, texture.applied_surfaces):
                     pairs = self._textures.setdefault(int(surface.its_machining_feature), [])
                     pairs.append((texture, surface))
@@ -316,14 +318,14 @@ class Program:
 
     def workpiece(self) -> Workpiece | None:
         """Workpiece of the project, or the first one in the file."""
-        for project in self._all(Project):
+        for _, project in self.model.of_type(Project):
             if project.its_workpieces:
                 ref = project.its_workpieces[0]
                 workpiece = self.get(ref)
                 if not isinstance(workpiece, Workpiece):
                     raise self.error("is not a workpiece, where one is expected", ref)
                 return workpiece
-        return next(self._all(Workpiece), None)
+        return next((workpiece for _, workpiece in self.model.of_type(Workpiece)), None)
 
     def material(self) -> Material | None:
         """Material of the workpiece, or None if the file names none."""
@@ -334,10 +336,6 @@ class Program:
         if not isinstance(material, Material):
             raise self.error("is not a material, where one is expected", workpiece.its_material)
         return material
-
-    def _all(self, cls: type[T]) -> Iterator[T]:
-        """All instances of an entity class, without their references."""
-        return (entity for _, entity in self.model.of_type(cls))
 
     def _main_workplan(self) -> Ref[Workplan]:
         """Main workplan of the project, or the only workplan that is not nested in another."""
@@ -352,8 +350,11 @@ class Program:
         inner = {int(element) for plan in plans.values() for element in plan.its_elements}
         outer = [ref for ref in plans if int(ref) not in inner]
         if len(outer) != 1:
-            found = f"no PROJECT, and {len(outer)} workplans that are not nested in another"
-            raise SchemaError(f"{found}: a program needs one main workplan")
+            names = ", ".join(f"line {self.line(ref)}: {self.label(ref)}" for ref in outer[:5])
+            raise SchemaError(
+                f"no PROJECT, and {len(outer)} workplans that are not nested in another "
+                f"({names}): a program needs one main workplan"
+            )
         return outer[0]
 
     def _walk(self) -> Iterator[ProgramLine]:

@@ -10,6 +10,10 @@ _NUMBERED = (TolerancedLengthMeasure, ElementarySurface, Plane)
 """Entities for which a number may be given."""
 
 
+_STRUCTURE = frozenset({"its_elements", "main_workplan"})
+"""Attributes without which a program cannot be read, so that nothing can be set in it."""
+
+
 def with_remedy(message: str, entity: str, attribute: str) -> str:
     """Message about an attribute with the option that sets it.
 
@@ -34,7 +38,9 @@ def with_remedy(message: str, entity: str, attribute: str) -> str:
     number, _, keyword = entity.partition(" ")
     cls = classes().get(keyword)
     slot = None if cls is None else slots_of(cls).get(attribute)
-    if slot is None or " --" in message or not number.startswith("#"):
+    if slot is None or attribute in _STRUCTURE or not number.startswith("#"):
+        return message
+    if " --" in message:
         return message
     return f'{message}; set it with --set "{number}.{attribute}={_example(slot)}"'
 

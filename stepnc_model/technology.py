@@ -198,7 +198,10 @@ def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) 
     )
     if feed is None:
         raise program.error(
-            f"neither feedrate nor feed_per_revolution is given; {_REMEDY}", ref, "feedrate"
+            "neither feedrate nor feed_per_revolution is given; --feed gives one, as --feed "
+            "0.2mm/rev",
+            ref,
+            "feedrate",
         )
     if technology.spindle_speed is None:
         raise program.error("the technology has no spindle speed", ref, "spindle_speed")

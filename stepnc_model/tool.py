@@ -116,10 +116,9 @@ def _rotating(program: Program, ref: Ref[Entity], tool: MillingCuttingTool) -> T
     dimension = program.get(body.dimension)
     diameter = dimension.diameter
     if diameter is None or not LEAST_DIAMETER <= diameter <= MAX_DIAMETER:
-        message = (
-            f"diameter {diameter} mm: it must be positive, "
-            f"{LEAST_DIAMETER:g} mm to {MAX_DIAMETER:g} mm"
-        )
+        given = "no diameter is given" if diameter is None else f"diameter {diameter} mm"
+        bounds = f"{LEAST_DIAMETER:g} mm to {MAX_DIAMETER:g} mm"
+        message = f"{given}: it must be positive, {bounds}"
         raise program.error(message, body.dimension, "diameter")
     teeth = body.number_of_teeth
     if teeth is not None and not 1 <= teeth <= MAX_TEETH:

@@ -37,7 +37,9 @@ def without_given(program: Program, whole: Completed) -> bytes:
     """
     given = (*whole.given, *_of_copies(program, whole))
     if isinstance(program.file, AimView):
-        withdrawal = _AimWithdrawal(program, program.file)
+        old = whole.program.file
+        before = old.source if isinstance(old, AimView) else old
+        withdrawal = _AimWithdrawal(program, program.file, before)
         for each in given:
             withdrawal.withdraw(each)
         return withdrawal.apply()
@@ -92,8 +94,9 @@ def _is_kept(program: Program, given: SetAttribute) -> bool:
 class _AimWithdrawal:
     """Withdrawal from an AP238 program whose numbers may have changed. Running state."""
 
-    def __init__(self, program: Program, view: AimView) -> None:
+    def __init__(self, program: Program, view: AimView, before: Part21File) -> None:
         self._draft = Draft(program)
+        self._before_given = before
         self._view = view
         self._remembered: list[Converted] = []
 
@@ -134,7 +137,8 @@ class _AimWithdrawal:
     def apply(self) -> bytes:
         """Bytes of the AP238 file."""
         view = self._view.remembering(self._remembered)
-        return spliced_into(view, self._draft.edits.apply(), self._draft.removed)
+        changed = self._draft.edits.apply()
+        return spliced_into(view, changed, self._draft.removed, before=self._before_given)
 
 
 def _is_same(one: Value, other: Value) -> bool:

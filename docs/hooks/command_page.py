@@ -14,6 +14,7 @@ EXIT_CODES = {
     options.BAD_INPUT: "a file, a name or a number cannot be used; nothing was written",
     options.INFEASIBLE: "no feed keeps all limits, or the solver found none",
     options.LIMIT_EXCEEDED: "a run passed a bound of power or force, or was stopped",
+    options.NOTHING_ADVISED: "`optimise` found nothing to advise, and wrote no program",
     options.INTERRUPTED: "interrupted by Ctrl-C or SIGTERM",
 }
 

@@ -369,8 +369,14 @@ def _check(options: argparse.Namespace) -> int:
 def _check_code(options: argparse.Namespace) -> int:
     """Check NC code."""
     from service.code_contents import check_code
+    from service.requests.given import ProgramRequest
     from service.terminal import write_out
+    from stepnc_model.errors import StepNcError
 
+    if program_request(options) != ProgramRequest():
+        raise StepNcError(
+            "--units, --stock, --set, --teeth and --feed are for STEP-NC programs"
+        )
     contents = check_code(options.file, control=options.control)
     if options.json:
         from service.code_contents_output import code_json

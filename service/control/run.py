@@ -23,6 +23,7 @@ from service.control.disturbances import TimedOrder, disturbances
 from service.control.holding import HoldTallies, HoldTally
 from service.control.planned import PlannedWorkingstep, planned_steps, with_hardest
 from service.control.setup import (
+    advices_in_order,
     hardness_against,
     plan_as_it_is,
     planned_course,
@@ -31,6 +32,7 @@ from service.control.setup import (
     steps_of,
 )
 from service.control.trace import ControlTrace, control_schema
+from service.paths.remarks import tell_remarks
 from service.progress import Ticker, bar
 from service.reading import Tell, silent
 from service.recording.signals import read_signals
@@ -165,6 +167,7 @@ def prepare(
         request = _evaluating(request, signals)
     law, settings = request.law, _settings(request)
     prepared, virtual = waiting_machine(_plain_run(request), files, tell=tell)
+    tell_remarks(prepared.remarks, tell)
     if prepared.material is None or prepared.program is None:
         raise StepNcError("control needs a STEP-NC program: NC code states no cutting limits")
     found = disturbances(request.disturbances, hardness=hardness_against(prepared.material))
@@ -176,6 +179,8 @@ def prepare(
         knowledge=knowledge if request.has_corrections else None,
         left_out=prepared.left_out if request.keep_going else None,
     )
+    for each in plan.refused:
+        tell(f"left as programmed: '{each.id}' ({each.ref}): {each.reason}")
     course = planned_course(prepared, virtual, tell)
     require_teeth(found.hidden, course)
     bench = replace(
@@ -187,8 +192,7 @@ def prepare(
         else RecordedMachine(course, signals)
     )
     planned = planned_steps(course)
-    by_id = {advice.workingstep.id: advice for advice in plan.advices}
-    advices = tuple(by_id.get(name) for name in virtual.workingsteps)
+    advices = advices_in_order(virtual.workingsteps, plan.advices)
     steps, preview = steps_of(planned, advices), preview_of(course)
     planned = with_hardest(planned, course, equivalent(preview, steps, settings).weight)
     loop = Loop(

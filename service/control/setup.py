@@ -1,5 +1,6 @@
 """Setup of a controlled run: nominal course of the program, its plan and its workingsteps."""
 
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
@@ -168,6 +169,29 @@ def plan_as_it_is(
         task=task,
         selected=lambda step: int(step.ref) not in without,
     )
+
+
+def advices_in_order(
+    names: Sequence[str], advices: Sequence[Advice]
+) -> tuple[Advice | None, ...]:
+    """Advice of each workingstep that is run; those with the same id follow in their order.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Ids of the workingsteps in the order of the run.
+    advices : sequence of Advice
+        Advices in the order of the program.
+    """
+    waiting: dict[str, deque[Advice]] = {}
+    for each in advices:
+        waiting.setdefault(each.workingstep.id, deque()).append(each)
+    found: list[Advice | None] = []
+    for name in names:
+        queue = waiting.get(name)
+        # The last one also stands for what is run again.
+        found.append(None if not queue else queue.popleft() if len(queue) > 1 else queue[0])
+    return tuple(found)
 
 
 def steps_of(

@@ -5,7 +5,7 @@ numbers, lines and findings are those of the AP238 file, so that whatever reads 
 14649 reads an AP238 program too, and names the right places of it.
 """
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Self
@@ -83,9 +83,21 @@ class AimView(Part21File):
         bodies = carried(self.source, roots)
         return with_bodies(self.data, bodies), bodies.findings
 
-    def changed(self, text: Part21File) -> Self:
-        """The view with changed text, which is written with the next changes of the file."""
-        return replace(self, data=text.data, structure=text.structure)
+    def changed(
+        self, text: Part21File, settled: Collection[tuple[str, str]] = frozenset()
+    ) -> Self:
+        """The view with changed text, which is written with the next changes of the file.
+
+        Parameters
+        ----------
+        text : Part21File
+        settled : collection of (str, str)
+            Instances, as messages name them, and their attributes whose faults are mended.
+        """
+        remarks = tuple(
+            each for each in self.remarks if (each.entity, each.attribute) not in settled
+        )
+        return replace(self, data=text.data, structure=text.structure, remarks=remarks)
 
     def remembering(self, origins: Iterable[Converted]) -> Self:
         """The view with instances that stand for others of the file, by their numbers."""

@@ -12,6 +12,7 @@ from stepnc_model.ap238.building import Builder, aim_number
 from stepnc_model.ap238.converted import Converted
 from stepnc_model.ap238.drafting import LISTS, AimDraft
 from stepnc_model.ap238.following import RULE, Place
+from stepnc_model.ap238.instances import Instances
 from stepnc_model.ap238.loose import hang, loose_numbers, without
 from stepnc_model.ap238.quantity import MEASURES, conversion, measure_kind
 from stepnc_model.ap238.reading import AimReader
@@ -23,7 +24,13 @@ from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Real, Ref, Typed, Value
 
 
-def spliced_into(view: AimView, changed: bytes, removed: Iterable[int] = ()) -> bytes:
+def spliced_into(
+    view: AimView,
+    changed: bytes,
+    removed: Iterable[int] = (),
+    *,
+    before: Part21File | None = None,
+) -> bytes:
     """Bring the changes of a view into its AP238 file; return the bytes of the new file.
 
     Parameters
@@ -34,6 +41,9 @@ def spliced_into(view: AimView, changed: bytes, removed: Iterable[int] = ()) -> 
         The same program of ISO 14649 after changes.
     removed : iterable of int
         Instances removed from the view; a new one may have the number of a removed one.
+    before : Part21File, optional
+        AP238 file as it was before earlier changes: what was there without a number stays
+        there without one.
 
     Returns
     -------
@@ -44,7 +54,8 @@ def spliced_into(view: AimView, changed: bytes, removed: Iterable[int] = ()) -> 
     SchemaError
         If AP238 cannot express a change.
     """
-    splice = _Splice(view, Part21File.from_bytes(changed, name=view.name), set(removed))
+    new = Part21File.from_bytes(changed, name=view.name)
+    splice = _Splice(view, new, set(removed), before)
     data = splice.apply()
     if splice.redirected:
         splice.require_taken(AimView.of(Part21File.from_bytes(data, name=view.name)))
@@ -54,9 +65,12 @@ def spliced_into(view: AimView, changed: bytes, removed: Iterable[int] = ()) -> 
 class _Splice:
     """Changes of one file, applied once."""
 
-    def __init__(self, view: AimView, new: Part21File, removed: set[int]) -> None:
+    def __init__(
+        self, view: AimView, new: Part21File, removed: set[int], before: Part21File | None
+    ) -> None:
         self._view = view
         self._new = new
+        self._before = None if before is None else Instances(before)
         self._reader = AimReader(view.source)
         self._draft = AimDraft(view.source, self._reader.instances)
         present = set(new.ids())
@@ -156,9 +170,22 @@ class _Splice:
             self._edit(each, row, found[0], value)
         elif found:
             for path, place in found:
-                self._draft.remove_with(_own_part(place, path), frozenset(self._kept.values()))
+                self._empty(path, place)
         elif value is not None:
             self._builder.write_row(each.number, each.origin, row, value)
+
+    def _empty(self, path: Path, place: Place) -> None:
+        """Remove what stands for an attribute, or only its number if it had none before."""
+        before = self._before
+        if (
+            before is not None
+            and place.id in before
+            and before.slots(place.id, "value_component")
+            and before.value(place.id, "value_component") is None
+        ):
+            self._draft.set(self._unshared(place.way), "value_component", None)
+            return
+        self._draft.remove_with(_own_part(place, path), frozenset(self._kept.values()))
 
     def _change_list(
         self, each: Converted, row: Row, found: list[tuple[Path, Place]], value: Value

@@ -9,6 +9,7 @@ read are passed over here.
 
 from collections.abc import Iterable, Iterator
 
+from stepnc_model.doubts import doubts
 from stepnc_model.entities.enums import Hand
 from stepnc_model.entities.profiles import LinearPath
 from stepnc_model.errors import Finding, SchemaError, Severity
@@ -43,6 +44,8 @@ def remarks(program: Program, paths: Iterable[ToolPath]) -> tuple[Finding, ...]:
         path = by_step.get(int(step.ref))
         for finding in (*_of_step(program, step), *_of_path(program, step, path)):
             found.setdefault(str(finding), finding)
+    for finding in doubts(program):
+        found.setdefault(str(finding), finding)
     return (*_of_stock(program), *found.values())
 
 

@@ -59,7 +59,7 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
     [
         ([], "name a STEP-NC program, or NC code with --nc"),
         (["nowhere.stpnc"], "nowhere.stpnc: No such file"),
-        ([PARTS], "Is a directory"),
+        ([PARTS], "is a folder, not a regular file"),
         (["a\0b"], "is not a valid file name"),
         ([SLOT, "--machine", "titanic"], "unknown machine 'titanic'"),
         ([SLOT, "--material", "butter"], "unknown material 'butter'"),

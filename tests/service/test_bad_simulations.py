@@ -273,7 +273,7 @@ def test_a_tool_table_that_cannot_be_used_is_refused(
         ([], "name a STEP-NC program, or NC code with --nc"),
         ([PARTS / "shaft.stpnc", "--tools", "x"], "need NC code: name it with --nc"),
         (["nowhere"], "nowhere: No such file or directory"),
-        ([PARTS], "Is a directory"),
+        ([PARTS], "is a folder, not a regular file"),
         ([PARTS / "paper002.stpnc", "--machine", "paper002"], "no data for its axes"),
         (
             [PARTS / "shaft.stpnc", "--machine", "vmc15"],
@@ -313,8 +313,8 @@ def test_code_that_cannot_be_read_is_refused(code: Path, refused: Refused) -> No
     junk.write_bytes(bytes(range(256)) * 20)
     assert "junk.ngc: line 1: " in refused(*alone(code, nc=str(junk)))
     assert "nowhere.ngc: No such file" in refused(*alone(code, nc="nowhere.ngc"))
-    assert "Is a directory" in refused(*alone(code, nc=str(code.parent)), "--dialect=fanuc")
-    assert "Is a directory" in refused(*alone(code, nc=str(PARTS)))
+    assert "is a folder" in refused(*alone(code, nc=str(code.parent)), "--dialect=fanuc")
+    assert "is a folder" in refused(*alone(code, nc=str(PARTS)))
     assert "is not a valid file name" in refused(*alone(code, nc="a\0.ngc"))
 
 

@@ -12,6 +12,10 @@ from service.chosen import (
 from service.reading import read_program
 from simulator.errors import UnknownMachine, UnknownMaterial
 from simulator.spec import MachineKind
+from stepnc_model.errors import SchemaError
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.program import Program
+from tests.service.test_keep_going import program as two_holes
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 
@@ -41,3 +45,10 @@ def test_entries_of_the_library_are_found_one_by_one() -> None:
     for kind in ("machines", "materials"):
         for entry in library_entries(kind):
             assert library_entry(kind, entry.name) == entry
+
+
+def test_a_program_without_a_usable_workingstep_suits_no_machine() -> None:
+    lacking = two_holes(_41="#41=DRILLING($,$,'OP',10.,$,$,#61,#63,$,$,$,$,$,$);")
+    lacking = lacking.replace(b"(#3,#4,#5),$,#7", b"(#4),$,#7")
+    with pytest.raises(SchemaError, match="the operation has no tool"):
+        machine_for("", Program(Part21File.from_bytes(lacking)))

@@ -225,6 +225,23 @@ class TestGivenData:
         )
         assert without_given(whole.program, whole) == one
 
+    @pytest.mark.parametrize(
+        "broken",
+        [
+            b"#91=PLANE('',$);",
+            b"#91=PLANE('',#999);",
+            b"#91=CARTESIAN_POINT('',(0.,0.));",
+            b"#91=CYLINDRICAL_SURFACE('',#92,3.);",
+        ],
+    )
+    def test_a_depth_that_cannot_be_moved_is_replaced(self, broken: bytes) -> None:
+        data = program().replace(b"#91=PLANE('',#92);", broken)
+        words = GivenData(values=("#31.depth=12",))
+        whole = completed(Program(Part21File.from_bytes(data)), words)
+        (given,) = whole.given
+        assert len(given.added) == 3
+        assert without_given(whole.program, whole) == data
+
     def test_a_feed_is_given_to_those_that_have_none(self) -> None:
         whole = completed(
             Program(Part21File.from_bytes(program(**NO_FEED))),

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from service.terminal import clean
+from service.terminal import clean, tell
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 OPTIMISE = Path(sys.executable).with_name("optimise")
@@ -15,6 +15,13 @@ OPTIMISE = Path(sys.executable).with_name("optimise")
 
 def test_control_characters_are_shown_and_not_sent() -> None:
     assert clean("a\x1b[31mred\x07\nb µm") == "a�[31mred�\nb µm"
+
+
+def test_a_name_with_a_line_feed_makes_no_line_of_its_own(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    tell("left out: 'A\nerror: B'")
+    assert capsys.readouterr().err == "left out: 'A error: B'\n"
 
 
 def run(

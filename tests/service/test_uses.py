@@ -20,6 +20,7 @@ COMMANDS = (
     ("post", "--control", "linuxcnc"),
     ("simulate", "--machine", "vmc15", "--material", "c45"),
     ("optimise", "--machine", "vmc15", "--material", "c45", "--dry-run"),
+    ("control", "--machine", "vmc15", "--material", "c45"),
 )
 
 

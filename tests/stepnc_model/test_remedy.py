@@ -13,7 +13,7 @@ from stepnc_model.remedy import error_of, with_remedy
         ("#31 ROUND_HOLE", "depth", "VALUE"),
         ("#31 ROUND_HOLE", "diameter", "VALUE"),
         ("#61 MILLING_TECHNOLOGY", "spindle", "VALUE"),
-        ("#2 WORKPLAN", "its_elements", "(#ID,...)"),
+        ("#4 TURNING_WORKINGSTEP", "its_features", "(#ID,...)"),
         ("#95 CARTESIAN_POINT", "coordinates", "(VALUE,...)"),
     ],
 )
@@ -28,6 +28,7 @@ def test_the_value_is_shown_as_it_is_typed(entity: str, attribute: str, value: s
     [
         ("is missing; --feed gives one", "#61 MILLING_TECHNOLOGY", "feedrate"),
         ("is wrong", "#61 MILLING_TECHNOLOGY", ""),
+        ("contains itself", "#2 WORKPLAN", "its_elements"),
         ("is wrong", "#61 MILLING_TECHNOLOGY", "its_colour"),
         ("is wrong", "#61 SOMETHING_ELSE", "its_tool"),
         ("is wrong", "", ""),

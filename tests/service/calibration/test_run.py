@@ -312,7 +312,11 @@ def test_what_is_no_table_of_numbers_is_refused(
 def test_files_that_are_none_are_refused(command: Command, tmp_path: Path) -> None:
     missing = tmp_path / "none.csv"
     assert command(missing) == (BAD_INPUT, "", f"error: {missing}: No such file or directory\n")
-    assert command(tmp_path) == (BAD_INPUT, "", f"error: {tmp_path}: Is a directory\n")
+    assert command(tmp_path) == (
+        BAD_INPUT,
+        "",
+        f"error: {tmp_path}: is a folder, not a regular file\n",
+    )
     code, _, told = command("a\0b.csv")
     assert code == BAD_INPUT
     assert "invalid file name" in told

@@ -1,6 +1,7 @@
 """What is plugged together: the program's course, its plan, its workingsteps."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,13 @@ import pytest
 from optimiser.modes import Mode
 from service.control.planned import PlannedWorkingstep, planned_steps
 from service.control.run import Session, prepare
-from service.control.setup import hardness_against, plan_as_it_is, preview_of, steps_of
+from service.control.setup import (
+    advices_in_order,
+    hardness_against,
+    plan_as_it_is,
+    preview_of,
+    steps_of,
+)
 from simulator.library import load_material
 from simulator.spec import Certainty, MaterialMatch
 from stepnc_model.errors import StepNcError
@@ -67,3 +74,10 @@ def test_the_plan_leaves_the_program_as_it_is(session: Session) -> None:
         assert advice.before is not None
         assert advice.after is not None
         assert advice.after.setting == advice.before.setting
+
+
+def test_workingsteps_with_one_id_have_their_own_limits_in_order(session: Session) -> None:
+    (first,) = session.plan.advices
+    second, name = replace(first, reason="another"), first.workingstep.id
+    found = advices_in_order((name, "", name, name), (first, second))
+    assert found == (first, None, second, second)

@@ -81,6 +81,14 @@ def test_what_is_missing_can_be_given_to_each(
     assert part.read_bytes() == data
 
 
+def test_nc_code_is_given_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code = tmp_path / "part.ngc"
+    code.write_text("G21 G90\nG1 X1 F100\nM2\n")
+    assert run("check", code) == OK
+    assert run("check", code, "--feed", "240") == BAD_INPUT
+    assert "are for STEP-NC programs" in capsys.readouterr().err
+
+
 class TestFeed:
     @pytest.mark.parametrize(
         ("text", "value", "unit"),

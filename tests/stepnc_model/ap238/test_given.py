@@ -12,8 +12,8 @@ from stepnc_model.ap238.writing import spliced_into
 from stepnc_model.draft import Draft
 from stepnc_model.entities.executables import Setup
 from stepnc_model.entities.features import RoundHole, Step
-from stepnc_model.entities.geometry import Block
-from stepnc_model.errors import SchemaError
+from stepnc_model.entities.geometry import Block, CartesianPoint
+from stepnc_model.errors import SchemaError, Severity
 from stepnc_model.given import Completed, GivenData, GivenFeed, completed
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
@@ -104,10 +104,8 @@ def test_a_feed_is_given_to_the_public_example_in_its_own_unit() -> None:
     program = written(whole)
     assert feed_of(whole.program) == feed_of(program) == pytest.approx(4.0, rel=1e-12)
     left = without_given(program, whole)
-    kept, before = instances(left), instances(data)
-    # The measures were there without a number; a feed that is withdrawn leaves none.
-    assert before.keys() - kept.keys() == {*range(3821, 3825), *range(4121, 4125)}
-    assert all(before[id] == text for id, text in kept.items())
+    # The measures were there without a number, and are so again.
+    assert instances(left) == instances(data)
     assert feed_is_missing(Program(read(left)))
 
 
@@ -194,3 +192,24 @@ def feed_is_missing(program: Program) -> bool:
     """Whether the fourth workingstep has no feed."""
     technology = program.get(program.workingsteps[3].technology_ref)
     return technology.feedrate is None  # type: ignore[attr-defined]
+
+
+def test_a_reference_that_leads_nowhere_is_told_and_can_be_mended() -> None:
+    """The missing point is the reason, not a security plane, which is read as not given."""
+    data = exported("bracket")
+    program = Program(read(data))
+    hole: Any = program.get(program.workingsteps[-1].features[0])
+    place: Any = program.model.get(hole.feature_placement)
+    text = instances(data)[int(place.location)]
+    broken = Program(read(data.replace(text, b"")))
+    step = broken.workingsteps[-1]
+    with (
+        pytest.raises(SchemaError, match=rf"location: {place.location} does not exist in"),
+        broken.using(step.ref, step.features[0]),
+    ):
+        raise AttributeError
+    other = next(ref for ref, _ in broken.model.of_type(CartesianPoint))
+    words = GivenData(values=(f"{hole.feature_placement}.location={other}",))
+    mended = completed(broken, words).program
+    assert Severity.ERROR in {each.severity for each in broken.file.findings}
+    assert Severity.ERROR not in {each.severity for each in mended.file.findings}
