@@ -308,9 +308,7 @@ class Program:
         """Required textures of a feature, each with the surface that it applies to."""
         if self._textures is None:
             self._textures = {}
-            for texture in (
-                entity for _, entity in self.model.of_type(SurfaceTextureParameter)
-            ):
+            for _, texture in self.model.of_type(SurfaceTextureParameter):
                 for surface in map(self.get, texture.applied_surfaces):
                     pairs = self._textures.setdefault(int(surface.its_machining_feature), [])
                     pairs.append((texture, surface))
