@@ -119,9 +119,7 @@ def optimise(
     match = material_for(request.material, program)
     tell(f"material: {match.reason}")
     factors = _factors(request, files, program, chosen, machine=machine, match=match)
-    notes = tuple(finding_of(each, safety=request.safety) for each in factors)
-    for note in notes:
-        tell(note.message)
+    notes = _factor_notes(factors, request.safety, tell)
     wanted = {int(step.ref) for step in chosen}
     plan = optimise_program(
         program,
@@ -149,6 +147,7 @@ def optimise(
         data = with_corrections(_read_again(program, data), factors)
     confirmation = _confirmed(request, program, plan, data, tell)
     along = _along(request, files, program, plan, data, tell)
+    plan = replace(plan, findings=(*plan.findings, *(along.above_limits if along else ())))
     if request.nc_control is not None and nc_place is not None:
         # NC code first: where it cannot be made, nothing is written.
         code = _nc_code(_read_again(program, data), request.nc_control, along, tell)
@@ -245,6 +244,16 @@ def _factors(
         material=match,
         safety=request.safety,
     )
+
+
+def _factor_notes(
+    factors: "tuple[AcceptedFactor, ...]", safety: float, tell: Tell
+) -> tuple[Finding, ...]:
+    """Tell which corrections of k_c are used, and return the notes."""
+    notes = tuple(finding_of(each, safety=safety) for each in factors)
+    for note in notes:
+        tell(note.message)
+    return notes
 
 
 def _remarks(program: Program, tell: Tell) -> tuple[Finding, ...]:

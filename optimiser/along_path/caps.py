@@ -55,6 +55,7 @@ class CapName(StrEnum):
     CORNER = "corner"
     AIR = "air_feed"
     LOCKED = "locked"
+    LEAST = "least_feed"
 
     @property
     def words(self) -> str:
@@ -110,6 +111,8 @@ class CutBounds:
     """Greatest feeds per tooth that hold wherever there are chips, mm."""
     plunge: float | None = None
     """Greatest feed per tooth on the way down into the material, mm; None: not limited."""
+    least: float = 0.0
+    """Feed that the user permits everywhere, mm/s, whatever the limits of the process say."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -150,7 +153,16 @@ def station_caps(
         found = found.least(capped(speed, name))
         if name in {CapName.CHIP_THICKNESS, CapName.FEED_PER_TOOTH}:
             chip = np.minimum(chip, speed)
-    return StationCaps(caps=found, chip=chip)
+    return StationCaps(caps=_not_below(found, bounds.least), chip=chip)
+
+
+def _not_below(caps: Caps, least: float) -> Caps:
+    """Caps of which none is below a feed, mm/s."""
+    is_low = caps.feed < least
+    return Caps(
+        feed=np.where(is_low, least, caps.feed),
+        name=np.where(is_low, NUMBER[CapName.LEAST], caps.name),
+    )
 
 
 def _feeds_per_tooth(

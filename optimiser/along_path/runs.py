@@ -187,6 +187,7 @@ class _FeedRun:
     ) -> None:
         segments = stretch.segments[rows]
         self.clearance = clearance_of(stretch)
+        self.least = 0.0 if stretch.bounds is None else stretch.bounds.least
         _, block = np.unique(segments.block, return_inverse=True)
         self.whole = np.where(stretch.can_split[rows], -1, block)
         """Block of each segment that stays in one piece, counted from 0; -1 for others."""
@@ -253,7 +254,8 @@ class _FeedRun:
         first, last = float(self.offsets[0]), float(self.offsets[-1])
         begin = np.concatenate((self.begins, self.corner_places, self.offsets[:-1]))
         end = np.concatenate((self.ends, self.corner_places, self.offsets[1:]))
-        feed = np.concatenate((caps.feed, corner, arcs))
+        rounded = np.maximum(np.concatenate((corner, arcs)), self.least)
+        feed = np.concatenate((caps.feed, rounded))
         name = np.concatenate((
             caps.name,
             np.full(len(corner), NUMBER[CapName.CORNER]),

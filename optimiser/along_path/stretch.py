@@ -150,7 +150,8 @@ def place_caps(stretch: PathStretch) -> PlaceCaps:
     since = middle - np.append(-np.inf, begins)[np.searchsorted(begins, middle)]
     is_drilled = (stretch.met.kind == StationKind.DRILLING)[row]
     is_entry = is_cut & (since < way_in) & ~is_drilled
-    caps = caps.least(capped(np.where(is_entry, ENTRY_SHARE * chip, np.inf), CapName.ENTRY))
+    entry = np.where(is_entry, np.maximum(ENTRY_SHARE * chip, bounds.least), np.inf)
+    caps = caps.least(capped(entry, CapName.ENTRY))
     return PlaceCaps(ends=ends, segment=_segments(ends, offsets), caps=caps, is_cut=is_cut)
 
 

@@ -13,7 +13,7 @@ from optimiser.along_path.tool_bounds import bounds_of_tool
 from optimiser.modes import Mode
 from service.along_path.course import PathSource
 from service.along_path.run import FeedsAlongPath
-from service.along_path.task import task_of
+from service.along_path.task import least_feed, task_of
 from service.along_path.written_code import CodeSource, written_code
 from service.chosen import (
     DEFAULT_LATHE,
@@ -143,6 +143,7 @@ def optimise_code(
             *_idle(code, along),
             *_unchanged(rewritten),
             *along.findings,
+            *along.above_limits,
             *written.findings,
         ),
         written=None if files.dry_run else output,
@@ -206,7 +207,7 @@ def _bounds(code: CodePaths, request: AdviceRequest) -> dict[str, CutBounds]:
             roughness=roughness,
         )
         if bounds is not None:
-            found[part.name] = bounds
+            found[part.name] = replace(bounds, least=least_feed(request))
     return found
 
 

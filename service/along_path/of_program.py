@@ -9,7 +9,7 @@ from optimiser.along_path.bounds import bounds_of
 from optimiser.along_path.caps import CutBounds
 from service.along_path.course import BlockLog, Part, PathSource
 from service.along_path.run import FeedsAlongPath, along_path
-from service.along_path.task import task_of
+from service.along_path.task import least_feed, task_of
 from service.chosen import require_axes
 from service.paths.toolpaths import paths_of, with_feeds
 from service.reading import Tell, silent
@@ -48,10 +48,11 @@ def along_program(
         When the machine cannot run the program.
     """
     require_axes(plan.machine)
+    least = least_feed(request)
     bounds = {
-        advice.workingstep.id: bounds_of(advice)
+        advice.workingstep.id: replace(found, least=least)
         for advice in plan.advices
-        if advice.status is AdviceStatus.ADVISED
+        if advice.status is AdviceStatus.ADVISED and (found := bounds_of(advice)) is not None
     }
 
     def prepare(margin: float) -> PreparedRun:

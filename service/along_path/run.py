@@ -7,6 +7,7 @@ more than the whole block did, its feed is lowered, and the plan runs once more.
 
 from dataclasses import dataclass
 
+from optimiser.along_path.caps import CapName
 from optimiser.along_path.free import FASTEST_ALONE, FreeProfile, FreeTask
 from optimiser.along_path.pieces import PieceRules
 from optimiser.along_path.plan import (
@@ -28,7 +29,7 @@ from service.reading import Tell, silent
 from simulator.machine.totals import Total
 from simulator.motion.segments import ControlModel, axis_limits
 from simulator.spec import Machine
-from stepnc_model.errors import Finding
+from stepnc_model.errors import Finding, Severity
 
 MOST_ROUNDS = 6
 """Greatest number of runs of a plan."""
@@ -101,6 +102,20 @@ class FeedsAlongPath:
     def shown(self) -> tuple[AlongPathStep, ...]:
         """Parts of the program that take time."""
         return tuple(step for step in self.steps if step.before.duration > 0.0)
+
+    @property
+    def above_limits(self) -> tuple[Finding, ...]:
+        """Warnings of parts in which the least feed is above what the limits permit."""
+        found = []
+        for step in self.shown:
+            shares = step.plan.shares if step.plan else {}
+            if CapName.LEAST in shares:
+                text = (
+                    f"{step.name}: on {shares[CapName.LEAST][0]:.4g} mm of its path the limits "
+                    "demand less than the least feed (--least-feed), which is taken"
+                )
+                found.append(Finding(severity=Severity.WARNING, message=text))
+        return tuple(found)
 
     @property
     def time_before(self) -> float:

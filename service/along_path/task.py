@@ -33,3 +33,22 @@ def task_of(request: AdviceRequest, machine: Machine) -> AlongPathTask:
         margin=request.stock_margin_mm,
         tolerance=request.corner_tolerance_mm,
     )
+
+
+def least_feed(request: AdviceRequest) -> float:
+    """Feed that is permitted everywhere, mm/s; 0: none.
+
+    Raises
+    ------
+    StepNcError
+        When it exceeds the greatest feed.
+    """
+    least, greatest = request.least_feed_mm_min, request.max_feed_mm_min
+    if least is None:
+        return 0.0
+    if greatest is not None and least > greatest:
+        raise StepNcError(
+            f"least feed {least:g} mm/min (--least-feed) is above the greatest feed "
+            f"{greatest:g} mm/min (--max-feed)"
+        )
+    return speed_from_mm_min(least)

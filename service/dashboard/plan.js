@@ -71,7 +71,7 @@ const numeric = (id) => (byId(id).value === "" ? null : byId(id).valueAsNumber);
 function alongWish() {
   const smooth = numeric("smooth");
   return { smooth_share: smooth === null ? null : smooth / 100, levels: numeric("levels"), max_feed_mm_min: numeric("max-feed"),
-    stock_margin_mm: numeric("stock-margin"), corner_tolerance_mm: numeric("corner-tolerance") };
+    least_feed_mm_min: numeric("least-feed"), stock_margin_mm: numeric("stock-margin"), corner_tolerance_mm: numeric("corner-tolerance") };
 }
 
 /** Return the request body for NC code. */
@@ -109,7 +109,8 @@ function recall(request) {
   for (const each of form.querySelectorAll('input[name="free"]')) each.checked = request.free.includes(each.value);
   for (const [id, name] of [["machine", "machine"], ["material", "material"], ["units", "units"],
     ["roughness", "roughness_um"], ["profile", "profile"], ["nc-control", "nc_control"],
-    ["tool-change", "tool_change_s"], ["stock", "stock"], ["levels", "levels"], ["max-feed", "max_feed_mm_min"]]) put(id, request[name]);
+    ["tool-change", "tool_change_s"], ["stock", "stock"], ["levels", "levels"], ["max-feed", "max_feed_mm_min"],
+    ["least-feed", "least_feed_mm_min"]]) put(id, request[name]);
   put("stock-margin", request.stock_margin_mm ?? 1);
   put("corner-tolerance", request.corner_tolerance_mm ?? 0.05);
   put("smooth", request.smooth_share ? Number((100 * request.smooth_share).toFixed(6)) : null);

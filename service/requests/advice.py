@@ -214,6 +214,15 @@ class AdviceRequest(ProgramRequest):
             unit="mm/min", name="greatest feed", flag="--max-feed", metavar="MM_MIN",
         ),
     ] = None  # fmt: skip
+    least_feed_mm_min: Annotated[
+        float | None,
+        Interval(gt=0.0, le=1e6),
+        About(
+            "feed along the path that is always permitted, in mm/min: where limits demand "
+            "less, it is taken, and a warning says where",
+            unit="mm/min", name="least feed", flag="--least-feed", metavar="MM_MIN",
+        ),
+    ] = None  # fmt: skip
     finish: Annotated[
         tuple[Name, ...],
         MaxLen(1000),

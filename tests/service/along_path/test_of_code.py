@@ -165,6 +165,22 @@ def test_all_but_feeds_and_split_blocks_stays_byte_for_byte(name: str) -> None:
         place = new.index(line, place) + 1
 
 
+def test_no_feed_is_below_the_least_one() -> None:
+    least = replace(MILL, least_feed_mm_min=2000.0)
+    free, floored = advised(ARCS), advised(ARCS, least)
+    rates = [part.rate for parts in free.along.feeds.values() for part in parts]
+    assert min(rates) < 2000.0 / 60.0
+    for found in re.findall(r"F([0-9.]+)", floored.rewritten.data.decode("latin-1")):
+        assert float(found) >= 2000.0 * (1.0 - 1e-3)
+    assert floored.along.time_after < free.along.time_after
+    told = " ".join(each.message for each in floored.findings)
+    assert "demand less than the least feed (--least-feed)" in told
+    again = advised(floored.rewritten.data.decode("latin-1"), least)
+    assert again.rewritten.changed == 0
+    with pytest.raises(StepNcError, match=r"least feed 2000 mm/min .* above the greatest feed"):
+        advised(ARCS, replace(least, max_feed_mm_min=1000.0))
+
+
 def test_a_subprogram_for_two_tools_has_the_feed_that_both_permit() -> None:
     def feed(text: str) -> float:
         return advised(text).along.feeds[lines_of(text, "X120.")[0]][0].rate
