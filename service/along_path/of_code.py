@@ -41,6 +41,7 @@ from simulator.tool_files.read import ToolLibrary, read_tools
 from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
 from stepnc_model.nc.advice import RewrittenCode
 from stepnc_model.nc.program import NcProgram, read_program
+from stepnc_model.nc.unroll import unrolled
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.units import mm_from_um
 
@@ -96,6 +97,13 @@ def optimise_code(
     name = files.name or files.file.name
     library = _tools(request, files)
     program = read_program(read_bytes(files.file), dialect=request.dialect)
+    if request.is_unrolled:
+        straight = unrolled(program)
+        program = straight.program
+        tell(
+            f"unrolled: {straight.blocks} blocks from {straight.before}; lines are those of "
+            "the unrolled program"
+        )
     is_lathe = program.machine is MachineType.LATHE
     machine = load_machine(request.machine or (DEFAULT_LATHE if is_lathe else DEFAULT_MILL))
     require_axes(machine)

@@ -42,13 +42,15 @@ export function codeOptions(changed) {
     /** Fields of the request. */
     get fields() {
       return { tools_id: tools.id, stock: byId("code-stock").value.trim(), dialect: byId("dialect").value || null,
-        finish: names("finish"), keep: names("keep"), is_marked: byId("mark").checked };
+        finish: names("finish"), keep: names("keep"), is_marked: byId("mark").checked,
+        is_unrolled: byId("unroll").checked };
     },
     /** Fill the options from a request. */
     async recall(request) {
       byId("code-stock").value = request.stock;
       byId("dialect").value = request.dialect ?? "";
       byId("mark").checked = request.is_marked ?? false;
+      byId("unroll").checked = request.is_unrolled ?? false;
       for (const name of ["finish", "keep"]) byId(name).value = (request[name] ?? []).join(", ");
       await tools.use(request.tools_id ?? null);
     },

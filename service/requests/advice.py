@@ -240,6 +240,14 @@ class AdviceRequest(ProgramRequest):
             flag="--keep", metavar="TOOL",
         ),
     ] = ()  # fmt: skip
+    is_unrolled: Annotated[
+        bool,
+        About(
+            "of NC code: write each block as often as it is executed, without calls and "
+            "repeats, so that each call has feeds of its own",
+            flag="--unroll",
+        ),
+    ] = False
     dialect: Annotated[
         Dialect | None,
         About(

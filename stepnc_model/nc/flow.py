@@ -53,6 +53,8 @@ class ProgramFlow:
         self._recorder = recorder
         self._levels: list[_Level] = []
         self._executed = 0
+        self.trace: list[int] | None = None
+        """Blocks in the order of their execution, without those that steer; None: not kept."""
 
     @property
     def is_called(self) -> bool:
@@ -82,11 +84,18 @@ class ProgramFlow:
             If the program repeats blocks too often.
         """
         self._executed += 1
+        if self.trace is not None:
+            self.trace.append(block)
         if self._executed > len(self._text) + MOST_REPEATED:
             raise PostError(
                 f"the program repeats more than {MOST_REPEATED} blocks: is this loop endless?",
                 line=self._text.line(block),
             )
+
+    def steered(self, following: int) -> None:
+        """Note that the last executed block only says which one follows."""
+        if self.trace is not None and following < len(self._text):
+            self.trace.pop()
 
     def call(self, here: int, target: int, *, times: int = 1) -> int:
         """Enter a subprogram; return the block to execute next.

@@ -113,6 +113,7 @@ class HeidenhainControl:
         if not words.is_empty:
             following = self._steered(words, block)
             if following is not None:
+                self.flow.steered(following)
                 return following
         if head in PATHS:
             self._path(head, words)

@@ -115,6 +115,7 @@ class IsoControl:
         self.evaluate(words)
         following = self.steering.follow(words, block)
         if following is not None:
+            self.flow.steered(following)
             return following
         if sets_frame:
             self.modes.set_frame(block)

@@ -82,7 +82,7 @@ def read_program(
         raise PostError("canonical commands are no NC code: name the control of the program")
     kind = guess.machine if machine is None else machine
     text = text_of(data, chosen)
-    control = _control(text, chosen, kind)
+    control = control_of(text, chosen, kind)
     if data.startswith((BOM_UTF16_LE, BOM_UTF16_BE)):
         control.remarks.warn(0, "the file is UTF-16 text: save it as ASCII or UTF-8")
     control.run()
@@ -101,7 +101,8 @@ def read_program(
     )
 
 
-def _control(text: NcText, dialect: Dialect, machine: MachineType) -> Control:
+def control_of(text: NcText, dialect: Dialect, machine: MachineType) -> Control:
+    """Control that executes a program."""
     if dialect is Dialect.HEIDENHAIN:
         return HeidenhainControl(text)
     if dialect is Dialect.SINUMERIK:

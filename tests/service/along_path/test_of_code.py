@@ -165,6 +165,17 @@ def test_all_but_feeds_and_split_blocks_stays_byte_for_byte(name: str) -> None:
         place = new.index(line, place) + 1
 
 
+def test_unrolled_calls_have_feeds_of_their_own() -> None:
+    """Both calls of the first tool go through the same slot: the second one meets nothing."""
+    whole, single = advised(SUBPROGRAMS), advised(SUBPROGRAMS, replace(MILL, is_unrolled=True))
+    assert single.along.time_after < 0.95 * whole.along.time_after
+    assert single.along.time_before == pytest.approx(whole.along.time_before)
+    words = single.rewritten.data.decode("latin-1")
+    assert "M98" not in words
+    again = advised(words)
+    assert again.rewritten.changed == 0
+
+
 def test_no_feed_is_below_the_least_one() -> None:
     least = replace(MILL, least_feed_mm_min=2000.0)
     free, floored = advised(ARCS), advised(ARCS, least)
