@@ -292,6 +292,9 @@ def _reach_back(
             squares[row] = min(cap, after + 2.0 * length * along)
         else:
             along = 0.0
+            if cap <= after and _has_room(acceleration, geometry, row, length, cap, 0.0):
+                squares[row] = cap
+                continue
             squares[row] = _controllable(acceleration, geometry, row, length, cap, after)
 
 
@@ -309,6 +312,10 @@ def _reach_on(
             squares[row + 1] = min(square + 2.0 * length * along, greatest)
             continue
         along = 0.0
+        rise = (greatest - square) / (2.0 * length)
+        if _has_room(acceleration, geometry, row, length, square, rise):
+            squares[row + 1] = greatest
+            continue
         high, high_a, _, _, low, low_a, _, _ = _room(
             acceleration, geometry, row, length, square, greatest
         )
@@ -388,6 +395,21 @@ def _without_inertia(
         if end_tangent[row, axis] + 2.0 * length * bend == 0.0 and bend != 0.0:
             cap = min(cap, acceleration[axis] / abs(bend))
     return cap
+
+
+@kernel
+def _has_room(
+    acceleration: Floats, geometry: Geometry, row: int, length: float, square: float, a: float
+) -> bool:
+    """Whether no axis is at its limit at an acceleration a; most stations need no more."""
+    start_tangent, start_curvature, end_tangent, end_curvature = geometry
+    last = square + 2.0 * length * a
+    for axis in range(3):
+        first = start_tangent[row, axis] * a + start_curvature[row, axis] * square
+        second = end_tangent[row, axis] * a + end_curvature[row, axis] * last
+        if abs(first) > acceleration[axis] or abs(second) > acceleration[axis]:
+            return False
+    return True
 
 
 @kernel
