@@ -136,7 +136,8 @@ def test_totals_are_those_of_dense_samples(
     assert total.energy.total == pytest.approx(energy, rel=2e-3, abs=slack)
     # The last sample may come after the end.
     seen = samples.spindle_power[:-1].max(initial=0.0)
-    assert total.power.value >= seen * (1.0 - 1e-6) - 1e-6
+    # A rapid that cuts may have its peak between two stations.
+    assert total.power.value >= seen * (1.0 - 5e-4) - 1e-6
     parts = total.energy
     assert parts.total == pytest.approx(
         parts.x_axis + parts.y_axis + parts.z_axis + parts.spindle + parts.coolant + parts.base
