@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from service.chosen import load_material_named, machine_for, material_for
 from service.files import open_lines, read_bytes
 from service.raw_stock import raw_stock_of, stock_map
@@ -154,12 +156,16 @@ def _paths_of_any_origin(
     dialect = one_of(Dialect, request.dialect.lower(), "dialect") if request.dialect else None
     data = read_bytes(request.code)
     found = recognise(data).machine
-    if found is not _kind(machine):
+    program = read_program(data, dialect=dialect, machine=found)
+    is_without_y = bool((np.nan_to_num(program.moves.end[:, 1]) == 0.0).all())
+    if is_without_y and found is MachineType.MILL and machine.kind is MachineKind.LATHE:
+        # Nothing else may show that code is for a lathe.
+        program = read_program(data, dialect=dialect, machine=MachineType.LATHE)
+    if program.machine is not _kind(machine):
         raise StepNcError(
             f"{request.code.name}: this is code for a {found.value}, and {machine.name} is a "
             f"{machine.kind.value}"
         )
-    program = read_program(data, dialect=dialect, machine=found)
     if library is not None:
         called = called_tool_findings(program, library)
         program = replace(
@@ -211,7 +217,7 @@ def _code_of_program(request: CodeRequest, file: Path, run: RunRequest) -> Prepa
         name=request.code.name,
         machine=machine,
         material=match,
-        blocks=_read(request, lines, machine, ids),
+        blocks=_named(request.code, _read(request, lines, machine, ids)),
         tools=loaded_tools(program, numbers, match),
         stock=ClampedStock(program, machine).stock,
         raw=stock_of(program, setup),
@@ -247,6 +253,14 @@ def _read(
             yield lines.count, Comment(text=block.text, workingstep=name)
         else:
             yield lines.count, block
+
+
+def _named(code: Path, blocks: Iterator[Numbered]) -> Iterator[Numbered]:
+    """Blocks of a file that its errors name."""
+    try:
+        yield from blocks
+    except PostError as error:
+        raise StepNcError(f"{code.name}: {error}") from error
 
 
 def _kind(machine: Machine) -> MachineType:

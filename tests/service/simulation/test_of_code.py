@@ -215,3 +215,19 @@ def test_small_letters_remove_what_plain_code_removes(tmp_path: Path) -> None:
     assert foreign.whole.cutting_time == pytest.approx(plain.whole.cutting_time)
     origins = ["any origin" in "".join(map(str, each.findings)) for each in (plain, foreign)]
     assert origins == [False, True]
+
+
+def test_code_of_a_lathe_may_show_it_by_nothing(tmp_path: Path) -> None:
+    text = "T1 M6\nS800 M3\nG53 G0 Z0\nG0 X23. Z2.\nG1 Z-40. F90.\nM30\n"
+    code = replace(written(tmp_path, text, "part.ngc"), stock=BAR)
+    (tmp_path / "tools.csv").write_text(INSERTS, encoding="ascii")
+    run = simulate(*asked_simulation(code=code, machine="lathe22", material="c45"))
+    assert run.whole.volume > 0.0
+
+
+def test_an_error_in_the_code_of_a_program_names_its_file(tmp_path: Path) -> None:
+    code = CodeRequest(code=tmp_path / "part.ngc")
+    code.code.write_text("G21 G90\nG199 X1\n", encoding="ascii")
+    asked = asked_simulation(BRACKET, code=code, machine="vmc15")
+    with pytest.raises(StepNcError, match=r"^part.ngc: line 2: word G199"):
+        simulate(*asked)
