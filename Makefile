@@ -8,6 +8,7 @@ SHELL := /bin/sh
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
+TESTS_READY := $(VENV)/.ready-tests
 DEMO := build/demo
 
 # The first interpreter that is 3.11 or newer; `make PYTHON=/path/to/python3` overrides.
@@ -29,22 +30,31 @@ help:
 
 setup: $(READY)
 
+# Where Python writes no bytecode, as in some containers, each command would compile all that it
+# loads. It is written on first use: installing compiles nothing, and nothing unused is compiled.
+unexport PYTHONDONTWRITEBYTECODE
+
 $(READY): requirements.lock pyproject.toml
 	@test -n "$(PYTHON)" || { echo "error: Python 3.11 or newer is needed: apt-get install python3 python3-venv" >&2; exit 1; }
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || \
 		{ echo "error: $(PYTHON) is older than Python 3.11: apt-get install python3 python3-venv" >&2; exit 1; }
-	@if command -v uv >/dev/null 2>&1; then \
-		uv venv --quiet --allow-existing --python "$(PYTHON)" $(VENV) && \
-		VIRTUAL_ENV=$(VENV) uv pip sync --quiet --require-hashes requirements.lock && \
-		VIRTUAL_ENV=$(VENV) uv pip install --quiet --no-deps --no-build-isolation --editable . ; \
-	else \
-		"$(PYTHON)" -c 'import ensurepip, venv' 2>/dev/null || \
-			{ echo "error: the venv module is missing: apt-get install python3-venv" >&2; exit 1; }; \
-		"$(PYTHON)" -m venv $(VENV) && \
-		$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock && \
-		$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable . ; \
-	fi
+	@command -v uv >/dev/null 2>&1 || "$(PYTHON)" -c 'import ensurepip, venv' 2>/dev/null || \
+		{ echo "error: the venv module is missing: apt-get install python3-venv" >&2; exit 1; }
+	@if command -v uv >/dev/null 2>&1; \
+		then uv venv --quiet --allow-existing --python "$(PYTHON)" $(VENV); \
+		else "$(PYTHON)" -m venv $(VENV); fi
+	@$(INSTALL) --require-hashes -r requirements.lock
+	@$(INSTALL) --no-deps --no-build-isolation --editable .
 	@touch $@
+
+# What only tests, checks, benchmarks and the documentation need, all extras among them.
+$(TESTS_READY): requirements-dev.lock $(READY)
+	@$(INSTALL) --require-hashes -r requirements-dev.lock
+	@touch $@
+
+# uv where there is one; it compiles nothing either.
+INSTALL = $$(command -v uv >/dev/null 2>&1 && echo "uv pip install --quiet --python $(VENV)" || \
+	echo "$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile")
 
 demo: $(READY)
 	@mkdir -p $(DEMO)
@@ -69,7 +79,7 @@ COMPILE := mkdir -p build && \
 	.venv/bin/stepnc simulate examples/parts/bracket.stpnc --machine vmc15 --lag -o build/bracket.csv >/dev/null && \
 	.venv/bin/stepnc simulate examples/parts/shaft.stpnc --machine lathe22 >/dev/null
 
-test: $(READY)
+test: $(TESTS_READY)
 	@$(subst .venv,$(VENV),$(COMPILE))
 	$(BIN)/python -m pytest -n auto --durations=20 --durations-min=1
 
@@ -80,7 +90,7 @@ SHARE ?= 0.3
 # each time, in one of all orders, and a clone of what is committed that nobody else may enter
 # (mktemp: mode 0700).
 # It borrows the environment; modules that are installed there come after those of the clone.
-shuffled: $(READY)
+shuffled: $(TESTS_READY)
 	@echo "make shuffled SEED=$(SEED) SHARE=$(SHARE)"
 	@folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && trap 'exit 130' INT TERM && \
 	git clone --quiet . "$$folder/clone" && \
@@ -89,7 +99,7 @@ shuffled: $(READY)
 	cd "$$folder/clone" && export PYTHONPATH="$$PWD" && $(COMPILE) && \
 	.venv/bin/python -m pytest -n auto -m "not slow" --shuffle $(SEED) --share $(SHARE)
 
-check: $(READY)
+check: $(TESTS_READY)
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
@@ -101,18 +111,21 @@ PORT ?= 8000
 serve: $(READY)
 	$(BIN)/stepnc serve --port $(PORT)
 
-bench: $(READY)
+bench: $(TESTS_READY)
 	$(BIN)/python -m benchmarks
 
 # Whatever mkdocs would warn of is an error. The variable stills an advertisement of its theme.
-docs: $(READY)
+docs: $(TESTS_READY)
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
 	@echo "open: build/site/index.html (its search needs a server: python3 -m http.server -d build/site)"
 
 # Needs uv. Universal (every platform, Python 3.11 and later), hashes, no index addresses.
+LOCK = uv pip compile pyproject.toml --universal --python-version 3.11 --generate-hashes \
+	--no-emit-index-url --no-emit-find-links --no-header --quiet
+
 lock:
-	uv pip compile pyproject.toml --extra dev --universal --python-version 3.11 --generate-hashes \
-		--no-emit-index-url --no-emit-find-links --no-header --quiet -o requirements.lock
+	$(LOCK) --extra dev -o requirements-dev.lock
+	$(LOCK) --constraint requirements-dev.lock -o requirements.lock
 
 clean:
 	rm -rf $(VENV) build *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache

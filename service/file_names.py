@@ -1,5 +1,6 @@
 """Names of files in messages: stored files are named as their owners named them."""
 
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -18,6 +19,9 @@ PROGRAMS = frozenset({
     ".p21z",
 })
 """Suffixes of STEP-NC programs; other files are NC code."""
+
+LOGS = frozenset({".parquet", ".csv", ".xml", ".shdr", ".log"})
+"""Suffixes of recorded runs."""
 
 Names = Mapping[Path, str]
 """Names that owners gave to files."""
@@ -46,3 +50,8 @@ def naming(names: Names) -> Iterator[None]:
         if text == str(error):
             raise
         raise StepNcError(text) from error
+
+
+def plain_name(text: str) -> str:
+    """Return a text as it can name a file everywhere."""
+    return re.sub(r"[^A-Za-z0-9._-]", "_", text)[:150]

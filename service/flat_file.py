@@ -13,14 +13,10 @@ from datetime import datetime
 from enum import StrEnum
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from service.files import write_lines
 from service.formula import disarmed
 from stepnc_model.errors import WriteError
-
-if TYPE_CHECKING:
-    import pyarrow as pa
 
 Value = str | float | int | bool | datetime | None
 Row = Mapping[str, Value]
@@ -136,14 +132,22 @@ def _json_value(value: Value) -> Value:
 
 def _write_parquet(path: Path, fields: Sequence[FileColumn], rows: Iterable[Row]) -> int:
     """Groups of rows, as they come."""
-    from service.run_file import RunFile  # noqa: PLC0415 (pyarrow)
+    from service.run_file import ColumnKind, RunColumn, RunFile  # noqa: PLC0415 (numpy)
 
     if path.suffix.lower() != ".parquet":
         raise WriteError("the name of a Parquet file ends with .parquet", path=str(path))
-    schema = _schema(fields)
-    file = RunFile(path, schema)
+    kinds = {
+        str: ColumnKind.TEXT,
+        float: ColumnKind.EXACT,
+        int: ColumnKind.INTEGER,
+        bool: ColumnKind.TRUTH,
+        datetime: ColumnKind.MOMENT,
+    }
+    file = RunFile(path, [RunColumn(name=each.name, kind=kinds[each.kind]) for each in fields])
+    rest = iter(rows)
     try:
-        _write_groups(file.write, schema, rows)
+        while group := list(islice(rest, AT_ONCE)):
+            file.write([[row[each.name] for row in group] for each in fields])
     except BaseException:
         with file.closing(is_whole=False):
             pass
@@ -151,27 +155,3 @@ def _write_parquet(path: Path, fields: Sequence[FileColumn], rows: Iterable[Row]
     with file.closing(is_whole=True):
         pass
     return file.rows
-
-
-def _write_groups(
-    write: "Callable[[Sequence[pa.Array]], None]", schema: "pa.Schema", rows: Iterable[Row]
-) -> None:
-    import pyarrow as pa  # noqa: PLC0415 (slow to import)
-
-    rest = iter(rows)
-    while group := list(islice(rest, AT_ONCE)):
-        write([pa.array([row[each.name] for row in group], type=each.type) for each in schema])
-
-
-def _schema(fields: Sequence[FileColumn]) -> "pa.Schema":
-    """Types that keep every value."""
-    import pyarrow as pa  # noqa: PLC0415 (slow to import)
-
-    kinds = {
-        str: pa.string(),
-        float: pa.float64(),
-        int: pa.int64(),
-        bool: pa.bool_(),
-        datetime: pa.timestamp("us", tz="UTC"),
-    }
-    return pa.schema([pa.field(each.name, kinds[each.kind]) for each in fields])

@@ -1,25 +1,83 @@
 """Rows of a run on their way to a Parquet or CSV file, written as they come.
 
 The file gets its name when it is whole. A run that is broken off leaves what it has under
-``.partial``, closed and readable.
+``.partial``, closed and readable. Parquet needs pyarrow, which is loaded for it only.
 """
 
-import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, field
+from datetime import datetime
+from enum import StrEnum
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO, Protocol
 
-import pyarrow as pa
-from pyarrow import compute, csv, parquet
+import numpy as np
+import orjson
+from numpy.typing import NDArray
 
-from service.formula import FIRST
+from service.extras import missing_extras_named
+from service.formula import disarmed
 from service.growing_file import GrowingFile
 from stepnc_model.errors import WriteError
 
+if TYPE_CHECKING:
+    import pyarrow as pa
+
 SUFFIXES = (".parquet", ".csv")
 
-WORDS = pa.dictionary(pa.int32(), pa.string())
-"""words that come again and again"""
+AT_ONCE = 4096
+"""rows that become text together"""
+
+
+class ColumnKind(StrEnum):
+    """Type of a column, by its name in Arrow."""
+
+    EXACT = "float64"
+    NUMBER = "float32"
+    COUNT = "int32"
+    INTEGER = "int64"
+    TRUTH = "bool"
+    WORDS = "dictionary"
+    """words that come again and again"""
+    TEXT = "string"
+    MOMENT = "timestamp"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunColumn:
+    """One column of the file."""
+
+    name: str
+    kind: ColumnKind = ColumnKind.NUMBER
+    unit: str = ""
+    notes: Mapping[str, str] = field(default_factory=dict)
+    """metadata beside the unit"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Words:
+    """Words by their numbers."""
+
+    codes: NDArray[np.int32]
+    """(N,) place among the names; negative: none"""
+    names: Sequence[str]
+
+    def __len__(self) -> int:
+        return len(self.codes)
+
+
+Values = NDArray[Any] | Words | Sequence[str | float | int | bool | datetime | None]
+"""values of a column; NaN is a sample that is missing"""
+
+
+def words_of(values: Iterable[object]) -> Words:
+    """Words and their numbers, in the order in which they first come."""
+    places: dict[str, int] = {}
+    codes = [
+        -1 if each is None else places.setdefault(str(each), len(places)) for each in values
+    ]
+    return Words(codes=np.array(codes, np.int32), names=list(places))
 
 
 class RunFile:
@@ -29,8 +87,7 @@ class RunFile:
     ----------
     path : Path
         Ends with ``.parquet`` or ``.csv``.
-    schema : Schema
-        Columns with their units as metadata.
+    columns : sequence of RunColumn
 
     Raises
     ------
@@ -38,14 +95,19 @@ class RunFile:
         When the ending is another, or the disk refuses.
     """
 
-    def __init__(self, path: Path, schema: pa.Schema) -> None:
+    def __init__(self, path: Path, columns: Sequence[RunColumn]) -> None:
         self.path = path
         self.rows = 0
-        self._is_text = require_suffix(path) == ".csv"
-        self._names = schema.names
+        is_text = require_suffix(path) == ".csv"
+        with missing_extras_named(f"{path.name}: Parquet"):
+            schema = None if is_text else arrow_schema(columns)
         self._file = GrowingFile(path)
         try:
-            self._writer = self._opened(schema)
+            self._writer: _Rows = (
+                _CsvRows(self._file.stream, columns)
+                if schema is None
+                else _ParquetRows(self._file.stream, schema)
+            )
         except OSError as error:
             raise self._file.refused(error) from error
 
@@ -59,21 +121,19 @@ class RunFile:
         """Name of the file that an interrupted run leaves."""
         return self._file.partial
 
-    def write(self, columns: Sequence[pa.Array]) -> None:
-        """More rows, as columns in the order of the schema.
+    def write(self, values: Sequence[Values]) -> None:
+        """More rows, as columns in their order.
 
         Raises
         ------
         WriteError
             When the disk refuses.
         """
-        arrays = [_plain(column) for column in columns] if self._is_text else columns
-        batch = pa.record_batch(arrays, names=self._names)
         try:
-            self._writer.write(batch)
+            self._writer.write(values)
         except OSError as error:
             raise self._file.refused(error) from error
-        self.rows += batch.num_rows
+        self.rows += len(values[0])
 
     @contextmanager
     def closing(self, *, is_whole: bool) -> Iterator[None]:
@@ -90,19 +150,6 @@ class RunFile:
             yield
             self._writer.close()
 
-    def _opened(self, schema: pa.Schema) -> parquet.ParquetWriter | csv.CSVWriter:
-        if self._is_text:
-            return csv.CSVWriter(self._file.stream, _spelled_out(schema))
-        floats = [field.name for field in schema if pa.types.is_floating(field.type)]
-        return parquet.ParquetWriter(
-            self._file.stream,
-            schema,
-            compression="zstd",
-            # Measured values hardly repeat; their bytes compress when each has its stream.
-            use_dictionary=[name for name in schema.names if name not in floats],
-            use_byte_stream_split=floats,
-        )
-
 
 def require_suffix(path: Path) -> str:
     """The ending of a file for a run, in small letters.
@@ -118,18 +165,107 @@ def require_suffix(path: Path) -> str:
     return suffix
 
 
-def _spelled_out(schema: pa.Schema) -> pa.Schema:
-    """Words as they are: text has no dictionaries."""
+def arrow_schema(columns: Sequence[RunColumn]) -> "pa.Schema":
+    """Names and types of the columns, each with its unit and notes as metadata."""
+    import pyarrow as pa  # noqa: PLC0415 (an extra)
+
+    kinds = {
+        ColumnKind.WORDS: pa.dictionary(pa.int32(), pa.string()),
+        ColumnKind.MOMENT: pa.timestamp("us", tz="UTC"),
+    }
     return pa.schema([
-        field.with_type(pa.string()) if pa.types.is_dictionary(field.type) else field
-        for field in schema
+        pa.field(
+            each.name,
+            kinds.get(each.kind) or pa.type_for_alias(each.kind.value),
+            metadata={"unit": each.unit, **each.notes},
+        )
+        for each in columns
     ])
 
 
-def _plain(column: pa.Array) -> pa.Array:
-    """Words spelled out, none of them a formula; numbers as they are."""
-    if not isinstance(column, pa.DictionaryArray):
-        return column
-    return compute.replace_substring_regex(
-        column.dictionary_decode(), pattern=f"^([{re.escape(FIRST)}])", replacement=r"'\1"
-    )
+class _Rows(Protocol):
+    """Writer of one format."""
+
+    def write(self, values: Sequence[Values]) -> None: ...
+
+    def close(self) -> None: ...
+
+
+class _ParquetRows:
+    """Groups of rows of a Parquet file. Running state."""
+
+    def __init__(self, stream: BinaryIO, schema: "pa.Schema") -> None:
+        import pyarrow as pa  # noqa: PLC0415 (an extra)
+        from pyarrow import parquet  # noqa: PLC0415
+
+        floats = [each.name for each in schema if pa.types.is_floating(each.type)]
+        self._schema = schema
+        self._writer = parquet.ParquetWriter(
+            stream,
+            schema,
+            compression="zstd",
+            # Measured values hardly repeat; their bytes compress when each has its stream.
+            use_dictionary=[name for name in schema.names if name not in floats],
+            use_byte_stream_split=floats,
+        )
+
+    def write(self, values: Sequence[Values]) -> None:
+        import pyarrow as pa  # noqa: PLC0415 (an extra)
+
+        arrays = [
+            pa.DictionaryArray.from_arrays(
+                pa.array(each.codes, mask=each.codes < 0), pa.array(each.names, pa.string())
+            )
+            if isinstance(each, Words)
+            else pa.array(each, column.type, from_pandas=True)
+            for column, each in zip(self._schema, values, strict=True)
+        ]
+        self._writer.write(pa.record_batch(arrays, schema=self._schema))
+
+    def close(self) -> None:
+        self._writer.close()
+
+
+class _CsvRows:
+    """Lines of a CSV file; an empty cell is a missing value, texts stand in quotes."""
+
+    def __init__(self, stream: BinaryIO, columns: Sequence[RunColumn]) -> None:
+        self._stream = stream
+        stream.write(b",".join(_quoted(each.name) for each in columns) + b"\n")
+
+    def write(self, values: Sequence[Values]) -> None:
+        for begin in range(0, len(values[0]), AT_ONCE):
+            rows = slice(begin, begin + AT_ONCE)
+            cells = [_cells(each, rows) for each in values]
+            self._stream.writelines(
+                b",".join(line) + b"\n" for line in zip(*cells, strict=True)
+            )
+
+    def close(self) -> None:
+        """Every line has been written."""
+
+
+def _cells(values: Values, rows: slice) -> list[bytes]:
+    """Cells of some rows: numbers with the digits that they need, words in quotes."""
+    if isinstance(values, Words):
+        # The last one is that of a missing word, whose code is -1.
+        texts = [*map(_quoted, values.names), b""]
+        return [texts[max(code, -1)] for code in values.codes[rows].tolist()]
+    if isinstance(values, np.ndarray):
+        numbers = np.ascontiguousarray(values[rows])
+        text = orjson.dumps(numbers, option=orjson.OPT_SERIALIZE_NUMPY)
+        cells = text[1:-1].split(b",")
+        # JSON knows neither NaN nor infinity.
+        for row in np.flatnonzero(~np.isfinite(numbers)).tolist():
+            cells[row] = b"" if np.isnan(numbers[row]) else repr(float(numbers[row])).encode()
+        return cells
+    return [
+        b"" if each is None else _quoted(each) if isinstance(each, str) else orjson.dumps(each)
+        for each in values[rows]
+    ]
+
+
+def _quoted(text: str) -> bytes:
+    """A text in quotes, none of which becomes a formula."""
+    doubled = disarmed(text).replace('"', '""')
+    return f'"{doubled}"'.encode()

@@ -29,7 +29,6 @@ from stepnc_model.errors import StepNcError
 
 DOCUMENTS = frozenset({".xml"})
 LINES = frozenset({".shdr", ".log"})
-LOGS = TABLES | DOCUMENTS | LINES
 """Suffixes of recorded runs."""
 
 ROWS = 8192

@@ -12,9 +12,9 @@ from typing import Any
 import uvicorn
 
 from service.agent.play import MICRO, PlayableRun, begun, now, play
-from service.agent.replay import LOGS, read_log
 from service.agent.run_routes import Application, with_runs
-from service.agent.runs import RunKeeper, RunRepository, plain_name
+from service.extras import missing_extras_named
+from service.file_names import LOGS, plain_name
 from service.files import require_place, write_atomically
 from service.http_protocol import BoundedHttpProtocol
 from service.reading import Tell, silent
@@ -200,8 +200,10 @@ def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent
         agent.allows_put, agent.writer.schemas = request.allows_put, schemas
         app = application(agent)
         if files.runs is not None:
-            repository = RunRepository(files.runs)
-            stack.callback(RunKeeper(agent, repository, tell=tell).close)
+            with missing_extras_named("--runs"):
+                from service.agent import runs  # noqa: PLC0415 (an extra)
+            repository = runs.RunRepository(files.runs)
+            stack.callback(runs.RunKeeper(agent, repository, tell=tell).close)
             app = with_runs(app, repository)
         tell(f"MTConnect agent: http://{place_of(listener)}/current")
         run_server(agent, app, [*work, *broker(agent)], listener, shdr=shdr)
@@ -235,13 +237,8 @@ def _broker(request: AgentRequest, tell: Tell) -> Callable[[Agent], Sequence[Wor
     if request.mqtt is None:
         return lambda _: ()
     address = _address(request.mqtt, "MQTT broker", "127.0.0.1:1883")
-    try:
-        from simulator.agent.mqtt import MqttPublisher  # noqa: PLC0415 (an optional extra)
-    except ModuleNotFoundError as error:
-        if not (error.name or "").startswith("paho"):
-            raise
-        install = "pip install 'stepnc-optimiser[mqtt]'"
-        raise StepNcError(f"--mqtt needs the package paho-mqtt: {install}") from error
+    with missing_extras_named("--mqtt"):
+        from simulator.agent.mqtt import MqttPublisher  # noqa: PLC0415 (an extra)
     host, port = address.host, address.port
     return lambda agent: [MqttPublisher(agent=agent, host=host, port=port, tell=tell).run]
 
@@ -273,6 +270,8 @@ def replayed(
             raise StepNcError("name the machine with --machine, or its model with --device")
         machine = load_machine(request.machine)
         model = machine_model(machine, version=request.schema, names=request.names).model
+    with missing_extras_named(log.name):
+        from service.agent.replay import read_log  # noqa: PLC0415 (an extra)
     return played(request, read_log(log, model, tell=tell))
 
 

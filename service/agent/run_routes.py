@@ -11,12 +11,14 @@ from collections import OrderedDict
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import asdict
 from datetime import UTC, datetime
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qsl, urlencode
 
-from service.agent.runs import KeptRun, RunRepository
 from simulator.agent.http import application
 from stepnc_model.errors import StepNcError
+
+if TYPE_CHECKING:
+    from service.agent.runs import KeptRun, RunRepository
 
 Receive = Callable[[], Awaitable[Mapping[str, Any]]]
 Send = Callable[[Mapping[str, Any]], Awaitable[None]]
@@ -31,7 +33,7 @@ MOST_LISTED = 1000
 FILTERS = frozenset({"machine", "part", "workingstep", "from", "to"})
 
 
-def with_runs(app: Application, repository: RunRepository) -> Application:
+def with_runs(app: Application, repository: "RunRepository") -> Application:
     """Return an application that serves an agent and its repository of runs."""
     loaded: OrderedDict[str, Application] = OrderedDict()
 
@@ -69,7 +71,7 @@ def with_runs(app: Application, repository: RunRepository) -> Application:
 
 
 async def _application(
-    repository: RunRepository, loaded: OrderedDict[str, Application], id: str
+    repository: "RunRepository", loaded: OrderedDict[str, Application], id: str
 ) -> Application:
     """Return the application of a run's own agent, read from its file when it is new."""
     if id not in loaded:
@@ -81,7 +83,7 @@ async def _application(
     return loaded[id]
 
 
-async def _list(repository: RunRepository, scope: Mapping[str, Any], send: Send) -> None:
+async def _list(repository: "RunRepository", scope: Mapping[str, Any], send: Send) -> None:
     words = dict(parse_qsl(scope.get("query_string", b"").decode("latin-1")))
     unknown = sorted(set(words) - FILTERS)
     if unknown:
@@ -113,11 +115,11 @@ def _moment(text: str | None) -> datetime | None:
     return moment if moment.tzinfo else moment.replace(tzinfo=UTC)
 
 
-def _has(run: KeptRun, workingstep: str) -> bool:
+def _has(run: "KeptRun", workingstep: str) -> bool:
     return any(step.id == workingstep for step in run.workingsteps)
 
 
-def _query(scope: Mapping[str, Any], run: KeptRun) -> bytes:
+def _query(scope: Mapping[str, Any], run: "KeptRun") -> bytes:
     """Return the query for the run's own agent: a workingstep becomes ``from`` and ``to``."""
     query: bytes = scope.get("query_string", b"")
     words = parse_qsl(query.decode("latin-1"), keep_blank_values=True)

@@ -13,7 +13,6 @@ References
 
 import json
 import os
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -23,6 +22,7 @@ import numpy as np
 import pyarrow as pa
 from pyarrow import parquet
 
+from service.file_names import plain_name
 from service.reading import Tell, silent
 from simulator.agent.agent import Agent
 from simulator.agent.buffer import (
@@ -327,11 +327,6 @@ def _is_known(value: Value) -> bool:
     if isinstance(value, ConditionValue):
         return value.level != "UNAVAILABLE"
     return value is not None
-
-
-def plain_name(text: str) -> str:
-    """Return a text as it can name a file everywhere."""
-    return re.sub(r"[^A-Za-z0-9._-]", "_", text)[:150]
 
 
 def _cells(value: Value) -> dict[str, Any]:

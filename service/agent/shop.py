@@ -7,13 +7,13 @@ clock: a run at another pace than that of a real machine keeps its own time in A
 import asyncio
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import structlog
 
 from service.agent.play import now
-from service.agent.runs import RunKeeper, RunRepository
+from service.extras import has_package
 from service.live.folder import LiveFolder
 from service.live.series import open_series
 from service.storage import jobs, library
@@ -28,6 +28,9 @@ from simulator.agent.machine_model import MachineModel, machine_model, shop_mode
 from simulator.spec import Machine
 from stepnc_model.errors import StepNcError
 from stepnc_model.units import speed_from_mm_min
+
+if TYPE_CHECKING:
+    from service.agent.runs import RunKeeper, RunRepository
 
 LOG = structlog.get_logger("agent")
 
@@ -91,8 +94,13 @@ class ShopAgent:
         }
         model = shop_model(self._shown.values())
         self.agent = Agent(model=model, clock=now)
-        self.repository = RunRepository(data_folder.root / "runs")
-        self._keeper = RunKeeper(self.agent, self.repository, tell=_warn)
+        self.repository: RunRepository | None = None
+        self._keeper: RunKeeper | None = None
+        if has_package("pyarrow"):
+            from service.agent import runs  # noqa: PLC0415 (an extra)
+
+            self.repository = runs.RunRepository(data_folder.root / "runs")
+            self._keeper = runs.RunKeeper(self.agent, self.repository, tell=_warn)
         self._tails: dict[str, _Tail] = {}
         for shown in self._shown.values():
             ids = [item.id for item in shown.model.items if item.type == "AVAILABILITY"]
@@ -110,7 +118,8 @@ class ShopAgent:
                     _warn(str(error))
                 await asyncio.sleep(LOOK)
         finally:
-            self._keeper.close()
+            if self._keeper is not None:
+                self._keeper.close()
 
     def _add(self, news: _News) -> None:
         index = self.agent.model.index

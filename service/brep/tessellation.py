@@ -4,7 +4,6 @@ Open CASCADE may crash on a damaged file, and a small file may keep it busy or f
 the process has limits of time and memory, and its end is an error of the file. Units mm.
 """
 
-import importlib.util
 import json
 import os
 import resource
@@ -18,10 +17,9 @@ from typing import Any
 
 import numpy as np
 
+from service.extras import has_package, how_to_install
 from simulator.motion.segments import Floats, Ints
 from stepnc_model.errors import StepNcError
-
-INSTALL = "pip install 'stepnc-optimiser[brep]'"
 
 LONGEST = 120.0
 """Time limit, s."""
@@ -103,9 +101,10 @@ def require_open_cascade(name: str) -> None:
     StepNcError
         With the command that installs it.
     """
-    if importlib.util.find_spec("OCP") is None:
+    if not has_package("OCP"):
         raise StepNcError(
-            f"{name}: B-rep solids are read by Open CASCADE, which is not installed: {INSTALL}"
+            f"{name}: B-rep solids are read by Open CASCADE, which is not installed: "
+            f"{how_to_install('OCP')}"
         )
 
 

@@ -222,13 +222,15 @@ def _add_convert(commands: Commands) -> None:
 
 def _run(options: argparse.Namespace) -> None:
     """Run a command and turn the project's errors into exit codes."""
+    from service.extras import missing_extras_named
     from service.terminal import prepare, tell
     from stepnc_model.errors import StepNcError
 
     prepare()
     code = OK
     try:
-        code = options.run(options)
+        with missing_extras_named(getattr(options, "command", "optimise")):
+            code = options.run(options)
         sys.stdout.flush()
     except StepNcError as error:
         tell(f"error: {error}{_alternative(error, options)}")

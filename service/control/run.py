@@ -31,11 +31,10 @@ from service.control.setup import (
     require_teeth,
     steps_of,
 )
-from service.control.trace import ControlTrace, control_schema
+from service.control.trace import COLUMNS, ControlTrace
 from service.paths.remarks import tell_remarks
 from service.progress import Ticker, bar
 from service.reading import Tell, silent
-from service.recording.signals import read_signals
 from service.requests.fields import require_bounds
 from service.requests.runs import ControlRequest, SensorChoice, SimulationRequest
 from service.run_file import RunFile
@@ -163,6 +162,8 @@ def prepare(
     require_bounds(request)
     signals = None
     if files.recorded is not None:
+        from service.recording.signals import read_signals  # noqa: PLC0415 (an extra)
+
         signals = read_signals(files.recorded)
         request = _evaluating(request, signals)
     law, settings = request.law, _settings(request)
@@ -325,7 +326,7 @@ class Session:
             self.machine.course,
             self.holdings,
             workingsteps=self.workingsteps,
-            file=None if output is None else RunFile(output, control_schema()),
+            file=None if output is None else RunFile(output, COLUMNS),
             has_trace=self.files.report is not None,
             sink=sink,
         )

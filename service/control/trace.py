@@ -7,18 +7,17 @@ that of the revolution. Running state. Units mm, s, N, W.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from enum import IntEnum, StrEnum
+from enum import IntEnum
 from math import inf, isfinite, nan
 from types import TracebackType
 
 import numpy as np
-import pyarrow as pa
 
 from controller.cycle import LoopCycle
 from controller.orders import LoopEvent
 from service.buckets import BucketedRun, Buckets
 from service.control.holding import HoldTallies
-from service.run_file import WORDS, RunFile
+from service.run_file import ColumnKind, RunColumn, RunFile, Values, words_of
 from service.session.rows import Moment
 from simulator.plant.controlled import TrueState
 from simulator.plant.course import NominalCourse
@@ -29,51 +28,33 @@ ROWS = 8192
 APART = 0.25
 """s between rows without a revolution, at least"""
 
-
-class ColumnKind(StrEnum):
-    """Storage type of a column."""
-
-    EXACT = "64 bits"
-    NUMBER = "32 bits"
-    WORDS = "words"
-
-
-@dataclass(frozen=True, slots=True)
-class TraceColumn:
-    """One column of the file."""
-
-    name: str
-    unit: str = ""
-    kind: ColumnKind = ColumnKind.NUMBER
-
-
 COLUMNS = (
-    TraceColumn("time_s", "s", ColumnKind.EXACT),
-    TraceColumn("progress_s", "s", ColumnKind.EXACT),
-    TraceColumn("workingstep", kind=ColumnKind.WORDS),
-    TraceColumn("x_axis_position_actual", "mm"),
-    TraceColumn("y_axis_position_actual", "mm"),
-    TraceColumn("z_axis_position_actual", "mm"),
-    TraceColumn("path_feedrate_programmed", "mm/s"),
-    TraceColumn("path_feedrate_actual", "mm/s"),
-    TraceColumn("override_commanded", "1"),
-    TraceColumn("override_actual", "1"),
-    TraceColumn("force_set_point", "N"),
-    TraceColumn("force_measured", "N"),
-    TraceColumn("force_peak", "N"),
-    TraceColumn("force_true", "N"),
-    TraceColumn("force_expected", "N"),
-    TraceColumn("force_ratio", "1"),
-    TraceColumn("force_tooth_passing", "N"),
-    TraceColumn("force_once_per_revolution", "N"),
-    TraceColumn("spindle_power", "W"),
-    TraceColumn("spindle_power_true", "W"),
-    TraceColumn("removal_rate", "mm³/s"),
-    TraceColumn("axial_depth", "mm"),
-    TraceColumn("flank_wear", "mm"),
-    TraceColumn("level", kind=ColumnKind.WORDS),
-    TraceColumn("holding", kind=ColumnKind.WORDS),
-    TraceColumn("event", kind=ColumnKind.WORDS),
+    RunColumn(name="time_s", unit="s", kind=ColumnKind.EXACT),
+    RunColumn(name="progress_s", unit="s", kind=ColumnKind.EXACT),
+    RunColumn(name="workingstep", kind=ColumnKind.WORDS),
+    RunColumn(name="x_axis_position_actual", unit="mm"),
+    RunColumn(name="y_axis_position_actual", unit="mm"),
+    RunColumn(name="z_axis_position_actual", unit="mm"),
+    RunColumn(name="path_feedrate_programmed", unit="mm/s"),
+    RunColumn(name="path_feedrate_actual", unit="mm/s"),
+    RunColumn(name="override_commanded", unit="1"),
+    RunColumn(name="override_actual", unit="1"),
+    RunColumn(name="force_set_point", unit="N"),
+    RunColumn(name="force_measured", unit="N"),
+    RunColumn(name="force_peak", unit="N"),
+    RunColumn(name="force_true", unit="N"),
+    RunColumn(name="force_expected", unit="N"),
+    RunColumn(name="force_ratio", unit="1"),
+    RunColumn(name="force_tooth_passing", unit="N"),
+    RunColumn(name="force_once_per_revolution", unit="N"),
+    RunColumn(name="spindle_power", unit="W"),
+    RunColumn(name="spindle_power_true", unit="W"),
+    RunColumn(name="removal_rate", unit="mm³/s"),
+    RunColumn(name="axial_depth", unit="mm"),
+    RunColumn(name="flank_wear", unit="mm"),
+    RunColumn(name="level", kind=ColumnKind.WORDS),
+    RunColumn(name="holding", kind=ColumnKind.WORDS),
+    RunColumn(name="event", kind=ColumnKind.WORDS),
 )
 """in the order of :class:`Moment`"""
 
@@ -97,19 +78,6 @@ class ControlSignal(IntEnum):
 
 
 _PLACES = [Moment._fields.index(signal.name.lower()) for signal in ControlSignal]
-
-
-def control_schema() -> pa.Schema:
-    """Names and types of the columns, each with its unit as metadata."""
-    kinds = {
-        ColumnKind.EXACT: pa.float64(),
-        ColumnKind.NUMBER: pa.float32(),
-        ColumnKind.WORDS: WORDS,
-    }
-    return pa.schema([
-        pa.field(column.name, kinds[column.kind], metadata={"unit": column.unit})
-        for column in COLUMNS
-    ])
 
 
 @dataclass(slots=True)
@@ -145,7 +113,7 @@ class ControlTrace:
     workingsteps : sequence of str
         Ids by their number, from 1.
     file : RunFile, optional
-        With the columns of :func:`control_schema`; it is closed at the end.
+        With the columns of :data:`COLUMNS`; it is closed at the end.
     has_trace : bool
         Whether there will be plots.
     sink : callable, optional
@@ -276,13 +244,12 @@ class ControlTrace:
             self._buckets.add(np.array(columns[0]), values)
         if self.file is not None:
             self.file.write([
-                _array(column, values) for column, values in zip(COLUMNS, columns, strict=True)
+                _values(column, values) for column, values in zip(COLUMNS, columns, strict=True)
             ])
 
 
-def _array(column: TraceColumn, values: Sequence[object]) -> pa.Array:
+def _values(column: RunColumn, values: Sequence[object]) -> Values:
     """One column of the file."""
     if column.kind is ColumnKind.WORDS:
-        return pa.array(values, pa.string()).dictionary_encode()
-    kind = pa.float64() if column.kind is ColumnKind.EXACT else pa.float32()
-    return pa.array(np.array(values), kind, from_pandas=True)
+        return words_of(values)
+    return np.array(values, np.float64 if column.kind is ColumnKind.EXACT else np.float32)

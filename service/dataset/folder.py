@@ -13,10 +13,10 @@ from typing import Any
 import pyarrow as pa
 from pyarrow import parquet
 
-from service.dataset.rows import SCHEMA
+from service.dataset.rows import COLUMNS, SCHEMA
 from service.files import read_bytes, write_atomically
 from service.rendering.records import dump
-from service.run_file import RunFile
+from service.run_file import RunFile, words_of
 from stepnc_model.errors import StepNcError, WriteError
 
 MANIFEST = "manifest.json"
@@ -148,12 +148,14 @@ class DatasetFolder:
             When the disk refuses.
         """
         path = self.path / CSV
-        file = RunFile(path, SCHEMA)
+        file = RunFile(path, COLUMNS)
         with file.closing(is_whole=True):
             for table in self.tables(rows):
                 for batch in table.to_batches():
                     file.write([
-                        each.dictionary_encode() if pa.types.is_string(each.type) else each
+                        words_of(each.to_pylist())
+                        if pa.types.is_string(each.type)
+                        else each.to_numpy(zero_copy_only=False)
                         for each in batch.columns
                     ])
         return path

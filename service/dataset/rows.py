@@ -12,6 +12,7 @@ import pyarrow as pa
 
 from service.factory.cycles import part_cycle
 from service.reading import Tell, silent
+from service.run_file import ColumnKind, RunColumn, arrow_schema
 from simulator.factory.cycle import PartCycle, drawn_energies
 from simulator.factory.design import DesignRow, ExperimentDesign, RowSettings
 from simulator.factory.streams import Streams
@@ -66,18 +67,20 @@ class DatasetRow:
     """Greatest total power, without deviation."""
 
 
-def _type(name: str) -> pa.DataType:
-    """Arrow type of a column."""
+def _kind(name: str) -> ColumnKind:
+    """Type of a column."""
     if name in UNITS:
-        return pa.float64()
-    return pa.int64() if name == "row" else pa.string()
+        return ColumnKind.EXACT
+    return ColumnKind.INTEGER if name == "row" else ColumnKind.TEXT
 
 
-SCHEMA = pa.schema([
-    pa.field(each.name, _type(each.name), metadata={"unit": UNITS.get(each.name, "")})
+COLUMNS = tuple(
+    RunColumn(name=each.name, kind=_kind(each.name), unit=UNITS.get(each.name, ""))
     for each in fields(DatasetRow)
-])
-"""Columns of a data set, with their units as metadata."""
+)
+"""Columns of a data set."""
+
+SCHEMA = arrow_schema(COLUMNS)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

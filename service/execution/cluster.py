@@ -17,14 +17,13 @@ from platform import python_version
 from urllib.parse import urlsplit
 
 from service.execution.executors import Pools
+from service.extras import how_to_install
 from stepnc_model.errors import StepNcError
 
 SCHEMES = ("tcp", "tls")
 
 PATIENCE = 10.0
 """Longest time, s, to wait for the scheduler, and for a first worker."""
-
-EXTRA = "pip install 'stepnc-optimiser[cluster]'"
 
 
 def cluster_pools(address: str) -> Pools:
@@ -39,7 +38,9 @@ def cluster_pools(address: str) -> Pools:
     try:
         import distributed  # noqa: F401, PLC0415
     except ImportError as error:
-        raise StepNcError(f"--cluster {address}: Dask is not installed: {EXTRA}") from error
+        raise StepNcError(
+            f"--cluster {address}: Dask is not installed: {how_to_install('distributed')}"
+        ) from error
     _require_certificates(address)
     with cluster(address):
         pass

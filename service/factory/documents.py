@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 
 from service.agent.run import PublishedRun, streams_document
-from service.agent.runs import plain_name
 from service.chosen import material_for
 from service.factory.cycles import place_text
 from service.factory.devices import device_names
+from service.file_names import plain_name
 from service.files import write_atomically
 from service.progress import Ticker, bar
 from service.reading import Tell, read_program, silent

@@ -3,20 +3,20 @@
 from pathlib import Path
 from types import TracebackType
 
-import pyarrow as pa
+import numpy as np
 
-from service.run_file import WORDS, RunFile
+from service.run_file import ColumnKind, RunColumn, RunFile, Words
 from simulator.factory.records import StateSpent
 from simulator.factory.shop import Shop
 from simulator.factory.states import MachineState
 
-SCHEMA = pa.schema([
-    pa.field("machine", WORDS),
-    pa.field("state", WORDS),
-    pa.field("begin_s", pa.float64(), metadata={"unit": "s"}),
-    pa.field("end_s", pa.float64(), metadata={"unit": "s"}),
-    pa.field("energy_j", pa.float64(), metadata={"unit": "J"}),
-])
+COLUMNS = (
+    RunColumn(name="machine", kind=ColumnKind.WORDS),
+    RunColumn(name="state", kind=ColumnKind.WORDS),
+    RunColumn(name="begin_s", kind=ColumnKind.EXACT, unit="s"),
+    RunColumn(name="end_s", kind=ColumnKind.EXACT, unit="s"),
+    RunColumn(name="energy_j", kind=ColumnKind.EXACT, unit="J"),
+)
 
 WAITING = 20_000
 """States written together."""
@@ -37,9 +37,8 @@ class StateFile:
     """
 
     def __init__(self, path: Path, shop: Shop) -> None:
-        self._file = RunFile(path, SCHEMA)
-        self._machines = pa.array([machine.name for machine in shop.machines])
-        self._states = pa.array([state.value for state in MachineState])
+        self._file = RunFile(path, COLUMNS)
+        self._machines = [machine.name for machine in shop.machines]
         self._rows: list[StateSpent] = []
 
     def __enter__(self) -> "StateFile":
@@ -65,13 +64,13 @@ class StateFile:
             return
         machine, state, begin, end, energy = zip(*self._rows, strict=True)
         self._rows.clear()
-        words = pa.array([WORD_OF[each] for each in state], pa.int32())
+        states = np.array([WORD_OF[each] for each in state], np.int32)
         self._file.write([
-            pa.DictionaryArray.from_arrays(pa.array(machine, pa.int32()), self._machines),
-            pa.DictionaryArray.from_arrays(words, self._states),
-            pa.array(begin),
-            pa.array(end),
-            pa.array(energy),
+            Words(codes=np.array(machine, np.int32), names=self._machines),
+            Words(codes=states, names=[each.value for each in MachineState]),
+            np.array(begin),
+            np.array(end),
+            np.array(energy),
         ])
 
 

@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 
 from kbe.errors import StoreFull
 from service.errors import StorageFull, Unavailable
+from service.extras import missing_extras_named
 from service.jobs.task import LARGE, UNFINISHED, RunningJob, clear
 from service.lifeline import end_with_parent
 from service.problem import plain_problem, problem_of
@@ -99,7 +100,8 @@ def _end_of(task: RunningJob) -> JobEnd:
     """Do the work of a job, and return how it has ended."""
     try:
         if task.make_folder():
-            _work(task.job)(task)
+            with missing_extras_named(f"the {task.job.kind.value}"):
+                _work(task.job)(task)
             _insisting(task.publish)
     except StepNcError as error:
         if isinstance(error, WITHOUT_ROOM):

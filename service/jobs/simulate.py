@@ -4,7 +4,7 @@ import json
 from math import inf
 
 from service.files import write_atomically
-from service.jobs.task import REPORT, SAMPLES, RunningJob
+from service.jobs.task import REPORT, RunningJob, samples_place
 from service.live.playback import PlaybackClock
 from service.requests.runs import SimulationRequest
 from service.simulation.live import LiveSamples
@@ -28,7 +28,7 @@ def run(task: RunningJob) -> None:
     pace = PlaybackClock(request.pace)
     live = LiveSamples(task.live, pace.wait_for, apart=pace.factor * SHOWN or inf)
     files = RunFiles(
-        file=file, name=name, output=task.folder / SAMPLES, report=task.folder / REPORT
+        file=file, name=name, output=samples_place(task.folder), report=task.folder / REPORT
     )
     with live.writer:
         simulation = simulate(task.named(request), files, tell=task.tell, watchers=(live,))

@@ -10,7 +10,7 @@ from service.control.output import control_json, control_page
 from service.control.record import keep
 from service.control.run import prepare
 from service.files import write_atomically
-from service.jobs.task import REPORT, SAMPLES, RunningJob
+from service.jobs.task import REPORT, RunningJob, samples_place
 from service.requests.runs import ControlRequest
 from service.session.runner import LiveRunner
 from service.simulation.run import RunFiles
@@ -43,7 +43,7 @@ def run_control(task: RunningJob) -> None:
     request = task.request(ControlRequest)
     file, name = task.program_file()
     files = RunFiles(
-        file=file, name=name, output=task.folder / SAMPLES, report=task.folder / REPORT
+        file=file, name=name, output=samples_place(task.folder), report=task.folder / REPORT
     )
     session = prepare(
         task.named(request), files, knowledge=task.data_folder.knowledge, tell=task.tell

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import orjson
 
 from service.errors import NotFound, Unavailable
+from service.extras import has_package
 from service.files import write_atomically
 from service.live.folder import LiveFolder
 from service.progress import share_in
@@ -51,6 +52,11 @@ LARGE = (*UNFINISHED, "series.bin", SAMPLES, f"{PLACES}.*", SURFACE, LOG)
 
 APART = 0.5
 """Shortest time between two progress reports, in s."""
+
+
+def samples_place(folder: Path) -> Path | None:
+    """Place of the samples of a run; none without what writes Parquet."""
+    return folder / SAMPLES if has_package("pyarrow") else None
 
 
 @dataclass(kw_only=True)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from service.reading import Tell, silent
-from service.recording.run import arrays_of, schema_of
+from service.recording.run import file_columns, file_values
 from service.recording.signals import POSITIONS
 from service.run_file import RunFile
 from simulator.client.columns import EXECUTION, RUNNING, TIME, Cell, RowMaker, columns_of
@@ -141,9 +141,9 @@ def keep_run(url: str, output: Path, *, tell: Tell = silent) -> AgentRun:
         raise AgentError(f"{url}: the agent keeps no positions of a run of a program")
     begin = float(run.rows[0][TIME] or 0.0)
     rows = [{**row, TIME: round(float(row[TIME] or 0.0) - begin, 6)} for row in run.rows]
-    file = RunFile(output, schema_of(columns))
+    file = RunFile(output, file_columns(columns))
     with file.closing(is_whole=True):
-        file.write(arrays_of(rows, columns))
+        file.write(file_values(rows, columns))
     program = next((str(row["program"]) for row in rows if row.get("program")), "")
     lacks = (not run.is_begun, not run.is_ended)
     return AgentRun(

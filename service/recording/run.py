@@ -6,12 +6,12 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-import pyarrow as pa
+import numpy as np
 
 from service.reading import Tell, silent
 from service.requests.fields import require_bounds
 from service.requests.recording import RecordingRequest
-from service.run_file import WORDS, RunFile, require_suffix
+from service.run_file import ColumnKind, RunColumn, RunFile, Values, require_suffix, words_of
 from simulator.client.columns import (
     EXECUTION,
     RUNNING,
@@ -76,7 +76,7 @@ def record(
     else:
         rows.rows(client.state())
         rows.last()
-    file = RunFile(output, schema_of(columns))
+    file = RunFile(output, file_columns(columns))
     keeper = _Keeper(
         file=file,
         columns=columns,
@@ -117,7 +117,7 @@ def record_kept(url: str, output: Path, *, tell: Tell = silent) -> Recording:
         rows.last()
     except AgentError:
         client.rewind()
-    file = RunFile(output, schema_of(columns))
+    file = RunFile(output, file_columns(columns))
     keeper = _Keeper(
         file=file, columns=columns, rows=rows, tell=tell, clock=time.monotonic,
         is_next_run=False, is_on=True, was_running=False,
@@ -239,34 +239,30 @@ class _Keeper:
     def _flush(self) -> None:
         if not self._waiting:
             return
-        self.file.write(arrays_of(self._waiting, self.columns))
+        self.file.write(file_values(self._waiting, self.columns))
         self._waiting.clear()
 
 
-def arrays_of(
+def file_values(
     rows: Sequence[Mapping[str, Cell]], columns: Sequence[RecordedColumn]
-) -> list[pa.Array]:
-    """Return rows as arrays: the time, then the columns."""
-    arrays = [pa.array([row[TIME] for row in rows], pa.float64())]
+) -> list[Values]:
+    """Return rows as columns: the time, then those of the agent."""
+    found: list[Values] = [np.array([row[TIME] for row in rows], float)]
     for each in columns:
         values = [row[each.name] for row in rows]
-        arrays.append(
-            pa.array(values, pa.string()).dictionary_encode()
-            if each.is_text
-            else pa.array(values, pa.float64(), from_pandas=True)
-        )
-    return arrays
+        # None is NaN among numbers.
+        found.append(words_of(values) if each.is_text else np.array(values, float))
+    return found
 
 
-def schema_of(columns: Sequence[RecordedColumn]) -> pa.Schema:
-    """Return names and types of the columns, each with its unit and data item as metadata."""
-    fields = [pa.field(TIME, pa.float64(), metadata={"unit": "s"})]
-    fields += [
-        pa.field(
-            each.name,
-            WORDS if each.is_text else pa.float64(),
-            metadata={"unit": each.units, "data_item": each.id},
+def file_columns(columns: Sequence[RecordedColumn]) -> list[RunColumn]:
+    """Return the columns of the file, each with its unit and data item."""
+    return [RunColumn(name=TIME, kind=ColumnKind.EXACT, unit="s")] + [
+        RunColumn(
+            name=each.name,
+            kind=ColumnKind.WORDS if each.is_text else ColumnKind.EXACT,
+            unit=each.units,
+            notes={"data_item": each.id},
         )
         for each in columns
     ]
-    return pa.schema(fields)

@@ -23,7 +23,11 @@ def mount(app: FastAPI, shop: ShopAgent | None) -> None:
     Several web processes would give different sequence numbers, so only a single one has the
     agent.
     """
-    served = None if shop is None else with_runs(application(shop.agent), shop.repository)
+    served = None
+    if shop is not None:
+        served = application(shop.agent)
+        if shop.repository is not None:
+            served = with_runs(served, shop.repository)
 
     async def serve(scope: Mapping[str, Any], receive: Receive, send: Send) -> None:
         if served is None:

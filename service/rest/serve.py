@@ -19,6 +19,7 @@ from uvicorn.supervisors import Multiprocess
 
 from service import log_lines
 from service.errors import Forbidden
+from service.extras import has_package, how_to_install
 from service.http_protocol import BoundedHttpProtocol
 from service.jobs import runner
 from service.monitor.source import MonitorSource
@@ -109,6 +110,10 @@ def _serve(start: ServerOptions, data_folder: DataFolder) -> None:
     # uvicorn raises the signal again when all requests are answered; without this handler the
     # process would end there, before the runner of jobs has released the folder.
     signal.signal(signal.SIGTERM, _end)
+    if not has_package("pyarrow"):
+        LOG.warning(
+            "no samples of runs are kept", reason=f"Parquet: {how_to_install('pyarrow')}"
+        )
     LOG.info("serving", host=settings.host, port=settings.port, data=str(data_folder.root))
     try:
         _run_web(_web_config(start))

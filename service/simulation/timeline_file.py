@@ -3,11 +3,12 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 import numpy as np
-import pyarrow as pa
+from numpy.typing import NDArray
 
-from service.run_file import WORDS, RunFile
+from service.run_file import ColumnKind, RunColumn, RunFile, Values, Words
 from simulator.machine.samples import Samples, joined
 from simulator.timeline import COLUMNS, DataItem
 
@@ -43,7 +44,7 @@ class TimelineFile:
     """
 
     def __init__(self, path: Path, workingsteps: Sequence[str], *, program: str = "") -> None:
-        self._run = RunFile(path, timeline_schema())
+        self._run = RunFile(path, timeline_columns())
         self._workingsteps = workingsteps
         self._program = program
         self._waiting: list[Samples] = []
@@ -90,8 +91,7 @@ class TimelineFile:
             return
         samples, self._waiting, self._count = joined(self._waiting), [], 0
         names = {"program": (self._program,), "workingstep": ("", *self._workingsteps)}
-        arrays = [_array(column, samples, names) for column in COLUMNS]
-        self._run.write(arrays)
+        self._run.write([_values(column, samples, names) for column in COLUMNS])
 
 
 Names = Mapping[str, tuple[str, ...]]
@@ -100,20 +100,19 @@ Names = Mapping[str, tuple[str, ...]]
 OF_RUN: Names = {"program": (), "workingstep": ()}
 
 
-def timeline_schema() -> pa.Schema:
-    """Names and types of the columns, each with its unit as metadata."""
+def timeline_columns() -> list[RunColumn]:
+    """Columns of the file, in their order."""
 
-    def kind(column: DataItem) -> pa.DataType:
+    def kind(column: DataItem) -> ColumnKind:
         if _words(column, OF_RUN) is not None:
-            return WORDS
+            return ColumnKind.WORDS
         if column.source in WHOLE:
-            return pa.int32()
-        return pa.float64() if column.source in EXACT else pa.float32()
+            return ColumnKind.COUNT
+        return ColumnKind.EXACT if column.source in EXACT else ColumnKind.NUMBER
 
-    return pa.schema([
-        pa.field(column.name, kind(column), metadata={"unit": column.unit})
-        for column in COLUMNS
-    ])
+    return [
+        RunColumn(name=column.name, kind=kind(column), unit=column.unit) for column in COLUMNS
+    ]
 
 
 def _words(column: DataItem, of_run: Names) -> tuple[str, ...] | None:
@@ -121,18 +120,15 @@ def _words(column: DataItem, of_run: Names) -> tuple[str, ...] | None:
     return of_run.get(column.source, column.words)
 
 
-def _array(column: DataItem, samples: Samples, of_run: Names) -> pa.Array:
+def _values(column: DataItem, samples: Samples, of_run: Names) -> Values:
     """One column of the file."""
-    values = getattr(samples, column.source)
+    values: NDArray[Any] = getattr(samples, column.source)
     if column.axis is not None:
         values = values[:, column.axis]
     words = _words(column, of_run)
     if words is not None:
-        return pa.DictionaryArray.from_arrays(
-            pa.array(values.astype(np.int32)), pa.array(words)
-        )
+        return Words(codes=values.astype(np.int32), names=words)
     if column.source in WHOLE:
-        return pa.array(values.astype(np.int32))
+        return values.astype(np.int32)
     kind = np.float64 if column.source in EXACT else np.float32
-    # NaN: the sample is missing.
-    return pa.array((values * column.scale).astype(kind), from_pandas=True)
+    return (values * column.scale).astype(kind)

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from service.errors import Unavailable
+from service.extras import how_to_install
 from stepnc_model.errors import StepNcError
 
 FRESH = 1.0
@@ -206,8 +207,9 @@ def _system(url: str) -> tuple[Any, str]:
         from fsspec.config import conf  # noqa: PLC0415 (few use it)
         from fsspec.core import url_to_fs  # noqa: PLC0415
     except ImportError as error:
-        what = f"{shown} needs the package fsspec"
-        raise Unavailable(f"{what}: pip install 'stepnc-optimiser[files]'") from error
+        raise Unavailable(
+            f"{shown} needs the package fsspec: {how_to_install('fsspec')}"
+        ) from error
     try:
         options = _options(url, conf)
         system, base = url_to_fs(url, **options)

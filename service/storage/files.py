@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from service.errors import Conflict, NotFound, Unreadable
+from service.file_names import LOGS
 from service.ids import new_id
 from service.live.storage import storing
 from service.storage.connection import StoredRow
@@ -21,10 +22,6 @@ from service.storage.folder import DataFolder
 from service.storage.idempotency import IdempotencyKey, made_before, remember
 from service.storage.pages import Page, PageCursor, page_of
 from service.storage.programs import shown_name
-
-LOGS = frozenset({".parquet", ".csv", ".xml", ".shdr", ".log"})
-"""Suffixes of logs, which say how they are read."""
-
 
 TOOL_TABLES = frozenset({".toml", ".csv", ".tbl", ".json", ".tools", ".hsmlib"})
 """Suffixes of tool tables; the content tells the format."""

@@ -15,6 +15,7 @@ from pathlib import Path
 from stat import S_IMODE, S_ISLNK
 
 from service.errors import NotFound, Unavailable
+from service.extras import how_to_install
 from service.files import write_atomically
 from service.ids import is_id, new_id
 from service.knowledge.place import named_place
@@ -232,8 +233,9 @@ def _server(url: str) -> Database:
     try:
         from service.storage.server_database import ServerDatabase  # noqa: PLC0415
     except ImportError as error:
-        what = "--database needs the package psycopg"
-        raise Unavailable(f"{what}: pip install 'stepnc-optimiser[postgres]'") from error
+        raise Unavailable(
+            f"--database needs the package psycopg: {how_to_install('psycopg')}"
+        ) from error
     return ServerDatabase(url)
 
 

@@ -3,12 +3,12 @@
 from math import isfinite, isnan
 from pathlib import Path
 
-import pyarrow as pa
+import numpy as np
 
 from service.rendering.columns import Column
 from service.rendering.records import dump, finding_record, records
 from service.rendering.text import RED, print_findings, print_line, screen_width, table
-from service.run_file import RunFile
+from service.run_file import ColumnKind, RunColumn, RunFile, Words
 from service.verification.facts import (
     RAW,
     UNSEEN,
@@ -198,15 +198,16 @@ def write_places(path: Path, found: Verification) -> int:
         "time_s": places.time,
         "block": places.block,
     }
-    arrays = [pa.array(values) for values in numbers.values()]
-    arrays.append(pa.array([names[step] for step in places.workingstep.tolist()]))
-    schema = pa.schema([
-        pa.field(name, array.type)
-        for name, array in zip((*numbers, "workingstep"), arrays, strict=True)
-    ])
-    file = RunFile(path, schema)
+    columns = [
+        RunColumn(name=name, kind=ColumnKind(values.dtype.name))
+        for name, values in numbers.items()
+    ]
+    file = RunFile(path, [*columns, RunColumn(name="workingstep", kind=ColumnKind.WORDS)])
     with file.closing(is_whole=True):
-        file.write(arrays)
+        file.write([
+            *numbers.values(),
+            Words(codes=np.asarray(places.workingstep % len(names), np.int32), names=names),
+        ])
     return file.rows
 
 

@@ -11,7 +11,8 @@ from pyarrow import csv, parquet
 
 from controller.cycle import LoopCycle
 from service.control.run import ControlRun, control, prepare
-from service.control.trace import COLUMNS, ControlSignal, control_schema
+from service.control.trace import COLUMNS, ControlSignal
+from service.run_file import arrow_schema
 from service.session.rows import Moment
 from simulator.plant.controlled import TrueState
 from tests.asking import AskedControl
@@ -37,7 +38,7 @@ def numbers(table: pa.Table, name: str) -> np.ndarray:
 
 def test_columns_have_units(written: Path) -> None:
     schema = parquet.read_schema(written)
-    assert schema.equals(control_schema(), check_metadata=True)
+    assert schema.equals(arrow_schema(COLUMNS), check_metadata=True)
     assert len(COLUMNS) == len(Moment._fields)
     for column in COLUMNS:
         assert schema.field(column.name).metadata[b"unit"].decode() == column.unit

@@ -9,8 +9,9 @@ import pyarrow as pa
 import pytest
 from pyarrow import csv, parquet
 
+from service.run_file import arrow_schema
 from service.simulation import timeline_file
-from service.simulation.timeline_file import ROWS, TimelineFile, timeline_schema
+from service.simulation.timeline_file import ROWS, TimelineFile, timeline_columns
 from simulator.machine.samples import Samples
 from simulator.timeline import COLUMNS
 from stepnc_model.errors import WriteError
@@ -67,7 +68,7 @@ def test_columns_say_their_units_and_keep_the_digits_they_need(tmp_path: Path) -
     path = tmp_path / "run.parquet"
     written(path, samples(2))
     schema = parquet.read_schema(path)
-    assert schema.equals(timeline_schema(), check_metadata=True)
+    assert schema.equals(arrow_schema(timeline_columns()), check_metadata=True)
     assert schema.field("time_s").type == pa.float64()
     assert schema.field("y_axis_position_actual").type == pa.float64()
     assert schema.field("c_axis_wattage").type == pa.float32()

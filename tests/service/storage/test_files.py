@@ -4,11 +4,13 @@ import hashlib
 
 import pytest
 
-from service.agent.replay import LOGS as READABLE
+from service.agent.replay import DOCUMENTS, LINES
 from service.errors import Conflict, NotFound, Unavailable, Unreadable
+from service.file_names import LOGS
 from service.ids import new_id
+from service.recording.table import TABLES
 from service.storage import files, jobs
-from service.storage.files import LOGS, FileKind, FileUpload, StoredFile
+from service.storage.files import FileKind, FileUpload, StoredFile
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobKind, JobRequest
 from service.storage.pages import PageCursor
@@ -69,7 +71,7 @@ def test_a_suffix_of_another_kind_is_refused(
 
 
 def test_logs_are_what_is_read_as_logs() -> None:
-    assert LOGS == READABLE
+    assert LOGS == TABLES | DOCUMENTS | LINES
 
 
 def test_files_are_listed_by_kind_page_by_page(data_folder: DataFolder) -> None:
