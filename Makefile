@@ -16,12 +16,13 @@ PYTHON ?= $(shell for p in python3.11 python3.12 python3.13 python3; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; \
 	done)
 
-.PHONY: help setup demo serve test shuffled check bench docs lock clean
+.PHONY: help setup demo serve test test-slow shuffled check bench docs lock clean
 
 help:
 	@echo "make demo   optimise a sample part, simulate it, run it under control, and learn from it"
 	@echo "make serve  the dashboard and REST at http://127.0.0.1:8000 (PORT=8000)"
-	@echo "make test   run the tests"
+	@echo "make test   run the tests, but for the slow ones: under 8 minutes on two cores"
+	@echo "make test-slow  run the slow ones: sweeps, kills, browsers, whole programs"
 	@echo "make shuffled  run a share of the quick tests in another order, in a clone (SEED=1 repeats one)"
 	@echo "make check  formatting, lint, types, layers"
 	@echo "make bench  speed, side by side with peers"
@@ -58,20 +59,20 @@ INSTALL = $$(command -v uv >/dev/null 2>&1 && echo "uv pip install --quiet --pyt
 
 demo: $(READY)
 	@mkdir -p $(DEMO)
-	$(BIN)/optimise examples/parts/paper002.stpnc --mode TC --machine paper002 \
+	$(BIN)/optimise examples/parts/paper002.stpnc --mode TC --machine vmc15 --material c45 \
 		-o $(DEMO)/paper002.optimised.stpnc
 	$(BIN)/stepnc check examples/parts/bracket.stpnc
 	$(BIN)/optimise examples/parts/bracket.stpnc --mode TC --machine vmc15 \
 		-o $(DEMO)/bracket.optimised.stpnc --report $(DEMO)/bracket.html --nc linuxcnc
-	$(BIN)/stepnc toolpath $(DEMO)/bracket.optimised.stpnc --plot $(DEMO)/bracket.png
 	$(BIN)/stepnc simulate $(DEMO)/bracket.optimised.stpnc --machine vmc15 \
-		-o $(DEMO)/bracket.parquet --report $(DEMO)/bracket.run.html
+		-o $(DEMO)/bracket.run.csv --report $(DEMO)/bracket.run.html
 	rm -f $(DEMO)/knowledge.db*
-	$(BIN)/stepnc control $(DEMO)/bracket.optimised.stpnc --machine vmc15 --preview --disturb kc:1.2 \
-		--kb $(DEMO)/knowledge.db -o $(DEMO)/bracket.control.parquet --report $(DEMO)/bracket.control.html
+	$(BIN)/stepnc control $(DEMO)/paper002.optimised.stpnc --machine vmc15 --material c45 --preview \
+		--disturb kc:1.2 --kb $(DEMO)/knowledge.db -o $(DEMO)/paper002.control.csv \
+		--report $(DEMO)/paper002.control.html
 	$(BIN)/stepnc kbe review --kb $(DEMO)/knowledge.db
 	$(BIN)/stepnc kbe table --kb $(DEMO)/knowledge.db -o $(DEMO)/knowledge.html
-	@echo "look at: $(DEMO)/bracket.html, bracket.run.html, bracket.control.html, knowledge.html, bracket.png"
+	@echo "look at: $(DEMO)/bracket.html, bracket.run.html, paper002.control.html, knowledge.html"
 
 # Kernels are compiled before tests: workers that make the same ones at once would wait for each
 # other, and what the first command says of it is no part of what a test looks at.
@@ -81,7 +82,11 @@ COMPILE := mkdir -p build && \
 
 test: $(TESTS_READY)
 	@$(subst .venv,$(VENV),$(COMPILE))
-	$(BIN)/python -m pytest -n auto --durations=20 --durations-min=1
+	$(BIN)/python -m pytest -n auto -m "not slow" --durations=20 --durations-min=1
+
+test-slow: $(TESTS_READY)
+	@$(subst .venv,$(VENV),$(COMPILE))
+	$(BIN)/python -m pytest -n auto -m slow --durations=20 --durations-min=1
 
 SEED := $(or $(SEED),$(shell date +%s))
 SHARE ?= 0.3
