@@ -95,7 +95,7 @@ check: $(READY)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python -m benchmarks.house --check
-	$(BIN)/python -m pytest -q -n0 tests/tree
+	$(BIN)/python -m pytest -q -n0 -o verbosity_assertions=2 tests/tree
 
 PORT ?= 8000
 
