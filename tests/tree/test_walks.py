@@ -34,4 +34,4 @@ def test_every_walk_names_its_files() -> None:
 
 def test_contributing_points_to_the_walks() -> None:
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    assert re.findall(r"docs/walks\.md", text)
+    assert [page for page in ("docs/walks.md",) if page not in text] == []

@@ -138,17 +138,16 @@ def _slots(keyword: str) -> list[tuple[Row, AttributeSlot]]:
     return list(zip(rows, slots_of(_classes()[keyword]).values(), strict=False))
 
 
+def _expected(keyword: str) -> tuple[str, ...]:
+    """Names of an entity's attributes as the standard gives them."""
+    names = (row.name for row in NAMED[keyword] if row.name not in LEFT_OUT)
+    found = (RENAMED.get(f"{keyword}.{name}", RENAMED.get(name, name)) for name in names)
+    return (*found, *ADDED.get(keyword, ()))
+
+
 def test_attributes_stand_in_the_order_of_the_standard() -> None:
-    expected = {
-        keyword: tuple(
-            RENAMED.get(f"{keyword}.{row.name}", RENAMED.get(row.name, row.name))
-            for row in rows
-            if row.name not in LEFT_OUT
-        )
-        + ADDED.get(keyword, ())
-        for keyword, rows in NAMED.items()
-    }
-    assert {keyword: attributes(_classes()[keyword]) for keyword in NAMED} == expected
+    found = {keyword: attributes(_classes()[keyword]) for keyword in NAMED}
+    assert {key: names for key, names in found.items() if names != _expected(key)} == {}
 
 
 def test_options_are_those_of_the_standard() -> None:
@@ -185,7 +184,8 @@ def _is_of_type(slot: AttributeSlot, wanted: str) -> bool:
 
 
 def test_entities_without_names_have_their_number_of_attributes() -> None:
-    assert {keyword: len(attributes(classes()[keyword])) for keyword in ARITIES} == ARITIES
+    found = {keyword: len(attributes(classes()[keyword])) for keyword in ARITIES}
+    assert {key: count for key, count in found.items() if count != ARITIES[key]} == {}
 
 
 def test_knurling_tool_has_the_attributes_of_ap238() -> None:
