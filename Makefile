@@ -110,6 +110,7 @@ check: $(TESTS_READY)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python -m benchmarks.house --check
+	$(BIN)/python -m pytest -q -n0 -o verbosity_assertions=2 tests/tree
 
 PORT ?= 8000
 

@@ -8,8 +8,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from distributed import Client
-
 STARTS_WITHIN = 60.0
 """Time, s, in which a process of the cluster must answer."""
 
@@ -49,6 +47,8 @@ class LocalCluster:
 
     def wait(self, workers: int) -> None:
         """Wait until workers are there."""
+        from distributed import Client  # noqa: PLC0415 (Dask takes a second)
+
         with Client(self.address, timeout=STARTS_WITHIN, set_as_default=False) as client:
             client.wait_for_workers(workers, timeout=STARTS_WITHIN)
 

@@ -30,6 +30,15 @@ class Command:
     shown: str
 
 
+def section(text: str, title: str) -> str:
+    """Section of a page with a title, which must be there."""
+    found = re.search(
+        rf"^## {re.escape(title)}(?: \{{.*\}})?\n.*?(?=^## |\Z)", text, flags=re.S | re.M
+    )
+    assert found is not None, title
+    return found[0]
+
+
 def name_of(page: Path) -> str:
     return page.relative_to(DOCS).as_posix()
 

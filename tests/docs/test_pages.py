@@ -2,7 +2,7 @@
 
 Commands in ``console`` blocks, and Python in ``python`` blocks, are run page by page, each
 page in a folder of its own that has ``examples`` in it. What stands in ``sh`` blocks, or in the
-text, is not run; ``test_mentions.py`` asks whether it exists.
+text, is not run; ``tests/tree/test_mentions.py`` asks whether it exists.
 """
 
 import contextlib

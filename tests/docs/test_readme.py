@@ -69,10 +69,6 @@ def test_the_python_of_the_readme_prints_its_comment(monkeypatch: pytest.MonkeyP
     assert printed.getvalue().strip() == expected[1]
 
 
-def test_the_readme_is_one_screen() -> None:
-    assert len(README.splitlines()) <= 66
-
-
 def test_the_loop_and_what_it_teaches_run_as_the_readme_shows(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -8,22 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from service.cli.serve import USUAL_RATE
-from service.code_check import LONGEST as LONGEST_CHECK
-from service.factory import asked
-from service.http_protocol import HEAD_S
-from service.jobs.runner import LONGEST, LONGEST_PACED, MOST_PACED
-from service.live.series import MOST_BYTES
-from service.requests.factory import MOST_REPLICATIONS
-from service.rest.files import LARGEST_TOOLS
-from service.rest.settings import Settings
-from service.rest.verifications import PLACES_SHOWN
-from service.session.runner import FORGOTTEN_AFTER, MOST_ROWS
-from service.simulation.live import MOST_SAMPLES
-from service.storage.jobs import MOST_WAITING, OWNERS
-from service.verification.inputs import MOST_ELEMENTS
-from service.verification.inputs import MOST_ROWS as MOST_LOGGED
-from simulator.toml_bounds import MOST_BYTES as MOST_BYTES_OF_TOML
 from tests.docs.pages import DOCS, ROOT, blocks
 from tests.service.rest.server import Server
 
@@ -42,30 +26,6 @@ def script(url: str) -> str:
     text = "\n".join(part for part in parts if "curl" in part or "URL=" in part)
     assert text.count("curl ") > 12
     return text.replace("http://127.0.0.1:8000", url).replace("curl ", "curl --fail -m 60 ")
-
-
-def test_bounds_are_those_of_the_program() -> None:
-    settings = Settings(data="")
-    for words in (
-        f"{settings.upload_bytes >> 20} MB (`--upload-mb`)",
-        f"{USUAL_RATE:g} requests a second (`--rate`)",
-        f"header within {HEAD_S:g} s, body within {settings.body_s:g} s",
-        f"{MOST_WAITING} jobs",
-        f"{LONGEST / 3600:g} h; {LONGEST_PACED / 3600:g} h for runs",
-        f"{MOST_PACED} of them at once",
-        f"{MOST_SAMPLES // 1_000_000} million rows or samples; {MOST_BYTES >> 20} MB of rows",
-        f"{MOST_LOGGED // 1_000_000} million rows in Parquet, "
-        f"{MOST_ELEMENTS // 1_000_000} million elements in XML",
-        f"{PLACES_SHOWN // 1000} 000 places",
-        f"check of NC code | {LONGEST_CHECK:g} s",
-        f"tool table | {LARGEST_TOOLS >> 20} MB; {MOST_BYTES_OF_TOML >> 10} KB in TOML",
-        f"{asked.LARGEST >> 10} KB; {asked.MOST_MACHINES} machines, {asked.MOST_STEPS} steps, "
-        f"{asked.MOST_RUNS} programs times kinds of machines, {asked.MOST_BATCH // 1000} 000 "
-        f"parts a batch; {asked.MOST_HOURS / 1000:g} 000 simulated hours and "
-        f"{MOST_REPLICATIONS} replications; {asked.MOST_PARTS // 1_000_000} million parts",
-    ):
-        assert words in PAGE
-    assert (OWNERS, MOST_ROWS, FORGOTTEN_AFTER) == (4, MOST_SAMPLES, 3600.0)
 
 
 def test_the_commands_do_what_the_page_says(served: Server, tmp_path: Path) -> None:

@@ -12,7 +12,6 @@ from urllib.parse import unquote, urldefrag, urlsplit
 
 import pytest
 
-from docs.hooks.site import WHEN_THERE
 from tests.docs.pages import PAGES, ROOT, name_of
 
 LOADED = {
@@ -180,16 +179,3 @@ def test_the_search_index_is_local_and_finds_text(site: Path) -> None:
     index = (site / "search" / "search_index.json").read_text(encoding="utf-8")
     assert "tool deflection" in index
     assert "nomenclature.html" in index
-
-
-def test_pages_that_may_be_missing_are_in_the_navigation_of_the_settings() -> None:
-    text = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
-    assert "\n  font: false\n" in text
-    assert "\nstrict: true\n" in text
-    assert all(f": {name}\n" in text for name in WHEN_THERE)
-
-
-def test_make_docs_builds_it() -> None:
-    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    assert re.search(r"^docs: \$\(READY\)\n.*mkdocs build --strict", makefile, flags=re.M)
-    assert "make docs" in makefile

@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
-from benchmarks.toppra_peer import toppra_time
 from optimiser.errors import Infeasible
 from optimiser.profile import (
     AxisLimit,
@@ -127,6 +126,8 @@ def test_quarters_of_a_path_join_without_a_trace(count: int) -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_profile_of_the_axes_equals_toppra(seed: int) -> None:
+    from benchmarks.toppra_peer import toppra_time  # noqa: PLC0415 (loads pyplot)
+
     problem, limit = wavy(seed)
     assert sweep_axes(problem, limit).time == pytest.approx(
         toppra_time(problem, limit), rel=1e-9

@@ -1,4 +1,7 @@
-"""B-rep of parts, made and written by Open CASCADE."""
+"""B-rep of parts, made and written by Open CASCADE.
+
+It takes a second to load, which only those tests wait for that make a part.
+"""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -6,48 +9,48 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from OCP.BRep import BRep_Tool
-from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon
-from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
-from OCP.BRepPrimAPI import (
-    BRepPrimAPI_MakeBox,
-    BRepPrimAPI_MakeCylinder,
-    BRepPrimAPI_MakeRevol,
-)
-from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt
-from OCP.Interface import Interface_Static
-from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
-from OCP.TopAbs import TopAbs_ShapeEnum
-from OCP.TopExp import TopExp, TopExp_Explorer
-from OCP.TopoDS import TopoDS
-
 Spot = tuple[float, float, float]
 
 
 def block(low: Spot, high: Spot) -> Any:
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
+    from OCP.gp import gp_Pnt
+
     return BRepPrimAPI_MakeBox(gp_Pnt(*low), gp_Pnt(*high)).Shape()
 
 
 def bore(at: Spot, *, radius: float, depth: float) -> Any:
     """An upright cylinder that ends below a point."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+
     x, y, z = at
     axis = gp_Ax2(gp_Pnt(x, y, z - depth), gp_Dir(0.0, 0.0, 1.0))
     return BRepPrimAPI_MakeCylinder(axis, radius, depth).Shape()
 
 
 def without(whole: Any, *parts: Any) -> Any:
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+
     for part in parts:
         whole = BRepAlgoAPI_Cut(whole, part).Shape()
     return whole
 
 
 def first_face(shape: Any) -> Any:
+    from OCP.TopAbs import TopAbs_ShapeEnum
+    from OCP.TopExp import TopExp_Explorer
+
     return TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_FACE).Current()
 
 
 def rounded(low: Spot, high: Spot, radius: float) -> Any:
     """A block whose upright edges are rounded."""
+    from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
+    from OCP.TopAbs import TopAbs_ShapeEnum
+    from OCP.TopExp import TopExp, TopExp_Explorer
+    from OCP.TopoDS import TopoDS
+
     shape = block(low, high)
     made = BRepFilletAPI_MakeFillet(shape)
     explorer = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_EDGE)
@@ -62,6 +65,10 @@ def rounded(low: Spot, high: Spot, radius: float) -> Any:
 
 def revolved(profile: Sequence[tuple[float, float]]) -> Any:
     """Body of revolution about Z through points z and r."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeRevol
+    from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt
+
     outline = BRepBuilderAPI_MakePolygon()
     for z, r in profile:
         outline.Add(gp_Pnt(r, 0.0, z))
@@ -75,6 +82,9 @@ def write_step(
     path: Path, *shapes: Any, schema: str = "AP214IS", unit: str = "MM", name: str = "PART"
 ) -> Path:
     """Write shapes as products of a STEP file."""
+    from OCP.Interface import Interface_Static
+    from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
+
     with _silence():
         writer = STEPControl_Writer()
         assert Interface_Static.SetCVal_s("write.step.schema", schema)
@@ -89,6 +99,8 @@ def write_step(
 
 
 def _point(vertex: Any) -> Spot:
+    from OCP.BRep import BRep_Tool
+
     point = BRep_Tool.Pnt_s(vertex)
     return point.X(), point.Y(), point.Z()
 

@@ -2,13 +2,9 @@
 
 import ast
 from collections.abc import Iterator
-from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
-PACKAGES = (
-    *("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service"),
-    *("benchmarks", "examples"),
-)
+from benchmarks.house import PRODUCT, ROOT
+
 PHYSICS = "simulator.physics"
 
 Name = tuple[str, str]
@@ -19,7 +15,7 @@ def sources() -> dict[str, ast.Module]:
     """Modules of the product that speak of the physics, by their dotted names."""
     texts = {
         ".".join(path.relative_to(ROOT).with_suffix("").parts): path.read_text("utf-8")
-        for package in PACKAGES
+        for package in (*PRODUCT, "benchmarks", "examples")
         for path in (ROOT / package).rglob("*.py")
     }
     return {

@@ -2,7 +2,7 @@
 
 import re
 
-from tests.docs.pages import DOCS
+from tests.docs.pages import DOCS, ROOT
 
 TEXT = (DOCS / "models.md").read_text(encoding="utf-8")
 BODY, _, REFERENCES = TEXT.partition("\n## References\n")
@@ -12,23 +12,23 @@ WITHOUT_FORMULAS = {"How far to trust it"}
 def test_displayed_equations_are_numbered_one_after_another() -> None:
     lines = [line for line in BODY.splitlines() if re.match(r"    \S", line)]
     numbers = [re.search(r"  \((\d+)\)$", line) for line in lines]
-    assert all(numbers)
+    assert [line for line, found in zip(lines, numbers, strict=True) if not found] == []
     assert [int(found[1]) for found in numbers if found] == list(range(1, len(lines) + 1))
 
 
 def test_every_displayed_equation_names_its_source() -> None:
-    for line in BODY.splitlines():
-        if re.match(r"    \S", line):
-            assert re.search(
-                r"  (?:.*\[\d+\].*|worked here|\(\d+\) along a path)  \(\d+\)$", line
-            )
+    source = re.compile(r"  (?:.*\[\d+\].*|worked here|\(\d+\) along a path)  \(\d+\)$")
+    lines = [line for line in BODY.splitlines() if re.match(r"    \S", line)]
+    assert [line for line in lines if not source.search(line)] == []
 
 
 def test_every_section_ends_with_its_sources() -> None:
-    for section in BODY.split("\n## ")[1:]:
-        title = section.splitlines()[0]
-        if title not in WITHOUT_FORMULAS:
-            assert section.strip().split("\n\n")[-1].startswith("*Sources.* "), title
+    without = {
+        section.splitlines()[0]
+        for section in BODY.split("\n## ")[1:]
+        if not section.strip().split("\n\n")[-1].startswith("*Sources.* ")
+    }
+    assert without == WITHOUT_FORMULAS
 
 
 def test_sources_exist_and_are_all_used() -> None:
@@ -39,6 +39,5 @@ def test_sources_exist_and_are_all_used() -> None:
 
 
 def test_modules_that_the_page_names_exist() -> None:
-    root = DOCS.parent
-    for name in re.findall(r"`((?:\w+/)+\w+\.py)`", TEXT):
-        assert (root / name).exists()
+    names = re.findall(r"`((?:\w+/)+\w+\.py)`", TEXT)
+    assert [name for name in names if not (ROOT / name).exists()] == []

@@ -1,0 +1,150 @@
+"""Every module has a test, and is short enough to read.
+
+A test of a module is its mirror in ``tests``, an example in a docstring of it, or any test that
+imports it. What only runs through other modules is listed below, with the tests that run it.
+"""
+
+import re
+from functools import cache
+from pathlib import Path
+
+from benchmarks.house import ROOT
+from tests.tree.sources import modules
+
+TESTS = ROOT / "tests"
+IMPORT = re.compile(r"^ *from ([\w.]+) import (\([^)]*\)|.*)$", flags=re.MULTILINE)
+
+THROUGH = {
+    "stepnc_model/ap238/test_export.py": (
+        "stepnc_model/ap238/building.py",
+        "stepnc_model/ap238/completing.py",
+        "stepnc_model/ap238/drafting.py",
+        "stepnc_model/ap238/requirements.py",
+    ),
+    "stepnc_model/ap238/test_reading.py": (
+        "stepnc_model/ap238/converted.py",
+        "stepnc_model/ap238/following.py",
+        "stepnc_model/ap238/upright.py",
+    ),
+    "stepnc_model/ap238/test_writing.py": ("stepnc_model/ap238/loose.py",),
+    "stepnc_model/entities/test_order.py": ("stepnc_model/entities/workpiece.py",),
+    "stepnc_model/nc/test_macros.py": ("stepnc_model/nc/flow_keywords.py",),
+    "stepnc_model/nc/test_program.py": (
+        "stepnc_model/nc/drilling.py",
+        "stepnc_model/nc/heidenhain_control.py",
+        "stepnc_model/nc/iso_codes.py",
+        "stepnc_model/nc/iso_flow.py",
+        "stepnc_model/nc/iso_motions.py",
+        "stepnc_model/nc/remarks.py",
+        "stepnc_model/nc/sinumerik_control.py",
+    ),
+    "stepnc_model/nc/test_rewrite.py": ("stepnc_model/nc/feed_rows.py",),
+    "stepnc_model/nc/test_rs274.py": (
+        "stepnc_model/nc/arcs.py",
+        "stepnc_model/nc/iso_control.py",
+        "stepnc_model/nc/iso_modes.py",
+        "stepnc_model/nc/split.py",
+    ),
+    "simulator/agent/test_http.py": ("simulator/agent/selection.py",),
+    "simulator/factory/test_queueing.py": (
+        "simulator/factory/store.py",
+        "simulator/factory/upkeep.py",
+    ),
+    "simulator/factory/test_shop_file.py": ("simulator/factory/shop_tables.py",),
+    "simulator/factory/test_station.py": (
+        "simulator/factory/crews.py",
+        "simulator/factory/shifts.py",
+        "simulator/factory/surroundings.py",
+    ),
+    "optimiser/test_holding.py": ("optimiser/asked_of_holding.py",),
+    "optimiser/test_optimise.py": ("optimiser/reasons.py",),
+    "service/agent/test_run.py": ("simulator/agent/machine_feed.py",),
+    "service/along_path/test_of_code.py": ("service/cli/code.py",),
+    "service/along_path/test_output.py": ("service/along_path/figures.py",),
+    "service/along_path/test_run.py": ("service/along_path/of_program.py",),
+    "service/cli/test_agent.py": ("service/cli/record.py",),
+    "service/cli/test_learning.py": (
+        "service/cli/dataset.py",
+        "service/learning/figures.py",
+        "service/learning/output.py",
+    ),
+    "service/factory/test_factory.py": (
+        "service/cli/factory.py",
+        "service/factory/output.py",
+        "service/factory/parts_file.py",
+        "service/factory/states_file.py",
+        "service/factory/sweep.py",
+    ),
+    "service/factory/test_live.py": ("service/factory/live_status.py",),
+    "service/folder_advice/test_cli.py": ("service/folder_advice/output.py",),
+    "service/jobs/test_evaluate.py": ("service/jobs/review.py",),
+    "service/jobs/test_runner.py": ("service/jobs/frozen.py",),
+    "service/jobs/test_verify.py": ("service/jobs/logs.py",),
+    "service/learning/test_score.py": ("service/learning/recorded.py",),
+    "service/rest/test_agent.py": ("service/agent/shop.py",),
+    "service/rest/test_code_advice.py": ("service/requests/stored_advice.py",),
+    "service/rest/test_factories.py": ("service/rest/factory_views.py",),
+    "service/rest/test_monitors.py": ("service/rest/monitor_views.py",),
+    "service/rest/test_programs.py": ("service/rest/uploads.py",),
+    "service/rest/test_raw_part.py": ("service/requests/stored_stock.py",),
+    "service/rest/test_verifications.py": ("service/rest/logged.py",),
+    "service/storage": ("service/storage/connection.py",),
+    "service/test_keep_going.py": (
+        "stepnc_model/own_operation.py",
+        "stepnc_model/toolpath/left_out.py",
+        "service/refusals.py",
+    ),
+    "service/test_log_lines.py": ("service/fork_log.py",),
+    "service/test_report.py": ("service/figures.py",),
+    "service/test_run_file.py": ("service/growing_file.py",),
+    "service/test_uses.py": ("service/paths/remarks.py",),
+}
+"""tests, and the modules that they run through others"""
+
+
+def mirror(module: str) -> Path:
+    """Test module in the place that mirrors a module's own."""
+    path = TESTS / module
+    return path.with_name(f"test_{path.name}")
+
+
+def imported_by_tests() -> set[str]:
+    """Dotted names that the tests import; those that only read sources test nothing."""
+    found: set[str] = set()
+    for path in TESTS.rglob("*.py"):
+        if path.parent.name != "tree":
+            for module, names in IMPORT.findall(path.read_text(encoding="utf-8")):
+                found |= {module, *(f"{module}.{name}" for name in re.findall(r"\w+", names))}
+    return found
+
+
+@cache
+def without_test() -> list[str]:
+    """Modules without a test of their own."""
+    imported = imported_by_tests()
+    return [
+        module
+        for module, text in modules().items()
+        if not mirror(module).exists()
+        and ">>> " not in text
+        and module.removesuffix(".py").replace("/", ".") not in imported
+    ]
+
+
+def listed() -> list[str]:
+    """Modules that are listed above."""
+    return [module for run in THROUGH.values() for module in run]
+
+
+def test_every_module_has_a_test() -> None:
+    assert [module for module in without_test() if module not in listed()] == []
+
+
+def test_only_modules_without_a_test_of_their_own_are_listed() -> None:
+    assert [module for module in listed() if module not in without_test()] == []
+    assert [place for place in THROUGH if not (TESTS / place).exists()] == []
+
+
+def test_modules_are_short_enough_to_read() -> None:
+    lengths = {module: len(text.splitlines()) for module, text in modules().items()}
+    assert {module: length for module, length in lengths.items() if length > 500} == {}
