@@ -42,12 +42,14 @@ def every_case(names: str | Sequence[str], cases: Iterable[Any]) -> Callable[[Te
         taken = signature(test)
 
         @wraps(test)
-        def wrapper(**fixtures: Any) -> None:
+        def wrapper(*bound: object, **fixtures: Any) -> None:
             faults: list[BaseException] = []
             for number, case in enumerate(table):
                 values = [case] if is_single else list(case)
                 try:
-                    _run(test, fixtures, dict(zip(keys, values, strict=True)), number)
+                    given = dict(zip(keys, values, strict=True))
+                    with pytest.MonkeyPatch.context() as patch:
+                        test(*bound, **given, **_fresh(fixtures, number, patch))
                 except (Exception, pytest.fail.Exception) as fault:
                     fault.add_note(f"case {number}: {_SHOWN.repr(case)}")
                     faults.append(fault)
@@ -65,16 +67,16 @@ def every_case(names: str | Sequence[str], cases: Iterable[Any]) -> Callable[[Te
     return decorate
 
 
-def _run(test: Test, fixtures: dict[str, Any], case: dict[str, Any], number: int) -> None:
-    """Run one case with the fixtures that must not carry anything over from the last one."""
-    own = dict(fixtures)
-    if "tmp_path" in own:
-        folder: Path = own["tmp_path"] / str(number)
+def _fresh(fixtures: dict[str, Any], number: int, patch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """Fixtures of a case, without what the last case has left in them."""
+    fresh = dict(fixtures)
+    if "tmp_path" in fresh:
+        folder: Path = fresh["tmp_path"] / str(number)
         folder.mkdir()
-        own["tmp_path"] = folder
-    if "capsys" in own:
-        own["capsys"].readouterr()
-    with pytest.MonkeyPatch.context() as patch:
-        if "monkeypatch" in own:
-            own["monkeypatch"] = patch
-        test(**own, **case)
+        fresh["tmp_path"] = folder
+    if "capsys" in fresh:
+        fresh["capsys"].readouterr()
+    if "monkeypatch" in fresh:
+        # Undoing the one of pytest would undo what other fixtures have set with it.
+        fresh["monkeypatch"] = patch
+    return fresh

@@ -75,3 +75,9 @@ def test_no_cases_and_names_that_the_test_does_not_take_are_mistakes() -> None:
         every_case("name", [])
     with pytest.raises(TypeError, match="does not take"):
         every_case("nam", ["x"])(lambda name: None)
+
+
+class TestMethods:
+    @every_case("number", [1, 2])
+    def test_a_method_is_a_test_too(self, number: int) -> None:
+        assert number in {1, 2}
