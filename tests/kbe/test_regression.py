@@ -18,6 +18,7 @@ from kbe.regression import (
     predicted,
     updated,
 )
+from tests.every_case import every_case
 
 ONE = np.ones(1)
 PRIOR = NormalInverseGamma(mean=np.zeros(1), precision=np.eye(1) / 16.0, shape=2.0, rate=0.005)
@@ -105,8 +106,8 @@ def test_mean_and_its_spread_are_those_of_the_integral(grid: Grid) -> None:
     assert law.var() == pytest.approx(variance, rel=2e-3)
 
 
-@pytest.mark.parametrize("value", [0.1, 0.2, 0.26, 0.3, 0.5])
-@pytest.mark.parametrize("weight", [1.0, 0.25])
+@every_case("value", [0.1, 0.2, 0.26, 0.3, 0.5])
+@every_case("weight", [1.0, 0.25])
 def test_prediction_is_that_of_the_integral(grid: Grid, value: float, weight: float) -> None:
     scale = np.broadcast_to(grid.scatter / sqrt(weight), grid.density.shape)
     wanted = grid.expectation(stats.norm.cdf(value, grid.mean, scale))

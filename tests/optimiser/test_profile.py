@@ -14,6 +14,7 @@ from optimiser.profile import (
     tangential_limit,
 )
 from optimiser.sweep import sweep
+from tests.every_case import every_case
 
 
 def line() -> tuple[ProfileProblem, AxisLimit]:
@@ -26,7 +27,7 @@ def line() -> tuple[ProfileProblem, AxisLimit]:
     return ProfileProblem(lengths=np.ones(2), caps=np.full(3, 100.0)), limit
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("lengths", "caps", "message"),
     [
         ([1.0, 0.0], [1.0, 1.0, 1.0], "interval 1: length 0 mm must be positive and finite"),

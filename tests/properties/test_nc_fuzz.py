@@ -16,6 +16,7 @@ from stepnc_model.post.dialects import read, write
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program
 from stepnc_model.toolpath.generate import generate
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 PROGRAMS = [(MachineType.MILL, control, cycles) for control in Dialect for cycles in Cycles] + [
@@ -108,7 +109,7 @@ def test_a_word_that_no_control_knows_is_never_skipped(
             read(lines, control, machine=machine)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("control", "lines", "words"),
     [
         (Dialect.LINUXCNC, ["O100 CALL"], "not a word of NC code"),

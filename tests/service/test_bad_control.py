@@ -16,6 +16,7 @@ from service.cli.options import BAD_INPUT, INTERRUPTED
 from service.control.run import control
 from stepnc_model.errors import WriteError
 from tests.asking import AskedControl
+from tests.every_case import every_case
 from tests.full_disk import files_of_at_most
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
@@ -54,7 +55,7 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
     return run
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("words", "message"),
     [
         ([], "name a STEP-NC program, or NC code with --nc"),

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from service.cli.main import main, optimise_main
+from tests.every_case import every_case
 from tests.full_disk import files_of_at_most
 from tests.rights import Capability, without
 
@@ -87,7 +88,7 @@ def damaged(old: str, new: str) -> str:
 # ------------------------------------------------------------------------- the text
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "words"),
     [
         ("", "line 1, column 1: the file is empty"),
@@ -146,7 +147,7 @@ def test_numbers_without_end_are_refused(
 # ------------------------------------------------------------------------ instances
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("old", "new", "words"),
     [
         ("#50,#41,#42", "#950,#41,#42", "#950: is referenced, but does not exist"),
@@ -207,7 +208,7 @@ def test_references_that_lead_nowhere_or_in_a_circle_are_named(
 # -------------------------------------------------------------------------- numbers
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("number", "words"),
     [
         ("0.", "feed per tooth 0 is not valid: it must be positive"),
@@ -232,7 +233,7 @@ def test_a_feed_that_cannot_be_is_refused(
     assert "line 54: #41 MILLING_TECHNOLOGY" in answer.error
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("old", "new", "words"),
     [
         (".TCP.,0.583333333333333", ".TCP.,0.", "#41 MILLING_TECHNOLOGY.cutspeed: cutting sp"),
@@ -274,7 +275,7 @@ def test_numbers_of_another_unit_profile_are_refused_and_the_profile_named(
 # ---------------------------------------------------------------- words and names
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("options", "words"),
     [
         (("--mode", "FAST"), "unknown mode 'FAST'; known: TC, QC, EC"),
@@ -335,7 +336,7 @@ def test_a_material_that_nobody_knows_is_refused_with_near_names(
     assert "unknown material 'unobtanium / mithril'; similar names: " in refused().error
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("old", "new", "words"),
     [
         ("power_kw = 15\n", "", "spindle.curve[2].power_kw: missing"),
@@ -471,8 +472,8 @@ def test_a_program_of_ap238_without_a_feed_is_refused(
 # ------------------------------------------------------------------ files made to cost dear
 
 
-@pytest.mark.parametrize("unit", ["#1=", "/*", "#1=A(/*", "ENDSEC;DATA;"])
-@pytest.mark.parametrize(
+@every_case("unit", ["#1=", "/*", "#1=A(/*", "ENDSEC;DATA;"])
+@every_case(
     "words", [("check",), ("optimise", "--dry-run"), ("convert", "--profile", "standard")]
 )
 def test_a_program_of_endless_faults_is_refused_in_a_line(

@@ -15,6 +15,7 @@ import pytest
 
 from service.cli.main import main, optimise_main
 from service.progress import share_in
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 BRACKET = (PARTS / "bracket.stpnc").read_text(encoding="ascii")
@@ -99,7 +100,7 @@ CORNER = "#551=CIRCLE('',#561,10.)"
 FEED = "#304=MILLING_TECHNOLOGY(0.0064,.TCP.,$,-40."
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("change", "words"),
     [
         (("#422=MILLING_TOOL_DIMENSION(12.", "#422=MILLING_TOOL_DIMENSION(14."), "#130 SLOT"),
@@ -181,7 +182,7 @@ def test_a_program_that_cannot_be_machined_is_refused_by_both_verbs(
     assert refused("post", part, "--control", "fanuc") == told
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("change", "words"),
     [
         ((FEED, FEED.replace("0.0064", "$")), "#304 MILLING_TECHNOLOGY.feedrate: neither"),
@@ -200,7 +201,7 @@ def test_a_feed_or_speed_that_no_control_runs_is_not_written(
     assert words in refused("post", part, "--control", "linuxcnc")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("change", "words"),
     [
         (("MEASURE(54.", "MEASURE(80."), "#120 OUTER_DIAMETER: the feature's radius of 40 mm"),

@@ -21,6 +21,7 @@ from service.simulation.of_code import CodeRequest
 from service.simulation.run import simulate
 from stepnc_model.errors import StepNcError, WriteError
 from tests.asking import asked_simulation
+from tests.every_case import every_case
 from tests.full_disk import files_of_at_most
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
@@ -91,7 +92,7 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
 # ------------------------------------------------------------------ NC code
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "words"),
     [
         ("", "slot.ngc: the program contains nothing that takes time"),
@@ -152,7 +153,7 @@ def test_a_move_off_the_travel_leaves_what_came_before_it(
     assert not code.with_name("run.csv").exists()
 
 
-@pytest.mark.parametrize(
+@every_case(
     "text",
     [
         START + CUT,
@@ -164,7 +165,6 @@ def test_a_move_off_the_travel_leaves_what_came_before_it(
         START + "G3 X-20 Y10 I0 J0.0001 F100\n" + END,
         START + "G0 X50\n" + END,
     ],
-    ids=["no end", "after the end", "no tool", "no spindle", "fast", "tiny", "arc", "rapid"],
 )
 def test_code_that_is_only_strange_is_run(code: Path, text: str) -> None:
     code.write_text(text, encoding="ascii")
@@ -184,7 +184,7 @@ def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
 # ------------------------------------------------------------------ numbers and names
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("changed", "words"),
     [
         ({"rate": "0"}, "rate 0 Hz: it must be 1 to 10000 Hz"),
@@ -242,7 +242,7 @@ def test_a_huge_stock_takes_no_more_memory(code: Path) -> None:
     assert stopped.value.code in {0, LIMIT_EXCEEDED}
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("table", "words"),
     [
         ("", "has no [[tool]]"),
@@ -267,7 +267,7 @@ def test_a_tool_table_that_cannot_be_used_is_refused(
     assert words in refused(*alone(code))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("words", "message"),
     [
         ([], "name a STEP-NC program, or NC code with --nc"),
@@ -318,7 +318,7 @@ def test_code_that_cannot_be_read_is_refused(code: Path, refused: Refused) -> No
     assert "is not a valid file name" in refused(*alone(code, nc="a\0.ngc"))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("output", "words"),
     [
         ("run.txt", "a run is written as .parquet or .csv"),

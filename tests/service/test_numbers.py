@@ -8,6 +8,7 @@ from service.numbers import LEAST_SIZE, numbers_in, require_size, stock_in
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Stock
 from stepnc_model.toolpath.path import FARTHEST
+from tests.every_case import every_case
 
 
 @given(st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=6))
@@ -57,7 +58,7 @@ def test_other_counts_are_refused(text: str) -> None:
         stock_in(text)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "axis", "low", "high"),
     [
         ("60,-1", "z", "1", "0"),

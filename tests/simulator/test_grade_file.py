@@ -8,6 +8,7 @@ import pytest
 from simulator.errors import LibraryError
 from simulator.grade_file import read_grades
 from simulator.spec import ToolGrade, ToolKind
+from tests.every_case import every_case
 
 GOOD = """
 title = "My drills"
@@ -54,7 +55,7 @@ def test_the_helix_belongs_to_the_edge(tmp_path: Path) -> None:
         grades_of(GOOD.replace("rake", "helix_deg = 80\nrake"), tmp_path)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("good", "bad", "message"),
     [
         (

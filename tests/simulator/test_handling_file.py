@@ -7,6 +7,7 @@ import pytest
 from simulator.errors import LibraryError
 from simulator.library import load_machine, machine_names
 from simulator.spec import Handling, HandlingState, Machine, PowerDeviation
+from tests.every_case import every_case
 
 GOOD = """
 title = "My mill"
@@ -71,7 +72,7 @@ def test_times_do_not_scatter_unless_the_file_says_so(tmp_path: Path) -> None:
     assert handling.time_scatter == 0.0
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("good", "bad", "message"),
     [
         ("part_setup_s = 60", "part_setup_s = -1", "handling.part_setup_s: -1 s is below 0 s"),

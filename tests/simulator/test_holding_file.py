@@ -8,6 +8,7 @@ from simulator.errors import LibraryError
 from simulator.holding_file import read_holding_file
 from simulator.spec import MachineKind
 from simulator.work_holding import Chuck, Clamp, Holding
+from tests.every_case import every_case
 
 CHUCK = """
 [[holding]]
@@ -80,7 +81,7 @@ def test_a_vice_and_clamps_hold_alike(kind: str, tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("good", "bad", "message"),
     [
         ("clamping_force_kn = 45", "clamping_force_kn = 0", "0 kN is below 0.01 kN"),

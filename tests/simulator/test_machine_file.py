@@ -18,6 +18,7 @@ from simulator.spec import (
     VibrationMode,
 )
 from stepnc_model.units import rpm_from_rev_s
+from tests.every_case import every_case
 
 GOOD = """
 title = "My mill"
@@ -131,7 +132,7 @@ def test_a_step_in_the_curve_is_told_before_anything_is_cut(tmp_path: Path) -> N
         machine_of(GOOD.replace("[[axis]]", step), tmp_path)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("good", "bad", "message"),
     [
         ("efficiency = 0.8", "efficiency = 1.2", "spindle.efficiency: 1.2 exceeds 1"),
@@ -181,7 +182,7 @@ def test_a_bad_value_is_told_with_key_value_and_bound(
     assert str(tmp_path / "my.toml") in str(caught.value)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("good", "bad", "message"),
     [
         ("lead_mm = 12", "lead_mm = 0.012", "axis[1].drive.lead_mm: 0.012 mm is below 0.1 mm"),
@@ -259,7 +260,7 @@ def test_measured_modes_are_read_in_canonical_units(tmp_path: Path) -> None:
     assert machine_of(GOOD, tmp_path).modes == ()
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("good", "bad", "message"),
     [
         (

@@ -9,6 +9,7 @@ from simulator.errors import LibraryError
 from simulator.library import load_machine
 from simulator.machine_xml import read_machine_xml
 from simulator.spec import Handling, HandlingState, PowerDeviation
+from tests.every_case import every_case
 
 EXAMPLE = Path(__file__).parent / "data" / "paper003.xml"
 
@@ -121,7 +122,7 @@ def test_an_id_that_looks_like_a_number_is_a_name(tmp_path: Path) -> None:
     assert read_machine_xml(with_change(tmp_path, "TurningMc1", "7")).title == "7"
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("old", "new", "message"),
     [
         ('pDefaultLoad="370"', 'pDefaultLoad="-1"', "Machine.pDefaultLoad: -1 W is below 0 W"),

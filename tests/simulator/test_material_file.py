@@ -8,6 +8,7 @@ import pytest
 from simulator.errors import LibraryError
 from simulator.library import load_material
 from simulator.spec import CuttingMaterial, ToolConstruction, WorkMaterial
+from tests.every_case import every_case
 
 GOOD = """
 title = "My steel"
@@ -71,7 +72,7 @@ def test_a_users_own_file_is_read_in_canonical_units(tmp_path: Path) -> None:
     assert material.remarks[1].startswith("turning: feed force 0.45 (0.27 to 0.80)")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("good", "bad", "message"),
     [
         ("m_c = 0.25", "m_c = 1.1", "kienzle.m_c: 1.1 exceeds 0.9"),

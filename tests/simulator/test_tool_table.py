@@ -12,6 +12,7 @@ from simulator.tool_files.read import read_tools
 from simulator.tool_table import TURNED, TableTool
 from stepnc_model.entities.enums import HandOfToolType
 from stepnc_model.units import rad_from_deg
+from tests.every_case import every_case
 
 MILL = 'number = 3\nkind = "endmill"\ndiameter_mm = 10\n'
 
@@ -72,7 +73,7 @@ def test_a_mill_with_everything(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.parametrize("kind", list(ToolKind))
+@every_case("kind", list(ToolKind))
 def test_every_kind_is_read(tmp_path: Path, kind: ToolKind) -> None:
     size = "width_mm = 3" if kind is ToolKind.GROOVING else "nose_radius_mm = 0.8"
     row = f'number = 1\nkind = "{kind}"\n'
@@ -105,7 +106,7 @@ def test_an_insert(tmp_path: Path) -> None:
     assert plain.cutting_edge_angle == 0.5 * pi
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("row", "key", "words"),
     [
         ('number = 3\nkind = "endmill"', "diameter_mm", ("missing", "0.01 to 2000 mm")),

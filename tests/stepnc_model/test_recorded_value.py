@@ -15,6 +15,7 @@ from stepnc_model.outcome_record import (
     positive_or_none,
     written,
 )
+from tests.every_case import every_case
 
 
 @given(st.datetimes(timezones=st.timezones()))
@@ -58,7 +59,7 @@ def test_a_force_may_be_nothing_at_all_but_not_less() -> None:
         measured_or_none(-1.0, "force", "N")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("value", "number"),
     [(1, 1.0), (0.5, 0.5), (nan, None), (inf, None), ("1", None), (None, None)],
 )

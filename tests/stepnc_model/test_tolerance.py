@@ -18,6 +18,7 @@ from stepnc_model.tolerance import (
     tolerance_findings,
     written_tolerance,
 )
+from tests.every_case import every_case
 
 PROGRAM = (
     "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n"
@@ -55,7 +56,7 @@ def test_general_tolerance_grows_with_the_size(one: float, other: float) -> None
     assert general_tolerance(small).half_width <= general_tolerance(large).half_width
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("size", "grade"), [(25.0, 0), (25.0, 19), (3151.0, 7), (0.0, 7), (-5.0, 7), (1.0, 14)]
 )
 def test_what_the_table_does_not_give_is_refused(size: float, grade: int) -> None:
@@ -63,7 +64,7 @@ def test_what_the_table_does_not_give_is_refused(size: float, grade: int) -> Non
         standard_tolerance(size, grade)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "half_width", "code"),
     [
         ("PLUS_MINUS_VALUE(0.1,0.1,3)", 0.1, "±0.1 mm"),
@@ -93,7 +94,7 @@ def test_length_without_a_tolerance_has_none() -> None:
     )
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "why"),
     [
         ("PLUS_MINUS_VALUE(0.1,-0.1,3)", "both must be written as positive numbers"),

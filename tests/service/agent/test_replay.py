@@ -27,6 +27,7 @@ from simulator.agent.model import DeviceModel, read_model
 from simulator.agent.shdr import written
 from simulator.library import load_machine
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 from tests.service.agent.test_run import PARTS, run_of, served
 from tests.service.recording.test_run import WHOLE
 
@@ -167,7 +168,7 @@ def test_what_the_model_does_not_have_is_told(tmp_path: Path, model: DeviceModel
     assert (feed.times.tolist(), feed.values) == ([0.0, 1.0, 2.0], [1.0, None, 4.0])
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "text", "message"),
     [
         ("a.csv", "seconds,x\n1,2\n", "no column time_s"),

@@ -18,6 +18,7 @@ from simulator.library import load_machine
 from simulator.machine_file import machine_toml
 from simulator.motion.model_name import ControlModelName
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 TABLE_2 = (
     "spacing_in,feed_in_min\n0.0001,0.7\n0.00025,3.6\n0.0005,7.2\n0.00075,10.5\n0.001,14.6\n"
@@ -128,7 +129,7 @@ def failed(folder: Path, text: str, **rest: object) -> BlockFitResult:
     return fit_blocks(BlockFitRequest(log=str(log), **rest))  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "rest", "message"),
     [
         ("spacing_in,feed_in_min\n0.1,0\n", {}, "row 2: feed_in_min 0: it must be above 0"),

@@ -13,6 +13,7 @@ from simulator.library import load_machine
 from simulator.machine_file import machine_toml
 from simulator.spec import ModeDirection, VibratingPart, VibrationMode
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 OK, USAGE, BAD_INPUT = 0, 2, 3
 
@@ -79,7 +80,7 @@ def test_a_workpiece_belongs_to_no_tool(response: Path) -> None:
     assert (mode.part, mode.tool, mode.source) == (VibratingPart.WORKPIECE, "", "by hand")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("changes", "message"),
     [
         ({"tool": ""}, "name what was tapped"),

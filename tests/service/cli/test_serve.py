@@ -8,6 +8,7 @@ from service.cli.main import main
 from service.storage import keys
 from service.storage.folder import open_data_folder
 from service.storage.keys import Role
+from tests.every_case import every_case
 
 
 def run(*words: object) -> object:
@@ -23,7 +24,7 @@ def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("STEPNC_DATA", str(tmp_path / "data"))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("words", "told"),
     [
         (("--port", 70_000), "--port 70000: it must be 0 to 65535"),

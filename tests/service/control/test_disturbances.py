@@ -10,6 +10,7 @@ from controller.orders import Criterion, CriterionTo, MotorPowerTo, SwitchTo
 from service.control.disturbances import Disturbances, disturbances, time_of
 from simulator.plant.hidden import HiddenChange, HiddenQuantity
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 NAMES = (
     "depth", "hardness", "material", "tooth", "silence", "kc", "wear", "runout", "lag", "noise",
@@ -22,7 +23,7 @@ def read(*words: str) -> Disturbances:
     return disturbances(words, hardness=lambda name: {"c45": 1.25}[name])
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("word", "change"),
     [
         ("depth:+50%@12s", HiddenChange(time=12.0, what=HiddenQuantity.DEPTH, value=1.5)),
@@ -67,7 +68,7 @@ def test_orders_come_in_the_order_of_their_times() -> None:
     ]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("word", "message"),
     [
         ("", "write it like depth:+50%@12s or kc:1.3"),

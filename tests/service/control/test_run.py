@@ -15,6 +15,7 @@ from service.control.run import ControlRun, control, prepare
 from simulator.plant.controlled import TrueState
 from stepnc_model.errors import StepNcError
 from tests.asking import AskedControl, asked_control
+from tests.every_case import every_case
 
 Controlled = Callable[..., AskedControl]
 
@@ -88,7 +89,7 @@ def test_nothing_is_kept_that_nobody_asked_for(controlled: Controlled) -> None:
     assert (run.samples, run.trace) == (0, None)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("changed", "message"),
     [
         ({"law": "pid"}, "unknown law 'pid'; known: pi, log-pi"),

@@ -26,6 +26,7 @@ from stepnc_model.cut_settings import CutSettings
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program
 from stepnc_model.units import rev_s_from_rad_s
+from tests.every_case import every_case
 from tests.service.waiting import ROOT, children, is_alive, until
 
 PART = Path(__file__).parents[3] / "examples" / "parts" / "paper003_case1.stpnc"
@@ -155,7 +156,7 @@ def test_columns_have_units_and_the_manifest_has_versions(design: Path, tmp_path
     assert set(manifest["versions"]) == {"stepnc-optimiser", "numpy"}
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("old", "new", "rows", "message"),
     [
         ("seed", "seed", None, "design 'uniform' has no end: give -n ROWS"),

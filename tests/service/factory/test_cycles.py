@@ -14,6 +14,7 @@ from stepnc_model.cut_settings import CutSettings
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program
 from tests.asking import asked_simulation
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
 
@@ -78,7 +79,7 @@ def short(machine: Machine) -> Machine:
 MILL = load_machine("vmc15")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "machine", "settings", "message"),
     [
         (

@@ -12,6 +12,7 @@ import pytest
 from pyarrow import parquet
 
 from service.cli.main import main
+from tests.every_case import every_case
 
 SHOPS = Path(__file__).parents[3] / "examples" / "shops"
 PAPER = SHOPS / "paper003.toml"
@@ -176,7 +177,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("case", REFUSED)
+@every_case("case", REFUSED)
 def test_bad_options(shop: Path, case: str, capsys: pytest.CaptureFixture[str]) -> None:
     words, message = REFUSED[case]
     assert run(shop, *words) == 3

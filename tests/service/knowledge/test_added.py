@@ -12,6 +12,7 @@ from service.flat_file import Format
 from service.knowledge.added import add_outcomes
 from service.knowledge.export import export_outcomes
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 LEAST = {
     "machine": "DMU 50",
@@ -57,7 +58,7 @@ def test_what_nobody_measured_may_be_left_out(tmp_path: Path) -> None:
     assert outcome.context.machine == "DMU 50"
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("rows", "message"),
     [
         ({}, "must hold a list with at least one outcome"),

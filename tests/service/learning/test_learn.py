@@ -11,6 +11,7 @@ from pyarrow import csv
 from service.learning.learn import LearnResult, learn
 from service.requests.learning import LearnRequest
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 from tests.service.learning.tables import changed, law_table, written
 
 ASKED = LearnRequest(model="power-law", train=100, test=60)
@@ -51,7 +52,7 @@ def test_a_csv_is_read_as_well(tmp_path: Path) -> None:
     assert one.predicted == pytest.approx(other.predicted)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("request_", "message"),
     [
         (replace(ASKED, model="oracle"), "unknown model 'oracle'; known: mlp, gp"),

@@ -6,9 +6,10 @@ from math import inf, nan
 import pytest
 
 from service.rendering.columns import Cell, Change, Column, clock, grouped, shown, visible
+from tests.every_case import every_case
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("value", "form", "text"),
     [
         (None, "", "–"),

@@ -10,6 +10,7 @@ import httpx
 import pytest
 
 from service.rest.advice_views import AdviceView, CodeAdviceView, CodeContentsView, CurvesView
+from tests.every_case import every_case
 from tests.service.rest.conftest import Done
 from tests.service.rest.samples import CODE, CODE_STOCK, CODE_TOOLS, SAMPLE
 from tests.service.rest.server import Server, is_problem, made, over
@@ -101,7 +102,7 @@ def test_feeds_and_curves_are_given_in_bounds(client: httpx.Client, code: CodeDo
     assert again.status_code == 304
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("change", "detail"),
     [
         ({"tools_id": None}, "missing: tools_id"),

@@ -9,6 +9,7 @@ from typing import Any
 import httpx
 import pytest
 
+from tests.every_case import every_case
 from tests.service.factory.shops import TIMED
 from tests.service.rest.conftest import Done
 from tests.service.rest.server import is_problem, made, over
@@ -200,7 +201,7 @@ MACHINES = [{"name": "m", "count": 10_000}, {"name": "n", "count": 10_000}]
 STEP = {"machines": ["saw"], "time_s": 1}
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("body", "text"),
     [
         ({}, "either a shop or a sample"),

@@ -7,6 +7,7 @@ import httpx
 import pytest
 
 from service.rest.verification_views import FileView
+from tests.every_case import every_case
 from tests.service.rest.server import Server, is_problem, made
 from tests.service.waiting import rss_mib
 
@@ -45,7 +46,7 @@ def test_a_file_comes_back_byte_for_byte(
     is_problem(client.delete(f"/v1/files/{id}"), 404)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("kind", "name", "body", "refusal"),
     [
         ("log", "run.csv", b"", (400, "the body is empty")),

@@ -19,6 +19,7 @@ from simulator.motion.segments import Floats
 from stepnc_model.errors import SchemaError, StepNcError
 from stepnc_model.post.dialect import Dialect
 from tests.asking import asked_advice, asked_simulation
+from tests.every_case import every_case
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 BRACKET = EXAMPLES / "parts" / "bracket.stpnc"
@@ -294,7 +295,7 @@ def test_a_program_that_takes_no_time_is_none(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [code]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("words", "message"),
     [
         ({"rate": float("nan")}, "rate nan Hz: it must be 1 to 10000 Hz"),

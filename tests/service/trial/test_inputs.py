@@ -16,11 +16,12 @@ from service.trial.inputs import (
     differing,
 )
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 INPUTS = Inputs()
 
 
-@pytest.mark.parametrize("field", FIELDS, ids=lambda field: field.name)
+@every_case("field", FIELDS)
 def test_both_bounds_can_be_had_and_nothing_beyond(field: InputField) -> None:
     # A slow and large cutter, so that no spindle speed stands in the way.
     slow = replace(INPUTS, tool_diameter_mm=150.0)
@@ -37,7 +38,7 @@ def test_both_bounds_can_be_had_and_nothing_beyond(field: InputField) -> None:
             )
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("changes", "message"),
     [
         ({"axial_depth_mm": 25}, "depth 25 mm: it must be 0.1 to 20 mm"),
@@ -87,7 +88,7 @@ def test_enumerations_come_as_words() -> None:
     assert differing(made, made) == ()
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("changes", "words"),
     [
         ({"axial_depth_mm": 4}, "depth 2 -> 4 mm"),

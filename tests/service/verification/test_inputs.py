@@ -10,13 +10,14 @@ from service.storage.files import FileKind
 from service.verification import inputs
 from service.verification.inputs import STREAMS, require_content
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 HEADING = "time_s,x_axis_position_actual,z_axis_position_actual\n"
 TRIANGLE = "solid a\n" + "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n" + "endsolid\n"
 TOOLS = '[[tool]]\nnumber = 4\nkind = "endmill"\ndiameter_mm = 10\n'
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("kind", "name", "text"),
     [
         (FileKind.LOG, "run.csv", f"{HEADING}0,1,2\n"),
@@ -37,7 +38,7 @@ def test_good_files_are_accepted(kind: FileKind, name: str, text: str, tmp_path:
     require_content(kind, path)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("kind", "name", "text", "why"),
     [
         (FileKind.LOG, "run.csv", "time_s,x\n", "no column x_axis_position_actual"),

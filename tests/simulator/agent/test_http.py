@@ -10,6 +10,7 @@ from lxml import etree
 
 from simulator.agent.agent import Asset
 from simulator.agent.buffer import ConditionValue, TimeSeriesValue
+from tests.every_case import every_case
 from tests.simulator.agent.conftest import (
     BEGIN,
     ServedAgent,
@@ -174,7 +175,7 @@ def test_a_path_chooses(
         assert {local(each) for each in observations(root)} == names
 
 
-@pytest.mark.parametrize(
+@every_case(
     "path",
     [
         "//////Linear",
@@ -197,7 +198,7 @@ def test_a_bad_path_is_refused_at_once(serve: Serve, path: str) -> None:
     assert time.monotonic() - begin < 5.0
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("query", "codes"),
     [
         ("current?at=NaN", ["InvalidParameterValue"]),

@@ -10,6 +10,7 @@ import pytest
 from lxml import etree
 
 from tests.docs.pages import DOCS, blocks
+from tests.every_case import every_case
 from tests.simulator.agent.conftest import (
     BEGIN,
     ServedAgent,
@@ -45,8 +46,8 @@ def told(served: ServedAgent) -> dict[str, str]:
     return {each.get("dataItemId"): each.text for each in observations(served.root("/current"))}
 
 
-@pytest.mark.parametrize("method", ["PUT", "POST"])
-@pytest.mark.parametrize(
+@every_case("method", ["PUT", "POST"])
+@every_case(
     "path", [PUT, f"/asset/A2?device={UUID}", "/vmc15/asset/A2", "/asset/A2", "/assets/A2"]
 )
 def test_an_asset_that_is_put_is_kept_and_told(serve: Serve, method: str, path: str) -> None:
@@ -119,7 +120,7 @@ FILE = '<!DOCTYPE a [<!ENTITY x SYSTEM "file:///etc/passwd">]><CuttingTool>&x;</
 DEEP = "<CuttingTool>" + "<a>" * 60 + "</a>" * 60 + "</CuttingTool>"
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("path", "body", "status"),
     [
         (PUT, LAUGHS, 400),
@@ -203,7 +204,7 @@ def test_a_time_in_the_future_is_now(serve: Serve) -> None:
     assert served.agent.buffer.last_time == BEGIN
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("query", "faults"),
     [
         ("nope=1", 1),
@@ -243,7 +244,7 @@ def test_nothing_is_written_unless_it_is_allowed(serve: Serve, path: str) -> Non
     assert ids(served, "/assets?removed=true") == []
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("path", "methods"),
     [
         ("/asset/A1", {"PUT", "POST", "DELETE"}),

@@ -8,6 +8,7 @@ import pytest
 
 from simulator.calibration.modal_fit import read_response
 from simulator.errors import CalibrationError
+from tests.every_case import every_case
 
 ROWS: list[tuple[float, ...]] = [(100.0 * row, 1.0 + row, -0.5 * row) for row in range(12)]
 
@@ -52,7 +53,7 @@ def test_an_accelerance_is_divided_by_minus_omega_squared(tmp_path: Path) -> Non
     assert found.receptance[0] == pytest.approx(-1e3 * (2.0 - 0.5j) / omega**2)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("heading", "rows", "message"),
     [
         (

@@ -8,6 +8,7 @@ import pytest
 from simulator.errors import LibraryError
 from simulator.factory.design import DesignKind
 from simulator.factory.design_file import read_design
+from tests.every_case import every_case
 
 WHOLE = """program = ["one.stpnc", "two.stpnc"]
 machine = "paper003"
@@ -41,7 +42,7 @@ def test_a_design_file_is_read(tmp_path: Path) -> None:
     assert design.depth is None
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("old", "new", "message"),
     [
         ("[30, 90]", "[90, 30]", r"feed_mm_s: \[90, 30\]: expected a lower and a greater"),

@@ -10,6 +10,7 @@ from simulator.errors import LibraryError
 from simulator.factory.shop import Counting
 from simulator.factory.shop_file import read_shop
 from simulator.factory.states import MachineState
+from tests.every_case import every_case
 from tests.simulator.factory.shops import shop_of
 
 GOOD = """
@@ -112,7 +113,7 @@ def test_json_says_the_same(tmp_path: Path) -> None:
     assert read_shop(path) == shop_of(GOOD, tmp_path)
 
 
-@pytest.mark.parametrize("case", REFUSED)
+@every_case("case", REFUSED)
 def test_bad_files_are_refused(tmp_path: Path, case: str) -> None:
     before, after, message = REFUSED[case]
     assert before in GOOD

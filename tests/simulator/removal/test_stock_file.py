@@ -17,6 +17,7 @@ from simulator.removal.lathe import TurningStock
 from simulator.removal.stock_file import MOST_BYTES, kept_stock, stock_bytes
 from simulator.removal.zmap import OUTSIDE
 from stepnc_model.program import Stock
+from tests.every_case import every_case
 
 BLOCK = Stock(low=(-1.0, -2.0, -10.0), high=(39.0, 28.0, 0.0))
 ROUND = Stock(low=(-15.0, -5.0, -10.0), high=(15.0, 25.0, 0.0), radius=15.0)
@@ -115,7 +116,7 @@ def turned(**changes: Floats) -> bytes:
 NONE = np.empty(0)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("data", "told"),
     [
         (b"", "is not a kept stock: File is not a zip file"),

@@ -11,6 +11,7 @@ from simulator.removal.cutter import Cutter, Insert
 from simulator.tool_files.csv_table import read_csv
 from simulator.tool_files.read import ToolFormat, read_tools
 from stepnc_model.units import speed_from_m_min
+from tests.every_case import every_case
 from tests.simulator.tool_files.refusal import refusal
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "tools"
@@ -66,7 +67,7 @@ def test_a_boring_insert(tmp_path: Path) -> None:
     assert shape.nose_radius == 0.4
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("lines", "told"),
     [
         ([HEADING, "3,endmill,12000,A,4"], "line 2: diameter_mm: 12000 mm exceeds 2000 mm"),

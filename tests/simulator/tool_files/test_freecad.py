@@ -5,12 +5,11 @@ from math import pi
 from pathlib import Path
 from typing import Any
 
-import pytest
-
 from simulator.removal.cutter import Cutter
 from simulator.spec import CuttingMaterial, ToolKind
 from simulator.tool_files.read import ToolFormat, read_tools
 from stepnc_model.units import rad_from_deg
+from tests.every_case import every_case
 from tests.simulator.tool_files.refusal import refusal
 
 Json = dict[str, Any]
@@ -68,7 +67,7 @@ def test_a_library(tmp_path: Path) -> None:
     assert read.by_number[3].shape == Cutter(diameter=6.0, corner_radius=1.5, teeth=4)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("given", "shape"),
     [
         (
@@ -117,7 +116,7 @@ def test_a_probe_is_left_out(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("given", "told"),
     [
         (bit("endmill", Diameter="12000 mm"), "parameter.Diameter: 12000 mm exceeds 2000 mm"),
@@ -143,7 +142,7 @@ def test_a_refusal_names_the_parameter_the_value_and_the_bound(
     assert told in refusal(library(tmp_path, given))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("entry", "told"),
     [
         (

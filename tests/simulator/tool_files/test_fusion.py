@@ -13,6 +13,7 @@ from simulator.spec import CuttingMaterial, ToolKind
 from simulator.tool_files.read import ToolFormat, ToolLibrary, read_tools
 from stepnc_model.entities.enums import HandOfToolType
 from stepnc_model.units import rad_from_deg, speed_from_m_min
+from tests.every_case import every_case
 from tests.simulator.tool_files.refusal import refusal
 
 Json = dict[str, Any]
@@ -95,7 +96,7 @@ def test_a_tool_in_inches(tmp_path: Path) -> None:
     assert ["span 2 presets" in each.message for each in library.findings] == [True]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "geometry", "shape"),
     [
         ("ball end mill", {"DC": 6, "RE": 3}, Cutter(diameter=6.0, corner_radius=3.0, teeth=1)),
@@ -156,7 +157,7 @@ def test_an_archive_is_read(tmp_path: Path) -> None:
     assert read_tools(file).tools == found(tmp_path, mill()).tools
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("changes", "told"),
     [
         (

@@ -9,6 +9,7 @@ from simulator.removal.cutter import Cutter, Holder
 from simulator.spec import CuttingMaterial, ToolKind
 from simulator.tool_files.read import ToolFormat, ToolLibrary, read_tools
 from stepnc_model.units import rad_from_deg, speed_from_m_min
+from tests.every_case import every_case
 from tests.simulator.tool_files.refusal import refusal
 
 MILL = """\
@@ -120,7 +121,7 @@ def test_other_tools_are_left_out_with_their_line(tmp_path: Path) -> None:
     ]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("old", "new", "told"),
     [
         ('diameter="8"', 'diameter="12000"', "line 3: body.diameter: 12000 mm exceeds 2000 mm"),

@@ -12,6 +12,7 @@ from simulator.tool_files.linuxcnc import is_tool_line
 from simulator.tool_files.read import ToolFormat, ToolLibrary, read_tools
 from stepnc_model.entities.enums import HandOfToolType
 from stepnc_model.units import rad_from_deg
+from tests.every_case import every_case
 from tests.simulator.tool_files.refusal import refusal
 
 MILL_MM = """\
@@ -58,7 +59,7 @@ def test_inches_are_told_apart_by_remarks(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("line", "hand", "leading", "trailing", "inside"),
     [
         ("T2 P2 D0.8 I85 J25 Q2", HandOfToolType.RIGHT, 95.0, 25.0, False),
@@ -113,7 +114,7 @@ def test_tools_that_cannot_be_represented_are_left_out(
     assert why in library.findings[0].message
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "told"),
     [
         ("T1 D3 ;mill", "line 1: P: missing; every tool has a number T and a pocket P"),

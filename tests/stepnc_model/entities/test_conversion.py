@@ -17,6 +17,7 @@ from stepnc_model.part21.values import (
     Typed,
     Value,
 )
+from tests.every_case import every_case
 
 NUMBER = AttributeSlot(plain=(float,))
 COUNT = AttributeSlot(plain=(int,))
@@ -30,7 +31,7 @@ FEED = AttributeSlot(plain=(Typed, float), is_optional=True)
 SPEED = AttributeSlot(plain=(Typed, float), enumeration=SpeedName, references=(Entity,))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("slot", "value", "expected"),
     [
         (NUMBER, Real(0.04), 0.04),
@@ -64,7 +65,7 @@ def test_value_that_fits_is_taken_without_a_word(
     assert take(slot, value) == (expected, None)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("slot", "value", "expected", "severity", "words"),
     [
         (NUMBERS, None, (), Severity.NOTE, "$ where a list is required"),
@@ -133,7 +134,7 @@ def test_parameter_may_be_missing_at_the_end(
     assert remark.severity is severity
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("slot", "value", "expected"),
     [
         (NUMBER, 0.5, Real(0.5)),

@@ -4,6 +4,7 @@ import pytest
 
 from stepnc_model.errors import Part21Error, Severity
 from stepnc_model.part21.reader import Part21File
+from tests.every_case import every_case
 from tests.stepnc_model.part21.test_reader import (
     END,
     HEADER,
@@ -37,7 +38,7 @@ def test_comment_that_swallows_instances_says_so() -> None:
     assert messages(file) == ["nested comment: '/*' within a comment; it hides 2 instances"]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "value", "slips"),
     [
         ("1E5", 1e5, 1),
@@ -55,7 +56,7 @@ def test_slip_in_a_value_is_read_and_reported(text: str, value: object, slips: i
     assert len(file.findings) == slips
 
 
-@pytest.mark.parametrize(
+@every_case(
     "text",
     [
         "1,,2",
@@ -98,7 +99,7 @@ def test_error_names_line_and_column() -> None:
     assert (caught.value.line, caught.value.column) == (9, 5)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("data", "message"),
     [
         (b"", "empty"),
@@ -140,10 +141,8 @@ def test_absent_id_is_a_key_error() -> None:
         file_of("#1=A();").parameters(2)
 
 
-@pytest.mark.parametrize(
-    "unit", ["'", '"', "/*", "*/", "(", "#1=", ";", "DATA;", "ENDSEC;", "A("]
-)
-@pytest.mark.parametrize("opening", ["", "#9=A("])
+@every_case("unit", ["'", '"', "/*", "*/", "(", "#1=", ";", "DATA;", "ENDSEC;", "A("])
+@every_case("opening", ["", "#9=A("])
 def test_repeated_marks_are_answered_in_linear_time(unit: str, opening: str) -> None:
     data = (HEADER + "DATA;\n" + opening + unit * (200_000 // len(unit))).encode()
     try:

@@ -1,9 +1,8 @@
 """The tolerant parser: places of values and of errors."""
 
-import pytest
-
 from stepnc_model.part21.record import parse_record
 from stepnc_model.part21.values import Enumeration, Ref, Typed
+from tests.every_case import every_case
 
 
 def test_spans_leave_out_blanks_and_comments() -> None:
@@ -32,7 +31,7 @@ def test_slips_do_not_stop_the_parser() -> None:
     assert [slip.offset for slip in record.slips] == [2, 8, 13, 17]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "offset", "message"),
     [
         ("", 0, "ends before its brackets close"),

@@ -26,13 +26,14 @@ from stepnc_model.post.blocks import (
 from stepnc_model.post.fanuc import FanucReader
 from stepnc_model.post.linuxcnc import LinuxCncReader, along_path
 from stepnc_model.toolpath.path import ArcPlane, CycleKind
+from tests.every_case import every_case
 
 
 def read(*lines: str) -> list[Block]:
     return list(LinuxCncReader(MachineType.MILL).blocks(lines))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("line", "message"),
     [
         ("G123", "word G123: unknown G code on this mill"),

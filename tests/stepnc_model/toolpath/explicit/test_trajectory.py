@@ -13,6 +13,7 @@ from stepnc_model.toolpath.curve import Segment
 from stepnc_model.toolpath.explicit.trajectory import trajectory_segments
 from stepnc_model.toolpath.frame import Frame
 from stepnc_model.toolpath.path import Point
+from tests.every_case import every_case
 
 HEADER = (
     "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('MACHINING_SCHEMA'));\nENDSEC;\nDATA;\n"
@@ -141,7 +142,7 @@ class TestAxes:
         (segment,) = traced(axes("'X','Y','Z'", "#30,#30,#30"), frame=SHIFTED)
         assert segment.start == (1.0, 1.0, 1.0)
 
-    @pytest.mark.parametrize(
+    @every_case(
         ("names", "commands", "message"),
         [
             ("'X'", "#30", "positions of the other axes"),

@@ -17,6 +17,7 @@ from stepnc_model.program import Program
 from stepnc_model.toolpath.hole.operation import hole_path
 from stepnc_model.toolpath.path import Dwell, Move, MoveType, SpindleCommand, ToolPath
 from stepnc_model.toolpath.task import job_of
+from tests.every_case import every_case
 
 BRACKET = Path(__file__).parents[4] / "examples" / "parts" / "bracket.stpnc"
 EXAMPLE3 = Path(__file__).parents[5] / "shared" / "corpus" / "iso14649" / "EXAMPLE3.stp"
@@ -219,7 +220,7 @@ def test_what_is_odd_is_said(change: tuple[str, str], attribute: str) -> None:
     assert finding.attribute == attribute
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("change", "message"),
     [
         (

@@ -22,6 +22,7 @@ from stepnc_model.toolpath.hole.feature import (
     tip_length,
 )
 from stepnc_model.toolpath.task import ToolPathTask, job_of
+from tests.every_case import every_case
 
 BRACKET = Path(__file__).parents[4] / "examples" / "parts" / "bracket.stpnc"
 POINT = 4.9 * tan(radians(20.0))
@@ -62,7 +63,7 @@ def sizes(depth: Depth) -> tuple[float, float]:
 
 
 class TestTip:
-    @pytest.mark.parametrize(
+    @every_case(
         ("dimension", "expected"),
         [
             ("9.8,20.,$,60.,$,$,$", POINT),

@@ -15,6 +15,7 @@ from stepnc_model.program import Program
 from stepnc_model.toolpath.hole.operation import hole_path
 from stepnc_model.toolpath.path import MoveType, ToolPath
 from stepnc_model.toolpath.task import job_of
+from tests.every_case import every_case
 
 BRACKET = Path(__file__).parents[4] / "examples" / "parts" / "bracket.stpnc"
 PATTERN = (
@@ -128,7 +129,7 @@ def test_a_start_point_beside_the_axis_is_not_followed_and_said() -> None:
     assert found.findings[0].severity is Severity.WARNING
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("change", "message"),
     [
         (("'REAM HOLE 1',5.,", "'REAM HOLE 1',-1.,"), r"#214 .*retract_plane: -1 mm"),

@@ -16,6 +16,7 @@ from stepnc_model.program import Program
 from stepnc_model.toolpath.hole.operation import hole_path
 from stepnc_model.toolpath.path import Dwell, Move, MoveType, ToolPath, points_along, radius
 from stepnc_model.toolpath.task import job_of
+from tests.every_case import every_case
 
 BRACKET = Path(__file__).parents[4] / "examples" / "parts" / "bracket.stpnc"
 
@@ -200,7 +201,7 @@ def test_the_teeth_go_from_the_end_of_the_thread_to_above_the_part(
     assert start[2] - onto == pytest.approx(0.25 * pitch)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("change", "message"),
     [
         (

@@ -11,6 +11,7 @@ from stepnc_model.program import Program
 from stepnc_model.toolpath.milling.operation import allowance_of, levels, milling_path
 from stepnc_model.toolpath.path import Move, MoveType, Point, ToolPath, length, points_along
 from stepnc_model.toolpath.task import ToolPathTask, job_of
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"
 END = "ENDSEC;\nEND-ISO-10303-21;"
@@ -330,7 +331,7 @@ def test_rapids_over_shapes_at_different_heights_pass_over_the_higher_one() -> N
             assert min(start[2], move.end[2]) >= 20.0 + 10.0
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("changes", "message"),
     [
         ([(OLD, "0.,6.,0.3,0.2);\n#207")], "#206 .*axial_cutting_depth: 0 mm"),

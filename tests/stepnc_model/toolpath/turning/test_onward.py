@@ -8,6 +8,7 @@ import pytest
 from stepnc_model.errors import Severity
 from stepnc_model.toolpath.path import Move, MoveType, Point, ToolPath
 from stepnc_model.toolpath.turning.passes import meeting
+from tests.every_case import every_case
 
 PathOf = Callable[..., ToolPath]
 
@@ -65,7 +66,7 @@ def test_oblique_directions_are_followed(path_of: PathOf) -> None:
     assert path_of("ROUGH CONTOUR", strategy("#911,#912,#913,3.,$,$")).findings == ()
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("ways", "text"),
     [
         ("#914,#502,#506,2.", "the return path would hit the remaining stock"),
