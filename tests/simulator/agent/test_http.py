@@ -33,6 +33,12 @@ TOOL = (
 )
 
 
+@pytest.fixture
+def served(serve: Serve) -> ServedAgent:
+    """An agent for all cases of a table."""
+    return serve()
+
+
 def names_of(root: Any) -> set[str]:
     return {each.get("name") for each in root.iter() if local(each) in {"Device", "Agent"}}
 
@@ -190,9 +196,9 @@ def test_a_path_chooses(
         "//" + "x" * 2000,
     ],
 )
-def test_a_bad_path_is_refused_at_once(serve: Serve, path: str) -> None:
+def test_a_bad_path_is_refused_at_once(served: ServedAgent, path: str) -> None:
     begin = time.monotonic()
-    answer = httpx.get(serve().url + "/current", params={"path": path})
+    answer = httpx.get(served.url + "/current", params={"path": path})
     assert answer.status_code == 400
     assert error_codes(etree.fromstring(answer.content)) == ["InvalidXPath"]
     assert time.monotonic() - begin < 5.0
@@ -223,8 +229,10 @@ def test_a_bad_path_is_refused_at_once(serve: Serve, path: str) -> None:
         ("assets?count=abc", ["InvalidParameterValue"]),
     ],
 )
-def test_a_parameter_that_cannot_be_is_told(serve: Serve, query: str, codes: list[str]) -> None:
-    answer = serve().get(f"/{query}")
+def test_a_parameter_that_cannot_be_is_told(
+    served: ServedAgent, query: str, codes: list[str]
+) -> None:
+    answer = served.get(f"/{query}")
     assert answer.status_code == 400
     root = etree.fromstring(answer.content)
     assert error_codes(root) == codes
