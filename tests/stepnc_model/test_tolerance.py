@@ -128,6 +128,12 @@ def test_tolerance_that_cannot_be_read_is_a_warning_at_its_place(text: str, why:
     assert found.finding.line == 8
 
 
+def test_a_warning_names_the_grade_the_grades_and_what_is_used() -> None:
+    finding = written("LIMITS_AND_FITS(0.,19.,$)").finding
+    assert finding is not None
+    assert "IT19: ISO 286-1 has grades IT1 to IT18" in finding.message
+
+
 @pytest.mark.parametrize(
     ("size", "why"), [("5000.", "up to 3150 mm"), ("-5.", "up to 3150 mm"), ("$", "nominal")]
 )

@@ -184,21 +184,21 @@ def test_what_the_model_does_not_have_is_told(tmp_path: Path, model: DeviceModel
         ("a.parquet", "PAR1", "cannot be read"),
         ("missing.parquet", None, "no such file"),
         ("missing.csv", None, "no such file"),
-        ("missing.xml", None, "cannot be read: No such file"),
-        ("missing.shdr", None, "cannot be read: .*No such file"),
-        ("a.xml", "<MTConnectDevices/>", "expected MTConnectStreams"),
-        ("a.xml", "<!DOCTYPE a [<!ENTITY b 'c'>]><a>&b;</a>", "document type declaration"),
+        ("missing.xml", None, "No such file"),
+        ("missing.shdr", None, "No such file"),
+        ("a.xml", "<MTConnectDevices/>", "MTConnectStreams"),
+        ("a.xml", "<!DOCTYPE a [<!ENTITY b 'c'>]><a>&b;</a>", "document type"),
         (
             "a.xml",
             '<MTConnectStreams><a dataItemId="paper003_xpos" sequence="1" timestamp="now"/>'
             "</MTConnectStreams>",
-            "line 1: paper003_xpos: timestamp 'now' is not in ISO 8601",
+            "timestamp 'now' is not in ISO 8601",
         ),
         (
             "a.xml",
             '<MTConnectStreams><a dataItemId="paper003_xpos" sequence="x" '
             'timestamp="2026-01-01T00:00:00Z">1</a></MTConnectStreams>',
-            "line 1: paper003_xpos: invalid literal",
+            "invalid literal",
         ),
         (
             "a.xml",

@@ -133,10 +133,10 @@ def failed(folder: Path, text: str, **rest: object) -> BlockFitResult:
     ("text", "rest", "message"),
     [
         ("spacing_in,feed_in_min\n0.1,0\n", {}, "row 2: feed_in_min 0: it must be above 0"),
-        ("spacing_in,feed_in_min\n0.1,\n", {}, "row 2: feed_in_min empty"),
-        ("spacing_in,feed\n0.1,1\n", {}, "no column feed_in_min beside spacing_in"),
+        ("spacing_in,feed_in_min\n0.1,\n", {}, "feed_in_min empty"),
+        ("spacing_in,feed\n0.1,1\n", {}, "no column feed_in_min"),
         ("spacing_in,feed_in_min\n0.1,1\n", {}, "1 different spacings"),
-        ("time_s\n0\n", {}, "name the test program"),
+        ("time_s\n0\n", {}, "test program"),
         (TABLE_2, {"machine": "vmc15"}, "name a file with -o"),
         (TABLE_2, {"output": Path("x.toml")}, "name the machine"),
         (TABLE_2.replace("_in", "_mm"), {"machine": "no", "output": Path("x.toml")}, "no"),

@@ -83,12 +83,12 @@ def test_a_workpiece_belongs_to_no_tool(response: Path) -> None:
 @every_case(
     ("changes", "message"),
     [
-        ({"tool": ""}, "name what was tapped"),
-        ({"workpiece": True}, "name what was tapped"),
-        ({"direction": "w"}, "unknown direction 'w'; known: x, y, z, xy"),
+        ({"tool": ""}, "what was tapped"),
+        ({"workpiece": True}, "what was tapped"),
+        ({"direction": "w"}, "direction 'w'"),
         ({"tool_diameter_mm": -1.0}, "tool diameter: -1 mm is below 0.01 mm"),
-        ({"modes": 0}, "0 modes: at least 1 is needed"),
-        ({"modes": 4}, "1 peaks found, but 4 modes were requested"),
+        ({"modes": 0}, "0 modes"),
+        ({"modes": 4}, "1 peaks found"),
         ({"machine": "vmc15"}, "name a file with -o"),
         ({"output": Path("mine.toml")}, "name the machine with --machine"),
     ],

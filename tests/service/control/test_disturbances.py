@@ -101,6 +101,14 @@ def test_what_is_no_disturbance_is_refused(word: str, message: str) -> None:
     assert word in str(caught.value)
 
 
+def test_a_refusal_repeats_the_disturbance_and_names_its_bounds() -> None:
+    with pytest.raises(StepNcError) as caught:
+        read("depth:-100%@1s")
+    assert str(caught.value) == (
+        "disturbance 'depth:-100%@1s': it must be above -100 % and at most +900 %"
+    )
+
+
 numbers = st.one_of(
     st.floats(width=32).map(str),
     st.integers(-200, 200).map(lambda value: f"{value:+d}"),

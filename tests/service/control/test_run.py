@@ -119,6 +119,12 @@ def test_what_cannot_be_is_refused(
     assert message in str(caught.value)
 
 
+def test_a_refusal_names_the_setting_the_value_and_its_bounds(controlled: Controlled) -> None:
+    with pytest.raises(StepNcError) as caught:
+        control(*controlled(look_ahead=51))
+    assert str(caught.value) == "look-ahead 51 revolutions: it must be 1 to 50 revolutions"
+
+
 def test_nc_code_alone_says_nothing_of_limits(controlled: Controlled) -> None:
     request, files = controlled()
     with pytest.raises(StepNcError, match="control needs a STEP-NC program"):

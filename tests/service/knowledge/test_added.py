@@ -87,6 +87,13 @@ def test_what_is_no_outcome_is_refused_and_nothing_kept(
     assert not place.exists()
 
 
+def test_a_refusal_names_file_row_field_and_value(tmp_path: Path) -> None:
+    file = written(tmp_path, [{**LEAST, "tool": 7}])
+    with pytest.raises(StepNcError) as caught:
+        add_outcomes(str(tmp_path / "new.db"), file)
+    assert str(caught.value) == f"{file}, outcome 1: 'tool' is 7, but must be text"
+
+
 def test_what_is_no_json_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "x.json"
     path.write_bytes(b"\xff{")

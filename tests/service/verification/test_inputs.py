@@ -41,18 +41,18 @@ def test_good_files_are_accepted(kind: FileKind, name: str, text: str, tmp_path:
 @every_case(
     ("kind", "name", "text", "why"),
     [
-        (FileKind.LOG, "run.csv", "time_s,x\n", "no column x_axis_position_actual"),
-        (FileKind.LOG, "run.csv", "\0\0\0", "no column time_s"),
+        (FileKind.LOG, "run.csv", "time_s,x\n", "x_axis_position_actual"),
+        (FileKind.LOG, "run.csv", "\0\0\0", "time_s"),
         (FileKind.LOG, "run.parquet", "PAR1", "cannot be read"),
-        (FileKind.LOG, "run.xml", "<a/>", "expected MTConnectStreams"),
-        (FileKind.LOG, "run.xml", "<a", "run.xml: line 1: not well-formed"),
+        (FileKind.LOG, "run.xml", "<a/>", "MTConnectStreams"),
+        (FileKind.LOG, "run.xml", "<a", "line 1: not well-formed"),
         (FileKind.LOG, "run.xml", f"<{STREAMS}><a></{STREAMS}>", "line 1: not well-formed"),
-        (FileKind.LOG, "run.xml", f"<!DOCTYPE a><{STREAMS}/>", "a document type is not"),
+        (FileKind.LOG, "run.xml", f"<!DOCTYPE a><{STREAMS}/>", "document type"),
         (FileKind.LOG, "run.shdr", "yesterday|x|1\n", "no line of SHDR"),
         (FileKind.LOG, "run.log", "x" * 200_000, "no line of SHDR"),
         (FileKind.TOOLS, "tools.toml", "[[tool]]\nnumber = -1\n", "number"),
         (FileKind.REQUIRED_PART, "part.stl", "solid a\nendsolid\n", "no triangles"),
-        (FileKind.REQUIRED_PART, "part.stl", "ISO-10303-21;", "part.stl: .*no DATA section"),
+        (FileKind.REQUIRED_PART, "part.stl", "ISO-10303-21;", "no DATA section"),
     ],
 )
 def test_other_files_are_refused(

@@ -108,6 +108,12 @@ def test_odd_value_is_told_and_never_fatal(
     assert words in remark.message
 
 
+def test_a_remark_says_what_stands_where_what_is_required() -> None:
+    _, remark = take(NUMBERS, "x")
+    assert remark is not None
+    assert remark.message == "item 1: 'x' where a number is required"
+
+
 def test_list_with_a_hole_gives_no_shifted_coordinates() -> None:
     taken, remark = take(NUMBERS, (Real(1.0), "x", Real(3.0)))
     assert taken == ()

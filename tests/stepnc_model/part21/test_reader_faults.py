@@ -100,35 +100,41 @@ def test_error_names_line_and_column() -> None:
 
 
 @every_case(
-    ("data", "message"),
+    ("data", "place", "word"),
     [
-        (b"", "empty"),
-        (b" \r\n\t", "empty"),
-        (b"\xef\xbb\xbf \n", "empty"),
-        (b"G0 X1", "not an ISO"),
-        (b"\x89PNG\r\n\x1a\n\x00\x00", "not an ISO"),
-        (HEADER.encode("utf-16"), "not an ISO"),
-        (HEADER.encode(), "no DATA section"),
-        (b"ISO-10303-21;", "no DATA section"),
-        (b"ISO-10303-21; /* x", "comment that begins here"),
-        ((HEADER + "DATA;\n#1=A();\n#2=PLANE('x',#").encode(), "cut off"),
-        ((HEADER + "DATA;\n#1=A();\n#2").encode(), None),
-        ((HEADER + "DATA;\n#1=A('x;\nENDSEC;\n").encode(), "string that begins here in #1"),
-        ((HEADER + "DATA;\n#1=A(/* x);\nENDSEC;\n").encode(), "comment that begins here in #1"),
-        ((HEADER + "DATA;\n#1=A('x);\n#2=B('y');\n" + END).encode(), "string that begins here"),
-        ((HEADER + "DATA;\n#1=A();\n#2=B();\n#1=C();\n").encode(), "defined twice"),
-        (
-            (HEADER + "DATA;\n#" + "9" * 30 + "=A();\n").encode(),
-            "at most 18",
-        ),
+        (b"", (1, 1), "empty"),
+        (b" \r\n\t", (1, 1), "empty"),
+        (b"\xef\xbb\xbf \n", (1, 1), "empty"),
+        (b"G0 X1", (1, 1), "not an ISO"),
+        (b"\x89PNG\r\n\x1a\n\x00\x00", (1, 1), "not an ISO"),
+        (HEADER.encode("utf-16"), (1, 1), "not an ISO"),
+        (HEADER.encode(), (7, 1), "no DATA"),
+        (b"ISO-10303-21;", (1, 14), "no DATA"),
+        (b"ISO-10303-21; /* x", (1, 15), "comment"),
+        ((HEADER + "DATA;\n#1=A();\n#2=PLANE('x',#").encode(), (9, 1), "cut off"),
+        ((HEADER + "DATA;\n#1=A('x;\nENDSEC;\n").encode(), (8, 6), "string"),
+        ((HEADER + "DATA;\n#1=A(/* x);\nENDSEC;\n").encode(), (8, 6), "comment"),
+        ((HEADER + "DATA;\n#1=A('x);\n#2=B('y');\n" + END).encode(), (9, 8), "string"),
+        ((HEADER + "DATA;\n#1=A();\n#2=B();\n#1=C();\n").encode(), (10, 1), "twice"),
+        ((HEADER + "DATA;\n#" + "9" * 30 + "=A();\n").encode(), (8, 1), "30 digits"),
     ],
 )
-def test_refusal_says_what_is_wrong(data: bytes, message: str | None) -> None:
-    if message is None:
-        assert Part21File.from_bytes(data).findings
-        return
-    with pytest.raises(Part21Error, match=message):
+def test_refusal_is_told_at_its_place(data: bytes, place: tuple[int, int], word: str) -> None:
+    with pytest.raises(Part21Error, match=word) as caught:
         Part21File.from_bytes(data)
+    assert (caught.value.line, caught.value.column) == place
+
+
+def test_a_name_without_an_instance_is_a_finding() -> None:
+    assert Part21File.from_bytes((HEADER + "DATA;\n#1=A();\n#2").encode()).findings
+
+
+def test_refusal_of_another_file_says_what_was_expected_and_found() -> None:
+    with pytest.raises(Part21Error) as caught:
+        Part21File.from_bytes(b"G0 X1")
+    assert str(caught.value) == (
+        "line 1, column 1: not an ISO 10303-21 file: 'ISO-10303-21;' expected, 'G0 X1' found"
+    )
 
 
 def test_duplicate_id_names_both_lines() -> None:

@@ -59,3 +59,9 @@ def test_error_is_told_at_its_place(text: str, offset: int, message: str) -> Non
     assert error is not None
     assert message in error.message
     assert error.offset == offset
+
+
+def test_an_error_says_what_is_missing_and_before_what() -> None:
+    error = parse_record("A(1,);").error
+    assert error is not None
+    assert error.message == "a value is missing before ')'"

@@ -69,6 +69,12 @@ def test_nothing_is_skipped_in_silence(line: str, message: str) -> None:
     assert caught.value.line == 2
 
 
+def test_a_refusal_names_line_word_and_machine() -> None:
+    with pytest.raises(PostError) as caught:
+        read("G21 (fine)", "G123")
+    assert str(caught.value) == "line 2: word G123: unknown G code on this mill"
+
+
 def test_frames_numbers_and_comments_are_no_words() -> None:
     found = read("%", "(NAME)", "N10 G0 Z5 (up)", "", "%")
     assert [type(block).__name__ for block in found] == ["Comment", "Comment", "Retract"]
