@@ -199,7 +199,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
     assert abs(foretold - 0.9 * repetitions) < three_deviations
 
 
-@pytest.mark.parametrize(("shape", "rate"), [(0.0, 1.0), (1.0, 0.0), (-1.0, 1.0)])
+@every_case(("shape", "rate"), [(0.0, 1.0), (1.0, 0.0), (-1.0, 1.0)])
 def test_what_is_no_distribution_is_refused(shape: float, rate: float) -> None:
     with pytest.raises(ValueError, match="above 0"):
         NormalInverseGamma(mean=np.zeros(1), precision=np.eye(1), shape=shape, rate=rate)
@@ -210,7 +210,7 @@ def test_mean_and_precision_must_fit() -> None:
         NormalInverseGamma(mean=np.zeros(2), precision=np.eye(1), shape=1.0, rate=1.0)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("design", "values", "weights", "words"),
     [
         (np.ones((2, 1)), np.ones(1), np.ones(1), "design"),

@@ -11,6 +11,7 @@ from simulator.removal.lathe import TurningStock
 from simulator.removal.stock_file import stock_bytes
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Stock
+from tests.every_case import every_case
 from tests.service.verification.files import write_stl
 from tests.simulator.verification.box import box
 from tests.simulator.verification.meshes import revolved
@@ -84,7 +85,7 @@ def test_a_bar_beside_the_axis_stands_on_a_mill_only() -> None:
     )
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "told"),
     [
         ("raw", "stock 'raw': expected numbers separated by commas, an STL file (.stl), a "),

@@ -91,7 +91,7 @@ def test_the_reason_names_what_was_read_and_what_it_was_taken_for() -> None:
     )
 
 
-@pytest.mark.parametrize("text", ["wood", "crystal", "Nylon 6", "unobtainium", "CARBIDE"])
+@every_case("text", ["wood", "crystal", "Nylon 6", "unobtainium", "CARBIDE"])
 def test_what_cannot_be_guessed_is_an_error_with_near_names(text: str) -> None:
     with pytest.raises(UnknownMaterial) as caught:
         match_material([text])

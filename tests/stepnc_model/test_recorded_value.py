@@ -42,7 +42,7 @@ def test_numbers_have_twelve_digits() -> None:
     assert positive(1.0 / 3.0, "feed", "m/s") == 0.333333333333
 
 
-@pytest.mark.parametrize("value", [0.0, -1.0, nan, inf])
+@every_case("value", [0.0, -1.0, nan, inf])
 def test_what_is_not_positive_is_refused(value: float) -> None:
     with pytest.raises(ValueError, match=f"invalid feed: {value:g} m/s"):
         positive_or_none(value, "feed", "m/s")

@@ -284,7 +284,7 @@ class TestTurning:
         with pytest.raises(SchemaError):
             turning(per_turn=number)
 
-    @pytest.mark.parametrize(
+    @every_case(
         "speed",
         [
             "CONST_SPINDLE_SPEED(0.)",

@@ -229,7 +229,7 @@ def test_a_time_before_the_last_is_refused_with_its_row(
         read(file, model)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("words", "message"),
     [
         ({}, "name the machine with --machine, or its model with --device"),

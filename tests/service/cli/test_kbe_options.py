@@ -93,7 +93,7 @@ def test_what_is_no_share_is_refused(word: str) -> None:
         share(word)
 
 
-@pytest.mark.parametrize("word", ["", "-1", "1.5", "many", "99999999999999999999"])
+@every_case("word", ["", "-1", "1.5", "many", "99999999999999999999"])
 def test_what_does_not_count_is_refused(word: str) -> None:
     with pytest.raises(argparse.ArgumentTypeError, match="is not a whole number"):
         count(word)

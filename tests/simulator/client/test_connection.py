@@ -175,9 +175,7 @@ def test_a_stream_that_is_none_is_a_fault_and_no_end(body: bytes) -> None:
     assert all(part.fault for part in parts)
 
 
-@pytest.mark.parametrize(
-    "url", ["ftp://host", "http://", "http://host:port", "http://host:99999"]
-)
+@every_case("url", ["ftp://host", "http://", "http://host:port", "http://host:99999"])
 def test_an_address_that_is_none_is_told(url: str) -> None:
     with pytest.raises(AgentError):
         AgentClient(url)

@@ -45,7 +45,7 @@ def test_radius_and_height_are_inverse(cutter: Cutter) -> None:
         assert again == pytest.approx(height)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("cutter", "word"),
     [
         (Cutter(diameter=0.0), "diameter"),

@@ -95,7 +95,7 @@ def test_the_nose_lies_where_linuxcnc_draws_it(tmp_path: Path, orientation: int)
     assert shape.cutting_edge_angle == pi / 2.0
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("line", "why"),
     [
         ("T5 P5 D0.1 I210 J150 Q5", "orientation Q5 has no edge towards the axis or a bore"),

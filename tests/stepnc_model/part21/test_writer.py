@@ -61,7 +61,7 @@ def test_value_is_written_in_its_form(value: Value, text: bytes) -> None:
     assert format_value(value) == text
 
 
-@pytest.mark.parametrize(
+@every_case(
     "value",
     [Real(float("nan")), Real(float("inf")), Enumeration("a b"), Binary("9"), Typed("a b", 1)],
 )

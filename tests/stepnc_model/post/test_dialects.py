@@ -114,7 +114,7 @@ def test_writing_starts_before_the_program_is_complete(control: Dialect) -> None
     assert len([next(lines) for _ in range(1000)]) == 1000
 
 
-@pytest.mark.parametrize("control", DIALECTS)
+@every_case("control", DIALECTS)
 def test_a_feed_below_the_last_digit_is_refused(control: Dialect) -> None:
     blocks: list[Block] = [
         ProgramStart(name="F"),

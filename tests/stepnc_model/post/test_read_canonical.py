@@ -52,7 +52,7 @@ def test_layouts_of_nist_and_linuxcnc_mean_the_same(line: str, command: Canonica
     assert list(read([line, ""])) == [command]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("line", "message"),
     [
         ("FLY_TO(1, 2, 3)", "is not a canonical command"),

@@ -134,7 +134,7 @@ def test_nothing_is_skipped_in_silence(text: str, message: str) -> None:
     assert caught.value.line == 2
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("arc", "message"),
     [
         ("C X+1 Y+0 DR+ F60", "radii to its ends are 10.0000 and 9.0000"),

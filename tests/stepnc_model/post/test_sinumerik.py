@@ -192,7 +192,7 @@ def test_nothing_is_skipped_in_silence(line: str, message: str) -> None:
     assert caught.value.line == 2
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("call", "message"),
     [
         ("CYCLE81(5,5,0,-10,3)", "argument 5, 3, is not supported"),

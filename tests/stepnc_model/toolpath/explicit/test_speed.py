@@ -92,7 +92,7 @@ class TestPace:
         assert factors is not None
         assert factors.at(1.0)[0] == 0.5
 
-    @pytest.mark.parametrize(
+    @every_case(
         ("speed", "message"),
         [
             ("0.", "feed factor 0"),

@@ -80,7 +80,7 @@ class TestLocation:
     def test_an_upright_tool_axis_is_followed(self) -> None:
         assert len(traced(location(axis="#36"))) == 1
 
-    @pytest.mark.parametrize("axis", ["#38", "#20", "#34"])
+    @every_case("axis", ["#38", "#20", "#34"])
     def test_a_tool_axis_that_leans_is_refused(self, axis: str) -> None:
         with pytest.raises(PathError, match="the tool axis"):
             traced(location(axis=axis))
@@ -108,7 +108,7 @@ class TestContact:
         (segment,) = traced(contact(), tool=FLAT, normal=(0.0, -1.0, 0.0), frame=SHIFTED)
         assert segment.start == pytest.approx((105.0, 0.0, 0.0))
 
-    @pytest.mark.parametrize(
+    @every_case(
         ("tool", "normal", "message"),
         [
             (FLAT, (0.0, 0.0, 1.0), "a flat tool on a level surface"),

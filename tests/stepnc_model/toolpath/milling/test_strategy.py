@@ -88,7 +88,7 @@ def test_step_that_nothing_gives_is_assumed_and_said() -> None:
     assert "95%" in found.findings[0].message
 
 
-@pytest.mark.parametrize("overlap", ["1.", "100.", "-0.1", "250."])
+@every_case("overlap", ["1.", "100.", "-0.1", "250."])
 def test_overlap_that_leaves_no_progress_is_refused_at_its_strategy(overlap: str) -> None:
     with pytest.raises(PathError, match=r"#352 CONTOUR_PARALLEL\.overlap: overlap .*below 1"):
         way(f"CONTOUR_PARALLEL({overlap},.T.,.CCW.,.CLIMB.)")
