@@ -21,6 +21,7 @@ from controller.conditioning import (
 )
 from controller.ports import Reading
 from tests.controller.shown import turn
+from tests.every_case import every_case
 
 IDLE = replace(turn(np.full((1, 4), 5.0))[0], period=0.25, time=0.25, can_override=False)
 """a quarter of a second in rapid, with 5 N of offset"""
@@ -133,7 +134,7 @@ def test_power_in_a_cut_or_lost_is_no_idle_power() -> None:
     assert idled(idle, replace(IDLE, power=nan)) is idle
 
 
-@pytest.mark.parametrize(("diameter", "efficiency"), [(0.0, 0.9), (18.0, 0.0), (18.0, 1.1)])
+@every_case(("diameter", "efficiency"), [(0.0, 0.9), (18.0, 0.0), (18.0, 1.1)])
 def test_impossible_drive_is_refused(diameter: float, efficiency: float) -> None:
     with pytest.raises(ValueError, match="must be"):
         force_from_power(CUT, IdlePower(), tool_diameter=diameter, efficiency=efficiency)

@@ -21,6 +21,7 @@ from controller.guard import (
     taught,
 )
 from controller.reference import Reference
+from tests.every_case import every_case
 
 BAND = OverrideBand(floor=0.2, ceiling=1.5, rise=0.25)
 KEEP = WorkingstepBounds(
@@ -131,7 +132,7 @@ def test_a_hold_ends_with_an_override_that_would_have_kept_the_set_point() -> No
     assert 2000.0 * override**0.8 == pytest.approx(RESUMED * 1000.0)
 
 
-@pytest.mark.parametrize(
+@every_case(
     "change",
     [
         {"floor": 0.0},

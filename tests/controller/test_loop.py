@@ -23,6 +23,7 @@ from tests.controller.plugged import (
     reading,
     step,
 )
+from tests.every_case import every_case
 
 BLIND = OverrideBand().sensor_timeout
 """s"""
@@ -319,7 +320,7 @@ def test_rapids_forget_the_cut() -> None:
     assert run.loop.state.override == 0.6
 
 
-@pytest.mark.parametrize(
+@every_case(
     "change",
     [{"power_factor": 0.0}, {"set_point": nan}, {"servo_lag": 0.0}, {"chips": -1.0}],
 )

@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 
 from controller.preview import Preview
 from simulator.physics.tooth_means import Arcs
+from tests.every_case import every_case
 
 STEP = Preview(until=np.arange(1.0, 11.0), force=np.array([1.0] * 5 + [2.0] * 2 + [0.5] * 3))
 """seconds of force 1, 2 and 0.5 from 0, 5 and 7 s on"""
@@ -52,7 +53,7 @@ def test_no_force_within_a_revolution_of_its_place_is_overlooked(
         assert value in force
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("until", "force", "why"),
     [
         ([], [], "at least one"),

@@ -23,6 +23,7 @@ from simulator.library import load_machine
 from simulator.matching import match_material
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 VMC = load_machine("vmc15")
@@ -229,7 +230,7 @@ def test_the_share_of_the_motors_power_moves_only_its_bound() -> None:
     assert Reference(workingstep="x").bound(power_factor=0.5) is None
 
 
-@pytest.mark.parametrize("change", [{"ceiling": 0.0}, {"breakage": 0.0}, {"floor": -0.1}])
+@every_case("change", [{"ceiling": 0.0}, {"breakage": 0.0}, {"floor": -0.1}])
 def test_impossible_references_are_refused(change: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="must be positive"):
         Reference(workingstep="x", **change)  # type: ignore[arg-type]

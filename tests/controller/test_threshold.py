@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from controller.threshold import USUAL, AlarmLevel, Thresholds, ThresholdWatch, watched
 from tests.controller.shown import REVOLUTION
+from tests.every_case import every_case
 
 SET_POINT = 500.0
 
@@ -115,7 +116,7 @@ def test_revolution_without_a_force_changes_nothing(force: float) -> None:
     assert watch([force], before)[-1] == before
 
 
-@pytest.mark.parametrize("wrong", [{"deviations": 0.0}, {"margin": nan}, {"learning": 1}])
+@every_case("wrong", [{"deviations": 0.0}, {"margin": nan}, {"learning": 1}])
 def test_impossible_thresholds_are_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="must be"):
         Thresholds(**wrong)  # type: ignore[arg-type]

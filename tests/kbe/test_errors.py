@@ -1,7 +1,5 @@
 """Errors of the knowledge base say where, what and what to do."""
 
-import pytest
-
 from kbe.errors import (
     BackupDiffers,
     BackupExists,
@@ -17,6 +15,7 @@ from kbe.errors import (
     UnknownCorrection,
 )
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 ALL = [
     (StoreDamaged("a.db", reason="malformed"), "restore a backup"),
@@ -33,7 +32,7 @@ ALL = [
 ]
 
 
-@pytest.mark.parametrize(("error", "advice"), ALL, ids=lambda each: type(each).__name__)
+@every_case(("error", "advice"), ALL)
 def test_error_names_its_place_and_what_to_do(error: KnowledgeError, advice: str) -> None:
     assert isinstance(error, StepNcError)
     assert error.place == "a.db"

@@ -22,6 +22,7 @@ from kbe.grade import EvaluationGrade
 from kbe.side import Knowledge
 from kbe.statistics import Evaluated
 from stepnc_model.outcome import Context, EvaluatedQuantity, FeatureFacts, ProcessOutcome
+from tests.every_case import every_case
 from tests.kbe.cuts import CONTEXT, SLOT, correction, deviating, in_run
 
 FINE = replace(
@@ -178,7 +179,7 @@ def table() -> tuple[EvaluationRow, ...]:
     ])
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("key", "wanted"),
     [
         (SortKey.NAME, "abcde"),
@@ -207,7 +208,7 @@ def test_grade_of_a_row_is_the_worse_of_its_sides() -> None:
     assert measured.grade is EvaluationGrade.A
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("keep", "wanted"),
     [
         (RowFilter.ALL, "abcde"),

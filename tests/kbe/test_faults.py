@@ -20,12 +20,13 @@ from kbe.errors import (
 from kbe.faults import fault, translated
 from kbe.store import Store, open_store
 from kbe.store_location import parsed_place
+from tests.every_case import every_case
 
 FILE = parsed_place("kbe.db")
 SERVER = parsed_place("postgresql://ann:secret@db/kbe")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("code", "kind"),
     [
         (sqlite3.SQLITE_CORRUPT, StoreDamaged),
@@ -57,7 +58,7 @@ class Refusal(Exception):
         self.sqlstate = sqlstate
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("state", "kind"),
     [
         (None, StoreUnavailable),

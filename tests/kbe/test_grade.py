@@ -3,13 +3,13 @@
 from dataclasses import replace
 from math import hypot
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from kbe.bound import BoundUse
 from kbe.grade import EvaluationGrade, grade
 from kbe.statistics import DeviationStatistics, DeviationTally, Evaluated
+from tests.every_case import every_case
 
 NOTHING = DeviationTally().statistics()
 NO_BOUND = BoundUse()
@@ -23,7 +23,7 @@ def group(
     return {each: known if each is which else NOTHING for each in Evaluated}
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("mean", "wanted"),
     [
         (0.0, EvaluationGrade.A),

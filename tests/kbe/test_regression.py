@@ -18,6 +18,7 @@ from kbe.regression import (
     predicted,
     updated,
 )
+from tests.every_case import every_case
 
 ONE = np.ones(1)
 PRIOR = NormalInverseGamma(mean=np.zeros(1), precision=np.eye(1) / 16.0, shape=2.0, rate=0.005)
@@ -105,8 +106,8 @@ def test_mean_and_its_spread_are_those_of_the_integral(grid: Grid) -> None:
     assert law.var() == pytest.approx(variance, rel=2e-3)
 
 
-@pytest.mark.parametrize("value", [0.1, 0.2, 0.26, 0.3, 0.5])
-@pytest.mark.parametrize("weight", [1.0, 0.25])
+@every_case("value", [0.1, 0.2, 0.26, 0.3, 0.5])
+@every_case("weight", [1.0, 0.25])
 def test_prediction_is_that_of_the_integral(grid: Grid, value: float, weight: float) -> None:
     scale = np.broadcast_to(grid.scatter / sqrt(weight), grid.density.shape)
     wanted = grid.expectation(stats.norm.cdf(value, grid.mean, scale))
@@ -198,7 +199,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
     assert abs(foretold - 0.9 * repetitions) < three_deviations
 
 
-@pytest.mark.parametrize(("shape", "rate"), [(0.0, 1.0), (1.0, 0.0), (-1.0, 1.0)])
+@every_case(("shape", "rate"), [(0.0, 1.0), (1.0, 0.0), (-1.0, 1.0)])
 def test_what_is_no_distribution_is_refused(shape: float, rate: float) -> None:
     with pytest.raises(ValueError, match="above 0"):
         NormalInverseGamma(mean=np.zeros(1), precision=np.eye(1), shape=shape, rate=rate)
@@ -209,7 +210,7 @@ def test_mean_and_precision_must_fit() -> None:
         NormalInverseGamma(mean=np.zeros(2), precision=np.eye(1), shape=1.0, rate=1.0)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("design", "values", "weights", "words"),
     [
         (np.ones((2, 1)), np.ones(1), np.ones(1), "design"),

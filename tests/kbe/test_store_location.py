@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from kbe.errors import StoreUnavailable
 from kbe.store_location import parsed_place, require_openable
+from tests.every_case import every_case
 
 
 @pytest.mark.parametrize(
@@ -43,7 +44,7 @@ def test_server_is_shown_without_password(named: str, shown: str) -> None:
     assert place.url.drivername == "postgresql+psycopg"
 
 
-@pytest.mark.parametrize(
+@every_case(
     "named",
     [
         "",

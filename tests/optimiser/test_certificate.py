@@ -9,6 +9,7 @@ from benchmarks.feed_paths import PATHS
 from optimiser.certificate import JERK, NO_LIMIT, ProfileCertificate, certify
 from optimiser.profile import NamedCaps, PathProfile, ProfileProblem, tangential_limit
 from optimiser.sweep import sweep, sweep_axes
+from tests.every_case import every_case
 from tests.optimiser.profiles import trial
 
 
@@ -59,7 +60,7 @@ def test_the_bound_is_the_time_of_the_caps() -> None:
     assert found.bound == pytest.approx(0.5 + 1 / 3 + 1 / 3 + 0.5)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("scale", "limit_name", "excess"),
     [(1.21, "cap", 0.21), (1.21, "accelerating", 0.21), (1.21, "least cap", 0.21)],
 )

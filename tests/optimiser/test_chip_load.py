@@ -12,6 +12,7 @@ from optimiser.formulate import OptimisationTask
 from optimiser.problem import BoundSide, LimitName
 from simulator.physics.engagement import unidirectional
 from simulator.spec import FeedWindow
+from tests.every_case import every_case
 from tests.optimiser.plans import advice_of, after, before, measured, plan_of
 
 WINDOW = FeedWindow(width_ratio=0.5, slot_factor=0.75)
@@ -23,7 +24,7 @@ def factor_of(width_ratio: float, window: FeedWindow = WINDOW) -> float:
     return feed_factor(width_ratio, sine, window)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("percent", "factor"), [(50, 1.0), (30, 1.09), (20, 1.25), (10, 1.67), (5, 2.29), (2, 3.57)]
 )
 def test_chip_thinning_is_that_of_the_tables(percent: int, factor: float) -> None:

@@ -19,6 +19,7 @@ from stepnc_model.errors import Finding, SchemaError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.tool import tool_of
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 END = "ENDSEC;\nEND-ISO-10303-21;"
@@ -66,7 +67,7 @@ def test_overlap_in_percent_is_read_as_a_ratio() -> None:
     assert cut_of(program, "ROUGH FACE").radial_width == pytest.approx(63.0 * 0.75)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("written", "read"),
     [(0.0, 0.0), (0.25, 0.25), (25.0, 0.25), (80.0, 0.8), (-0.1, 0.0), (100.0, 0.95)],
 )

@@ -7,9 +7,10 @@ import pytest
 from benchmarks.problems import random_problem
 from optimiser.problem import BoundSide, Limit, LimitName, Monomial
 from optimiser.workingstep import caps_at, limits_at
+from tests.every_case import every_case
 
 
-@pytest.mark.parametrize("seed", range(60))
+@every_case("seed", range(60))
 def test_caps_equal_the_limits_one_by_one(seed: int) -> None:
     random = Random(seed)
     problem = random_problem(random, edge=seed % 2 == 0)

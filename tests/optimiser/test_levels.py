@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from optimiser.levels import BlockRule, Floats, best_levels
+from tests.every_case import every_case
 
 CAPS = (3.0, 5.0, 6.0, 7.0, 10.0, 12.0, 20.0)
 
@@ -113,7 +114,7 @@ def test_a_thousand_caps_and_a_count_of_a_thousand_agree() -> None:
     assert gaps[-2] > 0.0
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("lengths", "caps", "count", "message"),
     [
         ([], [], 2, "must have the same shape"),

@@ -7,6 +7,7 @@ import pytest
 
 from benchmarks.problems import random_problem
 from optimiser.problem import ROUNDING, BoundSide, Limit, LimitName, Monomial, SpeedCurve
+from tests.every_case import every_case
 
 FORCE = Monomial(coefficient=2000.0, offset=30.0, feed_exponent=0.75, depth_exponent=1.0)
 
@@ -29,8 +30,8 @@ def test_monomial_by_hand() -> None:
     assert load.value(0.25, 3.0, 4.0) == pytest.approx(1.125 * 3.0 * 16.0)
 
 
-@pytest.mark.parametrize("depth", [0.1, 1.0, 7.5])
-@pytest.mark.parametrize("speed", [1.0, 40.0])
+@every_case("depth", [0.1, 1.0, 7.5])
+@every_case("speed", [1.0, 40.0])
 def test_feed_at_bound_is_the_inverse_of_the_load(depth: float, speed: float) -> None:
     load = Monomial(
         coefficient=900.0,
@@ -110,7 +111,7 @@ def test_load_of_no_depth_is_the_same_at_depth() -> None:
     assert feed.at_depth(7.0) == feed
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("sense", "share", "holds"),
     [
         (BoundSide.AT_MOST, 0.999, True),
@@ -144,7 +145,7 @@ def test_a_curve_is_straight_between_its_points_and_open_below_them() -> None:
     assert CURVE.peak(31.0, 36.0) == 36.0
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("load", "between", "expected"),
     [
         (3.0, (10.0, 40.0), [(15.0, 26.0 + 2.0 / 3.0), (35.0, 40.0)]),

@@ -12,6 +12,7 @@ from simulator.physics import drilling, milling, turning
 from simulator.physics.engagement import Engagement, full_immersion, unidirectional
 from simulator.spec import DrillPoint, Kienzle, ToolKind
 from stepnc_model.tool import Tool
+from tests.every_case import every_case
 from tests.oracles.cutting import drilling_thrust
 from tests.simulator.physics.discs import Mill
 
@@ -44,8 +45,8 @@ def milled(arc: Engagement, tool: Tool = MILL) -> Cut:
     return replace(cut_of(CutKind.MILLING, tool), engagement=arc)
 
 
-@pytest.mark.parametrize("feed", FEEDS)
-@pytest.mark.parametrize("depth", [0.2, 3.0])
+@every_case("feed", FEEDS)
+@every_case("depth", [0.2, 3.0])
 def test_milling_force_is_the_mean_force_of_the_physics(feed: float, depth: float) -> None:
     arc = unidirectional(6.0, 20.0)
     load = loads.cutting_force(milled(arc), STEEL, 1.3)
@@ -72,8 +73,8 @@ def discs(arc: Engagement, *, depth: float, helix: float) -> Mill:
     )
 
 
-@pytest.mark.parametrize("feed", FEEDS)
-@pytest.mark.parametrize("depth", [0.4, 5.0, 20.0])
+@every_case("feed", FEEDS)
+@every_case("depth", [0.4, 5.0, 20.0])
 def test_shank_and_wall_force_are_those_of_thin_discs(feed: float, depth: float) -> None:
     arc = unidirectional(2.0, 20.0)
     cut = replace(milled(arc), helix_angle=radians(30.0))
@@ -108,9 +109,9 @@ def test_a_force_over_the_mean_is_that_of_both_by_themselves() -> None:
     assert loads.over_mean(shank.curve, 7.0) == pytest.approx(expected)
 
 
-@pytest.mark.parametrize("feed", FEEDS)
-@pytest.mark.parametrize("previous", [0.0, 6.0])
-@pytest.mark.parametrize("chisel", [0.0, 0.2])
+@every_case("feed", FEEDS)
+@every_case("previous", [0.0, 6.0])
+@every_case("chisel", [0.0, 0.2])
 def test_drilling_force_and_thrust_are_those_of_the_physics(
     feed: float, previous: float, chisel: float
 ) -> None:

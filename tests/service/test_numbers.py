@@ -8,6 +8,7 @@ from service.numbers import LEAST_SIZE, numbers_in, require_size, stock_in
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Stock
 from stepnc_model.toolpath.path import FARTHEST
+from tests.every_case import every_case
 
 
 @given(st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=6))
@@ -22,7 +23,7 @@ def test_a_refusal_names_the_thing_the_text_and_every_count() -> None:
     assert str(refused.value) == "stock '1,2': expected 3 or 6 numbers separated by commas"
 
 
-@pytest.mark.parametrize("text", ["1e400,0,0", "-inf,0,0", "nan,0,0", "0x1,0,0", "1;2;3"])
+@every_case("text", ["1e400,0,0", "-inf,0,0", "nan,0,0", "0x1,0,0", "1;2;3"])
 def test_what_is_not_finite_or_not_decimal_is_refused(text: str) -> None:
     with pytest.raises(StepNcError, match=f"zero '{text}': expected 3 numbers"):
         numbers_in(text, "zero", counts=(3,))
@@ -51,13 +52,13 @@ def test_five_numbers_are_an_upright_bar_elsewhere() -> None:
     assert bar == Stock(low=(-20.0, -50.0, -40.0), high=(40.0, 10.0, 2.0), radius=30.0)
 
 
-@pytest.mark.parametrize("text", ["7", "1,2,3,4", "1,2,3,4,5,6,7"])
+@every_case("text", ["7", "1,2,3,4", "1,2,3,4,5,6,7"])
 def test_other_counts_are_refused(text: str) -> None:
     with pytest.raises(StepNcError, match="expected 2, 3, 5 or 6 numbers"):
         stock_in(text)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "axis", "low", "high"),
     [
         ("60,-1", "z", "1", "0"),

@@ -5,8 +5,6 @@ from collections.abc import Iterator
 from importlib import import_module
 from math import inf, nan
 
-import pytest
-
 import service.errors
 from kbe.errors import (
     StoreBusy,
@@ -29,6 +27,7 @@ from service.errors import (
 from service.problem import plain_problem, problem_of, status_of, type_of
 from simulator.errors import LibraryError, OutOfTravel, UnknownMachine
 from stepnc_model.errors import Part21Error, SchemaError, StepNcError, WriteError
+from tests.every_case import every_case
 
 ROOT = "/srv/shop/data"
 
@@ -47,14 +46,14 @@ def kinds() -> Iterator[type[StepNcError]]:
                 yield kind
 
 
-@pytest.mark.parametrize("kind", sorted(set(kinds()), key=str))
+@every_case("kind", sorted(set(kinds()), key=str))
 def test_every_error_has_a_status_and_a_type(kind: type[StepNcError]) -> None:
     error = kind.__new__(kind, "why")
     assert 400 <= status_of(error) < 600
     assert type_of(kind.__name__).removeprefix("urn:stepnc:problem:").replace("-", "").isalnum()
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("error", "status", "type"),
     [
         (NotFound("program", "x"), 404, "not-found"),

@@ -2,20 +2,19 @@
 
 from pathlib import Path
 
-import pytest
-
 from service.program_kind import ProgramKind, kind_of
+from tests.every_case import every_case
 from tests.service.rest.samples import CODE, PARTS
 
 
-@pytest.mark.parametrize("file", sorted(PARTS.glob("*.stpnc")), ids=lambda file: file.stem)
+@every_case("file", sorted(PARTS.glob("*.stpnc")))
 def test_samples_are_step_nc(file: Path) -> None:
     data = file.read_bytes()
     assert kind_of(data) is ProgramKind.STEP_NC
     assert kind_of(data[data.index(b"#") :]) is ProgramKind.STEP_NC
 
 
-@pytest.mark.parametrize(
+@every_case(
     "data",
     [
         CODE,
@@ -31,7 +30,7 @@ def test_code_of_controls_is_nc_code(data: bytes) -> None:
     assert kind_of(data) is ProgramKind.NC_CODE
 
 
-@pytest.mark.parametrize(
+@every_case(
     "data",
     [
         b"", b"\0" * 1000, b"%PDF-1.7", b"no program at all", b"time_s,x\n0,1,2\n",

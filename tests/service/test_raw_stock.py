@@ -11,6 +11,7 @@ from simulator.removal.lathe import TurningStock
 from simulator.removal.stock_file import stock_bytes
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Stock
+from tests.every_case import every_case
 from tests.service.verification.files import write_stl
 from tests.simulator.verification.box import box
 from tests.simulator.verification.meshes import revolved
@@ -84,14 +85,14 @@ def test_a_bar_beside_the_axis_stands_on_a_mill_only() -> None:
     )
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "told"),
     [
-        ("raw", "stock 'raw': expected numbers separated by commas, an STL file (.stl), a "),
-        ("1,2,3,4", "stock '1,2,3,4': expected 2, 3, 5 or 6 numbers separated by commas"),
+        ("raw", "stock 'raw'"),
+        ("1,2,3,4", "stock '1,2,3,4'"),
         ("0,0,0,10,0,5", "stock: y from 0 to 0 mm: must span at least 0.01 mm"),
-        ("missing.stl", "missing.stl: No such file or directory"),
-        ("missing.npz", "missing.npz: No such file or directory"),
+        ("missing.stl", "missing.stl: No such file"),
+        ("missing.npz", "missing.npz: No such file"),
     ],
 )
 def test_what_is_no_stock_is_refused(text: str, told: str) -> None:

@@ -8,9 +8,10 @@ from simulator.edge_material import correction_of, edge_material
 from simulator.library import find_grade, load_material
 from simulator.spec import CuttingMaterial, ToolKind
 from stepnc_model.units import rad_from_deg
+from tests.every_case import every_case
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("texts", "material"),
     [
         (["Carbide P25"], CuttingMaterial.CARBIDE),

@@ -8,6 +8,7 @@ from simulator.errors import LibraryError
 from simulator.holding_file import read_holding_file
 from simulator.spec import MachineKind
 from simulator.work_holding import Chuck, Clamp, Holding
+from tests.every_case import every_case
 
 CHUCK = """
 [[holding]]
@@ -80,30 +81,40 @@ def test_a_vice_and_clamps_hold_alike(kind: str, tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.parametrize(
-    ("good", "bad", "message"),
+@every_case(
+    ("good", "bad", "key", "word"),
     [
-        ("clamping_force_kn = 45", "clamping_force_kn = 0", "0 kN is below 0.01 kN"),
-        ("clamping_force_kn = 45\n", "", "clamping_force_kn: missing"),
-        ("friction = 0.2", "friction = 1.5", "friction: 1.5 exceeds 1"),
-        ("friction = 0.2\n", "", "friction: missing"),
-        ("jaws = 3", "jaws = 2.5", "jaws: 2.5 is not a whole number"),
-        ("jaws = 3", "jaws = 1", "jaws: 1 is below 2"),
-        ("jaw_radius_mm = 72\n", "", "jaw_radius_mm: missing"),
-        ("lost_at_rpm = 3000\n", "", "lost_at_rpm: missing"),
-        ("safety_factor = 2.5", "safety_factor = 0.9", "safety_factor: 0.9 is below 1"),
-        ("tailstock = true", 'tailstock = "yes"', "'yes' is neither true nor false"),
-        ('kind = "chuck"', 'kind = "glue"', "kind: 'glue' is not one of chuck, vice, clamps"),
-        ('source = "data sheet"\n', "", "source: missing"),
-        ("grip_length_mm", "grip_lenght_mm", "grip_lenght_mm: unknown key"),
+        (
+            "clamping_force_kn = 45",
+            "clamping_force_kn = 0",
+            "holding[1].clamping_force_kn",
+            "below 0.01",
+        ),
+        ("clamping_force_kn = 45\n", "", "holding[1].clamping_force_kn", "missing"),
+        ("friction = 0.2", "friction = 1.5", "holding[1].friction", "exceeds 1"),
+        ("friction = 0.2\n", "", "holding[1].friction", "missing"),
+        ("jaws = 3", "jaws = 2.5", "holding[1].jaws", "whole number"),
+        ("jaws = 3", "jaws = 1", "holding[1].jaws", "below 2"),
+        ("jaw_radius_mm = 72\n", "", "holding[1].jaw_radius_mm", "missing"),
+        ("lost_at_rpm = 3000\n", "", "holding[1].lost_at_rpm", "missing"),
+        ("safety_factor = 2.5", "safety_factor = 0.9", "holding[1].safety_factor", "below 1"),
+        (
+            "tailstock = true",
+            'tailstock = "yes"',
+            "holding[1].tailstock",
+            "neither true nor false",
+        ),
+        ('kind = "chuck"', 'kind = "glue"', "holding[1].kind", "not one of"),
+        ('source = "data sheet"\n', "", "holding[1].source", "missing"),
+        ("grip_length_mm", "grip_lenght_mm", "holding[1].grip_lenght_mm", "unknown key"),
     ],
 )
-def test_bad_tables_are_told(good: str, bad: str, message: str, tmp_path: Path) -> None:
+def test_bad_tables_are_told(good: str, bad: str, key: str, word: str, tmp_path: Path) -> None:
     assert good in CHUCK
     with pytest.raises(LibraryError) as error:
         held(CHUCK.replace(good, bad), tmp_path)
-    assert message in str(error.value)
-    assert "holding[1]" in str(error.value)
+    assert error.value.key == key
+    assert word in error.value.message
 
 
 def test_a_vice_holds_on_no_lathe_and_a_chuck_on_no_mill(tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ from simulator.matching import match_material
 from simulator.spec import CuttingMaterial, ToolConstruction, ToolKind
 from stepnc_model.plausibility import MAX_CUTTING_SPEED
 from stepnc_model.units import m_min_from_speed
+from tests.every_case import every_case
 
 TABLE = Path(__file__).parents[3] / "shared" / "data" / "materials.csv"
 HSS, CARBIDE, CERAMIC = CuttingMaterial.HSS, CuttingMaterial.CARBIDE, CuttingMaterial.CERAMIC
@@ -38,7 +39,7 @@ def test_the_library_has_the_machines_that_the_documentation_names() -> None:
     assert set(machine_names()) >= {"paper002", "paper003", "vmc15", "lathe22"}
 
 
-@pytest.mark.parametrize("name", material_names())
+@every_case("name", material_names())
 def test_every_material_of_the_library_loads(name: str) -> None:
     material = load_material(name)
     assert material.name == name

@@ -11,9 +11,10 @@ from simulator.library import DATA, load_material, material_names
 from simulator.matching import GuessFile, match_material, normalised
 from simulator.spec import Certainty
 from simulator.toml_file import read_toml
+from tests.every_case import every_case
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("texts", "name"),
     [
         (["paper002"], "paper002"),
@@ -42,7 +43,7 @@ def test_a_name_of_a_material_finds_it_exactly(texts: list[str], name: str) -> N
     assert (match.material.name, match.certainty) == (name, Certainty.EXACT)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("texts", "name"),
     [
         (["SAE 1015", "id"], "aisi1018"),
@@ -90,7 +91,7 @@ def test_the_reason_names_what_was_read_and_what_it_was_taken_for() -> None:
     )
 
 
-@pytest.mark.parametrize("text", ["wood", "crystal", "Nylon 6", "unobtainium", "CARBIDE"])
+@every_case("text", ["wood", "crystal", "Nylon 6", "unobtainium", "CARBIDE"])
 def test_what_cannot_be_guessed_is_an_error_with_near_names(text: str) -> None:
     with pytest.raises(UnknownMaterial) as caught:
         match_material([text])
@@ -112,7 +113,7 @@ def test_a_program_that_names_no_material_is_an_error_that_lists_all(texts: list
     assert caught.value.near == material_names()
 
 
-@pytest.mark.parametrize("name", material_names())
+@every_case("name", material_names())
 def test_every_name_of_a_material_leads_to_it_and_to_no_other(name: str) -> None:
     material = load_material(name)
     for text in (name, material.title, *material.title.split(" / "), *material.equivalents):

@@ -14,6 +14,7 @@ from simulator.machine.samples import (
     TravelDirection,
 )
 from simulator.timeline import COLUMNS, DataItem
+from tests.every_case import every_case
 
 NAMED = {column.name: column for column in COLUMNS}
 
@@ -25,7 +26,7 @@ def test_names_are_unique() -> None:
     assert len(NAMED) == len(COLUMNS)
 
 
-@pytest.mark.parametrize("column", COLUMNS, ids=lambda column: column.name)
+@every_case("column", COLUMNS)
 def test_source_is_a_column_of_the_samples(column: DataItem) -> None:
     assert hasattr(Samples, column.source)
     has_three = column.source in {"position", "velocity", "direction", "axis_power"}
@@ -42,7 +43,7 @@ def test_axes_are_in_order() -> None:
         assert [NAMED[f"{name}_axis_{suffix}"].axis for name in "xyz"] == [0, 1, 2]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "kind"),
     [
         ("execution", Execution),

@@ -20,6 +20,7 @@ from simulator.toml_bounds import (
     require_bounded,
 )
 from simulator.toml_file import FileTable, converted, parsed, quantity, read_text
+from tests.every_case import every_case
 
 SIZE = 1 << 16
 
@@ -48,7 +49,7 @@ def content_of(path: Path) -> dict[str, Any]:
     return parsed(read_text(path), path)
 
 
-@pytest.mark.parametrize("text", HOSTILE.values(), ids=HOSTILE)
+@every_case("text", HOSTILE.values())
 def test_a_text_that_would_cost_the_parser_dear_is_refused_with_its_line(
     tmp_path: Path, text: str
 ) -> None:
@@ -91,7 +92,7 @@ def test_a_text_at_the_bounds_is_read(tmp_path: Path) -> None:
     assert "a" in content_of(write(tmp_path, text))
 
 
-@pytest.mark.parametrize(
+@every_case(
     "text",
     [
         "x = '''{0}'{0}'''",

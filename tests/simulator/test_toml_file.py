@@ -25,6 +25,7 @@ from simulator.toml_file import (
     shortest,
     written,
 )
+from tests.every_case import every_case
 
 Speed = Annotated[float, quantity(1, 100, "rpm")]
 MINE = Path("my.toml")
@@ -74,7 +75,7 @@ def refused(**content: object) -> str:
     return str(caught.value)[9:]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("value", "message"),
     [
         (0, "0 rpm is below 1 rpm"),
@@ -107,7 +108,7 @@ def test_a_number_in_its_range_comes_back_unchanged(value: float) -> None:
     assert complaint(value, Speed) == ""
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("content", "message"),
     [
         ({"table": {}}, "table.speed: missing; expected a number, 1 to 100 rpm"),

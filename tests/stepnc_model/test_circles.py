@@ -1,11 +1,10 @@
 """Circles of references."""
 
-import pytest
-
 from stepnc_model.binding import circles
+from tests.every_case import every_case
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("edges", "found"),
     [
         ({}, []),

@@ -12,6 +12,7 @@ from stepnc_model.technology import programmed
 from stepnc_model.tool import tool_of
 from stepnc_model.toolpath.generate import generate
 from stepnc_model.toolpath.path import ToolPath
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 
@@ -100,7 +101,7 @@ def test_drilling_stays_as_it_is_unless_named() -> None:
         assert told[0].speed.value == told[1].speed.value
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("settings", "message"),
     [
         ({"feed": 0.0}, "feed 0 must be positive"),

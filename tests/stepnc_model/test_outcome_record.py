@@ -26,6 +26,7 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from stepnc_model.writeback import SCHEMA
 from tests.asking import asked_advice
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 BRACKET = (PARTS / "bracket.stpnc").read_bytes()
@@ -174,7 +175,7 @@ def test_an_id_of_two_operations_is_refused() -> None:
         written(twice, OUTCOME)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("wrong", "message"),
     [
         (

@@ -19,6 +19,7 @@ from stepnc_model.paper002 import INLINED, RULE, ConsistentRecord, read_printed
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Enumeration, Real, Ref, Value
 from stepnc_model.program import Program
+from tests.every_case import every_case
 
 FIGURE = Path(__file__).parents[1] / "data" / "fig11.stpnc"
 
@@ -57,7 +58,7 @@ def test_optimisation_with_five_parameters_is_read(figure: Part21File) -> None:
     assert found.its_record is None
 
 
-@pytest.mark.parametrize(
+@every_case(
     "words",
     [
         "FILE_DESCRIPTION has 1 parameters",

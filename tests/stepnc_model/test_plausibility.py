@@ -11,6 +11,7 @@ from stepnc_model.plausibility import RULE, implausible, refusal
 from stepnc_model.program import Program
 from stepnc_model.units import ISO, PROFILES, UnitProfile
 from tests.asking import asked_advice
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 CORPUS = Path(__file__).parents[3] / "shared" / "corpus" / "iso14649"
@@ -60,7 +61,7 @@ class TestNumbers:
         assert implausible(program) == ()
         assert refusal(program, program.workingsteps) is None
 
-    @pytest.mark.parametrize(
+    @every_case(
         ("technology", "attribute", "message"),
         [
             ("0.02,.TCP.,$,-301.,$,.F.,.F.,.F.", "spindle", "301 rev/s exceeds 300 rev/s"),
@@ -152,7 +153,7 @@ class TestAdvice:
         error = refused("240.,.TCP.,$,-1200.,$,.F.,.F.,.F.")
         assert str(error).endswith("plausible with --units rpm-mmin")
 
-    @pytest.mark.parametrize("name", [name for name in PROFILES if name != "iso"])
+    @every_case("name", [name for name in PROFILES if name != "iso"])
     def test_a_program_in_the_profile_named_is_plausible(self, name: str) -> None:
         units = PROFILES[name]
         feed = {"rpm-mmin": "240."}.get(name, "0.1")

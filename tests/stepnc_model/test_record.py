@@ -24,6 +24,7 @@ from stepnc_model.record import (
     read_parameters,
     write_entities,
 )
+from tests.every_case import every_case
 
 EMPTY = (
     b"ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('MACHINING_SCHEMA'));\nENDSEC;\n"
@@ -134,7 +135,7 @@ class TestLossless:
         record = replace(RECORD, mode=mode)
         assert through_entities(record) == through_parameters(record) == record
 
-    @pytest.mark.parametrize(
+    @every_case(
         "name", [name for name in OPTIONAL if name not in {"contact_angle", "immersion"}]
     )
     def test_every_optional_absent(self, name: str) -> None:
@@ -147,14 +148,14 @@ class TestLossless:
         record = replace(RECORD, **changes)
         assert through_entities(record) == through_parameters(record) == record
 
-    @pytest.mark.parametrize(
+    @every_case(
         "number", [0.1 + 0.2, pi, 5e-324, 1.7976931348623157e308, 1e22, 123456789.123456789]
     )
     def test_the_last_digit_counts(self, number: float) -> None:
         record = replace(RECORD, energy=number)
         assert through_entities(record) == through_parameters(record) == record
 
-    @pytest.mark.parametrize(
+    @every_case(
         "text", ["", "it's", "a;b", "/* no comment */", "Größe µm", "\\", "\n", "日本", "🔩"]
     )
     def test_every_text_counts(self, text: str) -> None:

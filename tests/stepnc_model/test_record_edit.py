@@ -13,6 +13,7 @@ from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.record_edit import has_parameters
 from tests.asking import asked_advice
+from tests.every_case import every_case
 from tests.stepnc_model.written import change_of, two_operations
 
 PAPER002 = Path(__file__).parents[2] / "examples" / "parts" / "paper002.stpnc"
@@ -33,7 +34,7 @@ def program_of(data: bytes) -> Program:
     return Program(Part21File.from_bytes(data))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("old", "new"),
     [
         (b":1:ROUGH THE FACE'", b":2:ROUGH THE FACE'"),

@@ -15,6 +15,7 @@ from stepnc_model.outcome_record import (
     positive_or_none,
     written,
 )
+from tests.every_case import every_case
 
 
 @given(st.datetimes(timezones=st.timezones()))
@@ -41,7 +42,7 @@ def test_numbers_have_twelve_digits() -> None:
     assert positive(1.0 / 3.0, "feed", "m/s") == 0.333333333333
 
 
-@pytest.mark.parametrize("value", [0.0, -1.0, nan, inf])
+@every_case("value", [0.0, -1.0, nan, inf])
 def test_what_is_not_positive_is_refused(value: float) -> None:
     with pytest.raises(ValueError, match=f"invalid feed: {value:g} m/s"):
         positive_or_none(value, "feed", "m/s")
@@ -58,7 +59,7 @@ def test_a_force_may_be_nothing_at_all_but_not_less() -> None:
         measured_or_none(-1.0, "force", "N")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("value", "number"),
     [(1, 1.0), (0.5, 0.5), (nan, None), (inf, None), ("1", None), (None, None)],
 )

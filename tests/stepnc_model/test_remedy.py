@@ -1,12 +1,11 @@
 """Errors about an attribute name the option that sets it."""
 
-import pytest
-
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.remedy import error_of, with_remedy
+from tests.every_case import every_case
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("entity", "attribute", "value"),
     [
         ("#47 DRILLING", "its_tool", "#ID"),
@@ -23,7 +22,7 @@ def test_the_value_is_shown_as_it_is_typed(entity: str, attribute: str, value: s
     assert with_remedy("is wrong", entity, attribute) == f"is wrong; set it with {option}"
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("message", "entity", "attribute"),
     [
         ("is missing; --feed gives one", "#61 MILLING_TECHNOLOGY", "feedrate"),

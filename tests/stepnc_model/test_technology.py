@@ -10,6 +10,7 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from stepnc_model.technology import Number, Programmed, ProgrammedQuantity, programmed
 from stepnc_model.units import ISO, PROFILES, UnitProfile
+from tests.every_case import every_case
 
 HEADER = (
     "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('MACHINING_SCHEMA'));\nENDSEC;\nDATA;\n"
@@ -118,8 +119,8 @@ class TestMilling:
             milling("$")
         assert caught.value.attribute == "feedrate"
 
-    @pytest.mark.parametrize("number", HOSTILE)
-    @pytest.mark.parametrize("attribute", ["feed", "cutspeed", "per_tooth"])
+    @every_case("number", HOSTILE)
+    @every_case("attribute", ["feed", "cutspeed", "per_tooth"])
     def test_a_number_that_cuts_nothing_is_refused(self, attribute: str, number: str) -> None:
         other = {"cutspeed": "feed", "feed": "spindle", "per_tooth": "spindle"}[attribute]
         numbers = {other: "1.", attribute: number}
@@ -128,7 +129,7 @@ class TestMilling:
             milling(*(numbers.get(name, "$") for name in names))
         assert caught.value.line == FIRST_LINE
 
-    @pytest.mark.parametrize("number", ["0.", "-0.", "1e400", "-1e400"])
+    @every_case("number", ["0.", "-0.", "1e400", "-1e400"])
     def test_a_spindle_that_does_not_turn_is_refused(self, number: str) -> None:
         with pytest.raises(SchemaError) as caught:
             milling(spindle=number)
@@ -147,7 +148,7 @@ class TestMilling:
 
 
 class TestUnits:
-    @pytest.mark.parametrize(
+    @every_case(
         ("name", "quantity", "value"),
         [
             ("iso", ProgrammedQuantity.FEED, 120.0),
@@ -165,22 +166,22 @@ class TestUnits:
         assert feed.quantity is quantity
         assert feed.value == pytest.approx(value, rel=1e-15)
 
-    @pytest.mark.parametrize("name", PROFILES)
+    @every_case("name", PROFILES)
     def test_a_spindle_of_minus_1200(self, name: str) -> None:
         speed = milling(spindle="-1200.", units=PROFILES[name]).speed
         assert speed.value == pytest.approx(1200.0 if "rpm" not in name else 20.0)
         assert speed.scale < 0.0
 
-    @pytest.mark.parametrize("name", PROFILES)
+    @every_case("name", PROFILES)
     def test_a_cutting_speed_of_90(self, name: str) -> None:
         speed = milling(cutspeed="90.", spindle="$", units=PROFILES[name]).speed
         assert speed.value == pytest.approx(90_000.0 if name == "iso" else 1500.0)
 
-    @pytest.mark.parametrize("name", PROFILES)
+    @every_case("name", PROFILES)
     def test_a_feed_per_tooth_is_in_mm_in_all(self, name: str) -> None:
         assert milling("$", per_tooth="0.1", units=PROFILES[name]).feed.value == 0.1
 
-    @pytest.mark.parametrize("name", PROFILES)
+    @every_case("name", PROFILES)
     def test_the_adaptive_form_follows_the_profile(self, name: str) -> None:
         plain, other = milling(units=PROFILES[name]), adaptive(units=PROFILES[name])
         assert (plain.feed.value, plain.feed.quantity) == (
@@ -189,7 +190,7 @@ class TestUnits:
         )
         assert (plain.speed.value, plain.speed.scale) == (other.speed.value, other.speed.scale)
 
-    @pytest.mark.parametrize("name", PROFILES)
+    @every_case("name", PROFILES)
     def test_a_lathes_feed_per_revolution_is_in_mm_in_all(self, name: str) -> None:
         assert turning(units=PROFILES[name]).feed.value == 0.2
 
@@ -221,12 +222,12 @@ class TestAdaptive:
     def test_a_feed_bound_to_the_spindle_is_said(self) -> None:
         assert adaptive(flags=".T.,.F.,.F.").is_synchronised
 
-    @pytest.mark.parametrize("number", ["$", *HOSTILE])
+    @every_case("number", ["$", *HOSTILE])
     def test_a_feed_that_cuts_nothing_is_refused(self, number: str) -> None:
         with pytest.raises(SchemaError):
             adaptive(feed=f"FEEDRATE_TCP(.T.,{number})")
 
-    @pytest.mark.parametrize("number", ["$", "0.", "1e400"])
+    @every_case("number", ["$", "0.", "1e400"])
     def test_a_spindle_that_does_not_turn_is_refused(self, number: str) -> None:
         with pytest.raises(SchemaError):
             adaptive(f"SPINDLE_SPEED(.T.,{number})")
@@ -278,12 +279,12 @@ class TestTurning:
         with pytest.raises(SchemaError, match="has no spindle speed"):
             read("#10=TURNING_TECHNOLOGY($,.TCP.,$,0.2,.F.,.F.,.F.,$);")
 
-    @pytest.mark.parametrize("number", HOSTILE)
+    @every_case("number", HOSTILE)
     def test_a_feed_that_cuts_nothing_is_refused(self, number: str) -> None:
         with pytest.raises(SchemaError):
             turning(per_turn=number)
 
-    @pytest.mark.parametrize(
+    @every_case(
         "speed",
         [
             "CONST_SPINDLE_SPEED(0.)",
@@ -321,8 +322,8 @@ class TestInverse:
         *(milling("0.0123", "80.", "$", units=units) for units in PROFILES.values()),
     )
 
-    @pytest.mark.parametrize("conditions", FORMS)
-    @pytest.mark.parametrize(("diameter", "teeth"), [(18.0, 4), (6.3, 1), (63.0, 5)])
+    @every_case("conditions", FORMS)
+    @every_case(("diameter", "teeth"), [(18.0, 4), (6.3, 1), (63.0, 5)])
     def test_feed_number_is_the_inverse_of_reading(
         self, conditions: Programmed, diameter: float, teeth: int
     ) -> None:
@@ -331,8 +332,8 @@ class TestInverse:
         number = conditions.feed_number(feed, speed=speed, teeth=teeth)
         assert number == pytest.approx(conditions.feed.value / conditions.feed.scale, rel=1e-14)
 
-    @pytest.mark.parametrize("conditions", FORMS)
-    @pytest.mark.parametrize("diameter", [18.0, 6.3, 63.0])
+    @every_case("conditions", FORMS)
+    @every_case("diameter", [18.0, 6.3, 63.0])
     def test_speed_number_is_the_inverse_of_reading(
         self, conditions: Programmed, diameter: float
     ) -> None:

@@ -13,6 +13,7 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from stepnc_model.tool import Tool, tool_of
 from stepnc_model.units import rad_from_deg
+from tests.every_case import every_case
 
 HEADER = (
     "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('MACHINING_SCHEMA'));\nENDSEC;\nDATA;\n"
@@ -59,7 +60,7 @@ def turning(
 
 
 class TestRotating:
-    @pytest.mark.parametrize(("keyword", "arity"), BODIES)
+    @every_case(("keyword", "arity"), BODIES)
     def test_every_kind_has_diameter_teeth_and_length(self, keyword: str, arity: int) -> None:
         surplus = {
             "USER_DEFINED_TOOL": ",'X'",
@@ -96,7 +97,7 @@ class TestRotating:
         assert caught.value.attribute == "number_of_teeth"
         assert caught.value.line == FIRST_LINE + 1
 
-    @pytest.mark.parametrize("diameter", ["0.", "-10.", "$", "1e400", "-1e400", "'ten'"])
+    @every_case("diameter", ["0.", "-10.", "$", "1e400", "-1e400", "'ten'"])
     def test_a_diameter_that_is_not_positive_is_refused(self, diameter: str) -> None:
         with pytest.raises(SchemaError, match="diameter") as caught:
             rotating(dimension=f"{diameter},$,$,22.,0.2,$,$")
@@ -145,7 +146,7 @@ class TestPointAngle:
         tool = rotating("TWIST_DRILL(#12,2,.RIGHT.,.F.,$)", f"10.,{top},$,$,$,$,$")
         assert tool.point_angle == pytest.approx(rad_from_deg(118.0), rel=1e-12)
 
-    @pytest.mark.parametrize("top", ["$", "0.", "-31.", "90.", "118.", "1.6"])
+    @every_case("top", ["$", "0.", "-31.", "90.", "118.", "1.6"])
     def test_an_angle_that_makes_no_point_is_none(self, top: str) -> None:
         tool = rotating("TWIST_DRILL(#12,2,.RIGHT.,.F.,$)", f"10.,{top},$,$,$,$,$")
         assert tool.point_angle is None

@@ -10,6 +10,7 @@ from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.tool import tool_of
 from stepnc_model.tool_edit import with_tool_diameter
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 
@@ -38,7 +39,7 @@ def test_a_tool_that_shares_its_dimension_keeps_it() -> None:
     assert diameters == {"END MILL 8MM": 6.0, "SPARE": 8.0}
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("part", "diameter", "message"),
     [
         ("bracket", 8.0, r"needs a program that mills with one tool, not 'FACE MILL 63MM', "),

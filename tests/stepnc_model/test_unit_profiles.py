@@ -3,6 +3,7 @@
 import pytest
 
 from stepnc_model.units import ISO, PROFILES, FeedUnit
+from tests.every_case import every_case
 
 
 def test_the_standard_writes_metres_per_second_and_revolutions_per_second() -> None:
@@ -15,7 +16,7 @@ def test_the_standard_comes_first() -> None:
     assert next(iter(PROFILES.values())) is ISO
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "feed", "spindle_unit"),
     [
         ("iso", FeedUnit.METRES_PER_SECOND, "rev/s"),
@@ -35,21 +36,21 @@ def test_eight_profiles_are_known() -> None:
     assert len(PROFILES) == 8
 
 
-@pytest.mark.parametrize("name", [name for name in PROFILES if name != "iso"])
+@every_case("name", [name for name in PROFILES if name != "iso"])
 def test_shop_floor_files_write_cutting_speeds_in_metres_per_minute(name: str) -> None:
     profile = PROFILES[name]
     assert profile.cutting_speed_unit == "m/min"
     assert profile.cutting_speed * 60.0 == pytest.approx(1000.0)
 
 
-@pytest.mark.parametrize("name", PROFILES)
+@every_case("name", PROFILES)
 def test_a_thousand_units_of_the_spindle(name: str) -> None:
     profile = PROFILES[name]
     rev_s = 1000.0 if profile.spindle_unit == "rev/s" else 1000.0 / 60.0
     assert 1000.0 * profile.spindle == pytest.approx(rev_s)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "canonical"),
     [
         ("iso", 2_400_000.0),

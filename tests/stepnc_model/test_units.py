@@ -6,6 +6,7 @@ from math import isclose, pi
 import pytest
 
 from stepnc_model import units
+from tests.every_case import every_case
 
 Conversion = Callable[[float], float]
 
@@ -22,7 +23,7 @@ PAIRS: list[tuple[Conversion, Conversion]] = [
 ]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("conversion", "number", "canonical"),
     [
         (units.speed_from_m_s, 0.04, 40.0),
@@ -42,8 +43,8 @@ def test_a_number_becomes_canonical(
     assert conversion(number) == pytest.approx(canonical, rel=1e-12)
 
 
-@pytest.mark.parametrize(("there", "back"), PAIRS)
-@pytest.mark.parametrize("number", [0.0, 1e-9, 0.1, 1.0, 1234.5, 1e9, -12.0])
+@every_case(("there", "back"), PAIRS)
+@every_case("number", [0.0, 1e-9, 0.1, 1.0, 1234.5, 1e9, -12.0])
 def test_there_and_back_is_the_same(there: Conversion, back: Conversion, number: float) -> None:
     assert isclose(back(there(number)), number, rel_tol=1e-15, abs_tol=0.0)
 

@@ -27,6 +27,7 @@ from simulator.agent.model import DeviceModel, read_model
 from simulator.agent.shdr import written
 from simulator.library import load_machine
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 from tests.service.agent.test_run import PARTS, run_of, served
 from tests.service.recording.test_run import WHOLE
 
@@ -167,7 +168,7 @@ def test_what_the_model_does_not_have_is_told(tmp_path: Path, model: DeviceModel
     assert (feed.times.tolist(), feed.values) == ([0.0, 1.0, 2.0], [1.0, None, 4.0])
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "text", "message"),
     [
         ("a.csv", "seconds,x\n1,2\n", "no column time_s"),
@@ -183,21 +184,21 @@ def test_what_the_model_does_not_have_is_told(tmp_path: Path, model: DeviceModel
         ("a.parquet", "PAR1", "cannot be read"),
         ("missing.parquet", None, "no such file"),
         ("missing.csv", None, "no such file"),
-        ("missing.xml", None, "cannot be read: No such file"),
-        ("missing.shdr", None, "cannot be read: .*No such file"),
-        ("a.xml", "<MTConnectDevices/>", "expected MTConnectStreams"),
-        ("a.xml", "<!DOCTYPE a [<!ENTITY b 'c'>]><a>&b;</a>", "document type declaration"),
+        ("missing.xml", None, "No such file"),
+        ("missing.shdr", None, "No such file"),
+        ("a.xml", "<MTConnectDevices/>", "MTConnectStreams"),
+        ("a.xml", "<!DOCTYPE a [<!ENTITY b 'c'>]><a>&b;</a>", "document type"),
         (
             "a.xml",
             '<MTConnectStreams><a dataItemId="paper003_xpos" sequence="1" timestamp="now"/>'
             "</MTConnectStreams>",
-            "line 1: paper003_xpos: timestamp 'now' is not in ISO 8601",
+            "timestamp 'now' is not in ISO 8601",
         ),
         (
             "a.xml",
             '<MTConnectStreams><a dataItemId="paper003_xpos" sequence="x" '
             'timestamp="2026-01-01T00:00:00Z">1</a></MTConnectStreams>',
-            "line 1: paper003_xpos: invalid literal",
+            "invalid literal",
         ),
         (
             "a.xml",
@@ -228,7 +229,7 @@ def test_a_time_before_the_last_is_refused_with_its_row(
         read(file, model)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("words", "message"),
     [
         ({}, "name the machine with --machine, or its model with --device"),

@@ -10,6 +10,7 @@ from simulator.calibration.block_circles import circles_of
 from stepnc_model.errors import StepNcError
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.dialects import read_blocks
+from tests.every_case import every_case
 
 
 def test_paper_s_circles_are_written(tmp_path: Path) -> None:
@@ -48,7 +49,7 @@ def test_lists_units_and_feed_are_options(tmp_path: Path) -> None:
     assert "G18" in output.read_text()
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("request_", "name", "message"),
     [
         (BlockTestRequest(), "a.ngc", "--machine"),

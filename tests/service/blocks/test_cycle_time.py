@@ -17,6 +17,7 @@ from simulator.library import load_machine
 from simulator.machine.block_times import LossCause
 from simulator.machine_file import machine_toml
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
 COUNT, SPACING = 1000, 0.1
@@ -121,7 +122,7 @@ def test_doubts_are_told(tmp_path: Path) -> None:
     assert told[1].startswith("the log is of another program: it has workingsteps A,")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("change", "message"),
     [
         ({"machine": ""}, "--machine"),

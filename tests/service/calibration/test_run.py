@@ -20,6 +20,7 @@ from simulator.machine.transients import USUAL_DELAY
 from simulator.machine_file import machine_toml
 from stepnc_model.errors import StepNcError, WriteError
 from tests.asking import AskedSimulation, asked_simulation
+from tests.every_case import every_case
 
 BAD_INPUT, OK = 3, 0
 FACTOR = 1.25
@@ -267,7 +268,7 @@ REFUSED: dict[str, tuple[Callable[[Rows], Rows], str]] = {
 }
 
 
-@pytest.mark.parametrize("how", REFUSED)
+@every_case("how", REFUSED)
 def test_a_run_that_cannot_be_is_refused_in_one_line(
     command: Command, measured: Path, tmp_path: Path, how: str
 ) -> None:
@@ -283,7 +284,7 @@ def test_a_run_that_cannot_be_is_refused_in_one_line(
     assert not output.exists()
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("data", "words"),
     [
         (bytes(range(256)), "not a UTF-8 text file"),

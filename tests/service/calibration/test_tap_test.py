@@ -13,6 +13,7 @@ from simulator.library import load_machine
 from simulator.machine_file import machine_toml
 from simulator.spec import ModeDirection, VibratingPart, VibrationMode
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 OK, USAGE, BAD_INPUT = 0, 2, 3
 
@@ -79,15 +80,15 @@ def test_a_workpiece_belongs_to_no_tool(response: Path) -> None:
     assert (mode.part, mode.tool, mode.source) == (VibratingPart.WORKPIECE, "", "by hand")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("changes", "message"),
     [
-        ({"tool": ""}, "name what was tapped"),
-        ({"workpiece": True}, "name what was tapped"),
-        ({"direction": "w"}, "unknown direction 'w'; known: x, y, z, xy"),
+        ({"tool": ""}, "what was tapped"),
+        ({"workpiece": True}, "what was tapped"),
+        ({"direction": "w"}, "direction 'w'"),
         ({"tool_diameter_mm": -1.0}, "tool diameter: -1 mm is below 0.01 mm"),
-        ({"modes": 0}, "0 modes: at least 1 is needed"),
-        ({"modes": 4}, "1 peaks found, but 4 modes were requested"),
+        ({"modes": 0}, "0 modes"),
+        ({"modes": 4}, "1 peaks found"),
         ({"machine": "vmc15"}, "name a file with -o"),
         ({"output": Path("mine.toml")}, "name the machine with --machine"),
     ],

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from service.cli.main import main
+from tests.every_case import every_case
 
 BAD_INPUT, USAGE = 3, 2
 PAIRS = ("--life", "160:5", "--life", "100:41")
@@ -45,7 +46,7 @@ def test_a_file_adds_pairs_and_then_there_is_an_interval(
     assert "(95 %)" in table["source"]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("words", "message"),
     [
         (("--life", "160:5"), "at least 2"),

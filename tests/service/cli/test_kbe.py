@@ -10,6 +10,7 @@ import pytest
 from kbe.evaluation import RowFilter, SortKey
 from service.cli.kbe import ONLY, SORT
 from service.cli.main import main
+from tests.every_case import every_case
 
 OK, USAGE, BAD_INPUT = 0, 2, 3
 SECONDS = 30.0
@@ -46,7 +47,7 @@ def test_every_verb_has_help(verb: str, capsys: pytest.CaptureFixture[str]) -> N
     assert "--kb PLACE" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(
+@every_case(
     "words",
     [
         ("lst",),

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.every_case import every_case
 from tests.rights import Capability, without
 from tests.service.cli.test_kbe_verbs import (  # fixtures are found by their names  # noqa: F401
     BAD_INPUT,
@@ -19,7 +20,7 @@ READ = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("words", READ)
+@every_case("words", READ)
 def test_a_name_that_is_wrong_makes_no_file(
     words: tuple[str, ...],
     tmp_path: Path,
@@ -34,7 +35,7 @@ def test_a_name_that_is_wrong_makes_no_file(
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("words", READ)
+@every_case("words", READ)
 def test_a_file_that_is_something_else_says_so(
     words: tuple[str, ...],
     tmp_path: Path,

@@ -18,6 +18,7 @@ from service.cli.kbe_options import (
 )
 from service.cli.options import text
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 
 def options(*words: str) -> argparse.Namespace:
@@ -67,8 +68,8 @@ def test_a_time_with_a_zone_is_that_time(when: datetime) -> None:
     assert found == datetime.fromisoformat(word)
 
 
-@pytest.mark.parametrize("word", ["", "yesterday", "2026-13-01", "5.3.2026", "2026-02-30"])
-@pytest.mark.parametrize("read", [moment, end])
+@every_case("word", ["", "yesterday", "2026-13-01", "5.3.2026", "2026-02-30"])
+@every_case("read", [moment, end])
 def test_what_is_no_time_is_refused(read: Callable[[str], datetime], word: str) -> None:
     with pytest.raises(argparse.ArgumentTypeError, match="is not a time"):
         read(word)
@@ -86,13 +87,13 @@ def test_a_share_may_be_in_per_cent(word: str, value: float) -> None:
     assert share(word) == pytest.approx(value, rel=1e-15)
 
 
-@pytest.mark.parametrize("word", ["", "%", "25", "-0.1", "nan", "inf", "one"])
+@every_case("word", ["", "%", "25", "-0.1", "nan", "inf", "one"])
 def test_what_is_no_share_is_refused(word: str) -> None:
     with pytest.raises(argparse.ArgumentTypeError, match="is not a share"):
         share(word)
 
 
-@pytest.mark.parametrize("word", ["", "-1", "1.5", "many", "99999999999999999999"])
+@every_case("word", ["", "-1", "1.5", "many", "99999999999999999999"])
 def test_what_does_not_count_is_refused(word: str) -> None:
     with pytest.raises(argparse.ArgumentTypeError, match="is not a whole number"):
         count(word)

@@ -15,6 +15,7 @@ from service.control.run import ControlRun, control, prepare
 from simulator.plant.controlled import TrueState
 from stepnc_model.errors import StepNcError
 from tests.asking import AskedControl, asked_control
+from tests.every_case import every_case
 
 Controlled = Callable[..., AskedControl]
 
@@ -88,26 +89,26 @@ def test_nothing_is_kept_that_nobody_asked_for(controlled: Controlled) -> None:
     assert (run.samples, run.trace) == (0, None)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("changed", "message"),
     [
-        ({"law": "pid"}, "unknown law 'pid'; known: pi, log-pi"),
-        ({"mode": "EC"}, "unknown mode 'EC'; known: TC, QC"),
-        ({"sensor": "ear"}, "unknown sensor 'ear'; known: dynamometer, power"),
-        ({"seed": -1}, "seed -1: it must be 0 to "),
-        ({"look_ahead": 0}, "look-ahead 0 revolutions: it must be 1 to 50 revolutions"),
-        ({"look_ahead": 51}, "look-ahead 51 revolutions: it must be 1 to 50 revolutions"),
-        ({"set_point": 0.0}, "force 0 N: it must be above 0 to 1e+06 N"),
-        ({"set_point": 9.0}, "force set point 9 N: it must be above 10 N"),
-        ({"set_point": float("nan")}, "force nan N: it must be above 0 to 1e+06 N"),
-        ({"set_point": float("inf")}, "force inf N: it must be above 0 to 1e+06 N"),
-        ({"band": (0.0, 120.0)}, "override band from 0 %: it must be above 0 to 100 %"),
-        ({"band": (120.0, 20.0)}, "override band from 120 %: it must be above 0 to 100 %"),
-        ({"band": (20.0, 1e9)}, "override band to 1e+09 %: it must be 100 to 200 %"),
-        ({"band": (float("nan"), 120.0)}, "override band from nan %"),
-        ({"disturbances": ("depth:+50%",)}, "add a time, as in depth:+50%@12s"),
-        ({"disturbances": ("material:butter@1s",)}, "unknown material 'butter'"),
-        ({"disturbances": ("tooth:50@1s",)}, "tooth 50: the cutters have "),
+        ({"law": "pid"}, "law 'pid'"),
+        ({"mode": "EC"}, "mode 'EC'"),
+        ({"sensor": "ear"}, "sensor 'ear'"),
+        ({"seed": -1}, "seed -1"),
+        ({"look_ahead": 0}, "look-ahead 0 "),
+        ({"look_ahead": 51}, "1 to 50"),
+        ({"set_point": 0.0}, "force 0 N"),
+        ({"set_point": 9.0}, "above 10 N"),
+        ({"set_point": float("nan")}, "force nan N"),
+        ({"set_point": float("inf")}, "force inf N"),
+        ({"band": (0.0, 120.0)}, "band from 0 %"),
+        ({"band": (120.0, 20.0)}, "band from 120 %"),
+        ({"band": (20.0, 1e9)}, "band to 1e+09 %"),
+        ({"band": (float("nan"), 120.0)}, "band from nan %"),
+        ({"disturbances": ("depth:+50%",)}, "add a time"),
+        ({"disturbances": ("material:butter@1s",)}, "material 'butter'"),
+        ({"disturbances": ("tooth:50@1s",)}, "tooth 50"),
     ],
 )
 def test_what_cannot_be_is_refused(
@@ -116,6 +117,12 @@ def test_what_cannot_be_is_refused(
     with pytest.raises(StepNcError) as caught:
         control(*controlled(**changed))
     assert message in str(caught.value)
+
+
+def test_a_refusal_names_the_setting_the_value_and_its_bounds(controlled: Controlled) -> None:
+    with pytest.raises(StepNcError) as caught:
+        control(*controlled(look_ahead=51))
+    assert str(caught.value) == "look-ahead 51 revolutions: it must be 1 to 50 revolutions"
 
 
 def test_nc_code_alone_says_nothing_of_limits(controlled: Controlled) -> None:

@@ -12,6 +12,7 @@ import pytest
 from pyarrow import parquet
 
 from service.cli.main import main
+from tests.every_case import every_case
 
 SHOPS = Path(__file__).parents[3] / "examples" / "shops"
 PAPER = SHOPS / "paper003.toml"
@@ -166,17 +167,17 @@ def test_a_sweep_compares_all_combinations(
 
 
 REFUSED = {
-    "sweep without values": (("--sweep", "product[1].batch"), "expected KEY=VALUE,VALUE"),
-    "sweep of nothing": (("--sweep", "product[4].batch=1"), "is not in the file"),
+    "sweep without values": (("--sweep", "product[1].batch"), "KEY=VALUE"),
+    "sweep of nothing": (("--sweep", "product[4].batch=1"), "not in the file"),
     "sweep out of range": (("--sweep", "product[1].batch=1,0"), "batch: 0 parts is below 1"),
-    "hours": (("--hours", "-1"), "hours -1 h: it must be above 0"),
-    "replications": (("--replications", "0"), "replications 0: it must be 1 to 10000"),
+    "hours": (("--hours", "-1"), "hours -1 h"),
+    "replications": (("--replications", "0"), "replications 0"),
     "warm-up": (("--warm-up-hours", "40"), "warm-up 40 h: it must be below 40 h"),
-    "report without a folder": (("--report",), "name a folder, -o"),
+    "report without a folder": (("--report",), "name a folder"),
 }
 
 
-@pytest.mark.parametrize("case", REFUSED)
+@every_case("case", REFUSED)
 def test_bad_options(shop: Path, case: str, capsys: pytest.CaptureFixture[str]) -> None:
     words, message = REFUSED[case]
     assert run(shop, *words) == 3

@@ -14,6 +14,7 @@ from simulator.factory.records import Listeners
 from simulator.factory.states import MachineState
 from simulator.factory.streams import Streams
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 from tests.service.factory.shops import timed_shop
 
 
@@ -129,7 +130,7 @@ def test_a_blocked_machine_shows_the_step_that_it_has_made(tmp_path: Path) -> No
     assert (buffer["stage"], machine(live, "mill-1")["stage"]) == (0, 1)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "minutes", "text"),
     [
         ("lathe", 5.0, "unknown machine 'lathe'; known: saw 1, mill-1"),

@@ -16,6 +16,7 @@ from stepnc_model.errors import StepNcError
 from stepnc_model.outcome import Context, LearnedCorrection
 from stepnc_model.outcome_record import read_outcomes
 from tests.asking import AskedAdvice, asked_advice
+from tests.every_case import every_case
 
 PART = Path(__file__).parents[3] / "examples" / "parts" / "paper002.stpnc"
 NOW = datetime(2026, 3, 2, 8, 0, tzinfo=UTC)
@@ -108,7 +109,7 @@ def test_a_knowledge_base_that_is_not_there_is_refused(tmp_path: Path) -> None:
     assert not Path(missing).exists()
 
 
-@pytest.mark.parametrize("safety", [0.49, 0.9995, float("nan")])
+@every_case("safety", [0.49, 0.9995, float("nan")])
 def test_an_impossible_quantile_is_refused(tmp_path: Path, safety: float) -> None:
     with pytest.raises(StepNcError, match=r"safety .*: it must be 0\.5 to 0\.999"):
         optimise(*request(tmp_path, safety=safety))

@@ -14,6 +14,7 @@ from service.knowledge.place import (
     usual_place,
 )
 from stepnc_model.errors import StepNcError, WriteError
+from tests.every_case import every_case
 
 
 @pytest.fixture(autouse=True)
@@ -73,8 +74,8 @@ def test_who_has_no_home_is_asked_for_a_place(monkeypatch: pytest.MonkeyPatch) -
     assert not is_usual("shop.db")
 
 
-@pytest.mark.parametrize("ending", ["", "-wal", "-shm"])
-@pytest.mark.parametrize("prefix", ["", "sqlite:///"])
+@every_case("ending", ["", "-wal", "-shm"])
+@every_case("prefix", ["", "sqlite:///"])
 def test_no_output_may_be_the_knowledge_base(tmp_path: Path, prefix: str, ending: str) -> None:
     place = tmp_path / "kb.db"
     output = tmp_path / f"kb.db{ending}"

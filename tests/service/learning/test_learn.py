@@ -11,6 +11,7 @@ from pyarrow import csv
 from service.learning.learn import LearnResult, learn
 from service.requests.learning import LearnRequest
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 from tests.service.learning.tables import changed, law_table, written
 
 ASKED = LearnRequest(model="power-law", train=100, test=60)
@@ -51,16 +52,16 @@ def test_a_csv_is_read_as_well(tmp_path: Path) -> None:
     assert one.predicted == pytest.approx(other.predicted)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("request_", "message"),
     [
-        (replace(ASKED, model="oracle"), "unknown model 'oracle'; known: mlp, gp"),
-        (replace(ASKED, target="power"), "unknown target 'power'; known: time_s"),
-        (replace(ASKED, target="time_s"), "time_s of the training rows: all are 10"),
+        (replace(ASKED, model="oracle"), "model 'oracle'"),
+        (replace(ASKED, target="power"), "target 'power'"),
+        (replace(ASKED, target="time_s"), "all are 10"),
         (replace(ASKED, train=150), "200 rows, but --train 150 and --test 60 need 210"),
-        (replace(ASKED, train=9), "train 9: it must be 10 to"),
+        (replace(ASKED, train=9), "train 9"),
         (replace(ASKED, model="gp", train=5_001), "--model gp with 5001 rows: .* 5000"),
-        (replace(ASKED, test=200_001), "--test 200001: it must be at most 200000"),
+        (replace(ASKED, test=200_001), "--test 200001"),
         (
             replace(ASKED, target="peak_power_w", is_on_physics=True),
             "--on-physics: peak_power_w has no physics; total_power_w, energy_j have",

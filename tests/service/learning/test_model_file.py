@@ -14,6 +14,7 @@ from service.learning.model_file import HEADER, load_model, save_model
 from service.learning.models import ModelKind
 from service.requests.learning import LearnRequest
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 from tests.service.learning.tables import law_table, written
 
 
@@ -46,7 +47,7 @@ def test_a_model_predicts_the_same_after_reading(tmp_path: Path, kind: ModelKind
     assert found.predictor.predict(values) == pytest.approx(model.predictor.predict(values))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("values", "message"),
     [
         ({"scikit_learn": "0.1"}, r"made with scikit-learn 0\.1, but .* is installed"),

@@ -12,6 +12,7 @@ from service.learning.force_factor import ForceFactor
 from service.learning.outcome import write_outcome
 from service.requests.knowledge import ReviewRequest
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
 PART = PARTS / "paper003_pocket.stpnc"
@@ -35,7 +36,7 @@ def test_a_plan_gets_the_factor_once_it_is_accepted(tmp_path: Path) -> None:
     assert exp(correction.log_centre) == pytest.approx(factor.centre)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("factor", "names", "part", "message"),
     [
         (1.15, NAMES | {"machine": ("a", "b")}, "paper003_pocket", "one machine, but .* a, b"),

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from service.errors import Unavailable
 from service.live.journal import LONGEST, append, read_on
+from tests.every_case import every_case
 from tests.service.live.room import within_room
 
 Entries = st.lists(
@@ -95,7 +96,7 @@ def test_a_journal_whose_folder_is_gone_is_told(tmp_path: Path) -> None:
         append(tmp_path / "gone" / "journal", {"a": 1})
 
 
-@pytest.mark.parametrize("line", [b"[1]", b"1", b"null", b"\xff\xfe", b"", b"{" * 2000, b'"x"'])
+@every_case("line", [b"[1]", b"1", b"null", b"\xff\xfe", b"", b"{" * 2000, b'"x"'])
 def test_a_line_that_is_no_entry_is_passed_over(tmp_path: Path, line: bytes) -> None:
     file = tmp_path / "journal"
     file.write_bytes(line + b'\n{"a": 1}\n')

@@ -7,6 +7,7 @@ import pytest
 
 from service.live.playback import LEAST, MOST, PlaybackClock
 from service.simulation.gathering import MOST_SECONDS
+from tests.every_case import every_case
 
 
 class Clock:
@@ -57,7 +58,7 @@ def test_nobody_waits_without_a_pace() -> None:
     assert clock.waits == []
 
 
-@pytest.mark.parametrize("factor", [-1.0, 1e-300, 0.0099, MOST + 1.0, inf, nan])
+@every_case("factor", [-1.0, 1e-300, 0.0099, MOST + 1.0, inf, nan])
 def test_a_pace_beyond_its_bounds_is_refused(factor: float) -> None:
     with pytest.raises(ValueError, match=r"it must be 0\.01 to 1000, or 0"):
         PlaybackClock(factor)

@@ -15,6 +15,7 @@ from service.errors import NotFound
 from service.live import series
 from service.live.series import Series, SeriesWriter, first_at, open_series, window
 from simulator.motion.segments import Floats
+from tests.every_case import every_case
 from tests.service.live.room import within_room
 
 COLUMNS = ("time_s", "a", "b")
@@ -50,7 +51,7 @@ def test_rows_are_read_as_they_were_written(tmp_path: Path) -> None:
     assert np.array_equal(found.values, rows)
 
 
-@pytest.mark.parametrize("cut", range(1, 24))
+@every_case("cut", range(1, 24))
 def test_a_row_that_is_not_whole_is_not_there_yet(tmp_path: Path, cut: int) -> None:
     file = tmp_path / "series.bin"
     with SeriesWriter(file, COLUMNS) as writer:

@@ -4,6 +4,7 @@ import pytest
 
 from service.monitor.source import MonitorSource, source_of, sources_of
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 
 def test_a_source_has_a_machine_and_an_address() -> None:
@@ -12,7 +13,7 @@ def test_a_source_has_a_machine_and_an_address() -> None:
     assert source_of(" mill = 192.168.0.7:5000 ").url == "192.168.0.7:5000"
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("word", "told"),
     [
         ("vmc15", "expected NAME=URL"),

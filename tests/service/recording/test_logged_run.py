@@ -11,6 +11,7 @@ from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles
 from simulator.agent.names import NameSet, SchemaVersion
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 from tests.service.agent.test_run import PARTS, run_of, served
 
 REQUEST = SimulationRequest(machine="paper003", rate_hz=10.0)
@@ -38,7 +39,7 @@ def test_table_document_and_agent_tell_the_same_run(tmp_path: Path) -> None:
 HEAD = "time_s,x_axis_position_actual,z_axis_position_actual\n"
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "text", "message"),
     [
         ("a.csv", HEAD + "0,1,2\n1,1,2\n0.5,1,2\n", "row 4: time 0.5 s: it must not be"),

@@ -7,6 +7,7 @@ import pytest
 
 from service.recording.signals import read_signals
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 HEAD = "time_s,x_axis_position_actual,path_feedrate_actual,cutting_force,execution\n"
 
@@ -40,7 +41,7 @@ def test_without_execution_all_rows_are_the_run(tmp_path: Path) -> None:
     assert found.power.tolist() == [3.0, 4.0]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "message"),
     [
         ("x\n1\n", "no column time_s"),

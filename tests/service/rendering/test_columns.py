@@ -3,12 +3,11 @@
 from datetime import UTC, datetime
 from math import inf, nan
 
-import pytest
-
 from service.rendering.columns import Cell, Change, Column, clock, grouped, shown, visible
+from tests.every_case import every_case
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("value", "form", "text"),
     [
         (None, "", "–"),
@@ -54,7 +53,7 @@ def test_an_optional_column_without_values_is_left_out() -> None:
     assert [each.heading for each in visible(columns, ["x"])] == ["all"]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("seconds", "text"),
     [(12.34, "12.3 s"), (125.0, "2 min 05 s"), (7384.0, "2 h 03 min")],
 )

@@ -18,6 +18,7 @@ from service.requests.fields import (
     require_bounds,
 )
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 
 class Colour(StrEnum):
@@ -68,7 +69,7 @@ def test_words_become_values() -> None:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("words", "message"),
     [
         (("--size", "0"), "size 0 mm: it must be above 0 to 10 mm"),

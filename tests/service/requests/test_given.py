@@ -15,6 +15,7 @@ from stepnc_model.program import Program
 from stepnc_model.technology import programmed
 from stepnc_model.units import PROFILES, FeedUnit
 from stepnc_model.withdrawal import without_given
+from tests.every_case import every_case
 from tests.service.test_keep_going import NO_DEPTH, NO_FEED, NO_TEETH, program
 
 OK, BAD_INPUT = 0, 3
@@ -37,7 +38,7 @@ def run(*words: object) -> object:
     return stopped.value.code
 
 
-@pytest.mark.parametrize("command", [*COMMANDS, "calibrate", "verify", "agent"])
+@every_case("command", [*COMMANDS, "calibrate", "verify", "agent"])
 def test_each_command_has_all_options(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(command, "--help") == OK
     shown = capsys.readouterr().out.replace("[", " ").split()
@@ -105,7 +106,7 @@ class TestFeed:
         assert found.value == pytest.approx(value)
         assert found.unit is unit
 
-    @pytest.mark.parametrize(
+    @every_case(
         ("text", "message"),
         [
             ("fast", "expected a number in mm/min, or with a unit: m/s"),
@@ -121,7 +122,7 @@ class TestFeed:
         with pytest.raises(StepNcError, match=message):
             feed_in(text)
 
-    @pytest.mark.parametrize(
+    @every_case(
         ("text", "units", "feed"),
         [
             ("0.1mm/tooth", "iso", 0.1),
@@ -133,7 +134,7 @@ class TestFeed:
             ("192", "iso", 0.1),
         ],
     )
-    @pytest.mark.parametrize("written", ["$", "0."])
+    @every_case("written", ["$", "0."])
     def test_a_tooth_takes_it_in_every_unit(
         self, text: str, units: str, feed: float, written: str
     ) -> None:

@@ -15,6 +15,7 @@ from service.rest.rights import is_protected
 from service.rest.settings import Settings
 from service.storage import keys
 from service.storage.folder import open_data_folder
+from tests.every_case import every_case
 from tests.service.rest.conftest import Done
 from tests.service.rest.server import Server, create_key, is_problem, made, over
 
@@ -31,7 +32,7 @@ OF_PAGES = {
 ID = "0" * 26
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("method", "path"),
     [
         ("GET", "/healthz"), ("GET", "/"), ("GET", "/dashboard/plan.html"), ("GET", "/metrics"),
@@ -90,7 +91,7 @@ def test_a_request_keeps_its_id_unless_it_is_none(client: httpx.Client) -> None:
     assert len(ids) == 5
 
 
-@pytest.mark.parametrize(
+@every_case(
     "host",
     [
         "evil.example",
@@ -116,7 +117,7 @@ def test_names_of_this_computer_are_ours(client: httpx.Client, host: str) -> Non
     assert client.get("/v1/programs", headers={"host": host}).status_code == 200
 
 
-@pytest.mark.parametrize(
+@every_case(
     "headers",
     [
         {"origin": "https://evil.example"},
@@ -294,7 +295,7 @@ def test_a_run_with_people_is_ended_by_operators_alone(locked: Server) -> None:
         assert other.delete(f"/v1/jobs/{trial}").status_code == 204
 
 
-@pytest.mark.parametrize(
+@every_case(
     "word", ["", "Bearer", "Bearer x", "Basic Zm9v", "Bearer stepnc_x_y", "Bearer ä" * 50]
 )
 def test_what_is_no_key_opens_nothing(locked: Server, word: str) -> None:

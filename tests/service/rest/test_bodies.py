@@ -16,6 +16,7 @@ from service.requests.runs import ControlChanges, ControlRequest, RunRequest, Si
 from service.rest.bodies import DecisionBody, TrialBody, TrialChanges
 from service.trial.inputs import FIELDS, Inputs, changed
 from service.trial.request import TrialRequest
+from tests.every_case import every_case
 
 Kind = type[Request] | type[BaseModel]
 
@@ -31,19 +32,19 @@ def read(kind: Kind, values: Any) -> Any:
     return TypeAdapter(kind).validate_python(values)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@every_case("kind", KINDS)
 def test_a_field_that_is_not_known_is_refused(kind: Kind) -> None:
     with pytest.raises(ValidationError, match="surprise"):
         read(kind, {"by": "A", "surprise": 1} if kind is DecisionBody else {"surprise": 1})
 
 
-@pytest.mark.parametrize("kind", REQUESTS)
+@every_case("kind", REQUESTS)
 def test_a_request_is_the_same_after_it_was_kept_as_json(kind: type[Request]) -> None:
     request = kind()
     assert loaded(kind, json.loads(json.dumps(dumped(request)))) == request
 
 
-@pytest.mark.parametrize("kind", REQUESTS)
+@every_case("kind", REQUESTS)
 def test_each_field_is_documented_in_openapi(kind: type[Request]) -> None:
     properties = TypeAdapter(kind).json_schema()["properties"]
     for field in fields_of(kind):
@@ -62,8 +63,8 @@ NUMBERS: list[tuple[Kind, str]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("kind", "name"), NUMBERS)
-@pytest.mark.parametrize("value", ["NaN", "Infinity", "-Infinity", "-1", "1e300", '"x"', "[]"])
+@every_case(("kind", "name"), NUMBERS)
+@every_case("value", ["NaN", "Infinity", "-Infinity", "-1", "1e300", '"x"', "[]"])
 def test_no_number_is_beyond_its_bounds(kind: Kind, name: str, value: str) -> None:
     with pytest.raises(ValidationError):
         read(kind, json.loads(f'{{"{name}": {value}}}'))
@@ -78,7 +79,7 @@ def test_a_run_has_a_pace_that_ends_or_none(kind: type[RunRequest]) -> None:
             read(kind, {"pace": pace})
 
 
-@pytest.mark.parametrize("field", FIELDS, ids=lambda field: field.name)
+@every_case("field", FIELDS)
 def test_a_trials_numbers_have_the_bounds_of_the_trial(field: Any) -> None:
     for value in (field.low, field.high):
         body = TrialBody.model_validate({"inputs": {field.name: value}})

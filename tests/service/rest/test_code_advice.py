@@ -10,6 +10,7 @@ import httpx
 import pytest
 
 from service.rest.advice_views import AdviceView, CodeAdviceView, CodeContentsView, CurvesView
+from tests.every_case import every_case
 from tests.service.rest.conftest import Done
 from tests.service.rest.samples import CODE, CODE_STOCK, CODE_TOOLS, SAMPLE
 from tests.service.rest.server import Server, is_problem, made, over
@@ -101,15 +102,15 @@ def test_feeds_and_curves_are_given_in_bounds(client: httpx.Client, code: CodeDo
     assert again.status_code == 304
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("change", "detail"),
     [
         ({"tools_id": None}, "missing: tools_id"),
         ({"stock": "", "material": ""}, "missing: stock, material"),
-        ({"stock": "/etc/passwd"}, "stock '/etc/passwd': expected 2, 3, 5 or 6 numbers"),
+        ({"stock": "/etc/passwd"}, "stock '/etc/passwd'"),
         ({"stock": "part.stl"}, "stock 'part.stl': expected 2, 3, 5 or 6 numbers"),
-        ({"finish": ["mill"]}, "tool 'mill': expected a number, such as T3"),
-        ({"dialect": "canonical"}, "canonical commands are no NC code"),
+        ({"finish": ["mill"]}, "tool 'mill'"),
+        ({"dialect": "canonical"}, "canonical"),
         ({"machine": "none"}, "none"),
     ],
 )

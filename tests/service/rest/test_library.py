@@ -8,6 +8,7 @@ import httpx
 import pytest
 
 from simulator.library import DATA
+from tests.every_case import every_case
 from tests.service.rest.server import Server, is_problem
 from tests.service.storage.test_library import BAD
 
@@ -98,7 +99,7 @@ def test_those_of_the_library_stay(
     is_problem(client.delete(f"{path}/{name}"), 409)
 
 
-@pytest.mark.parametrize(
+@every_case(
     "name", ["..%2fx", "%2fetc%2fpasswd", "x.toml", "x%00", "X", "a%20b", "x%0a", "%2e%2e", "é"]
 )
 def test_a_name_that_could_be_a_path_is_refused(
@@ -114,7 +115,7 @@ def test_a_name_that_could_be_a_path_is_refused(
         assert answer.status_code in {404, 405, 422}
 
 
-@pytest.mark.parametrize("name", [name for name in BAD if name != "deep tables"])
+@every_case("name", [name for name in BAD if name != "deep tables"])
 def test_a_bad_file_is_refused_without_a_word_of_folders(
     client: httpx.Client, section: tuple[str, bytes, str], name: str
 ) -> None:

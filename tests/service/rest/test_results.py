@@ -4,9 +4,9 @@ import asyncio
 from threading import Barrier, Lock
 
 import httpx
-import pytest
 
 from service.rest.results import READERS, read_in_turn
+from tests.every_case import every_case
 from tests.service.rest.conftest import Done
 from tests.service.rest.server import is_problem
 
@@ -36,7 +36,7 @@ def test_a_range_is_cut_out(client: httpx.Client, done: Done) -> None:
     assert (nothing["rows"], nothing["begin_s"]) == (0, [])
 
 
-@pytest.mark.parametrize(
+@every_case(
     "query",
     ["points=0", "points=5001", "points=x", "begin_s=nan", "end_s=inf", "begin_s=-inf",
      "signals=" + "x" * 1001],

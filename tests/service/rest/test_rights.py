@@ -6,9 +6,10 @@ from service.errors import Forbidden
 from service.rest.rights import is_protected, require, role_for, role_to_end
 from service.storage.jobs import JobKind
 from service.storage.keys import Key, Role
+from tests.every_case import every_case
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("method", "path", "role"),
     [
         ("GET", "/v1/trials", Role.VIEWER),
@@ -33,7 +34,7 @@ def test_looking_is_for_all_and_machines_are_for_operators(
     assert role_for(method, path) is role
 
 
-@pytest.mark.parametrize("kind", list(JobKind))
+@every_case("kind", list(JobKind))
 def test_who_may_begin_a_job_may_end_it(kind: JobKind) -> None:
     path = {"control-run": "/v1/control-runs", "trial": "/v1/trials"}.get(kind, "/v1/programs")
     assert role_to_end(kind) is role_for("POST", path)

@@ -12,6 +12,7 @@ from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from stepnc_model.errors import StepNcError, WriteError
 from tests.asking import asked_simulation
+from tests.every_case import every_case
 
 TOOLS = "number,kind,diameter_mm,teeth\n1,endmill,10,4\n2,turning,,\n"
 BEGIN = "G21 G90 G94 G17\nT1 M6\nM3 S3000\nG0 X-10 Y10 Z5\nG1 Z-2 F600\n"
@@ -85,7 +86,7 @@ def test_rapids_alone_touch_nothing_and_are_not_told(tmp_path: Path) -> None:
     assert not [each for each in simulation.findings if "touched" in each.message]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("stock", "kept", "told"),
     [
         ("", "a.npz", "no stock is known that could be kept"),

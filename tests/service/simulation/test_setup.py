@@ -11,6 +11,7 @@ from service.requests.runs import RunRequest
 from service.simulation.setup import CountedIterator, PreparedRun, from_program
 from simulator.removal.engage import MillingStock
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 BRACKET = EXAMPLES / "parts" / "bracket.stpnc"
@@ -21,7 +22,7 @@ def test_numbers_are_read_in_order() -> None:
     assert numbers_in("7", "stock", counts=(1, 2)) == (7.0,)
 
 
-@pytest.mark.parametrize("text", ["", "x", "1,", "1,2,nan", "1,2,inf", "1,2", "1 2 3"])
+@every_case("text", ["", "x", "1,", "1,2,nan", "1,2,inf", "1,2", "1 2 3"])
 def test_what_are_no_numbers_is_refused(text: str) -> None:
     with pytest.raises(
         StepNcError, match=f"zero '{text}': expected 3 numbers separated by commas"

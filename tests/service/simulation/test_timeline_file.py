@@ -15,6 +15,7 @@ from service.simulation.timeline_file import ROWS, TimelineFile, timeline_column
 from simulator.machine.samples import Samples
 from simulator.timeline import COLUMNS
 from stepnc_model.errors import WriteError
+from tests.every_case import every_case
 
 INTEGERS = {"execution", "path_mode", "coolant", "overload", "line", "tool", "workingstep"}
 VECTORS = {"position", "velocity", "axis_power"}
@@ -141,7 +142,7 @@ def test_permissions_are_those_of_the_old_file_or_of_a_new_one(tmp_path: Path) -
     assert stat.S_IMODE(path.stat().st_mode) == 0o604
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("place", "words"),
     [
         ("run.txt", r"run.txt: a run is written as .parquet or .csv"),

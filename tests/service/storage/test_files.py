@@ -14,6 +14,7 @@ from service.storage.files import FileKind, FileUpload, StoredFile
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobKind, JobRequest
 from service.storage.pages import PageCursor
+from tests.every_case import every_case
 
 
 def kept(
@@ -56,7 +57,7 @@ def test_what_could_not_be_listed_leaves_no_file(data_folder: DataFolder) -> Non
     assert left(data_folder) == []
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("kind", "name"),
     [
         (FileKind.LOG, "run"), (FileKind.LOG, "run.toml"), (FileKind.LOG, "../.csv/"),

@@ -8,6 +8,7 @@ from service.errors import NotFound
 from service.storage import keys
 from service.storage.folder import DataFolder
 from service.storage.keys import Role
+from tests.every_case import every_case
 
 
 def test_a_key_is_known_and_opens_what_its_roles_open(data_folder: DataFolder) -> None:
@@ -71,6 +72,6 @@ def test_a_word_that_differs_anywhere_is_no_key(
     assert (keys.known(data_folder, wrong) is None) == (wrong != word)
 
 
-@pytest.mark.parametrize("word", ["", "stepnc", "stepnc__", "stepnc_x_y", "_" * 99, "é_ü_ß"])
+@every_case("word", ["", "stepnc", "stepnc__", "stepnc_x_y", "_" * 99, "é_ü_ß"])
 def test_no_word_is_a_fault(data_folder: DataFolder, word: str) -> None:
     assert keys.known(data_folder, word) is None

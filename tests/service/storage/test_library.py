@@ -31,6 +31,7 @@ from simulator.errors import LibraryError, UnknownMachine, UnknownMaterial
 from simulator.library import DATA, load_machine
 from simulator.spec import Machine, WorkMaterial
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 MACHINE = (DATA / "machines" / "vmc15.toml").read_bytes()
 MATERIAL = (DATA / "materials" / "c45.toml").read_bytes()
@@ -115,7 +116,7 @@ def test_a_machine_keeps_its_measured_modes(data_folder: DataFolder) -> None:
         )
 
 
-@pytest.mark.parametrize("name", PATHS)
+@every_case("name", PATHS)
 def test_a_name_that_could_be_a_path_is_never_one(data_folder: DataFolder, name: str) -> None:
     (data_folder.root / "x.toml").write_bytes(MACHINE)
     (data_folder.root.parent / "vmc15.toml").write_bytes(MACHINE)
@@ -169,8 +170,8 @@ def test_what_is_of_the_library_stays(data_folder: DataFolder, name: str) -> Non
     assert not library.one(data_folder, section, name).is_own
 
 
-@pytest.mark.parametrize("section", LibrarySection)
-@pytest.mark.parametrize("data", BAD.values(), ids=BAD)
+@every_case("section", LibrarySection)
+@every_case("data", BAD.values())
 def test_a_bad_file_is_refused_and_nothing_is_kept(
     data_folder: DataFolder, section: LibrarySection, data: bytes
 ) -> None:
@@ -414,7 +415,7 @@ def test_a_folder_that_is_gone_is_told(data_folder: DataFolder) -> None:
         library.put(data_folder, LibrarySection.MACHINES, "ours", MACHINE)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("words", "kind"),
     [
         ({"machine": "none", "material": ""}, UnknownMachine),

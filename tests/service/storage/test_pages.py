@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from service.errors import Unreadable
 from service.ids import LENGTH, LETTERS
 from service.storage.pages import Page, PageCursor, page_of
+from tests.every_case import every_case
 
 Ids = st.sets(st.text(LETTERS, min_size=LENGTH, max_size=LENGTH), max_size=40)
 
@@ -46,7 +47,7 @@ def test_the_last_page_has_no_cursor() -> None:
     assert page_of([], [], limit=1) == Page(items=(), cursor=None)
 
 
-@pytest.mark.parametrize("cursor", ["", "x", "0" * 27, "' OR 1=1 --", f"{'0' * 26}\n"])
+@every_case("cursor", ["", "x", "0" * 27, "' OR 1=1 --", f"{'0' * 26}\n"])
 def test_a_cursor_that_no_page_gave_is_refused(cursor: str) -> None:
     with pytest.raises(Unreadable, match="cursor"):
         PageCursor(cursor=cursor)

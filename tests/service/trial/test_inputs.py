@@ -16,11 +16,12 @@ from service.trial.inputs import (
     differing,
 )
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 INPUTS = Inputs()
 
 
-@pytest.mark.parametrize("field", FIELDS, ids=lambda field: field.name)
+@every_case("field", FIELDS)
 def test_both_bounds_can_be_had_and_nothing_beyond(field: InputField) -> None:
     # A slow and large cutter, so that no spindle speed stands in the way.
     slow = replace(INPUTS, tool_diameter_mm=150.0)
@@ -37,24 +38,24 @@ def test_both_bounds_can_be_had_and_nothing_beyond(field: InputField) -> None:
             )
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("changes", "message"),
     [
-        ({"axial_depth_mm": 25}, "depth 25 mm: it must be 0.1 to 20 mm"),
-        ({"motor_power_kw": 0.0}, "motor power 0 kW: it must be 0.1 to 100 kW"),
-        ({"efficiency": 1.1}, "mechanical efficiency 1.1: it must be 0.3 to 1"),
-        ({"feed_per_tooth_mm": "much"}, "chip load 'much': it must be a number, 0.01 to 1 mm"),
-        ({"feed_per_tooth_mm": True}, "chip load 'True': it must be a number, 0.01 to 1 mm"),
-        ({"teeth": 2.5}, "teeth 2.5: it must be a whole number, 1 to 16"),
-        ({"material": "butter"}, "unknown material 'butter'; known: 100cr6, "),
-        ({"material": "../c45.toml"}, "unknown material '../c45.toml'; known: "),
-        ({"milling_type": "side"}, "unknown milling type 'side'; known: full, up, down, sym"),
-        ({"mode": "EC"}, "unknown mode 'EC'; known: TC, QC"),
-        ({"is_on": "yes"}, "control 'yes': it must be on or off"),
-        ({"coolant": 1}, "unknown input 'coolant'; known: milling_type, material, "),
+        ({"axial_depth_mm": 25}, "depth 25 mm"),
+        ({"motor_power_kw": 0.0}, "motor power 0 kW"),
+        ({"efficiency": 1.1}, "efficiency 1.1"),
+        ({"feed_per_tooth_mm": "much"}, "chip load 'much'"),
+        ({"feed_per_tooth_mm": True}, "chip load 'True'"),
+        ({"teeth": 2.5}, "whole number"),
+        ({"material": "butter"}, "material 'butter'"),
+        ({"material": "../c45.toml"}, "material '../c45.toml'"),
+        ({"milling_type": "side"}, "milling type 'side'"),
+        ({"mode": "EC"}, "mode 'EC'"),
+        ({"is_on": "yes"}, "control 'yes'"),
+        ({"coolant": 1}, "input 'coolant'"),
         (
             {"milling_type": "up", "radial_width_mm": 60.0},
-            "radial width 60 mm: it must be at most the tool diameter, 50 mm",
+            "radial width 60 mm",
         ),
         (
             {"tool_diameter_mm": 4.0},
@@ -87,7 +88,7 @@ def test_enumerations_come_as_words() -> None:
     assert differing(made, made) == ()
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("changes", "words"),
     [
         ({"axial_depth_mm": 4}, "depth 2 -> 4 mm"),

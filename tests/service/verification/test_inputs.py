@@ -10,13 +10,14 @@ from service.storage.files import FileKind
 from service.verification import inputs
 from service.verification.inputs import STREAMS, require_content
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 HEADING = "time_s,x_axis_position_actual,z_axis_position_actual\n"
 TRIANGLE = "solid a\n" + "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n" + "endsolid\n"
 TOOLS = '[[tool]]\nnumber = 4\nkind = "endmill"\ndiameter_mm = 10\n'
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("kind", "name", "text"),
     [
         (FileKind.LOG, "run.csv", f"{HEADING}0,1,2\n"),
@@ -37,21 +38,21 @@ def test_good_files_are_accepted(kind: FileKind, name: str, text: str, tmp_path:
     require_content(kind, path)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("kind", "name", "text", "why"),
     [
-        (FileKind.LOG, "run.csv", "time_s,x\n", "no column x_axis_position_actual"),
-        (FileKind.LOG, "run.csv", "\0\0\0", "no column time_s"),
+        (FileKind.LOG, "run.csv", "time_s,x\n", "x_axis_position_actual"),
+        (FileKind.LOG, "run.csv", "\0\0\0", "time_s"),
         (FileKind.LOG, "run.parquet", "PAR1", "cannot be read"),
-        (FileKind.LOG, "run.xml", "<a/>", "expected MTConnectStreams"),
-        (FileKind.LOG, "run.xml", "<a", "run.xml: line 1: not well-formed"),
+        (FileKind.LOG, "run.xml", "<a/>", "MTConnectStreams"),
+        (FileKind.LOG, "run.xml", "<a", "line 1: not well-formed"),
         (FileKind.LOG, "run.xml", f"<{STREAMS}><a></{STREAMS}>", "line 1: not well-formed"),
-        (FileKind.LOG, "run.xml", f"<!DOCTYPE a><{STREAMS}/>", "a document type is not"),
+        (FileKind.LOG, "run.xml", f"<!DOCTYPE a><{STREAMS}/>", "document type"),
         (FileKind.LOG, "run.shdr", "yesterday|x|1\n", "no line of SHDR"),
         (FileKind.LOG, "run.log", "x" * 200_000, "no line of SHDR"),
         (FileKind.TOOLS, "tools.toml", "[[tool]]\nnumber = -1\n", "number"),
         (FileKind.REQUIRED_PART, "part.stl", "solid a\nendsolid\n", "no triangles"),
-        (FileKind.REQUIRED_PART, "part.stl", "ISO-10303-21;", "part.stl: .*no DATA section"),
+        (FileKind.REQUIRED_PART, "part.stl", "ISO-10303-21;", "no DATA section"),
     ],
 )
 def test_other_files_are_refused(

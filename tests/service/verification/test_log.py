@@ -8,6 +8,7 @@ import pytest
 from service.verification.log import LogFile, ProgramNames, thinned
 from simulator.library import load_machine
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 HEAD = "time_s,x_axis_position_actual,y_axis_position_actual,z_axis_position_actual"
 NAMES = ProgramNames(
@@ -22,7 +23,7 @@ def log_of(folder: Path, text: str, names: ProgramNames = ONE) -> LogFile:
     return LogFile(path=path, names=names)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "message"),
     [
         (f"{HEAD}\n", "no rows"),

@@ -10,6 +10,7 @@ from lxml import etree
 
 from simulator.agent.agent import Asset
 from simulator.agent.buffer import ConditionValue, TimeSeriesValue
+from tests.every_case import every_case
 from tests.simulator.agent.conftest import (
     BEGIN,
     ServedAgent,
@@ -30,6 +31,12 @@ TOOL = (
     "<CuttingToolLifeCycle><CutterStatus><Status>NEW</Status></CutterStatus>"
     "</CuttingToolLifeCycle></CuttingTool>"
 )
+
+
+@pytest.fixture
+def served(serve: Serve) -> ServedAgent:
+    """An agent for all cases of a table."""
+    return serve()
 
 
 def names_of(root: Any) -> set[str]:
@@ -174,7 +181,7 @@ def test_a_path_chooses(
         assert {local(each) for each in observations(root)} == names
 
 
-@pytest.mark.parametrize(
+@every_case(
     "path",
     [
         "//////Linear",
@@ -189,15 +196,15 @@ def test_a_path_chooses(
         "//" + "x" * 2000,
     ],
 )
-def test_a_bad_path_is_refused_at_once(serve: Serve, path: str) -> None:
+def test_a_bad_path_is_refused_at_once(served: ServedAgent, path: str) -> None:
     begin = time.monotonic()
-    answer = httpx.get(serve().url + "/current", params={"path": path})
+    answer = httpx.get(served.url + "/current", params={"path": path})
     assert answer.status_code == 400
     assert error_codes(etree.fromstring(answer.content)) == ["InvalidXPath"]
     assert time.monotonic() - begin < 5.0
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("query", "codes"),
     [
         ("current?at=NaN", ["InvalidParameterValue"]),
@@ -222,8 +229,10 @@ def test_a_bad_path_is_refused_at_once(serve: Serve, path: str) -> None:
         ("assets?count=abc", ["InvalidParameterValue"]),
     ],
 )
-def test_a_parameter_that_cannot_be_is_told(serve: Serve, query: str, codes: list[str]) -> None:
-    answer = serve().get(f"/{query}")
+def test_a_parameter_that_cannot_be_is_told(
+    served: ServedAgent, query: str, codes: list[str]
+) -> None:
+    answer = served.get(f"/{query}")
     assert answer.status_code == 400
     root = etree.fromstring(answer.content)
     assert error_codes(root) == codes

@@ -8,6 +8,7 @@ from simulator.agent.documents import DocumentWriter
 from simulator.agent.machine_model import MachineModel, device_uuid, machine_model
 from simulator.agent.names import NameSet, SchemaVersion
 from simulator.library import load_machine, machine_names
+from tests.every_case import every_case
 from tests.simulator.agent.conftest import require_valid
 
 MILL = (
@@ -38,9 +39,9 @@ def document(found: MachineModel) -> bytes:
     return writer.devices(None, assets=0, size=1000)
 
 
-@pytest.mark.parametrize("name", machine_names())
-@pytest.mark.parametrize("version", list(SchemaVersion))
-@pytest.mark.parametrize("names", list(NameSet))
+@every_case("name", machine_names())
+@every_case("version", list(SchemaVersion))
+@every_case("names", list(NameSet))
 def test_every_machine_has_a_valid_model(
     name: str, version: SchemaVersion, names: NameSet
 ) -> None:

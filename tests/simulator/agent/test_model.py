@@ -7,6 +7,7 @@ from lxml import etree
 
 from simulator.agent.model import DeviceModel, model_of, parsed, read_model
 from simulator.errors import AgentError
+from tests.every_case import every_case
 
 SHARED = Path(__file__).parents[4] / "shared" / "mtconnect"
 
@@ -55,7 +56,7 @@ def test_ids_are_unique() -> None:
         model_from(TYPES.replace('"set"', '"avail"'))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "message"),
     [
         (b"<a", "not well-formed"),
@@ -70,7 +71,7 @@ def test_hostile_xml_is_refused(text: bytes, message: str) -> None:
         parsed(text, what="model.xml")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "message"),
     [
         ("<MTConnectDevices/>", "expected MTConnectDevices"),

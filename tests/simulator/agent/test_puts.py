@@ -10,6 +10,7 @@ import pytest
 from lxml import etree
 
 from tests.docs.pages import DOCS, blocks
+from tests.every_case import every_case
 from tests.simulator.agent.conftest import (
     BEGIN,
     ServedAgent,
@@ -29,6 +30,12 @@ TOOL = (
     "</CuttingToolLifeCycle></CuttingTool>"
 )
 PUT = "/asset/A2?device=vmc15&type=CuttingTool"
+
+
+@pytest.fixture
+def writable(serve: Serve) -> ServedAgent:
+    """An agent that may be written to."""
+    return serve(allows_put=True)
 
 
 def write(
@@ -119,7 +126,7 @@ FILE = '<!DOCTYPE a [<!ENTITY x SYSTEM "file:///etc/passwd">]><CuttingTool>&x;</
 DEEP = "<CuttingTool>" + "<a>" * 60 + "</a>" * 60 + "</CuttingTool>"
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("path", "body", "status"),
     [
         (PUT, LAUGHS, 400),
@@ -140,17 +147,16 @@ DEEP = "<CuttingTool>" + "<a>" * 60 + "</a>" * 60 + "</CuttingTool>"
     ],
 )
 def test_an_asset_that_cannot_be_kept_is_refused(
-    serve: Serve, path: str, body: str | bytes, status: int
+    writable: ServedAgent, path: str, body: str | bytes, status: int
 ) -> None:
-    served = serve(allows_put=True)
-    before = served.agent.buffer.next
-    answer = write(served, "PUT", path, body)
+    before = writable.agent.buffer.next
+    answer = write(writable, "PUT", path, body)
     assert answer.status_code == status
     root = require_valid(answer.content, "2.7")
     assert error_codes(root) == ["NoDevice" if status == 404 else "InvalidRequest"]
     assert "root:" not in answer.text
-    assert ids(served, "/assets") == []
-    assert served.agent.buffer.next == before
+    assert ids(writable, "/assets") == []
+    assert writable.agent.buffer.next == before
 
 
 def test_json_has_no_numbers_that_json_does_not_know(serve: Serve) -> None:
@@ -203,7 +209,7 @@ def test_a_time_in_the_future_is_now(serve: Serve) -> None:
     assert served.agent.buffer.last_time == BEGIN
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("query", "faults"),
     [
         ("nope=1", 1),
@@ -221,14 +227,13 @@ def test_a_time_in_the_future_is_now(serve: Serve) -> None:
     ],
 )
 def test_values_that_cannot_be_are_refused_together(
-    serve: Serve, query: str, faults: int
+    writable: ServedAgent, query: str, faults: int
 ) -> None:
-    served = serve(allows_put=True)
-    before = served.agent.buffer.next
-    answer = write(served, "PUT", f"/vmc15?{query}")
+    before = writable.agent.buffer.next
+    answer = write(writable, "PUT", f"/vmc15?{query}")
     assert answer.status_code == 400
     assert error_codes(require_valid(answer.content, "2.7")) == ["InvalidRequest"] * faults
-    assert served.agent.buffer.next == before
+    assert writable.agent.buffer.next == before
 
 
 @pytest.mark.parametrize("path", ["/asset/A2", "/assets", "/vmc15?line=7", "/current"])
@@ -243,7 +248,7 @@ def test_nothing_is_written_unless_it_is_allowed(serve: Serve, path: str) -> Non
     assert ids(served, "/assets?removed=true") == []
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("path", "methods"),
     [
         ("/asset/A1", {"PUT", "POST", "DELETE"}),
@@ -254,12 +259,13 @@ def test_nothing_is_written_unless_it_is_allowed(serve: Serve, path: str) -> Non
         ("/", set()),
     ],
 )
-def test_what_may_be_written_where_is_told(serve: Serve, path: str, methods: set[str]) -> None:
-    served = serve(allows_put=True)
-    allowed = set(httpx.options(served.url + path).headers["allow"].split(", "))
+def test_what_may_be_written_where_is_told(
+    writable: ServedAgent, path: str, methods: set[str]
+) -> None:
+    allowed = set(httpx.options(writable.url + path).headers["allow"].split(", "))
     assert allowed == {"GET", "HEAD", "OPTIONS"} | methods
     for method in {"PUT", "POST", "DELETE", "PATCH"} - methods:
-        assert write(served, method, path).status_code == 405
+        assert write(writable, method, path).status_code == 405
 
 
 def test_pages_of_other_servers_may_not_write(serve: Serve) -> None:

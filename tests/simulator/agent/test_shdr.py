@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from simulator.agent.buffer import ConditionValue, TimeSeriesValue, Value
 from simulator.agent.shdr import ShdrObservation, read_line, read_time, written
+from tests.every_case import every_case
 from tests.simulator.agent.test_model import TYPES, model_from
 
 MODEL = model_from(TYPES)
@@ -19,7 +20,7 @@ def read(line: str) -> list[tuple[str, Value]]:
     return [(MODEL.items[each.item].id, each.value) for each in found]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("line", "expected"),
     [
         (f"{T0}|avail|AVAILABLE", [("avail", "AVAILABLE")]),
@@ -48,7 +49,7 @@ def test_a_line_is_read(line: str, expected: list[tuple[str, Value]]) -> None:
     assert read(line) == expected
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "time"),
     [
         (T0, MICRO),

@@ -2,7 +2,6 @@
 
 from math import pi
 
-import pytest
 from lxml import etree
 
 from simulator.agent.documents import DocumentWriter
@@ -12,6 +11,7 @@ from simulator.machine.cutting import CuttingEdge
 from simulator.machine.virtual import LoadedTool, Shape
 from simulator.removal.cutter import Cutter, Holder, Insert
 from simulator.spec import Kienzle
+from tests.every_case import every_case
 from tests.simulator.agent.conftest import mill, require_valid
 
 EDGE = CuttingEdge(teeth=4, kienzle=Kienzle(k_c11=1500.0, m_c=0.22))
@@ -29,8 +29,8 @@ def asset_of(shape: Shape | None) -> str:
     return tool_asset(tool, device="vmc15", uuid="u-1", index=1, time=10**15).text
 
 
-@pytest.mark.parametrize("version", list(SchemaVersion))
-@pytest.mark.parametrize("shape", SHAPES)
+@every_case("version", list(SchemaVersion))
+@every_case("shape", SHAPES)
 def test_a_tool_is_a_valid_asset(version: SchemaVersion, shape: Shape | None) -> None:
     writer = DocumentWriter(
         model=mill(version.value), sender="t", instance=1, changed="2026-01-01T00:00:00Z"

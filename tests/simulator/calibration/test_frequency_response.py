@@ -8,8 +8,10 @@ import pytest
 
 from simulator.calibration.modal_fit import read_response
 from simulator.errors import CalibrationError
+from tests.every_case import every_case
 
 ROWS: list[tuple[float, ...]] = [(100.0 * row, 1.0 + row, -0.5 * row) for row in range(12)]
+GOOD = "frequency_hz,real_mm_n,imag_mm_n"
 
 
 def write(path: Path, heading: str, rows: Sequence[tuple[float, ...]]) -> Path:
@@ -52,56 +54,42 @@ def test_an_accelerance_is_divided_by_minus_omega_squared(tmp_path: Path) -> Non
     assert found.receptance[0] == pytest.approx(-1e3 * (2.0 - 0.5j) / omega**2)
 
 
-@pytest.mark.parametrize(
-    ("heading", "rows", "message"),
+@every_case(
+    ("heading", "rows", "line", "column", "word"),
     [
-        (
-            "f,real_mm_n,imag_mm_n",
-            ROWS,
-            "frequency_hz: column is missing; it must hold the frequency in Hz",
-        ),
-        (
-            "frequency_hz,a,b",
-            ROWS,
-            "no column with the real part; one of real_m_n, real_mm_n, real_um_n, ",
-        ),
-        ("frequency_hz,real_mm_n,imag_m_n", ROWS, "imag_mm_n: column is missing"),
-        (
-            "frequency_hz,real_mm_n,real_m_n",
-            ROWS,
-            "given together with real_mm_n; use one unit only",
-        ),
-        ("frequency_hz,real_mm_n,imag_mm_n", ROWS[:5], "5 complete samples; at least 10"),
-        (
-            "frequency_hz,real_mm_n,imag_mm_n",
-            [*ROWS, (300.0, 1.0, 1.0)],
-            "line 14: frequency_hz: 300 Hz after 1100 Hz; frequencies must ascend",
-        ),
-        (
-            "frequency_hz,real_mm_n,imag_mm_n",
-            [*ROWS, (2e5, 1.0, 1.0)],
-            "line 14: frequency_hz: 200000 Hz, expected 0 to 100000 Hz",
-        ),
-        (
-            "frequency_hz,real_mm_n,imag_mm_n",
-            [(-5.0, 1.0, 1.0), *ROWS],
-            "line 2: frequency_hz: -5 Hz, expected",
-        ),
-        (
-            "frequency_hz,real_mm_n,imag_mm_n",
-            [(row[0], 0.0, 0.0) for row in ROWS],
-            "real_mm_n: all values are zero",
-        ),
+        ("f,real_mm_n,imag_mm_n", ROWS, 0, "frequency_hz", "missing"),
+        ("frequency_hz,a,b", ROWS, 0, "", "no column with the real part"),
+        ("frequency_hz,real_mm_n,imag_m_n", ROWS, 0, "imag_mm_n", "missing"),
+        ("frequency_hz,real_mm_n,real_m_n", ROWS, 0, "real_m_n", "one unit"),
+        (GOOD, ROWS[:5], 0, "", "5 complete samples"),
+        (GOOD, [*ROWS, (300.0, 1.0, 1.0)], 14, "frequency_hz", "ascend"),
+        (GOOD, [*ROWS, (2e5, 1.0, 1.0)], 14, "frequency_hz", "200000 Hz"),
+        (GOOD, [(-5.0, 1.0, 1.0), *ROWS], 2, "frequency_hz", "-5 Hz"),
+        (GOOD, [(row[0], 0.0, 0.0) for row in ROWS], 0, "real_mm_n", "zero"),
     ],
 )
 def test_a_bad_file_is_told_with_line_and_column(
-    heading: str, rows: list[tuple[float, ...]], message: str, tmp_path: Path
+    heading: str,
+    rows: list[tuple[float, ...]],
+    line: int,
+    column: str,
+    word: str,
+    tmp_path: Path,
 ) -> None:
     path = write(tmp_path / "tap.csv", heading, rows)
     with pytest.raises(CalibrationError) as error:
         read_response(path)
-    assert message in str(error.value)
-    assert "tap.csv" in str(error.value)
+    assert (error.value.line, error.value.column) == (line, column)
+    assert word in str(error.value)
+
+
+def test_a_refusal_names_file_line_column_value_and_bound(tmp_path: Path) -> None:
+    path = write(tmp_path / "tap.csv", GOOD, [*ROWS, (2e5, 1.0, 1.0)])
+    with pytest.raises(CalibrationError) as error:
+        read_response(path)
+    assert str(error.value) == (
+        f"{path}: line 14: frequency_hz: 200000 Hz, expected 0 to 100000 Hz"
+    )
 
 
 def test_a_cell_that_is_no_number_is_told_with_its_line(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from simulator.calibration.measured_run import (
     thinned,
 )
 from simulator.errors import CalibrationError
+from tests.every_case import every_case
 
 HEADINGS = ("time_s", *POSITIONS, "c_axis_wattage", "electric_wattage", "workingstep")
 
@@ -121,7 +122,7 @@ def test_nothing_but_constant_powers_is_refused(tmp_path: Path) -> None:
     assert "nothing can be fitted" in str(refused(tmp_path, table))
 
 
-@pytest.mark.parametrize("cell", ["two", "nan", "inf"])
+@every_case("cell", ["two", "nan", "inf"])
 def test_what_is_no_number_is_refused_with_its_place(tmp_path: Path, cell: str) -> None:
     table = rows()
     table[3][4] = cell
@@ -151,7 +152,7 @@ def test_missing_column_is_refused(tmp_path: Path, missing: str) -> None:
         read_run(written(tmp_path, table, [HEADINGS[i] for i in kept]))
 
 
-@pytest.mark.parametrize("content", [b"", b"\xff\xfe\x00", b"time_s\n"])
+@every_case("content", [b"", b"\xff\xfe\x00", b"time_s\n"])
 def test_what_is_no_table_is_refused(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "run.csv"
     path.write_bytes(content)

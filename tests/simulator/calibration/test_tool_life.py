@@ -11,6 +11,7 @@ from simulator.calibration.tool_life import LifePair, fitted_taylor
 from simulator.physics.tool_life import tool_life
 from simulator.spec import Taylor
 from stepnc_model.errors import StepNcError
+from tests.every_case import every_case
 
 
 def pair(speed: float, life: float) -> LifePair:
@@ -56,7 +57,7 @@ def test_pairs_that_hardly_tell_a_slope_have_no_upper_end() -> None:
     assert found.scatter == pytest.approx(0.24, abs=0.15)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("pairs", "message"),
     [
         ([], "0 pair"),

@@ -12,6 +12,7 @@ import pytest
 from simulator.agent.agent import Agent
 from simulator.client.connection import AgentClient, StreamPart
 from simulator.errors import AgentError
+from tests.every_case import every_case
 from tests.simulator.agent.conftest import BEGIN, ServedAgent
 
 Serve = Callable[..., ServedAgent]
@@ -134,7 +135,7 @@ def answering(body: bytes, *, status: int = 200, kind: str = "text/xml") -> Iter
 SPACE = 'xmlns="urn:mtconnect.org:MTConnectStreams:2.7"'
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("body", "status", "message"),
     [
         (b"<html/>", 200, "html instead of MTConnectStreams"),
@@ -174,9 +175,7 @@ def test_a_stream_that_is_none_is_a_fault_and_no_end(body: bytes) -> None:
     assert all(part.fault for part in parts)
 
 
-@pytest.mark.parametrize(
-    "url", ["ftp://host", "http://", "http://host:port", "http://host:99999"]
-)
+@every_case("url", ["ftp://host", "http://", "http://host:port", "http://host:99999"])
 def test_an_address_that_is_none_is_told(url: str) -> None:
     with pytest.raises(AgentError):
         AgentClient(url)

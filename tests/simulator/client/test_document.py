@@ -6,6 +6,7 @@ import pytest
 
 from simulator.client.document import read_document
 from simulator.errors import AgentError
+from tests.every_case import every_case
 
 STREAMS = """<MTConnectStreams xmlns="urn:mtconnect.org:MTConnectStreams:1.3">
 <Header firstSequence="1" nextSequence="9" instanceId="1"/>
@@ -37,7 +38,7 @@ def test_rows_have_the_columns_of_a_recorded_run(tmp_path: Path) -> None:
     assert first["execution"] == "ACTIVE"
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "message"),
     [
         ("<MTConnectError/>", "root element MTConnectError; expected MTConnectStreams"),

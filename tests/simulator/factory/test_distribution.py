@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from simulator.factory.distribution import Distribution, DistributionKind
+from tests.every_case import every_case
 
 
-@pytest.mark.parametrize(
+@every_case(
     "distribution",
     [
         Distribution(kind=DistributionKind.CONSTANT, mean=4.0),
@@ -17,7 +18,6 @@ from simulator.factory.distribution import Distribution, DistributionKind
         Distribution(kind=DistributionKind.LOGNORMAL, mean=4.0, variation=0.5),
         Distribution(kind=DistributionKind.WEIBULL, mean=4.0, shape=2.0),
     ],
-    ids=lambda each: each.kind,
 )
 def test_draws_have_their_mean_and_are_never_negative(distribution: Distribution) -> None:
     numbers = distribution.draw(np.random.default_rng(5), 100_000)

@@ -29,6 +29,7 @@ from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program
 from stepnc_model.toolpath.generate import generate
 from stepnc_model.toolpath.path import ArcPlane, CycleKind, ToolPath, length
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
 
@@ -57,7 +58,7 @@ def seconds(parts: Iterable[MoveStretch]) -> float:
     return sum(float((feed.length / feed.speed).sum()) for feed in feeds)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("block", "acts"),
     [
         (nc.ProgramStart(name="a"), []),

@@ -3,6 +3,7 @@ import pytest
 
 from simulator.library import load_machine
 from simulator.motion.segments import AxisLimits, axis_limits
+from tests.every_case import every_case
 
 
 def test_limits_of_a_mill_are_those_of_its_axes() -> None:
@@ -22,7 +23,7 @@ def test_axis_that_a_lathe_has_not_does_not_limit() -> None:
         assert np.isfinite(limit).tolist() == [True, False, True]
 
 
-@pytest.mark.parametrize("name", ["acceleration", "rapid", "feed", "jerk"])
+@every_case("name", ["acceleration", "rapid", "feed", "jerk"])
 def test_limit_that_is_not_positive_is_refused(name: str) -> None:
     columns = {each: np.ones(3) for each in ("acceleration", "rapid", "feed")}
     with pytest.raises(ValueError, match=f"{name} of X, Y and Z must be positive"):

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simulator.motion.segments import FIRST, SECOND, Segments, arc, chained, lines
+from tests.every_case import every_case
 
 
 def _sampled(path: Segments, count: int = 7) -> tuple[np.ndarray, np.ndarray]:
@@ -85,7 +86,7 @@ def test_rows_are_taken_with_all_their_columns() -> None:
     assert last.speed[0] == 5.0
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("column", "value", "message"),
     [
         ("start", np.zeros((1, 2)), r"start must be finite and of shape \(1, 3\)"),

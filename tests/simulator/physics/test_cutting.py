@@ -4,6 +4,7 @@ from simulator.physics import cutting
 from simulator.physics.cutting import ForceCorrection
 from simulator.spec import CuttingMaterial, Kienzle
 from stepnc_model.units import rad_from_deg
+from tests.every_case import every_case
 
 STEEL = Kienzle(k_c11=1500.0, m_c=0.22)
 
@@ -67,7 +68,7 @@ def test_factor_scales_the_force() -> None:
     assert harder == pytest.approx(1.3 * usual)
 
 
-@pytest.mark.parametrize("exponent", [-0.1, 1.0, float("nan")])
+@every_case("exponent", [-0.1, 1.0, float("nan")])
 def test_exponent_outside_its_range_is_refused(exponent: float) -> None:
     with pytest.raises(ValueError, match="at least 0 and less than 1"):
         cutting.specific_cutting_force(0.1, k_c11=1500.0, m_c=exponent)

@@ -10,9 +10,10 @@ from simulator.physics.domain import (
     require_positive,
     require_teeth,
 )
+from tests.every_case import every_case
 
 
-@pytest.mark.parametrize("value", [0.0, -1.0, nan, inf])
+@every_case("value", [0.0, -1.0, nan, inf])
 def test_positive_refuses_zero_negative_nan_and_infinity(value: float) -> None:
     with pytest.raises(
         ValueError, match=r"^depth \S+ mm must be greater than 0 mm and finite$"
@@ -20,7 +21,7 @@ def test_positive_refuses_zero_negative_nan_and_infinity(value: float) -> None:
         require_positive(value, "depth", "mm")
 
 
-@pytest.mark.parametrize("value", [-1e-9, nan, inf])
+@every_case("value", [-1e-9, nan, inf])
 def test_not_negative_refuses_negative_nan_and_infinity(value: float) -> None:
     with pytest.raises(ValueError, match="at least 0 mm and finite"):
         require_not_negative(value, "depth", "mm")

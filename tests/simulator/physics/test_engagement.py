@@ -4,6 +4,7 @@ import pytest
 
 from simulator.physics import engagement
 from simulator.physics.engagement import Engagement
+from tests.every_case import every_case
 
 
 def test_climb_milling_leaves_at_pi() -> None:
@@ -64,7 +65,7 @@ def test_cosine_difference_is_what_its_name_says() -> None:
     assert arc.cosine_difference == pytest.approx(cos(0.7) - cos(2.1))
 
 
-@pytest.mark.parametrize(("entry", "exit_"), [(1.0, 1.0), (2.0, 1.0), (-0.1, 1.0), (0.0, 3.2)])
+@every_case(("entry", "exit_"), [(1.0, 1.0), (2.0, 1.0), (-0.1, 1.0), (0.0, 3.2)])
 def test_angles_that_do_not_ascend_within_the_half_circle_are_refused(
     entry: float, exit_: float
 ) -> None:

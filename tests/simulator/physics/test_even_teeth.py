@@ -11,6 +11,7 @@ from scipy.integrate import quad
 from simulator.physics.flutes import CuttingEdges, ForceLaw
 from simulator.physics.tooth_forces import forces, one_place
 from simulator.physics.uneven_teeth import Runout
+from tests.every_case import every_case
 
 ROTATION = np.linspace(0.0, 2.0 * pi, 97)[None, :]
 
@@ -47,8 +48,8 @@ def test_closed_form_equals_gauss_along_the_edge(
         np.testing.assert_allclose(found, expected, rtol=0.0, atol=atol)
 
 
-@pytest.mark.parametrize("exponent", [0.65, 0.8, 1.0])
-@pytest.mark.parametrize(("bottom", "top"), [(0.0, 0.05), (0.0, 0.6), (1.0, 2.2), (0.3, pi)])
+@every_case("exponent", [0.65, 0.8, 1.0])
+@every_case(("bottom", "top"), [(0.0, 0.05), (0.0, 0.6), (1.0, 2.2), (0.3, pi)])
 def test_stretch_of_edge_is_that_of_quadrature(
     exponent: float, bottom: float, top: float
 ) -> None:

@@ -2,6 +2,7 @@ import pytest
 
 from simulator.physics import tool_life
 from simulator.spec import Taylor
+from tests.every_case import every_case
 
 CARBIDE = Taylor(exponent=0.25, constant=8000.0)
 
@@ -21,7 +22,7 @@ def test_wear_rate_is_one_over_life() -> None:
     )
 
 
-@pytest.mark.parametrize("exponent", [0.0, 1.0, -0.2])
+@every_case("exponent", [0.0, 1.0, -0.2])
 def test_exponent_outside_its_range_is_refused(exponent: float) -> None:
     with pytest.raises(ValueError, match="Taylor exponent"):
         tool_life.tool_life(Taylor(exponent=exponent, constant=8000.0), 4000.0)

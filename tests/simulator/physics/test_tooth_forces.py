@@ -26,6 +26,7 @@ from simulator.physics.tooth_forces import (
     wall_force,
 )
 from simulator.spec import Kienzle
+from tests.every_case import every_case
 from tests.simulator.physics.discs import RADIAL, Mill
 
 LINEAR = ForceLaw(exponent=1.0)
@@ -129,9 +130,9 @@ def test_wall_force_is_that_of_thin_discs_at_the_moments_when_they_make_it(mill:
     assert wall(mill) == pytest.approx(expected, rel=0.01, abs=5e-3 * peak(mill))
 
 
-@pytest.mark.parametrize("teeth", [1, 2, 3, 4, 5, 8])
-@pytest.mark.parametrize("exponent", [0.78, 1.0])
-@pytest.mark.parametrize("arc", ARCS)
+@every_case("teeth", [1, 2, 3, 4, 5, 8])
+@every_case("exponent", [0.78, 1.0])
+@every_case("arc", ARCS)
 def test_straight_edges_take_the_sum_of_their_chips(
     teeth: int, exponent: float, arc: Engagement
 ) -> None:
@@ -168,8 +169,8 @@ def test_a_helix_that_goes_to_nothing_is_a_straight_edge() -> None:
     assert wall(straight) < 1e-3 * peak(straight)
 
 
-@pytest.mark.parametrize("teeth", [1, 2, 4, 6])
-@pytest.mark.parametrize("arc", ARCS)
+@every_case("teeth", [1, 2, 4, 6])
+@every_case("arc", ARCS)
 def test_in_one_axial_pitch_of_depth_the_force_stays_the_same(
     teeth: int, arc: Engagement
 ) -> None:
@@ -207,8 +208,8 @@ def test_a_whole_helical_tooth_in_the_cut_has_its_closed_form() -> None:
     assert found.normal[0, 0] == pytest.approx(squared - RADIAL * across, rel=1e-9)
 
 
-@pytest.mark.parametrize("exponent", [0.65, 0.78, 1.0])
-@pytest.mark.parametrize("share", [0.1, 0.5, 1.0, 1.6])
+@every_case("exponent", [0.65, 0.78, 1.0])
+@every_case("share", [0.1, 0.5, 1.0, 1.6])
 def test_a_ball_is_that_of_thin_slices(exponent: float, share: float) -> None:
     mill = Mill(
         teeth=2,
@@ -244,10 +245,10 @@ def test_a_straight_ball_has_its_closed_form() -> None:
     assert found.feed[0, 0] == pytest.approx(0.3 * 5.0 * pi / 4.0, rel=0.01)
 
 
-@pytest.mark.parametrize("arc", ARCS)
-@pytest.mark.parametrize("teeth", [1, 3, 4])
-@pytest.mark.parametrize("helix", [0.0, HELIX, 1.0])
-@pytest.mark.parametrize("kappa", [pi / 2.0, pi / 4.0])
+@every_case("arc", ARCS)
+@every_case("teeth", [1, 3, 4])
+@every_case("helix", [0.0, HELIX, 1.0])
+@every_case("kappa", [pi / 2.0, pi / 4.0])
 def test_the_mean_over_a_revolution_is_the_mean_force_of_a_linear_law(
     arc: Engagement, teeth: int, helix: float, kappa: float
 ) -> None:

@@ -9,6 +9,7 @@ from simulator.plant.course import NominalCourse
 from simulator.plant.dynamometer import Instrument
 from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
 from simulator.reading import Reading
+from tests.every_case import every_case
 from tests.simulator.plant.courses import (
     EXPONENT,
     FEED,
@@ -169,7 +170,7 @@ def test_same_seed_same_readings() -> None:
     assert (forces(1) != forces(2)).any()
 
 
-@pytest.mark.parametrize("override", [-0.1, float("nan"), float("inf")])
+@every_case("override", [-0.1, float("nan"), float("inf")])
 def test_an_impossible_override_is_refused(override: float) -> None:
     with pytest.raises(ValueError, match="override"):
         machine(course(levels(100.0))).set(override)

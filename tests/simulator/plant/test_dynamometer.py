@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from simulator.motion.segments import Floats
 from simulator.plant.dynamometer import Acquisition, Instrument
+from tests.every_case import every_case
 
 TRUTH = np.linspace(100.0, 200.0, 8)
 
@@ -65,7 +66,7 @@ def test_nothing_arrives_from_a_silent_instrument() -> None:
     assert np.isnan(shown(Instrument(), is_lost=True)).all()
 
 
-@pytest.mark.parametrize("change", [{"noise": -0.1}, {"missing": 1.0}, {"lag": -1.0}])
+@every_case("change", [{"noise": -0.1}, {"missing": 1.0}, {"lag": -1.0}])
 def test_impossible_instruments_are_refused(change: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="must"):
         Instrument(**change)

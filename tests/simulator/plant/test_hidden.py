@@ -1,6 +1,7 @@
 import pytest
 
 from simulator.plant.hidden import HiddenTruth
+from tests.every_case import every_case
 
 
 def test_a_machine_hides_nothing_when_nothing_is_said() -> None:
@@ -9,7 +10,7 @@ def test_a_machine_hides_nothing_when_nothing_is_said() -> None:
     assert hidden.changes == ()
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "value"),
     [
         ("force_factor", 0.0),

@@ -13,6 +13,7 @@ from simulator.removal.profile import (
     radius_at,
     rise,
 )
+from tests.every_case import every_case
 
 CUTTERS = [
     Cutter(diameter=10.0),
@@ -44,7 +45,7 @@ def test_radius_and_height_are_inverse(cutter: Cutter) -> None:
         assert again == pytest.approx(height)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("cutter", "word"),
     [
         (Cutter(diameter=0.0), "diameter"),
@@ -59,7 +60,7 @@ def test_impossible_cutters_are_refused(cutter: Cutter, word: str) -> None:
         profile_of(cutter, reach=30.0)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("cutter", "plain", "upright"),
     [
         (Cutter(diameter=10.0), True, True),

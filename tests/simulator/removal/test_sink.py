@@ -14,6 +14,7 @@ from simulator.removal.rim import FORGETTING, past
 from simulator.removal.sink import LIP_ERROR, hole, lip
 from simulator.removal.zmap import zmap_of
 from stepnc_model.program import Stock
+from tests.every_case import every_case
 
 PLATE = Stock(low=(0.0, 0.0, -12.0), high=(30.0, 30.0, 0.0))
 X, Y = 15.0, 15.0
@@ -69,8 +70,8 @@ def test_a_flat_tool_cuts_with_all_of_its_end_from_the_first_touch() -> None:
     assert lip(GRID, profile(FLAT), X, Y, -1e-6) == (0.0, 5.0)
 
 
-@pytest.mark.parametrize("cutter", [FLAT, CONE])
-@pytest.mark.parametrize("place", [(X, Y, 0.0), (X, Y, 3.0), (60.0, Y, -5.0)])
+@every_case("cutter", [FLAT, CONE])
+@every_case("place", [(X, Y, 0.0), (X, Y, 3.0), (60.0, Y, -5.0)])
 def test_above_or_beside_the_stock_nothing_is_cut(
     cutter: Cutter, place: tuple[float, float, float]
 ) -> None:

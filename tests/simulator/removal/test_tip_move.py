@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from simulator.motion.segments import Floats
 from simulator.removal.tip_move import TipMove, arc_distance, bounds, helix_height, place
+from tests.every_case import every_case
 
 RADIUS = 20.0
 CENTRE = (3.0, -4.0, 7.0)
@@ -51,8 +52,8 @@ def test_a_place_on_a_line_divides_it() -> None:
     assert place(line, 0.25) == pytest.approx((2.0, 1.0, 5.0))
 
 
-@pytest.mark.parametrize("normal", [0, 1, 2])
-@pytest.mark.parametrize("turn", [1.2, -2.5])
+@every_case("normal", [0, 1, 2])
+@every_case("turn", [1.2, -2.5])
 def test_a_place_on_a_helix_keeps_its_radius_and_rises_evenly(normal: int, turn: float) -> None:
     whole = row(normal, 0.4, turn, rise=6.0)
     for part in (0.0, 0.3, 1.0):

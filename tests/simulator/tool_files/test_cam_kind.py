@@ -1,12 +1,11 @@
 """Kinds of tools by the names of CAM systems."""
 
-import pytest
-
 from simulator.spec import ToolKind
 from simulator.tool_files.cam_kind import kind_named
+from tests.every_case import every_case
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "kind"),
     [
         ("flat end mill", ToolKind.ENDMILL),

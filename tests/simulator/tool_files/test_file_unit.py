@@ -5,9 +5,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simulator.tool_files.file_unit import FileUnit, named_sizes, other_size
+from tests.every_case import every_case
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "sizes"),
     [
         ("1/8 end mill", [3.175]),
@@ -28,7 +29,7 @@ def test_sizes_of_a_name(name: str, sizes: list[float]) -> None:
     assert list(named_sizes(name)) == pytest.approx(sizes)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "diameter", "told"),
     [
         ("1/8 end mill", 0.125, 3.175),

@@ -6,11 +6,12 @@ import pytest
 
 from simulator.errors import LibraryError
 from simulator.tool_files.json_text import list_in, object_in, parsed_json, shown
+from tests.every_case import every_case
 
 FILE = Path("a.json")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "told"),
     [
         ('{"a":\n 1,}', "a.json: line 2: is not JSON: "),

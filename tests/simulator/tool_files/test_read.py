@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from simulator.errors import LibraryError
 from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.read import ToolFormat, read_tools
+from tests.every_case import every_case
 from tests.simulator.tool_files.refusal import refusal
 
 TOML = '# tools\n[[tool]]\nnumber = 7\nkind = "endmill"\ndiameter_mm = 6\n'
@@ -34,7 +35,7 @@ def test_tools_are_in_the_order_of_their_numbers(tmp_path: Path) -> None:
     assert list(library.by_number) == [2, 9]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("content", "told"),
     [
         (b"", "is none of the known formats: TOML, CSV, LinuxCNC tool table, Fusion"),

@@ -2,14 +2,13 @@
 
 import re
 
-import pytest
-
 from stepnc_model.ap238.export import to_ap238
 from stepnc_model.ap238.view import AimView
 from stepnc_model.entities.features import CompoundFeature, ReplicateFeature
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
+from tests.every_case import every_case
 from tests.stepnc_model.ap238.long_form import deviations, schema
 from tests.stepnc_model.ap238.samples import Comparison, long_form, own, read
 from tests.stepnc_model.ap238.test_reading import NAMED, paths, shape
@@ -52,7 +51,7 @@ def program(feature: str) -> Part21File:
     return read(head + f"{COMMON}#9100={feature};\n".encode() + mark + tail)
 
 
-@pytest.mark.parametrize("name", FEATURES)
+@every_case("name", FEATURES)
 def test_a_feature_goes_there_and_back(name: str) -> None:
     file = program(FEATURES[name])
     made = to_ap238(file)

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from stepnc_model.ap238.instances import Instances
 from stepnc_model.ap238.quantity import MEASURES, Units, conversion
 from stepnc_model.ap238.table import Kind
+from tests.every_case import every_case
 from tests.stepnc_model.ap238.samples import read
 
 UNITS = b"""ISO-10303-21;
@@ -51,7 +52,7 @@ def units() -> Units:
     return Units(Instances(read(UNITS)))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("number", "kind", "factor"),
     [
         (1, Kind.LENGTH, 1.0),

@@ -1,10 +1,9 @@
 """The table of reference paths: it fits the entities, the dictionary fits the long form."""
 
-import pytest
-
 from stepnc_model.ap238.dictionary import attributes, dictionary, is_a, lineage
 from stepnc_model.ap238.table import Kind, PathMove, rules
 from stepnc_model.entities.conversion import slots_of
+from tests.every_case import every_case
 from tests.stepnc_model.ap238.long_form import schema
 from tests.stepnc_model.ap238.samples import long_form
 
@@ -62,7 +61,7 @@ def test_a_choice_means_members_of_the_enumeration() -> None:
                     assert {iso for _, iso in path.ending.texts} <= members, row.attribute
 
 
-@pytest.mark.parametrize("name", sorted(dictionary()))
+@every_case("name", sorted(dictionary()))
 def test_an_entity_of_the_dictionary_is_that_of_the_long_form(name: str) -> None:
     entities = schema(long_form())
     assert [each.upper() for each in entities.lineage(name.lower())] == list(lineage(name))

@@ -17,6 +17,7 @@ from stepnc_model.part21.values import (
     Typed,
     Value,
 )
+from tests.every_case import every_case
 
 NUMBER = AttributeSlot(plain=(float,))
 COUNT = AttributeSlot(plain=(int,))
@@ -30,7 +31,7 @@ FEED = AttributeSlot(plain=(Typed, float), is_optional=True)
 SPEED = AttributeSlot(plain=(Typed, float), enumeration=SpeedName, references=(Entity,))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("slot", "value", "expected"),
     [
         (NUMBER, Real(0.04), 0.04),
@@ -64,37 +65,37 @@ def test_value_that_fits_is_taken_without_a_word(
     assert take(slot, value) == (expected, None)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("slot", "value", "expected", "severity", "words"),
     [
-        (NUMBERS, None, (), Severity.NOTE, "$ where a list is required"),
-        (LABEL, None, "", Severity.NOTE, "$ where a text is required"),
-        (NUMBER, None, None, Severity.WARNING, "$ where a number is required"),
-        (NAME, None, None, Severity.WARNING, "one of .TCP., .CCP."),
-        (REFERENCE, None, None, Severity.WARNING, "$ where entity is required"),
-        (COUNT, Real(4.0), 4, Severity.NOTE, "a real where an integer is required"),
-        (COUNT, Real(4.5), None, Severity.ERROR, "4.5 where an integer is required"),
-        (COUNT, Real(inf), None, Severity.ERROR, "is not a finite number"),
-        (NUMBER, Real(inf), None, Severity.ERROR, "is not a finite number"),
-        (NUMBER, Real(nan), None, Severity.ERROR, "is not a finite number"),
-        (NUMBER, 10**400, None, Severity.ERROR, "the integer is too large for a real"),
+        (NUMBERS, None, (), Severity.NOTE, "$"),
+        (LABEL, None, "", Severity.NOTE, "$"),
+        (NUMBER, None, None, Severity.WARNING, "$"),
+        (NAME, None, None, Severity.WARNING, "one of"),
+        (REFERENCE, None, None, Severity.WARNING, "$"),
+        (COUNT, Real(4.0), 4, Severity.NOTE, "a real"),
+        (COUNT, Real(4.5), None, Severity.ERROR, "4.5"),
+        (COUNT, Real(inf), None, Severity.ERROR, "finite"),
+        (NUMBER, Real(inf), None, Severity.ERROR, "finite"),
+        (NUMBER, Real(nan), None, Severity.ERROR, "finite"),
+        (NUMBER, 10**400, None, Severity.ERROR, "too large"),
         (FEED, Typed("FEED_PER_REV_TYPE", Real(inf)), None, Severity.ERROR, "finite"),
-        (NUMBER, "0.04", None, Severity.ERROR, "'0.04' where a number is required"),
-        (NUMBER, Ref(4), None, Severity.ERROR, "#4 where a number is required"),
-        (NUMBER, Enumeration("T"), None, Severity.ERROR, ".T. where a number is required"),
-        (NUMBER, (Real(1.0),), None, Severity.ERROR, "a list where a number is required"),
-        (LABEL, Real(1.0), "", Severity.ERROR, "1.0 where a text is required"),
-        (LABEL, Binary("0A"), "", Severity.ERROR, "'0A' where a text is required"),
-        (TRUTH, Enumeration("U"), None, Severity.WARNING, ".U. is not a truth value"),
-        (NAME, Enumeration("TIP"), None, Severity.WARNING, ".TIP. is not one of"),
-        (NAME, "TCP", None, Severity.ERROR, "'TCP' where one of"),
-        (REFERENCE, Real(7.0), None, Severity.ERROR, "7.0 where entity is required"),
-        (NUMBERS, Real(1.0), (1.0,), Severity.WARNING, "lacks its brackets"),
-        (REFERENCES, Ref(1), (Ref(1),), Severity.WARNING, "lacks its brackets"),
-        (NUMBERS, "x", (), Severity.ERROR, "item 1: 'x' where a number is required"),
-        (REFERENCES, (Ref(1), None), (Ref(1),), Severity.WARNING, "item 2: $"),
-        (NUMBERS, (Real(1.0), None), (), Severity.ERROR, "item 2: $"),
-        (NUMBERS, (Real(1.0), DERIVED), (), Severity.ERROR, "items are missing"),
+        (NUMBER, "0.04", None, Severity.ERROR, "'0.04'"),
+        (NUMBER, Ref(4), None, Severity.ERROR, "#4"),
+        (NUMBER, Enumeration("T"), None, Severity.ERROR, ".T."),
+        (NUMBER, (Real(1.0),), None, Severity.ERROR, "a list"),
+        (LABEL, Real(1.0), "", Severity.ERROR, "1.0"),
+        (LABEL, Binary("0A"), "", Severity.ERROR, "'0A'"),
+        (TRUTH, Enumeration("U"), None, Severity.WARNING, "truth value"),
+        (NAME, Enumeration("TIP"), None, Severity.WARNING, ".TIP."),
+        (NAME, "TCP", None, Severity.ERROR, "'TCP'"),
+        (REFERENCE, Real(7.0), None, Severity.ERROR, "7.0"),
+        (NUMBERS, Real(1.0), (1.0,), Severity.WARNING, "brackets"),
+        (REFERENCES, Ref(1), (Ref(1),), Severity.WARNING, "brackets"),
+        (NUMBERS, "x", (), Severity.ERROR, "item 1"),
+        (REFERENCES, (Ref(1), None), (Ref(1),), Severity.WARNING, "item 2"),
+        (NUMBERS, (Real(1.0), None), (), Severity.ERROR, "item 2"),
+        (NUMBERS, (Real(1.0), DERIVED), (), Severity.ERROR, "missing"),
     ],
 )
 def test_odd_value_is_told_and_never_fatal(
@@ -105,6 +106,12 @@ def test_odd_value_is_told_and_never_fatal(
     assert remark is not None
     assert remark.severity is severity
     assert words in remark.message
+
+
+def test_a_remark_says_what_stands_where_what_is_required() -> None:
+    _, remark = take(NUMBERS, "x")
+    assert remark is not None
+    assert remark.message == "item 1: 'x' where a number is required"
 
 
 def test_list_with_a_hole_gives_no_shifted_coordinates() -> None:
@@ -133,7 +140,7 @@ def test_parameter_may_be_missing_at_the_end(
     assert remark.severity is severity
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("slot", "value", "expected"),
     [
         (NUMBER, 0.5, Real(0.5)),

@@ -2,9 +2,8 @@
 
 from enum import StrEnum
 
-import pytest
-
 from stepnc_model.entities import enums
+from tests.every_case import every_case
 
 ENUMERATIONS = [
     each
@@ -13,7 +12,7 @@ ENUMERATIONS = [
 ]
 
 
-@pytest.mark.parametrize("enumeration", ENUMERATIONS)
+@every_case("enumeration", ENUMERATIONS)
 def test_value_is_the_name_in_capitals(enumeration: type[StrEnum]) -> None:
     if enumeration is not enums.Logical:
         assert [each.value for each in enumeration] == list(enumeration.__members__)

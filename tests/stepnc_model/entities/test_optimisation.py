@@ -6,8 +6,6 @@ from importlib.resources import files
 from types import NoneType
 from typing import get_args, get_origin, get_type_hints
 
-import pytest
-
 from docs.hooks.express.reader import read_schemas
 from docs.hooks.express.schema import (
     AggregateType,
@@ -21,6 +19,7 @@ from stepnc_model.entities import optimisation
 from stepnc_model.entities.entity import Entity, attributes
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
+from tests.every_case import every_case
 
 (SCHEMA,) = read_schemas(
     files("stepnc_model").joinpath("schemas/optimisation.exp").read_text("utf-8")
@@ -81,13 +80,13 @@ def test_schema_and_module_have_the_same_entities() -> None:
     assert {python_name(name) for name in SCHEMA.entities} == set(ENTITIES)
 
 
-@pytest.mark.parametrize("name", sorted(SCHEMA.entities))
+@every_case("name", sorted(SCHEMA.entities))
 def test_attributes_have_the_order_of_the_schema(name: str) -> None:
     expected = tuple(each.name for each in attributes_in_order(SCHEMA, name))
     assert attributes(ENTITIES[python_name(name)]) == expected
 
 
-@pytest.mark.parametrize("name", sorted(SCHEMA.entities))
+@every_case("name", sorted(SCHEMA.entities))
 def test_attributes_have_the_types_of_the_schema(name: str) -> None:
     hints = get_type_hints(ENTITIES[python_name(name)])
     for attribute in attributes_in_order(SCHEMA, name):
@@ -97,7 +96,7 @@ def test_attributes_have_the_types_of_the_schema(name: str) -> None:
         )
 
 
-@pytest.mark.parametrize("name", sorted(SCHEMA.entities))
+@every_case("name", sorted(SCHEMA.entities))
 def test_supertypes_are_base_classes(name: str) -> None:
     definition = SCHEMA.entities[name]
     bases = [base for base in ENTITIES[python_name(name)].__bases__ if base is not Entity]
@@ -106,7 +105,7 @@ def test_supertypes_are_base_classes(name: str) -> None:
     ]
 
 
-@pytest.mark.parametrize("name", sorted(SCHEMA.entities))
+@every_case("name", sorted(SCHEMA.entities))
 def test_only_what_is_not_abstract_has_a_keyword(name: str) -> None:
     cls = ENTITIES[python_name(name)]
     keyword = "" if SCHEMA.entities[name].is_abstract else name.upper()

@@ -7,9 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stepnc_model.nc.expression import Variables, evaluate, target_of
+from tests.every_case import every_case
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "value"),
     [
         ("1+2*3", 7.0),

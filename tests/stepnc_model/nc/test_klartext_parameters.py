@@ -3,12 +3,12 @@
 from math import isnan
 
 import numpy as np
-import pytest
 
 from stepnc_model.nc.moves import MoveFlag, NcMoves
 from stepnc_model.nc.program import read_program
 from stepnc_model.nc.rewrite import rewrite
 from stepnc_model.post.dialect import Dialect
+from tests.every_case import every_case
 
 HEAD = "BEGIN PGM A MM\nTOOL CALL 1 Z S3000\nL X+0 Y+0 Z+5 R0 FMAX M3\n"
 END = "END PGM A MM\n"
@@ -55,7 +55,7 @@ SAME = {
 }
 
 
-@pytest.mark.parametrize("name", SAME)
+@every_case("name", SAME)
 def test_a_program_with_parameters_moves_as_one_with_numbers(name: str) -> None:
     one, other = map(moves, SAME[name])
     assert len(one) == len(other)
@@ -77,7 +77,7 @@ UNKNOWN = {
 }
 
 
-@pytest.mark.parametrize("name", UNKNOWN)
+@every_case("name", UNKNOWN)
 def test_what_is_not_known_stays_unknown(name: str) -> None:
     assert isnan(moves(UNKNOWN[name]).end[-1, 0])
 

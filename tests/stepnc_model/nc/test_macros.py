@@ -13,6 +13,7 @@ from stepnc_model.nc.moves import MoveFlag, MoveKind, NcMoves
 from stepnc_model.nc.program import NcProgram, read_program
 from stepnc_model.nc.rewrite import rewrite
 from stepnc_model.post.dialect import Dialect
+from tests.every_case import every_case
 from tests.stepnc_model.nc.conftest import Oracle
 
 SAMPLES = ["3D_Chips.ngc", "daisy.ngc", "factorial.ngc", "flowsnake.ngc"]
@@ -74,7 +75,7 @@ def ends(text: str, dialect: Dialect) -> list[float]:
 FANUC_HEAD = "O1\nG21 G90 G17\nT1 M6\nG0 X0. Y0. Z0.\nF100.\n"
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("code", "wanted"),
     [
         ("#100=1\nWHILE [#100 LE 3] DO1\nG1 X[#100*10]\n#100=#100+1\nEND1\n", [10, 20, 30]),
@@ -98,7 +99,7 @@ def test_fanuc_evaluates_conditions_loops_jumps_and_arguments(
     assert ends(FANUC_HEAD + code + subprograms, Dialect.FANUC) == pytest.approx(wanted)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("dialect", "code"),
     [
         (Dialect.FANUC, "G1 X#100\n"),

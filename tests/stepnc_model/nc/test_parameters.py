@@ -5,6 +5,7 @@ from math import isnan, nan, pi, sqrt
 import pytest
 
 from stepnc_model.nc.parameters import KLARTEXT, SINUMERIK, Arithmetic, Parameters
+from tests.every_case import every_case
 
 
 def value(text: str, arithmetic: Arithmetic, **given: float) -> float:
@@ -12,7 +13,7 @@ def value(text: str, arithmetic: Arithmetic, **given: float) -> float:
     return Parameters(arithmetic, dict(given)).evaluate(text)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "wanted"),
     [
         ("R1+2*3", 16.0),
@@ -34,7 +35,7 @@ def test_sinumerik(text: str, wanted: float) -> None:
     assert value(text, SINUMERIK, R1=10.0, R2=3.0) == pytest.approx(wanted)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "wanted"),
     [
         ("+Q1 + +5", 15.0),
@@ -57,7 +58,7 @@ def test_klartext(text: str, wanted: float) -> None:
     assert value(text, KLARTEXT, Q1=10.0, Q2=3.0, QL1=7.0) == pytest.approx(wanted)
 
 
-@pytest.mark.parametrize(
+@every_case(
     "text", ["R3", "R1/0", "R1+", "SQRT(-1)", "FOO(1)", "1,2", "SIN 30", "", "(" * 99, "R1=2"]
 )
 def test_what_is_not_known_is_no_number(text: str) -> None:

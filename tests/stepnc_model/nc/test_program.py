@@ -17,6 +17,7 @@ from stepnc_model.post.dialects import PLACES, read_blocks, write
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program
 from stepnc_model.toolpath.generate import generate
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
 CONTROLS = [control for control in Dialect if control is not Dialect.CANONICAL]
@@ -258,7 +259,7 @@ def test_the_motion_before_a_cycle_is_in_force_after_it() -> None:
     assert linuxcnc.moves.kind[-2:].tolist() == [MoveKind.UNKNOWN, MoveKind.LINE]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("dialect", "code", "said"),
     [
         (Dialect.FANUC, "G1 X5. F100.\nG1 X9.\n", "states no unit (G20 or G21)"),
@@ -301,7 +302,7 @@ def test_a_byte_order_mark_does_not_hide_the_control() -> None:
     assert read_program(b"\xef\xbb\xbf0 BEGIN PGM A MM\n").dialect is Dialect.HEIDENHAIN
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("control", "code", "line"),
     [
         (Dialect.FANUC, b"%\nO1\nG0 X1.\nM30\n%\n%\nO2\nG20\nG0 X2.\nM30\n%\n", 9),

@@ -13,6 +13,7 @@ from stepnc_model.nc.program import NcProgram, read_program
 from stepnc_model.nc.rewrite import rewrite
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
+from tests.every_case import every_case
 
 
 def rewritten(
@@ -34,7 +35,7 @@ def rewritten(
 ISO = b"G21 G90\nT1 M6\nS900 M3\nG0 X0 Y0 Z5\nG1 Z-1 F100\n"
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("control", "code", "advice", "wanted"),
     [
         (
@@ -139,14 +140,14 @@ def test_feeds_in_inches_are_rounded_down() -> None:
     assert slower.data == b"G20 G90\nG0 X0 Y0 Z0\nG1 X1.5 F8.28\n"
 
 
-@pytest.mark.parametrize("feed", [0.0567, 0.2677, 1.987, 19.87, 198.76, 1987.6])
+@every_case("feed", [0.0567, 0.2677, 1.987, 19.87, 198.76, 1987.6])
 def test_rounding_of_a_feed_takes_at_most_one_per_cent(feed: float) -> None:
     code = b"G20 G90\nG0 X0 Y0 Z0\nG1 X1.5 F10.5\n"
     result = rewritten(code, Dialect.LINUXCNC, (2, (1.0,), (25.4 * feed,)))
     assert 0.99 * feed < float(result.data.split(b"F")[1]) <= feed
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("code", "block", "reason"),
     [
         (b"G41 D1\nG1 X5 F9\n", 6, "cutter radius compensation"),

@@ -3,12 +3,12 @@
 from math import isnan
 
 import numpy as np
-import pytest
 
 from stepnc_model.nc.moves import MoveFlag, NcMoves
 from stepnc_model.nc.program import read_program
 from stepnc_model.nc.rewrite import rewrite
 from stepnc_model.post.dialect import Dialect
+from tests.every_case import every_case
 
 HEAD = "G710 G90 G17 G54\nT1 D1\nM6\nS3000 M3\nG0 X0 Y0 Z5\n"
 
@@ -45,7 +45,7 @@ SAME = {
 }
 
 
-@pytest.mark.parametrize("name", SAME)
+@every_case("name", SAME)
 def test_a_program_with_parameters_moves_as_one_with_numbers(name: str) -> None:
     one, other = map(moves, SAME[name])
     assert len(one) == len(other)
@@ -65,7 +65,7 @@ UNKNOWN = {
 }
 
 
-@pytest.mark.parametrize("name", UNKNOWN)
+@every_case("name", UNKNOWN)
 def test_what_is_not_known_stays_unknown(name: str) -> None:
     assert isnan(moves(UNKNOWN[name]).end[-1, 0])
 

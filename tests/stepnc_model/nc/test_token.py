@@ -2,12 +2,12 @@
 
 import time
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from stepnc_model.nc.token import TokenKind, tokens
 from stepnc_model.post.dialect import Dialect
+from tests.every_case import every_case
 
 CONTROLS = [control for control in Dialect if control is not Dialect.CANONICAL]
 PIECES = st.sampled_from([
@@ -29,8 +29,8 @@ def test_tokens_laid_end_to_end_are_the_block(drawn: bytes | str, control: Diale
     assert all(each.end > each.start for each in found)
 
 
-@pytest.mark.parametrize("control", CONTROLS)
-@pytest.mark.parametrize(
+@every_case("control", CONTROLS)
+@every_case(
     "text",
     ["X[", "X[a", "#", "((", '"', "A=(", "Q1=", "o1 a[", "IF [", "X#", "#<a", "o<", "aX[b"],
 )
@@ -41,7 +41,7 @@ def test_a_long_line_takes_no_more_than_its_length(control: Dialect, text: str) 
     assert time.process_time() - begun < 20.0
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("control", "text", "kind", "name", "value"),
     [
         (Dialect.LINUXCNC, "o<a> call [1]", TokenKind.FLOW, "", "o<a> call [1]"),

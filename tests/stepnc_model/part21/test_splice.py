@@ -1,14 +1,13 @@
 """Splices on bytes."""
 
-import pytest
-
 from stepnc_model.part21.writer import Element, line_span, line_start, list_splices, spliced
+from tests.every_case import every_case
 
 LIST = b"(a , bb /* , */, c )"
 SPANS = [(1, 2), (5, 7), (17, 18)]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("elements", "expected"),
     [
         (SPANS, LIST),
@@ -31,7 +30,7 @@ def test_empty_list_gets_its_first_elements() -> None:
     assert spliced(b"()", splices, start=0, end=2) == b"(a, b)"
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("data", "span"),
     [
         (b"\n  X \nb", (1, 6)),

@@ -3,9 +3,10 @@
 import pytest
 
 from stepnc_model.part21.strings import decode, encode
+from tests.every_case import every_case
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("raw", "text"),
     [
         ("", ""),
@@ -30,7 +31,7 @@ def test_directive_is_decoded(raw: str, text: str) -> None:
     assert decode(raw) == text
 
 
-@pytest.mark.parametrize(
+@every_case(
     "raw",
     [
         r"C:\temp",

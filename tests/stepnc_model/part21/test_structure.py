@@ -4,6 +4,7 @@ import pytest
 
 from stepnc_model.errors import Part21Error
 from stepnc_model.part21.structure import read_structure
+from tests.every_case import every_case
 
 OPEN = b"ISO-10303-21;HEADER;"
 DATA = b"ENDSEC;DATA;#1=A();ENDSEC;"
@@ -24,7 +25,7 @@ def test_statements_are_found_with_their_brackets() -> None:
     assert structure.slips == ()
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("data", "message"),
     [
         (OPEN.replace(b";", b" ", 1) + DATA + CLOSE, "';' is missing after ISO-10303-21"),

@@ -4,6 +4,7 @@ import pytest
 
 from stepnc_model.part21.tidy import is_tidy, tidy_values
 from stepnc_model.part21.values import Real, Ref, Typed
+from tests.every_case import every_case
 
 
 @pytest.mark.parametrize(
@@ -18,7 +19,7 @@ def test_text_by_the_letter_is_tidy(text: str) -> None:
     assert is_tidy(text)
 
 
-@pytest.mark.parametrize(
+@every_case(
     "text",
     [
         "#1=A()",

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from stepnc_model.part21.places import SyntaxSlip
 from stepnc_model.part21.tokens import TOKEN, MalformedError, scalar
 from stepnc_model.part21.values import Real, Value
+from tests.every_case import every_case
 
 
 def value_of(text: str, *, slips: list[SyntaxSlip]) -> Value:
@@ -29,7 +30,7 @@ def test_real_in_another_notation_keeps_its_characters(text: str) -> None:
     assert len(slips) == 1
 
 
-@pytest.mark.parametrize("text", ["NaN", "inf", "!X", "@", "'", "#" + "1" * 20])
+@every_case("text", ["NaN", "inf", "!X", "@", "'", "#" + "1" * 20])
 def test_what_is_no_value_is_malformed(text: str) -> None:
     with pytest.raises(MalformedError):
         value_of(text, slips=[])

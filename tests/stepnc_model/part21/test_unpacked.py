@@ -12,6 +12,7 @@ from stepnc_model.errors import Part21Error
 from stepnc_model.part21 import unpacked as module
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.unpacked import unpacked
+from tests.every_case import every_case
 
 PLAIN = (
     b"ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n#1=DIRECTION('',(0.,0.,1.));\nENDSEC;\n"
@@ -29,7 +30,7 @@ def zipped(members: dict[str, bytes]) -> bytes:
 
 
 class TestPacked:
-    @pytest.mark.parametrize(
+    @every_case(
         "data",
         [
             PLAIN,
@@ -39,7 +40,6 @@ class TestPacked:
             zipped({"README.txt": b"a program", "deep/part.stp": PLAIN}),
             zipped({"a.stp": PLAIN, "ISO-10303.p21": PLAIN}),
         ],
-        ids=["plain", "gzip", "two members", "zip", "zip with more", "root file"],
     )
     def test_the_bytes_of_the_program_come_out(self, data: bytes) -> None:
         assert unpacked(data) == PLAIN
@@ -47,7 +47,7 @@ class TestPacked:
 
 
 class TestRefused:
-    @pytest.mark.parametrize(
+    @every_case(
         ("data", "message"),
         [
             (zipped({"a.stp": PLAIN, "b.stp": PLAIN}), "holds 2 Part 21 files instead of one"),

@@ -8,6 +8,7 @@ from stepnc_model.errors import Part21Error
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import DERIVED, Binary, Enumeration, Real, Ref, Typed, Value
 from stepnc_model.part21.writer import Edits, format_value
+from tests.every_case import every_case
 
 SHARED = Path(__file__).parents[4] / "shared"
 CORPUS = sorted(
@@ -33,7 +34,7 @@ def edits_of(text: str = PLAIN) -> Edits:
     return Edits(Part21File.from_bytes(text.encode()))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("value", "text"),
     [
         (None, b"$"),
@@ -60,7 +61,7 @@ def test_value_is_written_in_its_form(value: Value, text: bytes) -> None:
     assert format_value(value) == text
 
 
-@pytest.mark.parametrize(
+@every_case(
     "value",
     [Real(float("nan")), Real(float("inf")), Enumeration("a b"), Binary("9"), Typed("a b", 1)],
 )
@@ -211,7 +212,7 @@ def test_added_instances_survive_a_missing_end() -> None:
     assert edits.apply().endswith(b"#6=SIX(*);\n#8=A();\n")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("before", "name", "after"),
     [
         ("(('A','B'))", "C", "(('A','B', 'C'))"),

@@ -23,6 +23,7 @@ from stepnc_model.post.blocks import (
 from stepnc_model.post.canonical import commands
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.dialects import read, read_blocks, write
+from tests.every_case import every_case
 from tests.stepnc_model.post.trace import difference
 
 DIALECTS = [control for control in Dialect if control is not Dialect.CANONICAL]
@@ -113,7 +114,7 @@ def test_writing_starts_before_the_program_is_complete(control: Dialect) -> None
     assert len([next(lines) for _ in range(1000)]) == 1000
 
 
-@pytest.mark.parametrize("control", DIALECTS)
+@every_case("control", DIALECTS)
 def test_a_feed_below_the_last_digit_is_refused(control: Dialect) -> None:
     blocks: list[Block] = [
         ProgramStart(name="F"),
@@ -123,12 +124,12 @@ def test_a_feed_below_the_last_digit_is_refused(control: Dialect) -> None:
         lines_of(blocks, control)
 
 
-@pytest.mark.parametrize("control", Dialect)
+@every_case("control", Dialect)
 def test_files_have_an_ending(control: Dialect) -> None:
     assert control.suffix.startswith(".")
 
 
-@pytest.mark.parametrize("control", Dialect)
+@every_case("control", Dialect)
 def test_what_is_no_code_is_refused_with_its_line(control: Dialect) -> None:
     good = lines_of([ProgramStart(name="X"), ProgramEnd()], control)
     with pytest.raises(PostError, match=f"line {len(good) + 1}: ") as caught:

@@ -4,6 +4,7 @@ import pytest
 
 from stepnc_model.errors import PostError
 from stepnc_model.post.words import LineWords, pairs, whole
+from tests.every_case import every_case
 
 
 def test_words_need_no_spaces() -> None:
@@ -15,7 +16,7 @@ def test_words_need_no_spaces() -> None:
     ]
 
 
-@pytest.mark.parametrize("text", ["X", "X1..2", "1X", "x1", "X#1", "X[1+2]", "GOTO 10"])
+@every_case("text", ["X", "X1..2", "1X", "x1", "X#1", "X[1+2]", "GOTO 10"])
 def test_what_is_no_word_is_refused(text: str) -> None:
     with pytest.raises(PostError, match="not a word of NC code"):
         list(pairs(text))

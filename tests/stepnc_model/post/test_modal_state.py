@@ -21,6 +21,7 @@ from stepnc_model.post.blocks import (
 from stepnc_model.post.modal_state import ModalState, conditions, constant_speed, coolant_of
 from stepnc_model.program import Program
 from stepnc_model.toolpath.path import Feed
+from tests.every_case import every_case
 
 HEADER = (
     "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('MACHINING_SCHEMA'));\nENDSEC;\nDATA;\n"
@@ -175,7 +176,7 @@ class TestConstantSpeed:
             constant_speed(SurfaceSpeed(speed=1500.0), 0.0)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("instance", "kinds"),
     [
         ("MILLING_MACHINE_FUNCTIONS(.T.,$,$,.F.,$,(),.T.,$,$,())", {CoolantKind.FLOOD}),

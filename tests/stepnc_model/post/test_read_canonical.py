@@ -8,6 +8,7 @@ import pytest
 from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import Block
 from stepnc_model.post.canonical import Canonical, commands, read, write
+from tests.every_case import every_case
 from tests.stepnc_model.post.trace import difference, trace
 
 NIST = Path(__file__).parents[4] / "shared" / "corpus" / "iso14649" / "ex1.canonical.txt"
@@ -30,7 +31,7 @@ def test_what_we_write_is_read_back(name: str, request: pytest.FixtureRequest) -
     assert difference(commands(blocks), read(write(blocks)), length=1e-4, speed=1e-4) == ""
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("line", "command"),
     [
         (
@@ -51,7 +52,7 @@ def test_layouts_of_nist_and_linuxcnc_mean_the_same(line: str, command: Canonica
     assert list(read([line, ""])) == [command]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("line", "message"),
     [
         ("FLY_TO(1, 2, 3)", "is not a canonical command"),

@@ -25,6 +25,7 @@ from stepnc_model.post.blocks import (
 )
 from stepnc_model.post.read_heidenhain import HeidenhainReader
 from stepnc_model.toolpath.path import ArcPlane, CycleKind
+from tests.every_case import every_case
 
 
 def read(*texts: str) -> list[Block]:
@@ -109,7 +110,7 @@ def test_a_cycle_goes_on_over_lines() -> None:
     ]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "message"),
     [
         ("FN 0: Q1 = 5", "unknown Klartext block"),
@@ -133,7 +134,7 @@ def test_nothing_is_skipped_in_silence(text: str, message: str) -> None:
     assert caught.value.line == 2
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("arc", "message"),
     [
         ("C X+1 Y+0 DR+ F60", "radii to its ends are 10.0000 and 9.0000"),

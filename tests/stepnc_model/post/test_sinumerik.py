@@ -31,6 +31,7 @@ from stepnc_model.post.blocks import (
 )
 from stepnc_model.post.sinumerik import Sinumerik, SinumerikReader
 from stepnc_model.toolpath.path import CycleKind
+from tests.every_case import every_case
 
 RATE = Rate(value=5.0)
 
@@ -172,7 +173,7 @@ def test_a_spindle_at_an_angle() -> None:
     assert read("SPOS=0") == [SpindleOrient()]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("line", "message"),
     [
         ("G0 X1 TURN=2", "TURN=: not used by this block"),
@@ -191,7 +192,7 @@ def test_nothing_is_skipped_in_silence(line: str, message: str) -> None:
     assert caught.value.line == 2
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("call", "message"),
     [
         ("CYCLE81(5,5,0,-10,3)", "argument 5, 3, is not supported"),

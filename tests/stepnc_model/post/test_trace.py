@@ -1,8 +1,7 @@
 """What canonical commands come to."""
 
-import pytest
-
 from stepnc_model.post.canonical import Canonical, read
+from tests.every_case import every_case
 from tests.stepnc_model.post.trace import difference, trace
 
 
@@ -19,7 +18,7 @@ def test_the_order_of_settings_does_not_matter() -> None:
     assert difference(one, other) == ""
 
 
-@pytest.mark.parametrize(
+@every_case(
     "change",
     [
         "SET_FEED_RATE(5.1)",

@@ -21,6 +21,7 @@ from stepnc_model.toolpath.curve import (
 )
 from stepnc_model.toolpath.frame import Frame
 from stepnc_model.toolpath.path import ArcPlane, MoveType, Point, length
+from tests.every_case import every_case
 
 HEADER = (
     "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('MACHINING_SCHEMA'));\nENDSEC;\nDATA;\n"
@@ -106,7 +107,7 @@ class TestLines:
 
 
 class TestArcs:
-    @pytest.mark.parametrize(
+    @every_case(
         ("first", "second", "sense", "turn"),
         [
             ("#12", "#13", ".T.", 0.5 * pi),
@@ -230,7 +231,7 @@ class TestMove:
         (move,) = move_of(segment, MoveType.RAPID, None)
         assert (move.end, move.arc, move.feed) == ((1.0, 2.0, 3.0), None, None)
 
-    @pytest.mark.parametrize(("plane", "sign"), [(p, s) for p in ArcPlane for s in (1.0, -1.0)])
+    @every_case(("plane", "sign"), [(p, s) for p in ArcPlane for s in (1.0, -1.0)])
     def test_an_arc_in_a_principal_plane_stays_one(self, plane: ArcPlane, sign: float) -> None:
         """Seen from the other tip of the normal the same arc turns the other way."""
         first, second, third = plane.axes

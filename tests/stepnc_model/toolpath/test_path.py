@@ -22,6 +22,7 @@ from stepnc_model.toolpath.path import (
     points_along,
     radius,
 )
+from tests.every_case import every_case
 
 ORIGIN = (0.0, 0.0, 0.0)
 ANGLES = st.floats(-20.0, 20.0).filter(lambda angle: abs(angle) > 1e-3)
@@ -137,7 +138,7 @@ class TestToolPath:
     def test_without_moves_it_ends_where_it_starts(self) -> None:
         assert path(Dwell(seconds=1.0), start=(1.0, 2.0, 3.0)).end == (1.0, 2.0, 3.0)
 
-    @pytest.mark.parametrize("wrong", [nan, inf, -inf])
+    @every_case("wrong", [nan, inf, -inf])
     def test_a_position_that_is_no_number_is_refused(self, wrong: float) -> None:
         with pytest.raises(ValueError, match="'WS': position"):
             path(line(0.0, wrong, 0.0))

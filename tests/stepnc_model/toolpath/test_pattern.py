@@ -8,6 +8,7 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from stepnc_model.toolpath.frame import MAX_COPIES, PlacedFeature, placements
 from stepnc_model.toolpath.path import Point
+from tests.every_case import every_case
 
 HEADER = (
     "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('MACHINING_SCHEMA'));\nENDSEC;\nDATA;\n"
@@ -129,12 +130,12 @@ class TestCircular:
         with pytest.raises(PathError, match=r"radius 3\.5 mm, but .* 10 mm from the centre"):
             origins(circle(diameter="#28"))
 
-    @pytest.mark.parametrize("index", [0, 5])
+    @every_case("index", [0, 5])
     def test_a_place_that_is_not_there_is_refused(self, index: int) -> None:
         with pytest.raises(PathError, match=f"index {index}: .* numbered 1 to 4"):
             origins(circle(4, moved="#60"), f"#60=CIRCULAR_OFFSET(1.,{index});")
 
-    @pytest.mark.parametrize("count", [0, -1, MAX_COPIES + 1])
+    @every_case("count", [0, -1, MAX_COPIES + 1])
     def test_no_copies_and_too_many_are_refused(self, count: int) -> None:
         with pytest.raises(PathError, match=r"number_of_feature: .*copies"):
             origins(circle(count))
@@ -171,7 +172,7 @@ class TestRectangular:
         with pytest.raises(PathError, match="several rows needs a row spacing"):
             origins(rectangle(row_spacing="$"))
 
-    @pytest.mark.parametrize("place", ["0,1", "3,1", "1,4"])
+    @every_case("place", ["0,1", "3,1", "1,4"])
     def test_a_place_that_is_not_there_is_refused(self, place: str) -> None:
         with pytest.raises(PathError, match="the places of this pattern are numbered 1"):
             origins(rectangle(missing="#60"), f"#60=RECTANGULAR_OMIT({place});")

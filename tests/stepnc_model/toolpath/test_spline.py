@@ -9,6 +9,7 @@ from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from stepnc_model.toolpath.curve import Spline, spline_of
+from tests.every_case import every_case
 
 HEADER = (
     "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('MACHINING_SCHEMA'));\nENDSEC;\nDATA;\n"
@@ -55,7 +56,7 @@ def test_knots_of_the_file_count_by_their_multiplicity() -> None:
     assert spline.at(3.5) == (1.5, 1.0, 0.0)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("curve", "message"),
     [
         (

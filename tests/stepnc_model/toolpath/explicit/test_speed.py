@@ -14,6 +14,7 @@ from stepnc_model.program import Program
 from stepnc_model.toolpath.curve import Spline
 from stepnc_model.toolpath.explicit.trajectory import PIECES, MoveSpeeds, pace_of, paced
 from stepnc_model.toolpath.path import Arc, Feed, Move, MoveType, length
+from tests.every_case import every_case
 
 HEADER = (
     "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('MACHINING_SCHEMA'));\nENDSEC;\nDATA;\n"
@@ -52,7 +53,7 @@ def contact(x: float, y: float = 0.0) -> Move:
 
 
 class TestPace:
-    @pytest.mark.parametrize(
+    @every_case(
         ("type", "expected"),
         [
             ("CONTACT", MoveType.CONTACT),
@@ -91,7 +92,7 @@ class TestPace:
         assert factors is not None
         assert factors.at(1.0)[0] == 0.5
 
-    @pytest.mark.parametrize(
+    @every_case(
         ("speed", "message"),
         [
             ("0.", "feed factor 0"),

@@ -13,6 +13,7 @@ from stepnc_model.toolpath.curve import Segment
 from stepnc_model.toolpath.explicit.trajectory import trajectory_segments
 from stepnc_model.toolpath.frame import Frame
 from stepnc_model.toolpath.path import Point
+from tests.every_case import every_case
 
 HEADER = (
     "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('MACHINING_SCHEMA'));\nENDSEC;\nDATA;\n"
@@ -79,7 +80,7 @@ class TestLocation:
     def test_an_upright_tool_axis_is_followed(self) -> None:
         assert len(traced(location(axis="#36"))) == 1
 
-    @pytest.mark.parametrize("axis", ["#38", "#20", "#34"])
+    @every_case("axis", ["#38", "#20", "#34"])
     def test_a_tool_axis_that_leans_is_refused(self, axis: str) -> None:
         with pytest.raises(PathError, match="the tool axis"):
             traced(location(axis=axis))
@@ -107,7 +108,7 @@ class TestContact:
         (segment,) = traced(contact(), tool=FLAT, normal=(0.0, -1.0, 0.0), frame=SHIFTED)
         assert segment.start == pytest.approx((105.0, 0.0, 0.0))
 
-    @pytest.mark.parametrize(
+    @every_case(
         ("tool", "normal", "message"),
         [
             (FLAT, (0.0, 0.0, 1.0), "a flat tool on a level surface"),
@@ -141,7 +142,7 @@ class TestAxes:
         (segment,) = traced(axes("'X','Y','Z'", "#30,#30,#30"), frame=SHIFTED)
         assert segment.start == (1.0, 1.0, 1.0)
 
-    @pytest.mark.parametrize(
+    @every_case(
         ("names", "commands", "message"),
         [
             ("'X'", "#30", "positions of the other axes"),

@@ -14,6 +14,7 @@ from stepnc_model.program import Program
 from stepnc_model.toolpath.hole.back import back_holes
 from stepnc_model.toolpath.hole.feature import Hole
 from stepnc_model.toolpath.task import job_of
+from tests.every_case import every_case
 
 BRACKET = Path(__file__).parents[4] / "examples" / "parts" / "bracket.stpnc"
 
@@ -112,7 +113,7 @@ def test_a_hole_by_itself_is_entered_above_the_stock() -> None:
     assert hole.depth == pytest.approx(40.0)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("changes", "message"),
     [
         (

@@ -26,6 +26,7 @@ from stepnc_model.toolpath.path import (
     ToolPath,
 )
 from stepnc_model.toolpath.task import job_of
+from tests.every_case import every_case
 
 TEXT = (
     (Path(__file__).parents[4] / "examples" / "parts" / "bracket.stpnc")
@@ -171,7 +172,7 @@ class TestPeck:
     def test_a_first_step_to_the_bottom_is_one_stroke(self) -> None:
         assert shown(path("MULTISTEP_DRILLING", rest=",2.,30.,5.,$")) == ["feed -30", "rapid 5"]
 
-    @pytest.mark.parametrize(
+    @every_case(
         ("rest", "message"),
         [
             (",0.,0.,10.,$", "first_depth: 0.0 mm"),

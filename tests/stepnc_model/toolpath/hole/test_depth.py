@@ -22,6 +22,7 @@ from stepnc_model.toolpath.hole.feature import (
     tip_length,
 )
 from stepnc_model.toolpath.task import ToolPathTask, job_of
+from tests.every_case import every_case
 
 BRACKET = Path(__file__).parents[4] / "examples" / "parts" / "bracket.stpnc"
 POINT = 4.9 * tan(radians(20.0))
@@ -62,7 +63,7 @@ def sizes(depth: Depth) -> tuple[float, float]:
 
 
 class TestTip:
-    @pytest.mark.parametrize(
+    @every_case(
         ("dimension", "expected"),
         [
             ("9.8,20.,$,60.,$,$,$", POINT),
@@ -83,7 +84,7 @@ class TestTip:
         change = ("#451=TWIST_DRILL(", "#451=BALL_ENDMILL(")
         assert tip_length(job_for("DRILL HOLE 1", change)) == 4.9
 
-    @pytest.mark.parametrize("angle", ["90.", "118.", "-20.", "1.6"])
+    @every_case("angle", ["90.", "118.", "-20.", "1.6"])
     def test_an_angle_that_makes_no_point_is_refused(self, angle: str) -> None:
         change = (DRILL, DRILL.replace("20.", angle))
         with pytest.raises(PathError, match=r"#452 .*tool_top_angle.* 0 to 90 degrees"):
@@ -211,9 +212,7 @@ class TestSink:
 
 
 class TestFit:
-    @pytest.mark.parametrize(
-        ("diameter", "fits"), [("10.", True), ("10.01", True), ("10.02", False)]
-    )
+    @every_case(("diameter", "fits"), [("10.", True), ("10.01", True), ("10.02", False)])
     def test_a_drill_wider_than_the_hole_is_refused(self, diameter: str, fits: bool) -> None:
         change = (DRILL, DRILL.replace("9.8", diameter))
         if fits:

@@ -17,6 +17,7 @@ from stepnc_model.toolpath.hole.cycle import FeedStage, retract_feed, stages_of
 from stepnc_model.toolpath.hole.feature import depth_of, holes_of
 from stepnc_model.toolpath.path import Feed
 from stepnc_model.toolpath.task import ToolPathTask, job_of
+from tests.every_case import every_case
 
 BRACKET = Path(__file__).parents[4] / "examples" / "parts" / "bracket.stpnc"
 POINT = 4.9 * tan(radians(20.0))
@@ -90,7 +91,7 @@ def test_reductions_without_a_depth_are_none() -> None:
     assert table(stages(strategy("$,0.5,$,$,0.5,$"))) == [(pytest.approx(43.0), 1.0, 1.0)]
 
 
-@pytest.mark.parametrize("ratio", ["0.", "-0.5", "101."])
+@every_case("ratio", ["0.", "-0.5", "101."])
 def test_what_is_no_ratio_is_refused(ratio: str) -> None:
     with pytest.raises(PathError, match=r"reduced_feed_at_start: .*a ratio from 0 to 1"):
         stages(strategy(f"$,{ratio},2.,$,$,$"))

@@ -11,6 +11,8 @@ from stepnc_model.program import Program
 from stepnc_model.toolpath.milling.operation import allowance_of, levels, milling_path
 from stepnc_model.toolpath.path import Move, MoveType, Point, ToolPath, length, points_along
 from stepnc_model.toolpath.task import ToolPathTask, job_of
+from tests.every_case import every_case
+from tests.stepnc_model.places import place_of
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"
 END = "ENDSEC;\nEND-ISO-10303-21;"
@@ -330,30 +332,41 @@ def test_rapids_over_shapes_at_different_heights_pass_over_the_higher_one() -> N
             assert min(start[2], move.end[2]) >= 20.0 + 10.0
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
+@every_case(
+    ("changes", "place", "word"),
     [
-        ([(OLD, "0.,6.,0.3,0.2);\n#207")], "#206 .*axial_cutting_depth: 0 mm"),
-        ([(OLD, "-4.,6.,0.3,0.2);\n#207")], "axial_cutting_depth: -4 mm"),
-        ([(OLD, "0.001,6.,0.3,0.2);\n#207")], "0.001 mm needs more than 1000 levels"),
-        ([(OLD, "4.,6.,-0.3,0.2);\n#207")], "allowance_side: -0.3 mm"),
-        ([(OLD, "4.,6.,0.3,-0.2);\n#207")], "allowance_bottom: -0.2 mm"),
-        ([(OLD, "4.,6.,0.3,15.);\n#207")], "15 mm on 12 mm of stock: nothing"),
-        ([(OLD, "4.,6.,20.,0.2);\n#207")], "#140 .*of 12 mm does not fit in with 20 mm left"),
+        ([(OLD, "0.,6.,0.3,0.2);\n#207")], "#206.axial_cutting_depth", "0 mm"),
+        ([(OLD, "-4.,6.,0.3,0.2);\n#207")], "#206.axial_cutting_depth", "-4 mm"),
+        ([(OLD, "0.001,6.,0.3,0.2);\n#207")], "#206.axial_cutting_depth", "1000 levels"),
+        ([(OLD, "4.,6.,-0.3,0.2);\n#207")], "#206.allowance_side", "-0.3 mm"),
+        ([(OLD, "4.,6.,0.3,-0.2);\n#207")], "#206.allowance_bottom", "-0.2 mm"),
+        ([(OLD, "4.,6.,0.3,15.);\n#207")], "#206.allowance_bottom", "nothing is removed"),
+        ([(OLD, "4.,6.,20.,0.2);\n#207")], "#140", "20 mm left"),
         ([("MILLING_TOOL_DIMENSION(12.,", "MILLING_TOOL_DIMENSION(61.,")],
-         "'END MILL 12MM' of 61 mm does not fit"),
+         "#140", "61 mm"),
         ([("(0.,0.,50.)", "(0.,0.,0.)"), ("$,$,#33,(#36", "$,$,$,(#36")],
-         "its_secplane: the security plane at z = 0 mm .*, whose top is at z = 0 mm"),
-        ([("'ROUGH POCKET',10.", "'ROUGH POCKET',-1.")], "retract_plane: -1 mm"),
+         "#16.its_secplane", "z = 0 mm"),
+        ([("'ROUGH POCKET',10.", "'ROUGH POCKET',-1.")], "#206.retract_plane", "-1 mm"),
         ([("#352=CONTOUR_PARALLEL(0.5,.T.,.CCW.,.CLIMB.)", "#352=EXPLICIT_STRATEGY($,$)")],
-         "explicit"),
+         "#352", "explicit"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_milled_is_said_with_its_value(
-    changes: list[tuple[str, str]], message: str
+    changes: list[tuple[str, str]], place: str, word: str
 ) -> None:
-    with pytest.raises(PathError, match=message):
+    with pytest.raises(PathError) as caught:
         path_of("ROUGH POCKET", *changes)
+    assert place_of(caught.value) == place
+    assert word in caught.value.rule
+
+
+def test_a_refusal_reads_line_entity_attribute_value_and_remedy() -> None:
+    with pytest.raises(PathError) as caught:
+        path_of("ROUGH POCKET", (OLD, "-4.,6.,0.3,0.2);\n#207"))
+    assert str(caught.value) == (
+        "line 168: #206 BOTTOM_AND_SIDE_ROUGH_MILLING.axial_cutting_depth: -4 mm: the depth of "
+        'cut must be positive; set it with --set "#206.axial_cutting_depth=VALUE"'
+    )
 
 
 def test_floor_that_the_tool_cannot_reach_is_said() -> None:

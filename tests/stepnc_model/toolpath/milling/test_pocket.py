@@ -12,6 +12,7 @@ from stepnc_model.toolpath.milling.area import Area
 from stepnc_model.toolpath.milling.contour import area, chain_length
 from stepnc_model.toolpath.milling.shapes import shapes
 from stepnc_model.toolpath.task import ToolPathTask, job_of
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"
 END = "ENDSEC;\nEND-ISO-10303-21;"
@@ -134,7 +135,7 @@ def test_island_below_the_floor_is_none() -> None:
     assert len(pocket(change, more=more).walls) == 1
 
 
-@pytest.mark.parametrize("slope", ["-5.", "89.5", "200."])
+@every_case("slope", ["-5.", "89.5", "200."])
 def test_wall_that_no_tool_makes_from_above_is_refused(slope: str) -> None:
     with pytest.raises(PathError, match=r"a wall at .*below 89°"):
         pocket(("#143,(#190),$,#146", f"#143,(#190),{slope},#146"))

@@ -12,6 +12,7 @@ from stepnc_model.toolpath.milling.area import Area, Flank
 from stepnc_model.toolpath.milling.contour import area
 from stepnc_model.toolpath.milling.shapes import shapes
 from stepnc_model.toolpath.task import ToolPathTask, job_of
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"
 END = "ENDSEC;\nEND-ISO-10303-21;"
@@ -160,7 +161,7 @@ def test_compound_feature_within_itself_is_refused() -> None:
         shapes_of("ROUGH POCKET", on("#900"), more=more)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("changes", "message"),
     [
         ([("#145=CARTESIAN_POINT('',(0.,0.,-12.))", "#145=CARTESIAN_POINT('',(0.,0.,0.))")],

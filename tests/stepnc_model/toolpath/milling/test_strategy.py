@@ -9,6 +9,7 @@ from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.toolpath.milling.strategy import Covering, ResolvedStrategy, cutter_of, way_of
 from stepnc_model.toolpath.task import ToolPathTask, job_of
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"
 END = "ENDSEC;\nEND-ISO-10303-21;"
@@ -45,7 +46,7 @@ def way(strategy: str, *changes: tuple[str, str], radial: str = "$") -> Resolved
     return way_of(job, cutter_of(job))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("strategy", "covering"),
     [
         ("UNIDIRECTIONAL_MILLING($,.T.,#502,$)", Covering.ONE_WAY),
@@ -61,7 +62,7 @@ def test_each_strategy_has_its_covering(strategy: str, covering: Covering) -> No
     assert way(strategy).covering is covering
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("overlap", "radial", "step"),
     [
         ("0.5", "$", 6.0),
@@ -87,7 +88,7 @@ def test_step_that_nothing_gives_is_assumed_and_said() -> None:
     assert "95%" in found.findings[0].message
 
 
-@pytest.mark.parametrize("overlap", ["1.", "100.", "-0.1", "250."])
+@every_case("overlap", ["1.", "100.", "-0.1", "250."])
 def test_overlap_that_leaves_no_progress_is_refused_at_its_strategy(overlap: str) -> None:
     with pytest.raises(PathError, match=r"#352 CONTOUR_PARALLEL\.overlap: overlap .*below 1"):
         way(f"CONTOUR_PARALLEL({overlap},.T.,.CCW.,.CLIMB.)")

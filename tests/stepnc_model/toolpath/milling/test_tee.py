@@ -9,6 +9,7 @@ from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.toolpath.generate import workingstep_path
 from stepnc_model.toolpath.path import MoveType, ToolPath
+from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"
 END = "ENDSEC;\nEND-ISO-10303-21;"
@@ -82,7 +83,7 @@ def test_a_thinner_mill_makes_the_bar_level_by_level_from_its_top() -> None:
     assert sorted(set(heights), reverse=True) == [-5.0, -6.0]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("arguments", "message"),
     [
         ({"diameter": 21.0}, "21 mm for an undercut of 20 mm"),

@@ -6,6 +6,7 @@ import pytest
 
 from stepnc_model.errors import SchemaError
 from stepnc_model.toolpath.path import Move, MoveType, ToolPath
+from tests.every_case import every_case
 
 
 def cuts(path: ToolPath) -> list[Move]:
@@ -49,7 +50,7 @@ def test_without_nose_radius_the_tool_is_sharp_and_it_is_said(
     assert all(move.arc is None for move in path.moves)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("edit", "message"),
     [
         (("#352,0.5)", "#352,50.)"), "the allowance of 50 mm exceeds"),
