@@ -20,7 +20,7 @@ from pathlib import Path
 import pytest
 
 from docs.hooks.command_page import commands as commands_below
-from service.cli.main import parser
+from service.cli.commands import parser
 from tests.docs.pages import PAGES, ROOT, blocks, name_of
 
 LANGUAGES = {

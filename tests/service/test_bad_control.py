@@ -11,8 +11,9 @@ import pytest
 from pyarrow import parquet
 
 from kbe.store import open_store
+from service.cli.interrupts import INTERRUPTED
 from service.cli.main import main
-from service.cli.options import BAD_INPUT, INTERRUPTED
+from service.cli.options import BAD_INPUT
 from service.control.run import control
 from stepnc_model.errors import WriteError
 from tests.asking import AskedControl

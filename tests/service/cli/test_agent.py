@@ -9,8 +9,9 @@ from pathlib import Path
 import httpx
 import pytest
 
+from service.cli.interrupts import INTERRUPTED
 from service.cli.main import main
-from service.cli.options import BAD_INPUT, INTERRUPTED, OK
+from service.cli.options import BAD_INPUT, OK
 
 PART = Path(__file__).parents[3] / "examples" / "parts" / "paper000.stpnc"
 STEPNC = [sys.executable, "-c", "from service.cli.main import main; main()", "agent"]
