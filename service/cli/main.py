@@ -2,13 +2,12 @@
 
 Exit codes: 0 ok, 2 usage, 3 bad input, 4 infeasible, 5 limit exceeded, 6 nothing to advise, 130
 interrupted. An interrupt ends a command without a traceback whenever it comes: so this module
-imports nothing else of the project until the signals are taken (:mod:`service.cli.interrupts`).
+imports nothing of the project until the signals are taken (:mod:`service.cli.interrupts`).
 """
 
+import signal
 import sys
 from collections.abc import Sequence
-
-from service.cli.interrupts import INTERRUPTED, Interrupts
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -28,8 +27,14 @@ def optimise_main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _run(name: str, arguments: Sequence[str] | None) -> None:
+    is_process = arguments is None
+    if is_process and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        # There is nothing to undo yet: the system ends the process.
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    from service.cli.interrupts import INTERRUPTED, Interrupts
+
     interrupts = Interrupts()
-    if arguments is None:
+    if is_process:
         interrupts.install()
     code = INTERRUPTED
     try:
@@ -52,11 +57,15 @@ def _run(name: str, arguments: Sequence[str] | None) -> None:
 
 
 def _tell_interrupted() -> None:
-    from service.terminal import drop_out, tell
+    from contextlib import suppress
 
+    from service.terminal import drop_out, prepare, tell
+
+    prepare()
+    # The same Ctrl-C may have ended the readers.
     try:
         sys.stdout.flush()
     except OSError:
-        # The same Ctrl-C has ended the reader.
         drop_out()
-    tell("interrupted")
+    with suppress(OSError):
+        tell("interrupted")

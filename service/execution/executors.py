@@ -20,11 +20,11 @@ from itertools import islice
 from multiprocessing import active_children, get_context
 from multiprocessing.connection import wait as ended
 from multiprocessing.process import BaseProcess
-from os import cpu_count
-from signal import SIGTERM, signal
+from os import _exit, cpu_count
+from signal import SIGTERM, getsignal, signal
 from time import monotonic
 from types import FrameType
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 from service.lifeline import end_with_parent, starting
 from stepnc_model.errors import StepNcError
@@ -86,7 +86,23 @@ def _begin() -> None:
 
 
 def _break_off(_number: int, _frame: FrameType | None) -> None:
+    signal(SIGTERM, _too_late)
     raise SystemExit(BROKEN_OFF)
+
+
+def _too_late(_number: int, _frame: FrameType | None) -> None:
+    """Ignore a request to end: the process ends."""
+
+
+def _done(
+    function: Callable[..., Result], args: tuple[Any, ...], kwargs: dict[str, Any]
+) -> Result:
+    """Do a task; when it was broken off, end the process, which would begin the next."""
+    try:
+        return function(*args, **kwargs)
+    finally:
+        if getsignal(SIGTERM) is _too_late:
+            _exit(BROKEN_OFF)
 
 
 class _Processes(ProcessPoolExecutor):
@@ -97,7 +113,7 @@ class _Processes(ProcessPoolExecutor):
     ) -> Future[Result]:
         """Submit a task; starts a process when all are at work."""
         with starting():
-            return super().submit(fn, *args, **kwargs)
+            return super().submit(_done, fn, args, kwargs)
 
 
 class Losses:

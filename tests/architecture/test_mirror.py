@@ -33,6 +33,7 @@ TOGETHER = {
     "service/along_path/trace.py": "drawn in tests/service/along_path/test_output.py",
     "service/along_path/figures.py": "drawn in tests/service/along_path/test_output.py",
     "service/along_path/code_output.py": "printed in tests/service/along_path/test_of_code.py",
+    "service/cli/commands.py": "run in tests/service/cli/test_main.py",
     "service/cli/code.py": "run in tests/service/along_path/test_of_code.py",
     "simulator/spec.py": "dataclasses only; loaded and checked in tests/simulator",
     "simulator/work_holding.py": "dataclasses only; read in test_holding_file.py",

@@ -8,6 +8,7 @@ from pathlib import Path
 from subprocess import DEVNULL, PIPE, Popen
 
 from service.lifeline import end_with_parent
+from tests.service.waiting import ended
 
 STARTER = """
 import multiprocessing, sys, time
@@ -37,7 +38,7 @@ def test_the_child_of_a_killed_process_ends(tmp_path: Path) -> None:
     assert starter.stdout is not None
     child = os.pidfd_open(int(starter.stdout.readline()))
     starter.send_signal(signal.SIGKILL)
-    starter.wait(10.0)
+    ended(starter)
     starter.stdout.close()
     # A pidfd can be read from when its process has ended.
     with os.fdopen(child, "rb", buffering=0):
