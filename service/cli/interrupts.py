@@ -13,7 +13,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable
-from types import FrameType
+from types import CodeType, FrameType
 from typing import Any
 
 INTERRUPTED = 130
@@ -25,7 +25,7 @@ INSISTING = 3
 """Number of the signal from which on each counts."""
 
 SOON = 0.01
-"""Time until an interrupt is repeated that came where nothing could catch it, in s."""
+"""Time after which an interrupt is repeated that came where nothing could catch it, in s."""
 
 UnraisableHook = Callable[["sys.UnraisableHookArgs"], Any]
 
@@ -37,6 +37,7 @@ class Interrupts:
         self._count = 0
         self._is_working = False
         self._is_ending = False
+        self._is_lost = False
         self._others: UnraisableHook = sys.unraisablehook
 
     @property
@@ -69,7 +70,12 @@ class Interrupts:
         """Begin to end the process."""
         self._is_ending = True
 
-    def _take(self, _number: int, _frame: FrameType | None) -> None:
+    def _take(self, _number: int, frame: FrameType | None) -> None:
+        if self._is_lost:
+            if self._is_ending or _is_within(frame, Interrupts._repeat.__code__):
+                return
+            self._is_lost = False
+            raise KeyboardInterrupt
         self._count += 1
         if self._is_ending and self._count >= INSISTING:
             os._exit(INTERRUPTED)
@@ -82,12 +88,25 @@ class Interrupts:
         if not issubclass(caught.exc_type, KeyboardInterrupt):
             self._others(caught)
         elif not self._is_ending:
-            from threading import Timer, main_thread
+            from threading import Thread
 
-            self._count = max(self._count, INSISTING - 1)
-            again = Timer(SOON, signal.pthread_kill, (main_thread().ident, signal.SIGINT))
-            again.daemon = True
-            again.start()
+            self._is_lost = True
+            Thread(target=self._insist, daemon=True).start()
+
+    def _insist(self) -> None:
+        """Send the signal until it is taken outside of the hook."""
+        from threading import Event, main_thread
+
+        never, main = Event(), main_thread().ident
+        while not never.wait(SOON) and self._is_lost and not self._is_ending:
+            signal.pthread_kill(main or 0, signal.SIGINT)
+
+
+def _is_within(frame: FrameType | None, code: CodeType) -> bool:
+    """Whether a function is one of those that were called."""
+    while frame is not None and frame.f_code is not code:
+        frame = frame.f_back
+    return frame is not None
 
 
 def _ignore() -> None:

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import structlog
 from uvicorn.config import STARTUP_FAILURE
-from uvicorn.server import Server
 from uvicorn.supervisors import Multiprocess
 
 from service import log_lines
@@ -31,6 +30,7 @@ from service.storage.folder import (
     open_data_folder,
     require_shared_files,
 )
+from service.web_server import WebServer
 from stepnc_model.errors import StepNcError
 
 LOG = structlog.get_logger("serve")
@@ -138,13 +138,13 @@ def _run_web(config: WebConfig) -> None:
         with config.bind_socket() as listening:
             WebProcesses(config, sockets=[listening]).run()
         return
-    server = Server(config)
+    server = WebServer(config)
     try:
+        # Before uvicorn takes the signals: it would answer them when all is loaded.
+        config.load()
         server.run()
     except KeyboardInterrupt:
-        # uvicorn raises the signal again when all requests are answered.
-        if not server.started:
-            raise
+        return
     if not server.started:
         raise SystemExit(STARTUP_FAILURE)
 

@@ -65,6 +65,7 @@ TOGETHER = {
     "controller/ports.py": "Protocols; plugged in tests/controller/test_loop.py",
     "service/storage/connection.py": "Protocols; kept by both databases in storage",
     "service/storage/server_schema.py": "statements; run in storage/test_server_database.py",
+    "service/web_server.py": "ended in tests/service/rest/test_serve.py",
     "service/fork_log.py": "read in tests/service/test_log_lines.py",
     "service/rest/web_config.py": "its faults are read in tests/service/test_log_lines.py",
     "service/jobs/frozen.py": "loaded by the runners of tests/service/jobs",

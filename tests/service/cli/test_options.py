@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from service.cli import options as cli_options
+from service.cli.interrupts import INTERRUPTED
 from service.cli.options import add_json, add_program, program_request
 from service.requests.given import ProgramRequest
 from stepnc_model.post.dialect import Dialect
