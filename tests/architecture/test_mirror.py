@@ -104,7 +104,6 @@ TOGETHER = {
     "service/agent/shop.py": "its runs are read in tests/service/rest/test_agent.py",
     "service/agent/play.py": "played in tests/service/agent/test_run.py and test_replay.py",
     "service/requests/agent.py": "fields only; read in tests/service/agent",
-    "simulator/agent/agent.py": "asked over HTTP in tests/simulator/agent/test_http.py",
     "simulator/agent/documents.py": "held against the schemas in test_http.py",
     "simulator/agent/names.py": "names only; chosen in test_machine_model.py",
     "simulator/agent/requests.py": "asked over HTTP in test_http.py",
