@@ -9,6 +9,7 @@ import logging
 import sys
 import threading
 from collections.abc import Callable
+from functools import partial
 from multiprocessing import set_forkserver_preload
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -66,7 +67,7 @@ def report_faults() -> None:
     """Log what nobody catches in this process, and warnings, as lines of JSON."""
     sys.excepthook = _uncaught
     threading.excepthook = _uncaught_in_thread
-    sys.unraisablehook = _unraisable
+    sys.unraisablehook = partial(_unraisable, sys.unraisablehook)
     logging.captureWarnings(True)
 
 
@@ -131,8 +132,13 @@ def _uncaught_in_thread(caught: threading.ExceptHookArgs) -> None:
         tell_fault(caught.exc_value, thread=caught.thread.name if caught.thread else "")
 
 
-def _unraisable(caught: "sys.UnraisableHookArgs") -> None:
-    """Log what was raised where nobody can catch it, as in a destructor."""
+def _unraisable(
+    others: "Callable[[sys.UnraisableHookArgs], Any]", caught: "sys.UnraisableHookArgs"
+) -> None:
+    """Log what was raised where nobody can catch it, as in a destructor; no interrupt."""
+    if issubclass(caught.exc_type, KeyboardInterrupt):
+        others(caught)
+        return
     what = f"{caught.err_msg or 'exception ignored in'}: {caught.object!r}"
     tell_fault(caught.exc_value or caught.exc_type(), place=what)
 

@@ -1,5 +1,6 @@
 """Output to the user's terminal."""
 
+import os
 import sys
 
 _CONTROLS = {
@@ -11,6 +12,11 @@ _CONTROLS = {
 def write_out(text: str) -> None:
     """Write a line of data to stdout."""
     sys.stdout.write(clean(text) + "\n")
+
+
+def drop_out() -> None:
+    """Drop what stdout still holds, so that the end of the process does not write it."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def tell(message: str) -> None:

@@ -29,6 +29,7 @@ SLOW = (
     "service/along_path/test_of_code.py",
     "service/brep",
     "service/calibration/test_run.py",
+    "service/cli/test_interrupts_anywhere.py",
     "service/cli/test_kbe_verbs.py",
     "service/cli/test_main.py",
     "service/control/test_outcomes.py",

@@ -5,8 +5,9 @@ from collections.abc import Iterator
 
 from docs.hooks.markdown import block, code, page, table
 from service.cli import options
+from service.cli.commands import parser
+from service.cli.interrupts import INTERRUPTED
 from service.cli.kbe import USAGE
-from service.cli.main import parser
 
 EXIT_CODES = {
     options.OK: "done",
@@ -15,7 +16,7 @@ EXIT_CODES = {
     options.INFEASIBLE: "no feed keeps all limits, or the solver found none",
     options.LIMIT_EXCEEDED: "a run passed a bound of power or force, or was stopped",
     options.NOTHING_ADVISED: "`optimise` found nothing to advise, and wrote no program",
-    options.INTERRUPTED: "interrupted by Ctrl-C or SIGTERM",
+    INTERRUPTED: "interrupted by Ctrl-C or SIGTERM",
 }
 
 VARIABLES = {

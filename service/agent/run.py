@@ -22,6 +22,7 @@ from service.requests.agent import AgentRequest
 from service.requests.fields import require_bounds
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, Simulation, simulate
+from service.web_server import WebServer
 from simulator.agent.adapters import AdapterAddress, AdapterIntake, ShdrServer, listen_to
 from simulator.agent.agent import Agent
 from simulator.agent.buffer import Value
@@ -399,7 +400,7 @@ async def _serve(
         await ShdrServer(agent).serve(shdr)
     tasks = [asyncio.create_task(each()) for each in work]
     try:
-        await uvicorn.Server(config).serve(sockets=[listener])
+        await WebServer(config).serve(sockets=[listener])
     finally:
         for task in tasks:
             task.cancel()

@@ -6,7 +6,6 @@ from pathlib import Path
 from service.cli.machine import (
     USUAL_RATE,
     add_code,
-    interruptible,
     run_files,
     run_request,
 )
@@ -48,12 +47,11 @@ def _agent(options: argparse.Namespace) -> int:
     from service.terminal import tell
 
     request = run_request(AgentRequest, options, rate_hz=USUAL_RATE)
-    with interruptible():
-        files = AgentFiles(
-            run=run_files(options, options.file),
-            device=options.device,
-            schemas=options.schema_files,
-            runs=options.runs,
-        )
-        serve_agent(request, files, tell=tell)
+    files = AgentFiles(
+        run=run_files(options, options.file),
+        device=options.device,
+        schemas=options.schema_files,
+        runs=options.runs,
+    )
+    serve_agent(request, files, tell=tell)
     return OK

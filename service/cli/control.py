@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from service.cli.machine import add_code, interruptible, run_files, run_request
+from service.cli.machine import add_code, run_files, run_request
 from service.cli.options import (
     BAD_INPUT,
     LIMIT_EXCEEDED,
@@ -92,21 +92,20 @@ def _control(options: argparse.Namespace) -> int:
     from service.control.record import control_recorded
     from service.terminal import tell
 
-    with interruptible():
-        run = control_recorded(
-            _request(options),
-            replace(run_files(options, options.file), recorded=_recorded(options)),
-            knowledge=options.kb,
-            by=options.by,
-            tell=tell,
-        )
-        if options.report is not None and run.trace is not None:
-            from service.control.output import control_page
-            from service.files import write_atomically
+    run = control_recorded(
+        _request(options),
+        replace(run_files(options, options.file), recorded=_recorded(options)),
+        knowledge=options.kb,
+        by=options.by,
+        tell=tell,
+    )
+    if options.report is not None and run.trace is not None:
+        from service.control.output import control_page
+        from service.files import write_atomically
 
-            page = control_page(run, run.trace).encode(errors="replace")
-            write_atomically(options.report, page)
-            tell(f"report: {options.report}")
+        page = control_page(run, run.trace).encode(errors="replace")
+        write_atomically(options.report, page)
+        tell(f"report: {options.report}")
     if options.json:
         from service.control.output import control_json
         from service.terminal import write_out

@@ -40,21 +40,19 @@ def add_dataset_command(commands: Commands) -> None:
 
 def _dataset(options: argparse.Namespace) -> int:
     """Run the command ``stepnc dataset``."""
-    from service.cli.machine import interruptible
     from service.dataset.folder import PROGRAMS
     from service.dataset.run import DatasetFiles, make_dataset
     from service.execution.pools import pools_of
     from service.terminal import tell
 
-    with interruptible():
-        result = make_dataset(
-            options.design,
-            options.output,
-            rows=options.rows,
-            tell=tell,
-            files=DatasetFiles(has_csv=options.csv, has_programs=options.programs),
-            pools=pools_of(options.cluster),
-        )
+    result = make_dataset(
+        options.design,
+        options.output,
+        rows=options.rows,
+        tell=tell,
+        files=DatasetFiles(has_csv=options.csv, has_programs=options.programs),
+        pools=pools_of(options.cluster),
+    )
     tell(f"written: {result.folder} ({result.rows} rows, {result.made} of them new)")
     if result.csv is not None:
         tell(f"CSV: {result.csv}")

@@ -53,7 +53,6 @@ def _factory_options(parser: argparse.ArgumentParser) -> None:
 
 def _factory(options: argparse.Namespace) -> int:
     """Run the command ``stepnc factory``."""
-    from service.cli.machine import interruptible
     from service.execution.pools import pools_of
     from service.factory.output import factory_json, factory_page, print_factory
     from service.factory.run import run_factory
@@ -68,11 +67,8 @@ def _factory(options: argparse.Namespace) -> int:
         return _live(options, request)
     if options.output is None and (options.report or request.documents or request.has_energy):
         raise StepNcError("--report, --documents and --energy write files: name a folder, -o")
-    with interruptible():
-        pools = pools_of(options.cluster)
-        result = run_factory(
-            options.shop, request, folder=options.output, pools=pools, tell=tell
-        )
+    pools = pools_of(options.cluster)
+    result = run_factory(options.shop, request, folder=options.output, pools=pools, tell=tell)
     if options.output is not None:
         tell(f"written: {options.output} ({result.parts_written} parts)")
     if request.documents:
@@ -90,7 +86,6 @@ def _factory(options: argparse.Namespace) -> int:
 
 def _live(options: argparse.Namespace, request: "FactoryRequest") -> int:
     """Run a shop for clients until interrupted."""
-    from service.cli.machine import interruptible
     from service.factory.serve import serve_shop
     from service.requests.factory import LiveFactoryRequest
     from service.requests.fields import from_options
@@ -102,6 +97,5 @@ def _live(options: argparse.Namespace, request: "FactoryRequest") -> int:
             "--live serves clients and writes nothing: leave out -o, --report, --json"
         )
     live = from_options(LiveFactoryRequest, options)
-    with interruptible():
-        serve_shop(options.shop, request, live, tell=tell)
+    serve_shop(options.shop, request, live, tell=tell)
     return OK

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from service.cli.kbe_options import request_of, selection_of
-from service.cli.machine import interruptible
 from service.cli.options import OK
 from service.knowledge.place import usual_place
 from stepnc_model.errors import StepNcError
@@ -74,15 +73,12 @@ def table_command(options: argparse.Namespace) -> int:
     from service.knowledge.evaluation_output import put_summary, put_table
 
     place, form = usual_place(options.kb), _format(options)
-    with interruptible():
-        if options.summary:
-            count = put_summary(place, selection_of(options), form=form, output=options.output)
-        else:
-            from service.terminal import tell
+    if options.summary:
+        count = put_summary(place, selection_of(options), form=form, output=options.output)
+    else:
+        from service.terminal import tell
 
-            count = put_table(
-                place, _request(options), form=form, output=options.output, tell=tell
-            )
+        count = put_table(place, _request(options), form=form, output=options.output, tell=tell)
     if not count:
         _tell_why_empty(place, options)
     return _written(options.output)
@@ -208,11 +204,10 @@ def export_command(options: argparse.Namespace) -> int:
     if name not in set(Format):
         raise StepNcError(f"outcomes and corrections cannot be written as {name}")
     form, file = Format(name), options.output
-    with interruptible():
-        if options.what == "outcomes":
-            rows = export_outcomes(place, selection_of(options), file=file, form=form)
-        else:
-            rows = export_corrections(place, file=file, form=form)
+    if options.what == "outcomes":
+        rows = export_outcomes(place, selection_of(options), file=file, form=form)
+    else:
+        rows = export_corrections(place, file=file, form=form)
     tell(f"written: {file} ({rows} {options.what})")
     return OK
 

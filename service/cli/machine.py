@@ -1,9 +1,6 @@
 """Commands of the virtual machine: ``simulate``, ``calibrate`` and ``taptest``."""
 
 import argparse
-import signal
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -222,24 +219,22 @@ def _simulate(options: argparse.Namespace) -> int:
     request = run_request(SimulationRequest, options, rate_hz=USUAL_RATE)
     files = run_files(options, options.file)
     if options.mtconnect is None:
-        with interruptible():
-            simulation = simulate(request, files, tell=tell)
+        simulation = simulate(request, files, tell=tell)
     else:
         from service.agent.run import DocumentChoice, simulated_with_document
 
-        with interruptible():
-            simulation = simulated_with_document(
-                request,
-                files,
-                options.mtconnect,
-                DocumentChoice(
-                    version=member_of(SchemaVersion, options.schema, "schema version"),
-                    names=member_of(NameSet, options.names, "set of names"),
-                    part=options.part,
-                    batch=options.batch,
-                ),
-                tell=tell,
-            )
+        simulation = simulated_with_document(
+            request,
+            files,
+            options.mtconnect,
+            DocumentChoice(
+                version=member_of(SchemaVersion, options.schema, "schema version"),
+                names=member_of(NameSet, options.names, "set of names"),
+                part=options.part,
+                batch=options.batch,
+            ),
+            tell=tell,
+        )
     if options.report is not None and simulation.trace is not None:
         from service.files import write_atomically
         from service.simulation.output import simulation_page
@@ -282,8 +277,7 @@ def _calibrate(options: argparse.Namespace) -> int:
         files=files,
         output=options.output,
     )
-    with interruptible():
-        result = calibrate(request, tell=tell)
+    result = calibrate(request, tell=tell)
     if options.json:
         from service.calibration.output import calibration_json
         from service.terminal import write_out
@@ -348,30 +342,3 @@ def _tap_test(options: argparse.Namespace) -> int:
     else:
         print_tap_test(result)
     return OK
-
-
-@contextmanager
-def interruptible() -> Iterator[None]:
-    """End a long run in the same way at SIGINT and SIGTERM, as an interrupted one.
-
-    The compiler of the kernels may replace the exception by one of its own.
-    """
-    asked: list[int] = []
-
-    def ask(number: int, _frame: object) -> None:
-        asked.append(number)
-        raise KeyboardInterrupt
-
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        for number, handler in before.items():
-            if handler is not signal.SIG_IGN:
-                signal.signal(number, ask)
-        yield
-    except RuntimeError as error:
-        if asked:
-            raise KeyboardInterrupt from error
-        raise
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

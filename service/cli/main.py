@@ -1,452 +1,71 @@
-"""Command line: ``optimise`` and ``stepnc``, a thin layer above :mod:`service.usecases`.
+"""Entry points ``stepnc`` and ``optimise``: from the first line to the exit code.
 
-Data goes to stdout, messages and progress to stderr. Exit codes: 0 ok, 2 usage, 3 bad input,
-4 infeasible, 5 limit exceeded, 6 nothing to advise, 130 interrupted. Slow imports stay inside
-the commands, so that ``--help`` answers at once.
+Exit codes: 0 ok, 2 usage, 3 bad input, 4 infeasible, 5 limit exceeded, 6 nothing to advise, 130
+interrupted. An interrupt ends a command without a traceback whenever it comes: so this module
+imports nothing of the project until the signals are taken (:mod:`service.cli.interrupts`).
 """
 
-import argparse
-import os
+import signal
 import sys
 from collections.abc import Sequence
-from pathlib import Path
-
-from service.cli.agent import add_agent_command
-from service.cli.blocks import add_block_commands
-from service.cli.control import add_control_command
-from service.cli.dataset import add_dataset_command
-from service.cli.factory import add_factory_command
-from service.cli.kbe import add_knowledge_commands
-from service.cli.learning import add_learning_commands
-from service.cli.machine import add_machine_commands
-from service.cli.options import (
-    BAD_INPUT,
-    INFEASIBLE,
-    INTERRUPTED,
-    LIMIT_EXCEEDED,
-    NOTHING_ADVISED,
-    OK,
-    CommandParser,
-    Commands,
-    add_cluster,
-    add_json,
-    add_knowledge,
-    add_program,
-    program_request,
-)
-from service.cli.paths import add_path_commands
-from service.cli.record import add_record_command
-from service.cli.serve import add_service_commands
-from service.cli.verify import add_verify_command
-
-EXAMPLES = """examples:
-  optimise part.stpnc --mode TC --machine vmc15
-  optimise part.stpnc --mode QC --roughness 1.6 --report part.html
-  optimise part.stpnc --mode EC --free feed,depth,speed --dry-run --json
-  stepnc check part.stpnc
-  stepnc toolpath part.stpnc --plot path.png
-  stepnc post part.stpnc --control linuxcnc
-
-Optimise the feeds of a STEP-NC program and write them back as STEP-NC."""
-
-
-def parser() -> argparse.ArgumentParser:
-    """Return the complete parser of ``stepnc``, with the options of all commands."""
-    top, commands = _commands()
-    for each in commands.choices.values():
-        each.complete()
-    return top
-
-
-def _commands() -> tuple[argparse.ArgumentParser, Commands]:
-    """Return the parser, whose commands get their options on first use."""
-    top = argparse.ArgumentParser(
-        prog="stepnc",
-        description=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    top.add_argument(
-        "--print-completion",
-        choices=("bash", "zsh", "tcsh"),
-        help="print a completion script for a shell",
-    )
-    commands = top.add_subparsers(dest="command", metavar="COMMAND", parser_class=CommandParser)
-    optimise = commands.add_parser(
-        "optimise",
-        help="optimise the feeds of a program and write them back",
-        description=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    optimise.fill = add_optimise_options
-    _add_check(commands)
-    _add_convert(commands)
-    add_path_commands(commands)
-    add_machine_commands(commands)
-    add_block_commands(commands)
-    add_agent_command(commands)
-    add_record_command(commands)
-    add_verify_command(commands)
-    add_knowledge_commands(commands)
-    add_control_command(commands)
-    add_factory_command(commands)
-    add_dataset_command(commands)
-    add_learning_commands(commands)
-    add_service_commands(commands)
-    for kind in ("machines", "materials"):
-        listing = commands.add_parser(kind, help=f"list the {kind}, or show one")
-        listing.add_argument("name", nargs="?", default="", help="show only this one, in full")
-        add_json(listing)
-        listing.set_defaults(run=_show_library)
-    return top, commands
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line ``stepnc``."""
-    top, _ = _commands()
-    options = top.parse_args(arguments)
-    if options.print_completion:
-        import shtab
+    """Run the command line ``stepnc``.
 
-        from service.terminal import write_out
-
-        write_out(shtab.complete(parser(), shell=options.print_completion))
-    elif options.command is None:
-        top.print_help()
-        sys.exit(2)
-    else:
-        _run(options)
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Default: those of this process, whose signals are then taken until its end.
+    """
+    _run("stepnc", arguments)
 
 
 def optimise_main(arguments: Sequence[str] | None = None) -> None:
     """Run the command ``optimise``, an alias of ``stepnc optimise``."""
-    parser = CommandParser(
-        prog="optimise",
-        description=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    add_optimise_options(parser)
-    _run(parser.parse_args(arguments))
+    _run("optimise", arguments)
 
 
-def add_optimise_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of ``optimise``: those of its request, and its files."""
-    from service.requests.advice import AdviceRequest
-    from service.requests.fields import add_options
+def _run(name: str, arguments: Sequence[str] | None) -> None:
+    is_process = arguments is None
+    if is_process and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        # There is nothing to undo yet: the system ends the process.
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    from service.cli.interrupts import INTERRUPTED, Interrupts
 
-    add = parser.add_argument
-    add(
-        "file",
-        type=Path,
-        metavar="FILE",
-        help="a STEP-NC program (Part 21), a folder of them, or NC code",
-    )
-    add_options(parser, AdviceRequest)
-    add(
-        "-o",
-        "--output",
-        type=Path,
-        metavar="FILE",
-        help="default: FILE.optimised.stpnc; of a folder: another folder",
-    )
-    add("--in-place", action="store_true", help="overwrite the input file")
-    add(
-        "--holding",
-        type=Path,
-        metavar="TOML",
-        help="work-holding: [[holding]] tables of chuck, vice or clamps, by setup",
-    )
-    add(
-        "--tools",
-        type=Path,
-        metavar="TABLE",
-        help="tool table: the tools of NC code; of a program, which cut over centre or have "
-        "wipers",
-    )
-    add("--tools-unit", default="", metavar="UNIT", help="unit of a tool.tbl: mm or inch")
-    add_knowledge(parser, "supplies accepted corrections of k_c")
-    add(
-        "--feeds-csv",
-        type=Path,
-        metavar="CSV",
-        help="write the feeds along the paths as a table",
-    )
-    add("--dry-run", action="store_true", help="write no STEP-NC file")
-    add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
-    add_cluster(parser)
-    add_json(parser)
-    parser.set_defaults(run=_optimise)
-
-
-def _add_check(commands: Commands) -> None:
-    """Add the command ``stepnc check``."""
-    parser = commands.add_parser(
-        "check",
-        help="show the contents of a program or of NC code and its errors; exit 3 if it is "
-        "unusable",
-    )
-    parser.fill = _check_options
-
-
-def _check_options(parser: argparse.ArgumentParser) -> None:
-    add_program(parser)
-    parser.add_argument(
-        "--control",
-        default="",
-        metavar="NAME",
-        help="control of NC code: linuxcnc, fanuc, haas, sinumerik or heidenhain; default: "
-        "guessed from the code",
-    )
-    add_json(parser)
-    parser.set_defaults(run=_check)
-
-
-def _add_convert(commands: Commands) -> None:
-    """Add the command ``stepnc convert``."""
-    parser = commands.add_parser(
-        "convert",
-        help="convert a program to AP238 or ISO 14649, or its records to the other profile",
-    )
-    parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
-    what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument(
-        "--to",
-        metavar="STANDARD",
-        help="write the program by another standard: ap238 or iso14649",
-    )
-    what.add_argument(
-        "--profile", help="write the optimisation records in profile optimisation or standard"
-    )
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
-    parser.set_defaults(run=_convert)
-
-
-def _run(options: argparse.Namespace) -> None:
-    """Run a command and turn the project's errors into exit codes."""
-    from service.extras import missing_extras_named
-    from service.terminal import prepare, tell
-    from stepnc_model.errors import StepNcError
-
-    prepare()
-    code = OK
+    interrupts = Interrupts()
+    if is_process:
+        interrupts.install()
+    code = INTERRUPTED
     try:
-        with missing_extras_named(getattr(options, "command", "optimise")):
-            code = options.run(options)
-        sys.stdout.flush()
-    except StepNcError as error:
-        tell(f"error: {error}{_alternative(error, options)}")
-        code = _exit_code(error)
+        try:
+            from service.cli import commands
+
+            work = commands.parsed(name, arguments)
+            interrupts.start()
+            code = work()
+        finally:
+            interrupts.end()
     except KeyboardInterrupt:
-        tell("interrupted")
-        code = INTERRUPTED
-    except OSError as error:
-        # Buffered output has no reader any more; a reader that left (``| head``) is fine.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        if not isinstance(error, BrokenPipeError):
-            tell(f"error: stdout: {error.strerror}")
-            code = BAD_INPUT
+        _tell_interrupted()
+    except Exception:
+        # Compilers and extension modules replace the interrupt by an error of their own.
+        if not interrupts.has_come:
+            raise
+        _tell_interrupted()
     sys.exit(code)
 
 
-def _alternative(error: Exception, options: argparse.Namespace) -> str:
-    """Option that helps where one instance is at fault and no other option is named."""
-    from stepnc_model.errors import SchemaError
+def _tell_interrupted() -> None:
+    from contextlib import suppress
 
-    is_local = isinstance(error, SchemaError) and bool(error.entity)
-    can_keep_going = getattr(options, "keep_going", None) is False
-    if not is_local or not can_keep_going or " --" in str(error):
-        return ""
-    return "; --keep-going leaves out what depends on it"
+    from service.terminal import drop_out, prepare, tell
 
-
-def _exit_code(error: Exception) -> int:
-    """Return 4 for conflicting limits, 3 for all errors of the input."""
-    from optimiser.errors import OptimisationError
-
-    return INFEASIBLE if isinstance(error, OptimisationError) else BAD_INPUT
-
-
-def _optimise(options: argparse.Namespace) -> int:
-    """Run the command ``optimise``."""
-    from service import usecases
-    from service.cli.code import optimise_code
-    from service.code_contents import is_code
-    from service.requests.advice import AdviceRequest
-    from service.requests.fields import from_options
-    from service.terminal import tell, write_out
-    from stepnc_model.errors import StepNcError
-
-    if options.file.is_dir():
-        return _optimise_folder(options)
-    if options.cluster:
-        raise StepNcError("--cluster runs the programs of a folder: name a folder")
-    if is_code(options.file):
-        return optimise_code(options)
-    outcome = usecases.optimise(
-        from_options(AdviceRequest, options),
-        usecases.AdviceFiles(
-            file=options.file,
-            output=options.output,
-            in_place=options.in_place,
-            dry_run=options.dry_run,
-            report=options.report,
-            feeds=options.feeds_csv,
-            holding=options.holding,
-            tools=options.tools,
-            knowledge=options.kb,
-        ),
-        tell=tell,
-    )
-    confirmation = outcome.confirmation
-    if options.json:
-        from service.plan_output import plan_json
-
-        write_out(plan_json(outcome.plan, confirmation, outcome.along))
-    else:
-        from service.plan_output import print_plan
-
-        print_plan(outcome.plan, confirmation, outcome.along, outcome.told)
-    if outcome.plan.has_bad_data:
-        return BAD_INPUT
-    if outcome.plan.is_infeasible:
-        return INFEASIBLE
-    is_passed = confirmation is not None and bool(confirmation.passed)
-    if is_passed or outcome.plan.faults:
-        return LIMIT_EXCEEDED
-    return OK if outcome.is_advised else NOTHING_ADVISED
-
-
-def _optimise_folder(options: argparse.Namespace) -> int:
-    """Run the command ``optimise`` for the programs of a folder."""
-    from service.cli.machine import interruptible
-    from service.execution.pools import pools_of
-    from service.folder_advice.ledger import ProgramStatus
-    from service.folder_advice.output import folder_advice_json, print_folder_advice
-    from service.folder_advice.run import FolderFiles, optimise_folder
-    from service.requests.advice import AdviceRequest
-    from service.requests.fields import from_options
-    from service.terminal import tell, write_out
-    from stepnc_model.errors import StepNcError
-
-    if options.output is None or options.in_place or options.report is not None:
-        raise StepNcError(
-            f"{options.file}: is a folder: name another folder with -o, without --in-place and "
-            "--report"
-        )
-    files = FolderFiles(
-        folder=options.file,
-        output=options.output,
-        dry_run=options.dry_run,
-        holding=options.holding,
-        tools=options.tools,
-        knowledge=options.kb,
-    )
-    request = from_options(AdviceRequest, options)
-    with interruptible():
-        found = optimise_folder(request, files, pools=pools_of(options.cluster), tell=tell)
-    if options.json:
-        write_out(folder_advice_json(found))
-    else:
-        print_folder_advice(found)
-    for status, code in (
-        (ProgramStatus.BAD, BAD_INPUT),
-        (ProgramStatus.INFEASIBLE, INFEASIBLE),
-        (ProgramStatus.EXCEEDED, LIMIT_EXCEEDED),
-    ):
-        if found.has(status):
-            return code
-    return OK
-
-
-def _check(options: argparse.Namespace) -> int:
-    """Run the command ``stepnc check``."""
-    from service.code_contents import is_code
-
-    return (
-        _check_code(options)
-        if options.control or is_code(options.file)
-        else _check_program(options)
-    )
-
-
-def _check_code(options: argparse.Namespace) -> int:
-    """Check NC code."""
-    from service.code_contents import check_code
-    from service.requests.given import ProgramRequest
-    from service.terminal import write_out
-    from stepnc_model.errors import StepNcError
-
-    if program_request(options) != ProgramRequest():
-        raise StepNcError(
-            "--units, --stock, --set, --teeth and --feed are for STEP-NC programs"
-        )
-    contents = check_code(options.file, control=options.control)
-    if options.json:
-        from service.code_contents_output import code_json
-
-        write_out(code_json(contents))
-    else:
-        from service.code_contents_output import print_code
-
-        print_code(contents)
-    return OK
-
-
-def _check_program(options: argparse.Namespace) -> int:
-    """Check a STEP-NC program."""
-    from service.contents import check
-    from service.paths.remarks import tell_remarks
-    from service.terminal import tell, write_out
-
-    contents = check(options.file, program_request(options), tell=tell)
-    tell_remarks(contents.remarks, tell)
-    if options.json:
-        from service.contents_output import contents_json
-
-        write_out(contents_json(contents))
-    else:
-        from service.contents_output import print_contents
-
-        print_contents(contents)
-    return OK if contents.is_of_use else BAD_INPUT
-
-
-def _convert(options: argparse.Namespace) -> int:
-    """Run the command ``stepnc convert``."""
-    from service import usecases
-    from service.conversion import Standard, convert_to
-    from service.requests.fields import member_of
-    from service.terminal import tell
-    from stepnc_model.file_profile import FileProfile
-
-    if options.to is not None:
-        standard = member_of(Standard, options.to, "standard")
-        for finding in convert_to(options.file, standard=standard, output=options.output):
-            tell(str(finding))
-        tell(f"{options.output}: written by standard '{standard.value}'")
-        return OK
-
-    profile = member_of(FileProfile, options.profile, "profile")
-    usecases.convert(options.file, profile=profile, output=options.output)
-    tell(f"{options.output}: records converted to profile '{profile.value}'")
-    return OK
-
-
-def _show_library(options: argparse.Namespace) -> int:
-    """Run the commands ``stepnc machines`` and ``stepnc materials``."""
-    from service import library_output
-    from service.chosen import library_entries, library_entry
-    from service.terminal import write_out
-
-    kind, name = options.command, options.name
-    if name:
-        entry = library_entry(kind, name)
-        if options.json:
-            write_out(library_output.entry_json(entry))
-        else:
-            library_output.print_entry(entry)
-        return OK
-    entries = library_entries(kind)
-    write_out(
-        library_output.entries_json(entries)
-    ) if options.json else library_output.print_entries(kind, entries)
-    return OK
+    prepare()
+    # The same Ctrl-C may have ended the readers.
+    try:
+        sys.stdout.flush()
+    except OSError:
+        drop_out()
+    with suppress(OSError):
+        tell("interrupted")

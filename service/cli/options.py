@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED, INTERRUPTED = 0, 3, 4, 5, 6, 130
+OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED = 0, 3, 4, 5, 6
 """Exit codes; with ``NOTHING_ADVISED`` ``optimise`` says that it wrote no program."""
 
 CONTROLS = "linuxcnc, fanuc, haas, sinumerik, heidenhain or canonical"

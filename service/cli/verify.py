@@ -61,7 +61,6 @@ def _verify_options(parser: argparse.ArgumentParser) -> None:
 
 def _verify(options: argparse.Namespace) -> int:
     """``stepnc verify``."""
-    from service.cli.machine import interruptible
     from service.files import require_place, write_atomically
     from service.part_file import part_place
     from service.requests.fields import from_options
@@ -79,14 +78,13 @@ def _verify(options: argparse.Namespace) -> int:
             require_place(each, apart_from=options.program)
     if options.output is not None:
         require_suffix(options.output)
-    with interruptible():
-        found = verify(
-            options.log,
-            options.program,
-            request,
-            inputs=VerificationInputs(tools=options.tools, required=required, solid=solid),
-            tell=tell,
-        )
+    found = verify(
+        options.log,
+        options.program,
+        request,
+        inputs=VerificationInputs(tools=options.tools, required=required, solid=solid),
+        tell=tell,
+    )
     if options.report is not None:
         from service.verification.output import verification_page
 

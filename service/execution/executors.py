@@ -11,17 +11,22 @@ from concurrent.futures import (
     BrokenExecutor,
     CancelledError,
     Executor,
+    Future,
     ProcessPoolExecutor,
     wait,
 )
 from contextlib import AbstractContextManager, contextmanager
 from itertools import islice
-from multiprocessing import get_context
-from os import cpu_count
-from signal import SIG_IGN, SIGINT, signal
-from typing import TypeVar
+from multiprocessing import active_children, get_context
+from multiprocessing.connection import wait as ended
+from multiprocessing.process import BaseProcess
+from os import _exit, cpu_count
+from signal import SIGTERM, getsignal, signal
+from time import monotonic
+from types import FrameType
+from typing import Any, TypeVar, cast
 
-from service.lifeline import end_with_parent
+from service.lifeline import end_with_parent, starting
 from stepnc_model.errors import StepNcError
 
 MOST_PROCESSES = 64
@@ -35,6 +40,12 @@ MOST_LOSSES = 3
 LOST = (BrokenExecutor, CancelledError)
 """Errors of work that was lost, whatever it was."""
 
+LONGEST_END = 10.0
+"""Time for a process to clean up and end, in s."""
+
+BROKEN_OFF = 1
+"""Exit code of a process whose task was broken off."""
+
 Result = TypeVar("Result")
 Pools = Callable[[], AbstractContextManager[Executor]]
 """Makes an executor; called again after the executor was lost."""
@@ -45,18 +56,64 @@ def processes(count: int = MOST_PROCESSES) -> Iterator[Executor]:
     """Executor with a process for each processor, at most a given number."""
     workers = max(1, min(count, cpu_count() or 1))
     context = get_context("forkserver")
-    with ProcessPoolExecutor(workers, mp_context=context, initializer=_deaf) as pool:
+    others = set(active_children())
+    with _Processes(workers, mp_context=context, initializer=_begin) as pool:
         try:
             yield pool
         except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
+            _end(set(active_children()) - others)
+            pool.shutdown(cancel_futures=True)
             raise
 
 
-def _deaf() -> None:
-    """Leave Ctrl-C to the main process, and end with it."""
+def _end(processes: Iterable[BaseProcess]) -> None:
+    """Break off what processes do."""
+    left = {each.sentinel: each for each in processes}
+    for process in left.values():
+        process.terminate()
+    latest = monotonic() + LONGEST_END
+    while left and (now := monotonic()) < latest:
+        for sentinel in ended(list(left), latest - now):
+            del left[cast(int, sentinel)]
+    for process in left.values():
+        process.kill()
+
+
+def _begin() -> None:
+    """Prepare a process: it ends with its parent, and a task that is broken off cleans up."""
     end_with_parent()
-    signal(SIGINT, SIG_IGN)
+    signal(SIGTERM, _break_off)
+
+
+def _break_off(_number: int, _frame: FrameType | None) -> None:
+    signal(SIGTERM, _too_late)
+    raise SystemExit(BROKEN_OFF)
+
+
+def _too_late(_number: int, _frame: FrameType | None) -> None:
+    """Ignore a request to end: the process ends."""
+
+
+def _done(
+    function: Callable[..., Result], args: tuple[Any, ...], kwargs: dict[str, Any]
+) -> Result:
+    """Do a task; when it was broken off, end the process, which would begin the next."""
+    try:
+        return function(*args, **kwargs)
+    finally:
+        if getsignal(SIGTERM) is _too_late:
+            _exit(BROKEN_OFF)
+
+
+class _Processes(ProcessPoolExecutor):
+    """Executor whose processes leave Ctrl-C to the main one."""
+
+    def submit(
+        self, fn: Callable[..., Result], /, *args: object, **kwargs: object
+    ) -> Future[Result]:
+        """Submit a task; starts a process when all are at work."""
+        with starting():
+            return super().submit(_done, fn, args, kwargs)
 
 
 class Losses:

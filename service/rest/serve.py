@@ -3,18 +3,14 @@
 import multiprocessing
 import os
 import shutil
-import signal
 import socket
 import threading
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from multiprocessing.context import SpawnProcess
 from pathlib import Path
-from types import FrameType
 
 import structlog
 from uvicorn.config import STARTUP_FAILURE
-from uvicorn.server import Server
 from uvicorn.supervisors import Multiprocess
 
 from service import log_lines
@@ -22,6 +18,7 @@ from service.errors import Forbidden
 from service.extras import has_package, how_to_install
 from service.http_protocol import BoundedHttpProtocol
 from service.jobs import runner
+from service.lifeline import starting
 from service.monitor.source import MonitorSource
 from service.rest.metrics import SHARED
 from service.rest.settings import Settings
@@ -34,6 +31,7 @@ from service.storage.folder import (
     open_data_folder,
     require_shared_files,
 )
+from service.web_server import WebServer
 from stepnc_model.errors import StepNcError
 
 LOG = structlog.get_logger("serve")
@@ -106,16 +104,13 @@ def _serve(start: ServerOptions, data_folder: DataFolder) -> None:
     if start.workers > 1:
         _share_metrics(data_folder.root)
     keeper = RunnerKeeper(start, data_folder.address)
-    keeper.start()
-    # uvicorn raises the signal again when all requests are answered; without this handler the
-    # process would end there, before the runner of jobs has released the folder.
-    signal.signal(signal.SIGTERM, _end)
     if not has_package("pyarrow"):
         LOG.warning(
             "no samples of runs are kept", reason=f"Parquet: {how_to_install('pyarrow')}"
         )
     LOG.info("serving", host=settings.host, port=settings.port, data=str(data_folder.root))
     try:
+        keeper.start()
         _run_web(_web_config(start))
     finally:
         keeper.stop()
@@ -146,11 +141,15 @@ def _run_web(config: WebConfig) -> None:
     """Serve in this process, or in several that this one watches."""
     if config.workers > 1:
         with config.bind_socket() as listening:
-            Multiprocess(config, sockets=[listening]).run()
+            WebProcesses(config, sockets=[listening]).run()
         return
-    server = Server(config)
-    with suppress(KeyboardInterrupt):
+    server = WebServer(config)
+    try:
+        # Before uvicorn takes the signals: it would answer them when all is loaded.
+        config.load()
         server.run()
+    except KeyboardInterrupt:
+        return
     if not server.started:
         raise SystemExit(STARTUP_FAILURE)
 
@@ -173,8 +172,18 @@ def _require_port(settings: Settings) -> None:
         raise StepNcError(f"{where}: {error.strerror or error}; try another --port") from None
 
 
-def _end(_signal: int, _frame: FrameType | None) -> None:
-    raise SystemExit(0)
+class WebProcesses(Multiprocess):
+    """Processes that serve, of which this one answers Ctrl-C. Running state."""
+
+    def init_processes(self) -> None:
+        """Start the processes."""
+        with starting():
+            super().init_processes()
+
+    def keep_subprocess_alive(self) -> None:
+        """Replace processes that have ended."""
+        with starting():
+            super().keep_subprocess_alive()
 
 
 class RunnerKeeper:
@@ -205,7 +214,8 @@ class RunnerKeeper:
     def _started(self) -> SpawnProcess:
         context = multiprocessing.get_context("spawn")
         process = context.Process(target=log_lines.reported, args=self._arguments, daemon=False)
-        process.start()
+        with starting():
+            process.start()
         return process
 
     def _keep(self) -> None:

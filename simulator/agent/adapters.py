@@ -95,7 +95,8 @@ async def _listen_once(address: AdapterAddress, intake: AdapterIntake, told: set
         rest = b""
         while True:
             # An adapter that answers no ping for two heartbeats is lost.
-            data = await asyncio.wait_for(reader.read(LONGEST_LINE), 2.0 * heartbeat + 1.0)
+            async with asyncio.timeout(2.0 * heartbeat + 1.0):
+                data = await reader.read(LONGEST_LINE)
             *lines, rest = (rest + data).split(b"\n")
             if not data or len(rest) > LONGEST_LINE:
                 return
@@ -191,7 +192,8 @@ class ShdrServer:
             while answers:
                 lines.append(answers.popleft().decode().rstrip())
             writer.write("".join(f"{line}\n" for line in lines).encode())
-            await asyncio.wait_for(writer.drain(), 15.0)
+            async with asyncio.timeout(15.0):
+                await writer.drain()
             await self.agent.wait(following, 0.2)
             if buffer.next - following > MOST_WAITING or following < buffer.first:
                 return

@@ -164,7 +164,9 @@ class Agent:
         if self.buffer.next > after:
             return True
         try:
-            await asyncio.wait_for(self._arrival.wait(), seconds)
+            # Not wait_for: in Python 3.11 it loses a cancellation that comes with the arrival.
+            async with asyncio.timeout(seconds):
+                await self._arrival.wait()
         except TimeoutError:
             return False
         return True

@@ -468,4 +468,5 @@ async def _part(request: HttpRequest, send: Send, boundary: str, document: bytes
     body = head.encode() + document + b"\r\n"
     message = {"type": "http.response.body", "body": body, "more_body": True}
     # A client that reads nothing fills its buffers; then it is dropped.
-    await asyncio.wait_for(send(message), PATIENCE)
+    async with asyncio.timeout(PATIENCE):
+        await send(message)

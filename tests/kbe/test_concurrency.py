@@ -9,6 +9,7 @@ from collections.abc import Callable
 from kbe.selection import Selection
 from kbe.store import open_store
 from stepnc_model.outcome import ProcessOutcome
+from tests.service.waiting import ended
 
 OutcomeMaker = Callable[..., list[ProcessOutcome]]
 
@@ -40,7 +41,7 @@ def test_four_programs_lose_nothing_and_keep_nothing_twice(
     """The store is new: they make it at once, too."""
     runs = [outcomes(50, run=f"run-{index}") for index in range(4)]
     programs = [started(url, run) for run in runs]
-    assert [program.wait(timeout=60) for program in programs] == [0] * 4
+    assert [ended(program) for program in programs] == [0] * 4
     with open_store(url) as store:
         kept = Counter(outcome.workingstep for outcome in store.outcomes())
         assert kept == Counter(outcome.workingstep for run in runs for outcome in run)
@@ -64,14 +65,14 @@ def test_killed_program_loses_nothing_that_it_was_told_is_kept(
         program.kill()
         told = max(map(int, program.stdout.read().split()), default=wanted)
         program.stdout.close()
-        assert program.wait(timeout=60) == -9
+        assert ended(program) == -9
         with open_store(url) as store:
             store.check()
             steps = [each.workingstep for each in store.outcomes(Selection(run=run))]
         # One more may have been kept before it could say so.
         assert len(steps) in {told, told + 1}
         assert steps == [f"{run} WS{index}" for index in range(len(steps))]
-    assert other.wait(timeout=60) == 0
+    assert ended(other) == 0
     with open_store(url) as store:
         assert store.count(Selection(run="other")) == 60
         store.add(outcomes(1, run="after"))

@@ -10,7 +10,7 @@ from threading import Event, Lock, Thread
 
 import httpx
 
-from tests.service.waiting import until
+from tests.service.waiting import ended, until
 
 BUCKET = "shop"
 
@@ -106,4 +106,4 @@ def object_store(folder: Path) -> Iterator[Gate]:
             gate.close()
     finally:
         process.kill()
-        process.wait(20.0)
+        ended(process)

@@ -11,13 +11,15 @@ import pytest
 from pyarrow import parquet
 
 from kbe.store import open_store
+from service.cli.interrupts import INTERRUPTED
 from service.cli.main import main
-from service.cli.options import BAD_INPUT, INTERRUPTED
+from service.cli.options import BAD_INPUT
 from service.control.run import control
 from stepnc_model.errors import WriteError
 from tests.asking import AskedControl
 from tests.every_case import every_case
 from tests.full_disk import files_of_at_most
+from tests.service.waiting import ended
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 SLOT = PARTS / "paper003_case1.stpnc"
@@ -174,7 +176,7 @@ def test_an_interrupt_leaves_what_there_is(tmp_path: Path, number: signal.Signal
             assert line, "the run ended before the interrupt"
         running.send_signal(number)
         *_, written, last = running.stderr.read().splitlines()
-        assert running.wait(60) == INTERRUPTED
+        assert ended(running) == INTERRUPTED
     partial = tmp_path / "run.partial.parquet"
     rows = parquet.read_table(partial).num_rows
     assert last == "interrupted"

@@ -16,6 +16,7 @@ import pytest
 from service.cli.main import main, optimise_main
 from service.progress import share_in
 from tests.every_case import every_case
+from tests.service.waiting import ended
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 BRACKET = (PARTS / "bracket.stpnc").read_text(encoding="ascii")
@@ -332,7 +333,7 @@ def test_an_interrupt_ends_a_long_program_without_a_file(part: Path) -> None:
         assert "of 3000 workingsteps" in running.stderr.readline()
         running.send_signal(signal.SIGINT)
         assert running.stderr.read().splitlines()[-1] == "interrupted"
-        assert running.wait(10) == INTERRUPTED
+        assert ended(running) == INTERRUPTED
     assert inventory(part.parent) == before
 
 
@@ -353,7 +354,7 @@ def test_a_reader_that_leaves_is_no_failure(part: Path) -> None:
         running.stdout.read(1)
         running.stdout.close()
         assert without_progress(running.stderr.read()) == []
-        assert running.wait(20) == 0
+        assert ended(running) == 0
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no /dev/full")

@@ -23,6 +23,7 @@ from stepnc_model.errors import StepNcError, WriteError
 from tests.asking import asked_simulation
 from tests.every_case import every_case
 from tests.full_disk import files_of_at_most
+from tests.service.waiting import ended
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 
@@ -393,7 +394,7 @@ def test_an_interrupt_leaves_what_there_is(code: Path) -> None:
         assert re.match(r"\[[#-]+\] +\d+%  \d+ s of machining", running.stderr.readline())
         running.send_signal(signal.SIGINT)
         *_, written, last = running.stderr.read().splitlines()
-        assert running.wait(60) == INTERRUPTED
+        assert ended(running) == INTERRUPTED
     partial = code.with_name("run.partial.parquet")
     rows = parquet.read_table(partial).num_rows
     assert last == "interrupted"

@@ -5,9 +5,12 @@ import select
 import signal
 import sys
 from pathlib import Path
-from subprocess import DEVNULL, PIPE, Popen
+from subprocess import DEVNULL, PIPE, Popen, check_output
 
-from service.lifeline import end_with_parent
+import pytest
+
+from service.lifeline import end_with_parent, starting
+from tests.service.waiting import ended
 
 STARTER = """
 import multiprocessing, sys, time
@@ -37,7 +40,7 @@ def test_the_child_of_a_killed_process_ends(tmp_path: Path) -> None:
     assert starter.stdout is not None
     child = os.pidfd_open(int(starter.stdout.readline()))
     starter.send_signal(signal.SIGKILL)
-    starter.wait(10.0)
+    ended(starter)
     starter.stdout.close()
     # A pidfd can be read from when its process has ended.
     with os.fdopen(child, "rb", buffering=0):
@@ -46,3 +49,39 @@ def test_the_child_of_a_killed_process_ends(tmp_path: Path) -> None:
 
 def test_a_process_without_a_starter_goes_on() -> None:
     end_with_parent()
+
+
+DEAF = """
+import multiprocessing, signal
+from pathlib import Path
+from service.lifeline import starting
+
+if __name__ == "__main__":
+    child = multiprocessing.get_context("spawn").Process(target=signal.pause)
+    with starting():
+        child.start()
+    print(Path(f"/proc/{child.pid}/status").read_text())
+    child.kill()
+"""
+
+
+def test_a_child_is_deaf_to_ctrl_c_from_its_first_moment(tmp_path: Path) -> None:
+    script = tmp_path / "deaf.py"
+    script.write_text(DEAF)
+    words = check_output([sys.executable, str(script)], text=True).split()
+    blocked = int(words[words.index("SigBlk:") + 1], 16)
+    assert blocked & 1 << (signal.SIGINT - 1)
+    assert not blocked & 1 << (signal.SIGTERM - 1)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupt_waits_until_a_child_is_started(number: signal.Signals) -> None:
+    came: list[int] = []
+    before = signal.signal(number, lambda number, _: came.append(number))
+    try:
+        with starting():
+            os.kill(os.getpid(), number)
+            assert came == []
+        assert came == [number]
+    finally:
+        signal.signal(number, before)

@@ -5,12 +5,16 @@ import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
+from subprocess import Popen
+from typing import Any, TypeVar
 
 T = TypeVar("T")
 
 LOOK = 0.02
 """s between the first two looks"""
+
+LONG = 120.0
+"""s that nothing takes, even on a busy machine"""
 
 SELDOM = 0.25
 """s between two looks at most"""
@@ -19,7 +23,7 @@ LATE = 0.1
 """share of the time waited that may pass until the next look: a look costs both sides"""
 
 
-def until(look: Callable[[], T | None], *, within: float = 30.0) -> T:
+def until(look: Callable[[], T | None], *, within: float = LONG) -> T:
     """What a look finds, as soon as it finds something."""
     start = time.monotonic()
     while not (found := look()):
@@ -27,6 +31,11 @@ def until(look: Callable[[], T | None], *, within: float = 30.0) -> T:
         assert waited < within, f"not within {within:g} s"
         threading.Event().wait(min(max(LOOK, LATE * waited), SELDOM))
     return found
+
+
+def ended(process: Popen[Any]) -> int:
+    """Exit code of a process that ends by itself, or was told to."""
+    return process.wait(LONG)
 
 
 def is_alive(pid: int) -> bool:

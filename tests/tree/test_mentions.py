@@ -18,7 +18,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from docs.hooks.command_page import commands as commands_below
-from service.cli.main import parser
+from service.cli.commands import parser
 from tests.docs.pages import PAGES, ROOT, blocks, name_of
 
 LANGUAGES = {

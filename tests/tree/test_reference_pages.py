@@ -15,7 +15,7 @@ from docs.hooks.express.reader import read_schemas
 from docs.hooks.markdown import cell, code
 from docs.hooks.rest_page import openapi_document, operations, rest_page
 from service.cli import options
-from service.cli.main import parser
+from service.cli.commands import parser
 from stepnc_model.errors import Severity, StepNcError
 from tests.docs.pages import DOCS, ROOT, section
 from tests.tree.sources import house

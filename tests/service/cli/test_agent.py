@@ -9,8 +9,10 @@ from pathlib import Path
 import httpx
 import pytest
 
+from service.cli.interrupts import INTERRUPTED
 from service.cli.main import main
-from service.cli.options import BAD_INPUT, INTERRUPTED, OK
+from service.cli.options import BAD_INPUT, OK
+from tests.service.waiting import ended
 
 PART = Path(__file__).parents[3] / "examples" / "parts" / "paper000.stpnc"
 STEPNC = [sys.executable, "-c", "from service.cli.main import main; main()", "agent"]
@@ -38,7 +40,7 @@ def test_a_run_is_served_and_recorded_until_it_is_interrupted(
             assert end.value.code == OK
             assert "365 rows" in capsys.readouterr().out
             process.send_signal(signal.SIGINT)
-            process.wait(30)
+            ended(process)
             assert process.returncode in {0, INTERRUPTED}
             assert "Traceback" not in process.stderr.read()
         finally:
@@ -66,7 +68,7 @@ def test_puts_schemas_and_a_broker_are_wired(tmp_path: Path) -> None:
             schema = httpx.get(f"{found[0]}/schemas/MTConnectStreams_2.7.xsd", timeout=30.0)
             assert schema.text == "<schema/>"
             process.send_signal(signal.SIGINT)
-            process.wait(30)
+            ended(process)
             assert process.returncode in {0, INTERRUPTED}
             rest = process.stderr.read()
             assert "Traceback" not in rest

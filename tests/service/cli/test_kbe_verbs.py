@@ -270,7 +270,7 @@ def test_an_export_that_is_asked_to_end_leaves_what_was_there(
     file = tmp_path / "outcomes.json"
     file.write_text("before", encoding="ascii")
     code = (
-        "import os, signal, sys\n"
+        "import os, signal\n"
         "from service.knowledge import export\n"
         "from service.cli.main import main\n"
         "rows = export.outcome_rows\n"
@@ -279,7 +279,7 @@ def test_an_export_that_is_asked_to_end_leaves_what_was_there(
         "        if number == 5000: os.kill(os.getpid(), signal.SIGTERM)\n"
         "        yield row\n"
         "export.outcome_rows = asked\n"
-        "main(sys.argv[1:])"
+        "main()"
     )
     words = ("kbe", "export", "outcomes", "--kb", kb, "-o", str(file))
     answer = subprocess.run(

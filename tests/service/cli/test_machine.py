@@ -2,13 +2,10 @@
 
 import json
 import re
-import signal
-from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
-from service.cli.machine import interruptible
 from service.cli.main import main
 from service.cli.options import BAD_INPUT, LIMIT_EXCEEDED, OK
 from simulator.library import load_machine
@@ -143,23 +140,3 @@ def test_calibrate_says_what_it_wants(
     assert calibrate(path, "--machine", "vmc15") == BAD_INPUT
     told = capsys.readouterr().err
     assert told == "error: name a STEP-NC program, or NC code with --nc\n"
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupt_stays_one_though_a_compiler_loses_it(number: signal.Signals) -> None:
-    before = signal.getsignal(number)
-
-    def lose() -> None:
-        with interruptible():
-            with suppress(KeyboardInterrupt):
-                signal.raise_signal(number)
-            raise RuntimeError
-
-    with pytest.raises(KeyboardInterrupt):
-        lose()
-    assert signal.getsignal(number) is before
-
-
-def test_another_failure_stays_what_it_is() -> None:
-    with pytest.raises(RuntimeError), interruptible():
-        raise RuntimeError

@@ -8,6 +8,7 @@ import pytest
 from service.execution.executors import MOST_LOSSES, processes, results
 from stepnc_model.errors import StepNcError
 from tests.service.execution import work
+from tests.service.waiting import until
 
 
 def test_every_task_has_one_result() -> None:
@@ -50,3 +51,18 @@ def test_work_that_ends_every_process_is_given_up() -> None:
 def test_an_error_of_the_work_is_that_of_the_caller() -> None:
     with pytest.raises(ValueError, match="number 1"):
         list(results(processes, work.refuse, [(1,)], tell=pytest.fail, what="numbers"))
+
+
+def test_what_is_done_when_the_caller_is_interrupted_is_broken_off(tmp_path: Path) -> None:
+    mark = tmp_path / "mark"
+
+    def interrupted() -> None:
+        with processes(1) as pool:
+            for _ in range(3):
+                pool.submit(work.go_on, mark)
+            until(mark.exists)
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert not mark.exists()

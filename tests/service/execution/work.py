@@ -1,6 +1,7 @@
 """Work that other processes do in tests."""
 
 import os
+import threading
 import time
 from pathlib import Path
 
@@ -58,3 +59,12 @@ def take_time(seconds: float) -> float:
     """Wait: what a cluster has begun when it is killed."""
     time.sleep(seconds)
     return seconds
+
+
+def go_on(mark: Path) -> None:
+    """Work for ever, beside a file that is removed when this is broken off."""
+    mark.touch()
+    try:
+        threading.Event().wait()
+    finally:
+        mark.unlink()

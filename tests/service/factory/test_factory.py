@@ -13,6 +13,7 @@ from pyarrow import parquet
 
 from service.cli.main import main
 from tests.every_case import every_case
+from tests.service.waiting import ended
 
 SHOPS = Path(__file__).parents[3] / "examples" / "shops"
 PAPER = SHOPS / "paper003.toml"
@@ -229,7 +230,7 @@ def test_an_interrupted_run_leaves_what_was_made(shop: Path, tmp_path: Path) -> 
                 break
         process.send_signal(signal.SIGINT)
         process.stderr.read()
-        assert process.wait(60) == 130
+        assert ended(process) == 130
     found = rows(out / "saw.partial.csv")
     assert len(found) > 1000
     assert all(None not in each.values() for each in found)

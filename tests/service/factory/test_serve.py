@@ -19,7 +19,7 @@ from service.requests.recording import RecordingRequest
 from simulator.client.connection import AgentClient
 from stepnc_model.errors import StepNcError
 from tests.service.factory.shops import program_file
-from tests.service.waiting import environment, until
+from tests.service.waiting import ended, environment, until
 from tests.simulator.agent.conftest import require_valid
 
 STEPNC = Path(sys.executable).with_name("stepnc")
@@ -49,7 +49,7 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         yield until(found, within=120.0)
     finally:
         process.send_signal(signal.SIGINT)
-        code = process.wait(20.0)
+        code = ended(process)
     assert code in {0, 130}, log.read_text()
     assert "Traceback" not in log.read_text()
 

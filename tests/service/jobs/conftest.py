@@ -20,7 +20,7 @@ from service.storage.jobs import Job, JobKind, JobRequest, JobState
 from tests.postgres import new_database, new_server, postgres_url
 from tests.service.rest.samples import SAMPLE
 from tests.service.shop import outcomes
-from tests.service.waiting import environment, until
+from tests.service.waiting import ended, environment, until
 
 __all__ = ["new_database", "new_server", "postgres_url"]
 
@@ -76,7 +76,7 @@ class Shop:
         for runner in self.runners:
             runner.send_signal(signal.SIGTERM)
         for runner in self.runners:
-            runner.wait(30.0)
+            ended(runner)
 
     def order(self, kind: JobKind, program: str | None = None, **words: object) -> Job:
         """A job with the usual request, but for some words."""

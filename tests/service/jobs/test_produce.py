@@ -9,7 +9,7 @@ from service.storage import jobs
 from service.storage.jobs import Job, JobKind, JobRequest, JobState
 from tests.service.factory.shops import TIMED
 from tests.service.jobs.conftest import Shop
-from tests.service.waiting import until
+from tests.service.waiting import ended, until
 
 
 def ordered(shop: Shop, **words: object) -> Job:
@@ -59,7 +59,7 @@ def test_a_live_shop_is_not_run_twice(own_shop: Shop) -> None:
     job = ordered(shop, pace=1.0)
     until(lambda: shop.job(job.id).state is JobState.RUNNING)
     runner.kill()
-    runner.wait(10.0)
+    ended(runner)
     shop.start()
     found = shop.over(job.id)
     assert found.state is JobState.FAILED

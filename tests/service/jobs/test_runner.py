@@ -16,7 +16,7 @@ from service.storage import jobs
 from service.storage.folder import DATABASE, open_data_folder
 from service.storage.jobs import JobKind, JobState
 from tests.service.jobs.conftest import IMPATIENT, MAIN, Shop
-from tests.service.waiting import children, is_alive, until
+from tests.service.waiting import children, ended, is_alive, until
 
 
 def process_of(shop: Shop, id: str) -> int:
@@ -179,8 +179,8 @@ def test_a_killed_runner_leaves_nobody_and_the_next_one_finishes_its_job(
     below = children(killed.pid)
     assert {process_of(own_shop, id), process_of(own_shop, trial)} <= below
     killed.kill()
-    killed.wait(10.0)
-    until(lambda: not any(map(is_alive, below)), within=20.0)
+    ended(killed)
+    until(lambda: not any(map(is_alive, below)))
     assert own_shop.job(id).state is JobState.RUNNING
     own_shop.start()
     job = own_shop.over(id)
@@ -198,8 +198,8 @@ def test_a_runner_that_is_told_to_stop_ends_its_jobs_for_the_next_one(own_shop: 
     below = children(first.pid)
     first.send_signal(signal.SIGINT)
     first.send_signal(signal.SIGTERM)
-    assert first.wait(20.0) == 0
-    until(lambda: not any(map(is_alive, below)), within=20.0)
+    assert ended(first) == 0
+    until(lambda: not any(map(is_alive, below)))
     with runner.locked(own_shop.data_folder.root):
         """free at once"""
     assert own_shop.job(id).state is JobState.RUNNING

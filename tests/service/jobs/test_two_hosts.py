@@ -22,7 +22,7 @@ from service.storage import jobs
 from service.storage.folder import DataFolder, open_data_folder
 from service.storage.jobs import JobKind, JobRequest, JobState
 from tests.postgres import AUDIT, Server, ServerMaker
-from tests.service.waiting import environment, until
+from tests.service.waiting import ended, environment, until
 
 MAIN = """
 import os, sys
@@ -65,7 +65,7 @@ class Host:
     def kill(self) -> None:
         assert self.process is not None
         self.signal(signal.SIGKILL)
-        self.process.wait(20.0)
+        ended(self.process)
         self.process = None
 
     @property

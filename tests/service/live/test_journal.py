@@ -12,6 +12,7 @@ from service.errors import Unavailable
 from service.live.journal import LONGEST, append, read_on
 from tests.every_case import every_case
 from tests.service.live.room import within_room
+from tests.service.waiting import ended
 
 Entries = st.lists(
     st.dictionaries(st.text(max_size=5), st.one_of(st.text(max_size=9), st.integers())),
@@ -132,7 +133,7 @@ def test_lines_of_several_processes_are_never_mixed(tmp_path: Path) -> None:
     file = tmp_path / "journal"
     words = [sys.executable, "-c", APPENDER, str(file)]
     writers = [Popen([*words, name]) for name in "abc"]
-    assert [writer.wait(60.0) for writer in writers] == [0, 0, 0]
+    assert [ended(writer) for writer in writers] == [0, 0, 0]
     lines = read_on(file, 0).lines
     for name in "abc":
         assert [line["number"] for line in lines if line["of"] == name] == list(range(200))

@@ -16,7 +16,7 @@ import httpx
 from service.storage import keys
 from service.storage.folder import open_data_folder
 from service.storage.keys import Role
-from tests.service.waiting import children, environment, is_alive, until
+from tests.service.waiting import children, ended, environment, is_alive, until
 
 STEPNC = Path(sys.executable).with_name("stepnc")
 
@@ -97,9 +97,9 @@ class Server:
             return 0
         below = children(self.pid)
         self._process.send_signal(signal.SIGTERM)
-        code = self._process.wait(30.0)
+        code = ended(self._process)
         self._process = None
-        until(lambda: not any(map(is_alive, below)), within=20.0)
+        until(lambda: not any(map(is_alive, below)))
         return code
 
     def kill(self) -> None:
@@ -110,7 +110,7 @@ class Server:
         for pid in below:
             with suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
-        self._process.wait(10.0)
+        ended(self._process)
         self._process = None
         until(lambda: not any(map(is_alive, below)))
 

@@ -25,7 +25,7 @@ from stepnc_model.errors import StepNcError
 from tests.service.rest.samples import SAMPLE
 from tests.service.rest.server import Server, create_key, is_problem, made, over
 from tests.service.shop import outcomes
-from tests.service.waiting import children, is_alive, until
+from tests.service.waiting import children, ended, is_alive, until
 
 DATA = SAMPLE.read_bytes()
 
@@ -90,7 +90,7 @@ def test_a_killed_web_process_or_runner_is_replaced(tmp_path: Path) -> None:
         id = made(client.post("/v1/simulations", json={"program_id": program, "pace": 40.0}))
         until(lambda: client.get(f"/v1/jobs/{id}").json()["state"] == "running")
         os.kill(first, signal.SIGKILL)
-        until(lambda: runner_of(server) != first, within=30.0)
+        until(lambda: runner_of(server) != first)
         job = over(client, id)
         assert (job["state"], job["attempt"]) == ("succeeded", 2)
         assert client.get("/readyz").status_code == 200
@@ -100,7 +100,7 @@ def signalled(server: Server, number: signal.Signals) -> int:
     """Exit code of the process that was started, which alone is told to end."""
     os.kill(server.pid, number)
     assert server._process is not None
-    code = server._process.wait(20.0)
+    code = ended(server._process)
     server._process = None
     return code
 
@@ -116,7 +116,7 @@ def test_a_stop_frees_the_folder_at_once_and_a_kill_ends_everything(tmp_path: Pa
         server.start()
         below = children(server.pid)
         assert signalled(server, signal.SIGKILL) == -signal.SIGKILL
-        until(lambda: not any(map(is_alive, below)), within=20.0)
+        until(lambda: not any(map(is_alive, below)))
         server.start()
 
 

@@ -27,6 +27,7 @@ from simulator.agent.documents import as_json
 from simulator.agent.mqtt import MqttPublisher
 from simulator.agent.requests import StreamQuery
 from stepnc_model.errors import StepNcError
+from tests.service.waiting import ended
 from tests.simulator.agent.conftest import BEGIN, mill
 
 MODEL = mill("2.7")
@@ -54,7 +55,7 @@ def broker(port: int, folder: Path) -> Iterator[None]:
             yield
         finally:
             process.kill()
-            process.wait(10)
+            ended(process)
 
 
 def is_open(port: int) -> bool:
