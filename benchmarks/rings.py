@@ -4,7 +4,6 @@ import ast
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from itertools import groupby
 from pathlib import Path
 
 from benchmarks.house import PRODUCT
@@ -79,9 +78,12 @@ def stages(graph: Graph, path: str) -> Iterator[Stage]:
     if own:
         yield Stage(ring=1, files=tuple(sorted(own)), marker=SLOW)
     away = distances(graph, path)
-    near = [each for each in away if each in tests - own]
-    for distance, files in groupby(near, key=lambda each: away[each]):
-        yield Stage(ring=min(distance, 2), files=tuple(files), marker=QUICK)
+    near = {each: away[each] for each in away if each in tests - own}
+    # Beside the mirror, tests of the neighbours are the nearest.
+    near |= {each: min(near[each], 2) for each in near if Path(each).parent == folder}
+    for distance in sorted(set(near.values())):
+        files = tuple(each for each in near if near[each] == distance)
+        yield Stage(ring=min(distance, 2), files=files, marker=QUICK)
     rest = sorted(tests - own - away.keys())
     yield Stage(ring=3, files=(*rest, *PRODUCT), marker=QUICK)
     yield Stage(ring=4, files=tuple(sorted(tests - own)), marker=SLOW)

@@ -126,6 +126,7 @@ def folder(tmp_path: Path) -> Path:
         "tests/test_a.py": "from kbe.a import X",
         "tests/test_c_too.py": "from kbe.c import X",
         "tests/kbe/test_b.py": "from kbe.b import X",
+        "tests/kbe/test_d.py": "from tests.test_a import X",
         "tests/test_none.py": "",
         "tests/architecture/test_all.py": "import kbe.c",
     }
@@ -142,16 +143,18 @@ def test_tests_are_in_rings_about_a_module(folder: Path) -> None:
         (1, ("kbe/c.py", "tests/kbe/test_c.py")),
         (1, ("tests/kbe/test_c.py",)),
         (1, ("tests/test_c_too.py",)),
-        (2, ("tests/kbe/test_b.py",)),
+        (2, ("tests/kbe/test_b.py", "tests/kbe/test_d.py")),
         (2, ("tests/test_a.py",)),
         (3, ("tests/test_none.py", "stepnc_model")),
-        (4, ("tests/kbe/test_b.py", "tests/test_a.py")),
+        (4, ("tests/kbe/test_b.py", "tests/kbe/test_d.py")),
     ]
 
 
 def test_a_module_without_a_mirror_has_its_folder(folder: Path) -> None:
     first = next(stages(imports(folder), "kbe/a.py"))
-    assert first.files == ("kbe/a.py", "tests/kbe/test_b.py", "tests/kbe/test_c.py")
+    assert first.files == (
+        "kbe/a.py", "tests/kbe/test_b.py", "tests/kbe/test_c.py", "tests/kbe/test_d.py",
+    )  # fmt: skip
 
 
 STAGE = Stage(ring=1, files=("tests/test_x.py",), marker="not slow")
