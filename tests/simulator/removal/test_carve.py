@@ -7,7 +7,7 @@ import manifold3d
 import numpy as np
 import pytest
 
-from simulator.motion.segments import Floats, lines
+from simulator.motion.segments import Floats, arc, lines
 from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
 from stepnc_model.program import Stock
@@ -61,6 +61,17 @@ def test_slot_is_as_wide_as_the_tool(y: float) -> None:
     work = MillingStock(BOX, cell=0.1)
     work.cut(lines([(-6.0, y, -2.0), (46.0, y, -2.0)], speed=1.0), Cutter(diameter=8.0))
     assert work.volume == pytest.approx(8.0 * 40.0 * 2.0, rel=1e-4)
+
+
+@pytest.mark.parametrize("turn", [2.0 * pi, -2.0 * pi])
+@pytest.mark.parametrize("corner_radius", [0.0, 1.0])
+def test_groove_along_a_circle_is_a_ring(turn: float, corner_radius: float) -> None:
+    work = MillingStock(BOX, cell=0.1)
+    circle = arc((30.0, 15.0, -2.0), (20.0, 15.0, -2.0), turn, speed=1.0)
+    work.cut(circle, Cutter(diameter=6.0, corner_radius=corner_radius))
+    # Pappus: the section of the tool, less its two corners, along the circle of its axis.
+    section = 6.0 * 2.0 - 2.0 * (1.0 - 0.25 * pi) * corner_radius**2
+    assert work.volume == pytest.approx(section * 2.0 * pi * 10.0, rel=1e-3)
 
 
 def test_cutting_through_ends_at_the_bottom() -> None:
