@@ -87,6 +87,7 @@ THROUGH = {
     "service/rest/test_monitors.py": ("service/rest/monitor_views.py",),
     "service/rest/test_programs.py": ("service/rest/uploads.py",),
     "service/rest/test_raw_part.py": ("service/requests/stored_stock.py",),
+    "service/rest/test_serve.py": ("service/web_server.py",),
     "service/rest/test_verifications.py": ("service/rest/logged.py",),
     "service/storage": ("service/storage/connection.py",),
     "service/test_keep_going.py": (
