@@ -35,7 +35,7 @@ def test_the_simulation_prints_what_the_readme_shows(
     part = tmp_path / "part.stpnc"
     first = re.search(r"    \$ optimise (.*) -o part\.stpnc\n", README)
     shown = re.search(
-        r"    \$ stepnc simulate part\.stpnc (.*) -o run\.parquet --report run\.html\n"
+        r"    \$ stepnc simulate part\.stpnc (.*) -o run\.csv --report run\.html\n"
         r"((?:    [^$].*\n)+)",
         README,
     )
@@ -44,7 +44,7 @@ def test_the_simulation_prints_what_the_readme_shows(
     with pytest.raises(SystemExit):
         optimise_main([*first[1].split(), "-o", str(part)])
     capsys.readouterr()
-    run, page = tmp_path / "run.parquet", tmp_path / "run.html"
+    run, page = tmp_path / "run.csv", tmp_path / "run.html"
     with pytest.raises(SystemExit) as stopped:
         main([
             "simulate", str(part), *shown[1].split(), "-o", str(run), "--report", str(page)
