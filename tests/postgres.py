@@ -51,7 +51,7 @@ class Server:
             group=self.user or None,
             extra_groups=[] if self.user else None,
             stdout=subprocess.DEVNULL,
-            timeout=60.0,
+            timeout=120.0,
         )
 
     def start(self) -> None:

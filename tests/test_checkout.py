@@ -28,7 +28,7 @@ def test_an_installed_program_runs_the_code_of_this_checkout(
         env={**os.environ, "PYTHONVERBOSE": "1"},
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=120.0,
         check=True,
     )
     assert str(ROOT / "service" / "cli" / "main.py") in done.stderr

@@ -77,7 +77,7 @@ print("survived", flush=True)
 
 def filled(command: list[str], outcomes: list[ProcessOutcome]) -> str:
     done = subprocess.run(
-        command, input=pickle.dumps(outcomes), capture_output=True, timeout=60, check=False
+        command, input=pickle.dumps(outcomes), capture_output=True, timeout=120.0, check=False
     )
     return (done.stdout + done.stderr).decode()
 
@@ -93,7 +93,10 @@ def test_full_disk_keeps_what_was_accepted(tmp_path: Path, outcomes: OutcomeMake
     """A disk of 1 MiB of our own, that nobody else sees and that goes with its program."""
     mount = f"mount -t tmpfs -o size=1m tmpfs '{tmp_path}'"
     trial = subprocess.run(
-        ["unshare", "--mount", "sh", "-c", mount], capture_output=True, check=False, timeout=60
+        ["unshare", "--mount", "sh", "-c", mount],
+        capture_output=True,
+        check=False,
+        timeout=120.0,
     )
     if trial.returncode:
         pytest.skip(f"may not mount: {trial.stderr.decode().strip()}")

@@ -57,7 +57,7 @@ def test_programs_that_make_it_at_once_both_succeed(url: str) -> None:
         assert program.stdin is not None
         program.stdin.write("go\n")
         program.stdin.flush()
-    assert [program.communicate(timeout=60)[0] for program in programs] == ["0\n"] * 2
+    assert [program.communicate(timeout=120.0)[0] for program in programs] == ["0\n"] * 2
     assert [program.returncode for program in programs] == [0] * 2
 
 
@@ -69,13 +69,13 @@ def test_mode_of_a_new_file_is_set_by_many_at_once(sqlite_place: UrlMaker) -> No
     def set_modes() -> None:
         for place in places:
             engine = connected(place)
-            gate.wait(timeout=60)
+            gate.wait(timeout=120.0)
             _write_ahead(engine, place)
             engine.dispose()
 
     with ThreadPoolExecutor(4) as pool:
         for each in [pool.submit(set_modes) for _ in range(4)]:
-            each.result(timeout=60)
+            each.result(timeout=120.0)
 
 
 def test_newer_schema_is_left_alone(store: Store, url: str) -> None:

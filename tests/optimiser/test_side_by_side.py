@@ -105,7 +105,7 @@ def test_a_late_process_is_not_waited_for() -> None:
 
     def do(step: Any) -> int:
         if os.getpid() != here:
-            time.sleep(5.0)
+            time.sleep(600.0)
         return int(step)
 
     steps: Any = list(range(2 * LEAST))
@@ -113,7 +113,7 @@ def test_a_late_process_is_not_waited_for() -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "SOON", 0.01)
         assert list(side_by_side(steps, do, Shelf({}))) == steps
-    assert time.monotonic() - begin < 4.0
+    assert time.monotonic() - begin < 120.0
 
 
 def test_where_all_meet_it_is_tried_ever_more_rarely() -> None:

@@ -38,7 +38,7 @@ def test_the_wheel_has_every_file_of_the_packages(wheel: Path) -> None:
     listed = subprocess.run(
         ["git", "ls-files", "stepnc_model", "simulator", "optimiser", "controller", "kbe",
          "service"],
-        cwd=ROOT, capture_output=True, text=True, timeout=60, check=True,
+        cwd=ROOT, capture_output=True, text=True, timeout=120.0, check=True,
     )  # fmt: skip
     assert set(listed.stdout.split("\n")) - {""} <= names
     assert not [name for name in names if name.startswith(("tests/", "benchmarks/"))]

@@ -94,7 +94,7 @@ def object_store(folder: Path) -> Iterator[Gate]:
     def is_made() -> bool:
         assert process.poll() is None, (folder / "store.log").read_text("utf-8")
         with suppress(httpx.TransportError):
-            return httpx.put(url, trust_env=False, timeout=20.0).is_success
+            return httpx.put(url, trust_env=False, timeout=120.0).is_success
         return False
 
     try:

@@ -49,7 +49,7 @@ def lines_of(folder: Path, script: str, *words: str) -> list[dict[str, Any]]:
     """The log of an interpreter, line by line."""
     ran = subprocess.run(
         [sys.executable, "-c", BEGIN + script, *words],
-        env=environment(folder), cwd=folder, capture_output=True, text=True, timeout=60.0,
+        env=environment(folder), cwd=folder, capture_output=True, text=True, timeout=120.0,
         check=False,
     )  # fmt: skip
     assert ran.stdout == ""

@@ -71,11 +71,11 @@ def served(request: AgentRequest, run: PlayableRun) -> Iterator[str]:
     host, port = listener.getsockname()
     url = f"http://{host}:{port}"
     try:
-        httpx.get(url, timeout=30.0)
+        httpx.get(url, timeout=120.0)
         yield url
     finally:
         server[0].should_exit = True
-        thread.join(30)
+        thread.join(120.0)
 
 
 def all_samples(url: str) -> list[Any]:
@@ -83,7 +83,7 @@ def all_samples(url: str) -> list[Any]:
     at, seen = 1, []
     while True:
         root = etree.fromstring(
-            httpx.get(f"{url}/sample?from={at}&count=5000", timeout=30.0).content
+            httpx.get(f"{url}/sample?from={at}&count=5000", timeout=120.0).content
         )
         found = observations(root)
         seen += found

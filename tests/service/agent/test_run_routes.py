@@ -40,11 +40,11 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     thread.start()
     host, port = listener.getsockname()
     try:
-        httpx.get(f"http://{host}:{port}/probe", timeout=30.0)
+        httpx.get(f"http://{host}:{port}/probe", timeout=120.0)
         yield f"http://{host}:{port}"
     finally:
         servers[0].should_exit = True
-        thread.join(30)
+        thread.join(120.0)
 
 
 @pytest.fixture

@@ -31,7 +31,7 @@ def test_a_run_is_served_and_recorded_until_it_is_interrupted(
                 assert told, process.wait()
             found = re.search(r"http://127\.0\.0\.1:\d+", told)
             assert found is not None
-            answer = httpx.get(f"{found[0]}/current", timeout=30.0)
+            answer = httpx.get(f"{found[0]}/current", timeout=120.0)
             assert answer.status_code == 200
             assert "MTConnectStreams" in answer.text
             output = tmp_path / "run.parquet"
@@ -62,10 +62,10 @@ def test_puts_schemas_and_a_broker_are_wired(tmp_path: Path) -> None:
             assert "MQTT broker 127.0.0.1:1: not reached" in told
             found = re.search(r"http://127\.0\.0\.1:\d+", told)
             assert found is not None
-            answer = httpx.put(f"{found[0]}/paper000?block=G4", timeout=30.0)
+            answer = httpx.put(f"{found[0]}/paper000?block=G4", timeout=120.0)
             assert answer.text == "<success/>"
-            assert ">G4</Block>" in httpx.get(f"{found[0]}/current", timeout=30.0).text
-            schema = httpx.get(f"{found[0]}/schemas/MTConnectStreams_2.7.xsd", timeout=30.0)
+            assert ">G4</Block>" in httpx.get(f"{found[0]}/current", timeout=120.0).text
+            schema = httpx.get(f"{found[0]}/schemas/MTConnectStreams_2.7.xsd", timeout=120.0)
             assert schema.text == "<schema/>"
             process.send_signal(signal.SIGINT)
             ended(process)

@@ -284,7 +284,7 @@ def test_an_export_that_is_asked_to_end_leaves_what_was_there(
     words = ("kbe", "export", "outcomes", "--kb", kb, "-o", str(file))
     answer = subprocess.run(
         [sys.executable, "-c", code, *words],
-        capture_output=True, text=True, timeout=30.0, check=False,
+        capture_output=True, text=True, timeout=120.0, check=False,
     )  # fmt: skip
     assert (answer.returncode, answer.stderr) == (INTERRUPTED, "interrupted\n")
     assert file.read_text(encoding="ascii") == "before"

@@ -124,7 +124,7 @@ def opened_page(browser: Browser, served: Server) -> Iterator[Page]:
         base_url=served.url, viewport=WIDE, accept_downloads=True, reduced_motion="reduce"
     )
     page = context.new_page()
-    page.set_default_timeout(30_000)
+    page.set_default_timeout(120_000)
     said: list[str] = []
     page.on("pageerror", lambda error: said.append(f"error: {error}"))
     page.on(

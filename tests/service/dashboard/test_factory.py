@@ -82,9 +82,9 @@ def test_a_live_shop_fails_is_repaired_and_ends_with_its_figures(
     page.locator("#shop-pace").select_option("1000")
     page.locator("#shop-run").click()
     mill = page.locator('[data-machine="mill-2"]')
-    expect(mill.locator(".state-name")).to_have_text("machining", timeout=60_000)
+    expect(mill.locator(".state-name")).to_have_text("machining", timeout=120_000)
     expect(page.locator("#figure-good .value")).to_have_text(
-        re.compile(r"[1-9]"), timeout=30_000
+        re.compile(r"[1-9]"), timeout=120_000
     )
     expect(page.locator('[data-buffer="blanks"]')).to_contain_text("of 4 batches")
     page.locator("#pace").select_option("300")
@@ -92,22 +92,22 @@ def test_a_live_shop_fails_is_repaired_and_ends_with_its_figures(
     mill.locator("[data-fail]").click()
     page.locator("#repair").fill("60")
     page.locator("#confirm-yes").click()
-    expect(mill.locator(".state-name")).to_have_text("repair", timeout=15_000)
+    expect(mill.locator(".state-name")).to_have_text("repair", timeout=120_000)
     expect(mill.locator("[data-fail]")).to_be_disabled()
     expect(page.locator('#log [data-kind="failed"]')).to_contain_text("mill-2 failed")
     expect(page.locator("#live-processes")).to_contain_text("plate step 2 on mill-1")
     keep(page, "factory")
     expect(page.locator('#log [data-kind="repaired"]')).to_contain_text(
-        "mill-2 is repaired", timeout=40_000
+        "mill-2 is repaired", timeout=120_000
     )
     # The page that is loaded anew shows the run as it goes on.
     page.reload()
-    expect(mill.locator(".state-name")).to_have_text(re.compile(r"\w"), timeout=15_000)
+    expect(mill.locator(".state-name")).to_have_text(re.compile(r"\w"), timeout=120_000)
     expect(page.locator('#log [data-kind="failed"]')).to_contain_text("mill-2 failed")
     page.locator("#end").click()
     page.locator("#confirm-yes").click()
     row = page.locator("#result-states tbody tr", has_text="mill-2")
-    expect(row).to_be_visible(timeout=30_000)
+    expect(row).to_be_visible(timeout=120_000)
     heads = page.locator("#result-states thead th").all_inner_texts()
     assert row.locator("th, td").all_inner_texts()[heads.index("repair")] == "1"
     with page.expect_download() as download:
@@ -134,7 +134,7 @@ def test_a_shop_is_run_with_replications(page: Page) -> None:
     page.locator("#shop-replications").fill("4")
     page.locator("#shop-hours").fill("24")
     page.locator("#shop-run").click()
-    expect(page.locator("#result-title")).to_contain_text("4 replications", timeout=60_000)
+    expect(page.locator("#result-title")).to_contain_text("4 replications", timeout=120_000)
     expect(page.locator("#result-line")).to_contain_text("±")
     expect(page.locator("#floor")).to_be_hidden()
 
@@ -158,11 +158,11 @@ def test_the_sample_line_runs_with_its_programs(page: Page) -> None:
     page.locator("#shop-pace").select_option("1000")
     page.locator("#shop-run").click()
     lathe = page.locator('[data-machine="lathe-1"]')
-    expect(lathe).to_contain_text("shaft.stpnc", timeout=90_000)
+    expect(lathe).to_contain_text("shaft.stpnc", timeout=120_000)
     mill = page.locator('[data-machine="mill-1"]')
-    expect(mill).to_contain_text("bracket.stpnc", timeout=60_000)
+    expect(mill).to_contain_text("bracket.stpnc", timeout=120_000)
     page.locator("#window").select_option("")
     page.screenshot(path=SCREENSHOTS / "factory-line.png", full_page=True)
     page.locator("#end").click()
     page.locator("#confirm-yes").click()
-    expect(page.locator("#result")).to_be_visible(timeout=30_000)
+    expect(page.locator("#result")).to_be_visible(timeout=120_000)

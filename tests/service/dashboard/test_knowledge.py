@@ -11,7 +11,7 @@ from tests.service.dashboard.conftest import keep
 def test_a_table_is_made_and_exported(page: Page, tmp_path: Path) -> None:
     page.goto("/dashboard/knowledge.html")
     rows = page.locator("#evaluation tbody tr")
-    expect(rows.first).to_be_visible(timeout=60_000)
+    expect(rows.first).to_be_visible(timeout=120_000)
     with page.expect_download() as download:
         page.locator("#get-csv").click()
     download.value.save_as(tmp_path / "table.csv")
@@ -25,7 +25,7 @@ def test_a_correction_is_reviewed_and_accepted(page: Page) -> None:
     page.goto("/dashboard/knowledge.html")
     page.locator("#review").click()
     accept = page.locator("#factor-table [data-act='accept']")
-    expect(accept.first).to_be_visible(timeout=60_000)
+    expect(accept.first).to_be_visible(timeout=120_000)
     accept.first.click()
     expect(page.locator("#confirm")).to_contain_text("k_c")
     page.locator("#decide-by").fill("A. Smith")

@@ -21,12 +21,12 @@ def start(page: Page, *, pace: str) -> None:
 
 def test_a_run_is_watched_and_its_samples_are_downloaded(page: Page, tmp_path: Path) -> None:
     start(page, pace="10")
-    expect(page.locator("#now-execution")).to_contain_text("ACTIVE", timeout=30_000)
+    expect(page.locator("#now-execution")).to_contain_text("ACTIVE", timeout=120_000)
     expect(page.locator("#now-feed-actual")).to_contain_text(re.compile(r"[1-9]"))
     expect(page.locator("#now-workingstep")).to_contain_text("ROUGH THE FACE")
     expect(page.locator("#run-message")).to_have_text("")
     expect(page.locator("#run-line progress")).to_have_count(0)
-    expect(page.locator("#totals")).to_be_visible(timeout=60_000)
+    expect(page.locator("#totals")).to_be_visible(timeout=120_000)
     expect(page.locator("#now-execution")).to_contain_text("PROGRAM COMPLETED")
     expect(page.locator("#now-spindle")).to_have_text("0")
     at_end = "(slider) => slider.value === slider.max && Number(slider.max) > 100"
@@ -46,7 +46,7 @@ def test_a_run_is_watched_and_its_samples_are_downloaded(page: Page, tmp_path: P
 
 def test_a_recorded_run_shows_how_it_was_at_a_time(page: Page) -> None:
     start(page, pace="0")
-    expect(page.locator("#totals")).to_be_visible(timeout=60_000)
+    expect(page.locator("#totals")).to_be_visible(timeout=120_000)
     page.reload()
     expect(page.locator("#totals")).to_be_visible()
     expect(
@@ -56,7 +56,7 @@ def test_a_recorded_run_shows_how_it_was_at_a_time(page: Page) -> None:
 
 def test_a_cancelled_run_shows_how_it_was_when_it_was_ended(page: Page) -> None:
     start(page, pace="10")
-    expect(page.locator("#now-execution")).to_contain_text("ACTIVE", timeout=30_000)
+    expect(page.locator("#now-execution")).to_contain_text("ACTIVE", timeout=120_000)
     page.locator("#run-cancel").click()
     expect(page.locator("#at-words")).to_contain_text("State when the run was cancelled")
     expect(page.locator("#now-execution")).to_have_text("CANCELLED")

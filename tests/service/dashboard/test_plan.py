@@ -22,7 +22,7 @@ def optimised(page: Page, sample: str) -> None:
     expect(page.locator("#program-shown")).to_contain_text(f"{sample}.stpnc")
     page.locator("#machine").select_option("vmc15")
     page.locator("#optimise").click()
-    expect(page.locator("#steps tr.step").first).to_be_visible(timeout=60_000)
+    expect(page.locator("#steps tr.step").first).to_be_visible(timeout=120_000)
 
 
 def test_a_file_is_uploaded_optimised_and_downloaded(page: Page, tmp_path: Path) -> None:
@@ -34,7 +34,7 @@ def test_a_file_is_uploaded_optimised_and_downloaded(page: Page, tmp_path: Path)
     page.locator("#nc-control").select_option("linuxcnc")
     page.locator("#optimise").click()
     rows = page.locator("#steps tr.step")
-    expect(rows.first).to_be_visible(timeout=60_000)
+    expect(rows.first).to_be_visible(timeout=120_000)
     assert rows.count() == 16
     expect(page.locator("#steps")).to_contain_text("feed per tooth 0.35 mm reaches its bound")
     contour = page.locator("#steps tr.step", has_text="ROUGH CONTOUR")
@@ -61,7 +61,7 @@ def test_a_file_is_uploaded_optimised_and_downloaded(page: Page, tmp_path: Path)
     table.value.save_as(tmp_path / "plan.json")
     plan = json.loads((tmp_path / "plan.json").read_text(encoding="utf-8"))
     assert plan["total_time_s"]["after"] < plan["total_time_s"]["before"]
-    expect(page.locator("#path-card")).to_be_visible(timeout=90_000)
+    expect(page.locator("#path-card")).to_be_visible(timeout=120_000)
     for view, drawn in (("2d", "#path-flat-plot canvas"), ("3d", "#path-plot")):
         page.locator(f"#path-view [data-value='{view}']").click()
         for colour in page.locator("#path-colour option").all():
@@ -90,14 +90,14 @@ def test_a_plan_stands_beside_its_run(page: Page) -> None:
     page.locator("#confirm").check()
     page.locator("#optimise").click()
     figures = page.locator("#confirmed-figures")
-    expect(figures.locator("tbody tr")).to_have_count(5, timeout=60_000)
+    expect(figures.locator("tbody tr")).to_have_count(5, timeout=120_000)
     expect(figures).to_contain_text("FINISH CONTOUR")
     expect(figures).to_contain_text("1.000")
     expect(page.locator("#confirmed-passed")).to_be_empty()
     again = page.url
     page.goto("/dashboard/plan.html")
     page.goto(again)
-    expect(page.locator("#confirmed")).to_be_visible(timeout=60_000)
+    expect(page.locator("#confirmed")).to_be_visible(timeout=120_000)
     expect(page.locator("#confirm")).to_be_checked()
 
 

@@ -116,7 +116,7 @@ class Shop:
             is_shown = series.exists() and series.stat().st_size > 2000
             return found if found.state is JobState.RUNNING and is_shown else None
 
-        return until(look, within=60.0)
+        return until(look)
 
 
 ShopMaker = Callable[[], Shop]

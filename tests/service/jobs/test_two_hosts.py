@@ -110,7 +110,7 @@ class Shop:
         ]  # fmt: skip
 
     def host_of(self, id: str) -> Host:
-        name = until(lambda: self.runner_of(id), within=60.0)
+        name = until(lambda: self.runner_of(id))
         return next(
             host for host in self.hosts
             if host.name and host.name in name
@@ -158,7 +158,7 @@ def test_killed_hosts_lose_no_job_and_no_job_has_two_results(shop: Shop) -> None
     pause = Event()
     for kill in range(KILLS):
         # One that is still starting would tell nothing.
-        host = random.choice(until(shop.busy, within=60.0))
+        host = random.choice(until(shop.busy))
         pause.wait(random.uniform(0.0, 0.5))
         host.kill()
         if kill % 5 == 4:
@@ -194,16 +194,16 @@ def test_a_host_that_is_gone_loses_its_job_to_another_and_a_frozen_one_gives_up(
     frozen = shop.host_of(trial)
     frozen.signal(signal.SIGSTOP)
     # A run with people in it is not run twice.
-    ended = until(lambda: over(shop, trial), within=30.0)
+    ended = until(lambda: over(shop, trial))
     assert ended.state is JobState.FAILED
     assert ended.problem is not None
     assert "cannot be resumed" in ended.problem["detail"]
     frozen.signal(signal.SIGCONT)
     # The program of this one does not exist, whoever runs it.
-    assert until(lambda: over(shop, run), within=30.0).state is JobState.FAILED
+    assert until(lambda: over(shop, run)).state is JobState.FAILED
     done = [shop.order() for _ in range(6)]
     for id in done:
-        assert until(partial(over, shop, id), within=30.0).state is JobState.SUCCEEDED
+        assert until(partial(over, shop, id)).state is JobState.SUCCEEDED
     assert jobs.get(shop.data_folder, trial) == ended
 
 
@@ -218,7 +218,7 @@ def test_a_cancel_reaches_the_host_that_runs_the_job(shop: Shop) -> None:
     trial = shop.order(JobKind.TRIAL, inputs={}, seed=0, pace=1.0)
     shop.host_of(trial)
     jobs.cancel(shop.data_folder, trial)
-    assert until(lambda: over(shop, trial), within=30.0).state is JobState.CANCELLED
+    assert until(lambda: over(shop, trial)).state is JobState.CANCELLED
 
 
 def test_a_server_that_goes_away_stops_nobody(new_server: ServerMaker, tmp_path: Path) -> None:
@@ -231,10 +231,10 @@ def test_a_server_that_goes_away_stops_nobody(new_server: ServerMaker, tmp_path:
         shop.host_of(trial)
         before = jobs.get(shop.data_folder, trial)
         server.stop("immediate")
-        until(lambda: "the database does not answer" in host.said(), within=30.0)
+        until(lambda: "the database does not answer" in host.said())
         server.start()
         run = shop.order()
-        assert until(lambda: over(shop, run), within=30.0).state is JobState.SUCCEEDED
+        assert until(lambda: over(shop, run)).state is JobState.SUCCEEDED
         now = jobs.get(shop.data_folder, trial)
         assert (now.state, now.attempt) == (JobState.RUNNING, before.attempt)
     finally:

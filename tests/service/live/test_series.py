@@ -101,7 +101,7 @@ with SeriesWriter(file, ["time_s", "a"]) as writer:
 def test_another_attempt_takes_no_rows_from_under_a_reader(tmp_path: Path) -> None:
     """A file that is cut short while it is mapped ends the process that reads it: SIGBUS."""
     words = [sys.executable, "-c", AGAIN, str(tmp_path / "series.bin")]
-    found = run(words, capture_output=True, text=True, timeout=60.0, check=False)
+    found = run(words, capture_output=True, text=True, timeout=120.0, check=False)
     assert (found.returncode, found.stdout) == (0, "200000 0\n")
 
 

@@ -56,14 +56,14 @@ class PlayedAgent:
 
         self._thread = threading.Thread(target=asyncio.run, args=(work(),))
         self._thread.start()
-        httpx.get(f"{self.url}/probe", timeout=30.0, trust_env=False)
+        httpx.get(f"{self.url}/probe", timeout=120.0, trust_env=False)
 
     def stop(self) -> None:
         """End it, and its connections."""
         if self._server is not None and self._thread is not None:
             self._server.should_exit = True
             self._server.force_exit = True
-            self._thread.join(30.0)
+            self._thread.join(120.0)
         self._server = None
 
 

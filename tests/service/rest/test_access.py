@@ -159,7 +159,7 @@ def test_who_leaves_before_the_end_is_no_fault(service: Server, client: httpx.Cl
         b"POST /v1/programs HTTP/1.1\r\n",
         b"POST /v1/trials HTTP/1.1\r\nContent-Type: application/json\r\n",
     ):
-        with socket.create_connection(("127.0.0.1", service.port), timeout=10.0) as line:
+        with socket.create_connection(("127.0.0.1", service.port), timeout=120.0) as line:
             line.sendall(head + b"Host: localhost\r\nContent-Length: 100\r\n\r\nhello")
     assert client.get("/healthz").status_code == 200
     assert service.faults() == ""
@@ -183,7 +183,7 @@ def test_a_length_that_is_a_lie_or_none_harms_nobody(
     service: Server, client: httpx.Client
 ) -> None:
     for length in ("-1", "x", "9" * 30, "+5"):
-        with socket.create_connection(("127.0.0.1", service.port), timeout=10.0) as line:
+        with socket.create_connection(("127.0.0.1", service.port), timeout=120.0) as line:
             line.sendall(
                 b"POST /v1/trials HTTP/1.1\r\nHost: localhost\r\n"
                 b"Content-Length: " + length.encode() + b"\r\n\r\n{}"

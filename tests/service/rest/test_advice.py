@@ -39,7 +39,7 @@ def test_a_confirmed_advice_tells_what_its_run_found(client: httpx.Client, done:
 def test_a_run_of_a_machine_without_axes_is_refused(client: httpx.Client, done: Done) -> None:
     body = {"machine": "paper002", "is_confirmed": True}
     job = made(client.post(f"/v1/programs/{done.program}/advice", json=body))
-    ended = over(client, job, within=60.0)
+    ended = over(client, job, within=120.0)
     assert ended["state"] == "failed"
     assert "has no data for its axes X, Y, Z" in ended["problem"]["detail"]
 

@@ -126,7 +126,7 @@ def test_a_table_without_the_tool_is_told(client: httpx.Client, code: CodeDone) 
     tools = made(client.post("/v1/files?kind=tools&name=o.csv", content=other), 201)
     wish = {**code.wish, "tools_id": tools}
     job = made(client.post(f"/v1/programs/{code.program}/advice", json=wish))
-    ended = over(client, job, within=60.0)
+    ended = over(client, job, within=120.0)
     assert ended["state"] == "succeeded"
     result = client.get(f"/v1/advice/{job}").json()
     assert result["along_path"]["blocks"] == 0

@@ -70,7 +70,7 @@ def test_of_many_who_saw_the_same_one_alone_changes_it(
     begin = Barrier(6)
 
     def put(number: int) -> int:
-        begin.wait(10.0)
+        begin.wait(120.0)
         text = data + f"\n# {number}".encode()
         headers = {"if-match": seen}
         return client.put(f"{path}/ours-1", content=text, headers=headers).status_code

@@ -68,10 +68,10 @@ def test_few_read_all_rows_of_a_run_at_once() -> None:
         with lock:
             counts[0] += 1
             counts[1] = max(counts)
-        together.wait(30.0)
+        together.wait(120.0)
         with lock:
             counts[0] -= 1
-        together.wait(30.0)
+        together.wait(120.0)
         return number
 
     async def ask() -> list[int]:

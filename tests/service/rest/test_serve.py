@@ -231,7 +231,7 @@ def test_nothing_that_was_answered_is_lost_when_all_is_killed(tmp_path: Path) ->
                 until(partial(runs, client, running))
                 numbers = [each["id"] for each in found]
                 decide_until_it_breaks(client, said, numbers=numbers, when=killer.start)
-            killer.join(30.0)
+            killer.join(120.0)
             server.start()
             with server.client() as client:
                 found = client.get("/v1/corrections").json()["corrections"]

@@ -84,7 +84,7 @@ def require_one_service(hosts: Pair, postgres: Postgres) -> None:
             until(partial(is_running, client, trial))
         change = {"inputs": {"axial_depth_mm": 3.5}}
         until(lambda: other.post(f"/v1/trials/{trial}/changes", json=change).is_success)
-        until(lambda: depth(one, trial) == 3.5, within=30.0)
+        until(lambda: depth(one, trial) == 3.5)
         assert other.post(f"/v1/jobs/{trial}/cancel").status_code == 200
         assert over(one, trial)["state"] == "cancelled"
         postgres.stop("immediate")
@@ -96,7 +96,7 @@ def require_one_service(hosts: Pair, postgres: Postgres) -> None:
             assert client.get("/healthz").status_code == 200
         postgres.start()
         for client in (one, other):
-            until(partial(is_ready, client), within=30.0)
+            until(partial(is_ready, client))
             assert client.get(f"/v1/programs/{program}").status_code == 200
         assert over(one, made(other.post("/v1/reviews", json={})))["state"] == "succeeded"
 
@@ -140,14 +140,14 @@ def require_each_kind(hosts: Pair, log: bytes) -> None:
         }
         live = made(one.post("/v1/factories", json={**shop, "pace": 1000.0}))
         for name, (client, _, _, parts) in asked.items():
-            job = over(client, ids[name], within=120.0)
+            job = over(client, ids[name])
             assert job["state"] == "succeeded", job
             for part in parts:
                 path = f"/v1/{name}/{ids[name]}{part}"
                 answers = [each.get(path) for each in (one, other)]
                 assert [each.status_code for each in answers] == [200, 200], path
                 assert answers[0].content == answers[1].content, path
-        assert over(one, live, within=60.0)["state"] == "succeeded"
+        assert over(one, live)["state"] == "succeeded"
         for part in ("", "/status", "/log", "/states", "/series", "/parts/mill-1"):
             answers = [each.get(f"/v1/factories/{live}{part}") for each in (one, other)]
             assert [each.status_code for each in answers] == [200, 200], answers[0].text

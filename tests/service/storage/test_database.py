@@ -187,6 +187,6 @@ def test_processes_that_open_a_new_file_at_once_lose_nothing(tmp_path: Path) -> 
         writer.stdin.write(b"!")
         writer.stdin.flush()
     for writer in writers:
-        _, told = writer.communicate(timeout=60.0)
+        _, told = writer.communicate(timeout=120.0)
         assert (writer.returncode, told) == (0, b"")
     assert count(FileDatabase(file)) == 4 * 25

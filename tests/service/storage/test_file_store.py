@@ -255,7 +255,7 @@ main(["keys", "list", "--data", sys.argv[1], "--database", "postgresql://u@h/d",
 def test_a_package_that_is_not_installed_is_named(tmp_path: Path) -> None:
     ended = subprocess.run(
         [sys.executable, "-c", WITHOUT, str(tmp_path)],
-        capture_output=True, text=True, timeout=60.0, check=False,
+        capture_output=True, text=True, timeout=120.0, check=False,
     )  # fmt: skip
     assert ended.returncode == 3
     assert "pip install 'stepnc-optimiser[files]'" in ended.stderr

@@ -136,7 +136,7 @@ def test_the_same_keys_from_two_processes_at_once_make_one_program_and_one_job_e
         asker.stdin.write("!")
         asker.stdin.flush()
     for asker in askers:
-        out, _ = asker.communicate(timeout=60.0)
+        out, _ = asker.communicate(timeout=120.0)
         assert asker.returncode == 0
         answers.append(out.split())
     assert answers[0] == answers[1]

@@ -125,7 +125,7 @@ def test_processes_that_claim_at_once_get_each_job_once(data_folder: DataFolder)
         claimer.stdin.flush()
     found: list[str] = []
     for claimer in claimers:
-        out, _ = claimer.communicate(timeout=60.0)
+        out, _ = claimer.communicate(timeout=120.0)
         assert claimer.returncode == 0
         found += out.split()
     assert len(found) == 60

@@ -224,7 +224,7 @@ def at_once(*works: Callable[[], object]) -> list[object]:
     begin = Barrier(len(works))
 
     def work(one: Callable[[], object]) -> object:
-        begin.wait(10.0)
+        begin.wait(120.0)
         try:
             return one()
         except StepNcError as error:
@@ -312,7 +312,7 @@ def test_no_change_of_another_process_is_lost(data_folder: DataFolder) -> None:
         assert changer.stdin is not None
         changer.stdin.write("!")
         changer.stdin.flush()
-    told = "".join(changer.communicate(timeout=60.0)[0] for changer in changers)
+    told = "".join(changer.communicate(timeout=120.0)[0] for changer in changers)
     assert all(changer.returncode == 0 for changer in changers)
     text = library.one(data_folder, LibrarySection.MATERIALS, "ours").text
     assert len(text) == len(MATERIAL) + 1 + told.count("changed")

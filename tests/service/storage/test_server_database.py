@@ -131,14 +131,14 @@ def test_hosts_that_open_a_new_database_at_once_both_succeed(new_database: str) 
     barrier, made = Barrier(4), list[ServerDatabase]()
 
     def open_it() -> None:
-        barrier.wait(10.0)
+        barrier.wait(120.0)
         made.append(ServerDatabase(new_database))
 
     threads = [Thread(target=open_it) for _ in range(4)]
     for thread in threads:
         thread.start()
     for thread in threads:
-        thread.join(30.0)
+        thread.join(120.0)
     assert len(made) == 4
     with made[0].reading() as connection:
         rows = connection.execute("SELECT number FROM version").fetchall()
@@ -201,7 +201,7 @@ main(["keys", "list", "--data", sys.argv[1], "--database", "postgresql://u@h/d"]
 def test_a_driver_that_is_not_installed_is_named(tmp_path: Path) -> None:
     ended = subprocess.run(
         [sys.executable, "-c", WITHOUT, str(tmp_path)],
-        capture_output=True, text=True, timeout=60.0, check=False,
+        capture_output=True, text=True, timeout=120.0, check=False,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
     )  # fmt: skip
     assert ended.returncode not in {0, None}
@@ -226,11 +226,11 @@ def test_a_server_that_was_away_is_used_again(
             jobs.get(data_folder, kept.id)
         assert str(own_server.folder) not in str(refused.value)
     # While it is away, nobody waits for it.
-    monkeypatch.setattr(server_database, "PAUSE", 60.0)
+    monkeypatch.setattr(server_database, "PAUSE", 600.0)
     begin = monotonic()
     with pytest.raises(Unavailable):
         jobs.get(data_folder, kept.id)
-    assert monotonic() - begin < 5.0
+    assert monotonic() - begin < 120.0
     monkeypatch.setattr(server_database, "PAUSE", 0.0)
     own_server.start()
     assert jobs.get(data_folder, kept.id) == kept
@@ -269,7 +269,7 @@ def test_no_job_is_queued_for_a_program_that_is_being_deleted(
         thread.start()
         until(lambda: waits(new_database))
         connection.execute("DELETE FROM programs WHERE id = ?", (program,))
-    thread.join(10.0)
+    thread.join(120.0)
     assert said == [NotFound]
     program = programs.add(data_folder, b"x", name="x", owner="anna").id
     job = jobs.add(data_folder, JobRequest(kind=JobKind.ADVICE, request={}, program=program,
@@ -392,7 +392,7 @@ def test_no_job_is_queued_for_a_file_that_is_being_deleted(
         thread.start()
         until(lambda: waits(new_database))
         connection.execute("DELETE FROM files WHERE id = ?", (id,))
-    thread.join(10.0)
+    thread.join(120.0)
     assert said == [f"there is no log '{id}'"]
 
 

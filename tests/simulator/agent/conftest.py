@@ -77,7 +77,7 @@ class ServedAgent:
 
     def get(self, path: str, **headers: str) -> httpx.Response:
         """Answer to a request."""
-        return httpx.get(self.url + path, headers=headers, timeout=30.0)
+        return httpx.get(self.url + path, headers=headers, timeout=120.0)
 
     def root(self, path: str, *, status: int = 200) -> Any:
         """Root of the document that answers a request."""
@@ -111,7 +111,7 @@ def serve() -> Iterator[Callable[..., ServedAgent]]:
 
         def end() -> None:
             server.should_exit = True
-            thread.join(30)
+            thread.join(120.0)
             loop.close()
 
         ended.append(end)

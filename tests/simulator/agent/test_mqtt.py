@@ -280,7 +280,7 @@ def silent_broker(reason: int) -> Iterator[tuple[int, list[bytes]]]:
     finally:
         listener.shutdown(socket.SHUT_RDWR)
         listener.close()
-        thread.join(10)
+        thread.join(120.0)
 
 
 def test_a_broker_that_confirms_nothing_takes_no_memory_and_stops_nothing(

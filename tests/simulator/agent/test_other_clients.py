@@ -54,7 +54,7 @@ def test_pymtconnect_reads_what_holds_and_what_was(serve: Serve) -> None:
 def test_pymtconnect_reads_the_stream(serve: Serve) -> None:
     served = filled(serve())
     at = served.agent.buffer.next
-    stream = mtconnect_client.stream_sample(served.url, interval=50, from_seq=at, timeout=20)
+    stream = mtconnect_client.stream_sample(served.url, interval=50, from_seq=at, timeout=120.0)
     with closing(stream):
         served.add("vmc15_exec", ["FEED_HOLD"])
         head, events, _ = next(stream)
@@ -76,14 +76,14 @@ class PlainClient:
         self._place = url.removeprefix("http://")
 
     def document(self, path: str) -> Any:
-        with closing(http.client.HTTPConnection(self._place, timeout=20.0)) as connection:
+        with closing(http.client.HTTPConnection(self._place, timeout=120.0)) as connection:
             connection.request("GET", path)
             answer = connection.getresponse()
             assert answer.status == http.client.OK
             return etree.fromstring(answer.read())
 
     def stream(self, path: str) -> Generator[Any, None, None]:
-        with closing(http.client.HTTPConnection(self._place, timeout=20.0)) as connection:
+        with closing(http.client.HTTPConnection(self._place, timeout=120.0)) as connection:
             connection.request("GET", path)
             answer = connection.getresponse()
             kind, _, boundary = answer.headers["Content-Type"].partition(";boundary=")

@@ -41,7 +41,9 @@ def writable(serve: Serve) -> ServedAgent:
 def write(
     served: ServedAgent, method: str, path: str, body: str | bytes = b"", **headers: str
 ) -> httpx.Response:
-    return httpx.request(method, served.url + path, content=body, headers=headers, timeout=30.0)
+    return httpx.request(
+        method, served.url + path, content=body, headers=headers, timeout=120.0
+    )
 
 
 def ids(served: ServedAgent, path: str) -> list[str]:

@@ -101,7 +101,7 @@ def test_nothing_else_of_the_folder_is_served(serve: Serve, folder: Path, path: 
     served = with_schemas(serve(), folder)
     host, _, port = served.url.removeprefix("http://").partition(":")
     # As it stands: clients would take the dots away.
-    with socket.create_connection((host, int(port)), timeout=20.0) as connection:
+    with socket.create_connection((host, int(port)), timeout=120.0) as connection:
         request = f"GET {path} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n"
         connection.sendall(request.encode())
         answer = b"".join(iter(lambda: connection.recv(1 << 16), b""))

@@ -123,7 +123,7 @@ def interpreter_in(folder: Path) -> Callable[[bytes], str]:
             env={**os.environ, "LD_LIBRARY_PATH": paths, "HOME": str(folder)},
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=120.0,
             check=False,
         )
         if "error while loading shared libraries" in answer.stderr:
