@@ -219,7 +219,7 @@ def test_references_that_lead_nowhere_or_in_a_circle_are_named(
         ("-1.E400", "-inf is not a finite number"),
         ("'0.05'", "'0.05'"),
         ("(0.05)", "a list where"),
-        ("#50 where", "#50 where"),
+        ("#50", "#50 where"),
         ("10.", "exceeds the radius"),
         ("1.E-320", "below 0.0005 mm"),
     ],

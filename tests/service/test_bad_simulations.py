@@ -56,6 +56,15 @@ def code(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.fixture
+def beside(code: Path) -> Path:
+    """The slot beside a link to itself, one to a full disk, and a folder."""
+    code.with_name("link.csv").symlink_to(code)
+    code.with_name("full.csv").symlink_to("/dev/full")
+    code.with_name("folder.csv").mkdir()
+    return code
+
+
 def alone(code: Path, **changed: str) -> list[str]:
     """Options that simulate code without a program; None takes one away."""
     options = {
@@ -336,12 +345,9 @@ def test_code_that_cannot_be_read_is_refused(code: Path, refused: Refused) -> No
     ],
 )
 def test_an_output_that_cannot_be_is_refused(
-    code: Path, refused: Refused, output: str, words: str
+    beside: Path, refused: Refused, output: str, words: str
 ) -> None:
-    code.with_name("link.csv").symlink_to(code)
-    code.with_name("full.csv").symlink_to("/dev/full")
-    code.with_name("folder.csv").mkdir()
-    assert words in refused(*alone(code), "-o", code.parent / output)
+    assert words in refused(*alone(beside), "-o", beside.parent / output)
 
 
 @pytest.mark.parametrize("report", ["slot.ngc", "tools.toml", "run.csv"])
