@@ -69,13 +69,26 @@ def pytest_report_header(config: pytest.Config) -> list[str]:
     return [f"order: --shuffle {seed}"]
 
 
+def is_slow(path: Path) -> bool:
+    """True for a module that is listed as slow, or whose folder is."""
+    return not SLOW_PLACES.isdisjoint((path, *path.parents))
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Import no module of the tier that does not run: that takes time and memory."""
+    unwanted = {"slow": False, "not slow": True}.get(config.getoption("markexpr"))
+    if collection_path.suffix == ".py" and is_slow(collection_path) is unwanted:
+        return True
+    return None
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_collection_modifyitems(
     config: pytest.Config, items: list[pytest.Item]
 ) -> Iterator[None]:
     """Mark what is slow before it is selected, and shuffle after pytest has grouped."""
     for item in items:
-        if not SLOW_PLACES.isdisjoint((item.path, *item.path.parents)):
+        if is_slow(item.path):
             item.add_marker(pytest.mark.slow)
     yield
     if (seed := config.getoption("shuffle")) is not None:

@@ -29,6 +29,13 @@ def bore(at: Spot, *, radius: float, depth: float) -> Any:
     return BRepPrimAPI_MakeCylinder(axis, radius, depth).Shape()
 
 
+def torus(great: float, small: float) -> Any:
+    """Ring around Z, by its two radii in mm."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeTorus
+
+    return BRepPrimAPI_MakeTorus(great, small).Shape()
+
+
 def without(whole: Any, *parts: Any) -> Any:
     from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
 
