@@ -12,7 +12,7 @@ from optimiser.modes import Mode
 from optimiser.problem import Limit, LimitName, Monomial
 from tests.optimiser.test_workingstep import with_lobes
 
-CASES = 540
+CASES = 180
 
 
 def cost_by_both(seed: int, mode: Mode) -> tuple[float, float] | None:
@@ -29,10 +29,10 @@ def cost_by_both(seed: int, mode: Mode) -> tuple[float, float] | None:
     return cost(workingstep.solve(problem, mode).setting), judged.cost
 
 
-@pytest.mark.parametrize("block", range(9))
+@pytest.mark.parametrize("block", range(3))
 def test_closed_form_equals_the_geometric_program(block: int) -> None:
     compared = 0
-    for seed in range(block * CASES // 9, (block + 1) * CASES // 9):
+    for seed in range(block * CASES // 3, (block + 1) * CASES // 3):
         pair = cost_by_both(seed, Mode.EC if seed % 4 == 0 else Mode.TC)
         if pair is None:
             continue
@@ -42,11 +42,11 @@ def test_closed_form_equals_the_geometric_program(block: int) -> None:
     assert compared > 50
 
 
-@pytest.mark.parametrize("block", range(5))
+@pytest.mark.parametrize("block", range(2))
 def test_closed_form_equals_the_geometric_program_along_a_helix(block: int) -> None:
     """About the number of passes that the closed form found; all passes on every tenth."""
     compared = 0
-    for seed in range(100 * block, 100 * (block + 1)):
+    for seed in range(90 * block, 90 * (block + 1)):
         free_speed, mode = seed % 3 == 0, Mode.EC if seed % 4 == 0 else Mode.TC
         problem = random_problem(
             Random(seed), free_speed=free_speed, edge=seed % 5 == 0, helix=True
@@ -62,7 +62,7 @@ def test_closed_form_equals_the_geometric_program_along_a_helix(block: int) -> N
         closed = workingstep.cost_function(problem, mode)(solution.setting)
         judged = program.solve(problem, mode).cost
         assert closed == pytest.approx(judged, rel=1e-6), f"seed {seed}"
-    assert compared > 80
+    assert compared > 70
 
 
 def test_prices_equal_finite_differences() -> None:
