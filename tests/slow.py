@@ -1,8 +1,8 @@
 """The slow tier: folders and modules of ``tests`` that only ``make test-slow`` runs.
 
-They sweep, kill, start browsers and servers by the dozen, or run whole programs; the quick tests
-beside them hold the same in small. ``pytest --durations=0`` tells what belongs here: a module of
-seven seconds or more on a quiet machine, unless it is what a change breaks first.
+They sweep, kill, start browsers and servers by the dozen, or run whole programs; the quick
+tests beside them hold the same in small. ``pytest --durations=0`` tells what belongs here: a
+module of seven seconds or more on a quiet machine, unless it is what a change breaks first.
 """
 
 SLOW = (
