@@ -1,5 +1,7 @@
 """Configuration of the web processes: uvicorn whose faults are lines of the service's log."""
 
+import signal
+
 import uvicorn
 
 from service import log_lines
@@ -16,11 +18,18 @@ class WebConfig(uvicorn.Config):
         log_lines.report_faults()
 
     def load(self) -> None:
-        """Load the application; one of several processes logs why it cannot, and ends."""
+        """Load the application; one of several processes logs why it cannot, and ends.
+
+        As it serves nobody yet, it ends at once when it is told to; uvicorn would load first.
+        """
+        if self.workers == 1:
+            super().load()
+            return
+        handler = signal.signal(signal.SIGTERM, signal.SIG_DFL)
         try:
             super().load()
         except Exception as error:
-            if self.workers == 1:
-                raise
             log_lines.tell_fault(error)
             raise SystemExit(log_lines.FAULTY) from None
+        finally:
+            signal.signal(signal.SIGTERM, handler)
