@@ -175,7 +175,8 @@ class Rehearsed(Clone):
     ("with_fault", "without", "expected"),
     [
         ([""], [], Verdict()),
-        (["timeout"], [], Verdict(ring=1, found_by="timeout")),
+        (["timeout"], [""], Verdict(ring=1, found_by="timeout")),
+        (["timeout", "timeout"], ["timeout"], Verdict()),
         (["t::a", "t::a"], [""], Verdict(ring=1, found_by="t::a")),
         (["t::a", "t::a", "t::b", "t::b"], ["t::a", ""], Verdict(ring=1, found_by="t::b")),
         (["t::a", "", ""], [], Verdict()),
