@@ -17,12 +17,24 @@ from pathlib import Path
 from typing import TypeVar
 
 import pytest
-from playwright.sync_api import Browser, ConsoleMessage, Page, ViewportSize, sync_playwright
+from playwright.sync_api import (
+    Browser,
+    ConsoleMessage,
+    Page,
+    ViewportSize,
+    expect,
+    sync_playwright,
+)
 
 from kbe.store import open_store
 from tests.service.rest.server import Server
 from tests.service.shop import outcomes
 from tests.service.waiting import ROOT, until
+
+PATIENCE = 120_000.0
+"""ms, on a busy machine"""
+
+expect.set_options(timeout=PATIENCE)
 
 FLAGS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
@@ -124,7 +136,7 @@ def opened_page(browser: Browser, served: Server) -> Iterator[Page]:
         base_url=served.url, viewport=WIDE, accept_downloads=True, reduced_motion="reduce"
     )
     page = context.new_page()
-    page.set_default_timeout(120_000)
+    page.set_default_timeout(PATIENCE)
     said: list[str] = []
     page.on("pageerror", lambda error: said.append(f"error: {error}"))
     page.on(

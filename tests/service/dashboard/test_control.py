@@ -16,7 +16,7 @@ def begun(page: Page) -> None:
     """A trial cut that has reached its steady state."""
     page.goto("/dashboard/control.html?source=trial")
     page.locator("#start").click()
-    expect(page.locator("#run-state")).to_have_text("Running", timeout=120_000)
+    expect(page.locator("#run-state")).to_have_text("Running")
     until(lambda: figure(page, "feed_actual_mm_min") > 1000.0)
     expect(page.locator("#lamp")).to_contain_text("SAFE")
 
@@ -52,7 +52,7 @@ def test_a_deeper_cut_raises_the_force_and_lowers_the_feed(page: Page) -> None:
     set_input(page, "axial_depth_mm", "4")
     expect(page.locator("#lamp")).to_contain_text("OVER")
     expect(page.locator("#depth-warning")).to_contain_text("exceeds allowed 3 mm")
-    expect(page.locator("#lamp")).to_contain_text("SAFE", timeout=120_000)
+    expect(page.locator("#lamp")).to_contain_text("SAFE")
     until(lambda: figure(page, "feed_actual_mm_min") < 0.8 * feed)
     assert figure(page, "force") > 1.3 * force
     assert figure(page, "removal_rate_cm3_min") > rate
@@ -77,7 +77,7 @@ def test_tc_and_qc_on_and_off_are_switched_while_it_runs(page: Page) -> None:
     # Nobody holds the force: the drive stays over its limit.
     expect(page.locator("#lamp")).to_contain_text("OVER")
     page.locator("#switch-on").click()
-    expect(page.locator("#lamp")).to_contain_text("SAFE", timeout=120_000)
+    expect(page.locator("#lamp")).to_contain_text("SAFE")
 
 
 def test_a_value_beyond_its_bounds_is_refused_at_its_field(page: Page) -> None:
@@ -104,10 +104,10 @@ def test_a_program_runs_under_control(page: Page) -> None:
     asked = {"program_id": program, "machine": "vmc15", "material": "c45", "pace": 20.0}
     run = page.request.post("/v1/control-runs", data=asked).json()["id"]
     page.goto(f"/dashboard/control.html?id={run}")
-    expect(page.locator("#told-workingstep")).to_contain_text("ROUGH", timeout=120_000)
+    expect(page.locator("#told-workingstep")).to_contain_text("ROUGH")
     set_input(page, "motor_power_percent", "50")
     expect(page.locator("#log")).to_contain_text("motor power 50 %")
-    expect(page.locator("#run-state")).to_contain_text("Program finished", timeout=120_000)
+    expect(page.locator("#run-state")).to_contain_text("Program finished")
     expect(page.locator("#lamp")).to_contain_text("AT REST")
     expect(page.locator("#out-feed_actual_mm_min")).to_have_text("0.0")
     # The next start tells programs of the same name apart.

@@ -11,10 +11,10 @@ def test_a_job_is_seen_cancelled_and_deleted(page: Page) -> None:
     job = page.request.post("/v1/simulations", data=asked).json()["id"]
     page.goto("/dashboard/jobs.html")
     row = page.locator(f"#job-{job}")
-    expect(row).to_have_attribute("data-state", "running", timeout=120_000)
+    expect(row).to_have_attribute("data-state", "running")
     keep(page, "jobs")
     row.locator("[data-act='cancel']").click()
-    expect(row).to_have_attribute("data-state", "cancelled", timeout=120_000)
+    expect(row).to_have_attribute("data-state", "cancelled")
     row.locator("[data-act='delete']").click()
     page.locator("#confirm-yes").click()
     expect(row).to_have_count(0)

@@ -90,7 +90,7 @@ def test_a_plan_stands_beside_its_run(page: Page) -> None:
     page.locator("#confirm").check()
     page.locator("#optimise").click()
     figures = page.locator("#confirmed-figures")
-    expect(figures.locator("tbody tr")).to_have_count(5, timeout=120_000)
+    expect(figures.locator("tbody tr")).to_have_count(5)
     expect(figures).to_contain_text("FINISH CONTOUR")
     expect(figures).to_contain_text("1.000")
     expect(page.locator("#confirmed-passed")).to_be_empty()
