@@ -4,7 +4,7 @@
 makes one small fault in each (:mod:`benchmarks.faults`), and runs tests in a temporary clone of
 HEAD until one fails, in rings: 1. the module of tests that mirrors the changed one and those
 that import it, 2. those that reach it through other imports, nearest first, 3. all other quick
-tests, 4. the slow ones. In ring 1 only the mirror may be slow. Tests in ``tests/architecture``
+tests, 4. the slow ones. In ring 1 only the mirror may be slow. Tests in ``tests/tree``
 read the sources without running them, and are left out.
 
 A test counts if it fails twice with the fault and passes without. A run in which no test ends

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from benchmarks.house import PRODUCT
 
-TEST = re.compile(r"tests/(?!architecture/)(.*/)?test_\w+\.py")
+TEST = re.compile(r"tests/(?!tree/)(.*/)?test_\w+\.py")
 """modules of tests; those of the architecture read the sources without running them"""
 
 QUICK, SLOW = "not slow", "slow"

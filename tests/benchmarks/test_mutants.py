@@ -128,7 +128,7 @@ def folder(tmp_path: Path) -> Path:
         "tests/kbe/test_b.py": "from kbe.b import X",
         "tests/kbe/test_d.py": "from tests.test_a import X",
         "tests/test_none.py": "",
-        "tests/architecture/test_all.py": "import kbe.c",
+        "tests/tree/test_all.py": "import kbe.c",
     }
     for name, text in files.items():
         path = tmp_path / name
