@@ -75,10 +75,13 @@ demo: $(READY)
 	@echo "look at: $(DEMO)/bracket.html, bracket.run.html, paper002.control.html, knowledge.html"
 
 # Kernels are compiled before tests: workers that make the same ones at once would wait for each
-# other, and what the first command says of it is no part of what a test looks at.
+# other and keep 450 MB of a compiler each, and what the first command says of it is no part of what
+# a test looks at.
 COMPILE := mkdir -p build && \
 	.venv/bin/stepnc simulate examples/parts/bracket.stpnc --machine vmc15 --lag -o build/bracket.csv >/dev/null && \
-	.venv/bin/stepnc simulate examples/parts/shaft.stpnc --machine lathe22 >/dev/null
+	.venv/bin/stepnc simulate examples/parts/shaft.stpnc --machine lathe22 >/dev/null && \
+	.venv/bin/stepnc optimise examples/parts/bracket.stpnc --machine vmc15 --along-path --dry-run >/dev/null && \
+	.venv/bin/stepnc verify build/bracket.csv --program examples/parts/bracket.stpnc --machine vmc15 >/dev/null
 
 test: $(TESTS_READY)
 	@$(subst .venv,$(VENV),$(COMPILE))
