@@ -214,6 +214,16 @@ def row(mutant: Mutant, number: int) -> str:
     return " | ".join((str(number), f"{mutant.path}:{mutant.line}", *mutant.lines()))
 
 
+@contextmanager
+def _tidy() -> Iterator[None]:
+    """Let no further signal interrupt the removal of the clone."""
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
 def _say(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
 
@@ -230,7 +240,7 @@ def main(arguments: list[str] | None = None) -> int:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     _, most = resource.getrlimit(resource.RLIMIT_DATA)
     resource.setrlimit(resource.RLIMIT_DATA, (MOST_MEMORY, most))
-    with TemporaryDirectory(prefix="mutants-") as folder, suppress(KeyboardInterrupt):
+    with TemporaryDirectory(prefix="mutants-") as folder, suppress(KeyboardInterrupt), _tidy():
         clone = make_clone(Path(folder))
         sources = {
             str(path.relative_to(clone.folder)): path.read_bytes()
