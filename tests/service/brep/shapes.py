@@ -29,6 +29,12 @@ def bore(at: Spot, *, radius: float, depth: float) -> Any:
     return BRepPrimAPI_MakeCylinder(axis, radius, depth).Shape()
 
 
+def torus(radius: float, thickness: float) -> Any:
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeTorus
+
+    return BRepPrimAPI_MakeTorus(radius, thickness).Shape()
+
+
 def without(whole: Any, *parts: Any) -> Any:
     from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
 

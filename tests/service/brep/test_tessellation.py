@@ -5,13 +5,12 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from OCP.BRepPrimAPI import BRepPrimAPI_MakeTorus
 
 from service.brep import tessellation
 from service.brep.tessellation import Choice, tessellate
 from service.part_file import read_part
 from stepnc_model.errors import StepNcError
-from tests.service.brep.shapes import block, write_step
+from tests.service.brep.shapes import block, torus, write_step
 from tests.service.brep.test_solid import SAG, TOLERANCE, edit
 
 
@@ -39,7 +38,7 @@ def test_too_many_triangles_are_refused(
 
 
 def test_a_huge_solid_is_refused_before_it_is_tessellated(tmp_path: Path) -> None:
-    path = write_step(tmp_path / "huge.step", BRepPrimAPI_MakeTorus(3e5, 1e5).Shape())
+    path = write_step(tmp_path / "huge.step", torus(3e5, 1e5))
     with pytest.raises(StepNcError, match=r"huge.step: the solid spans 800000 mm; at most 1"):
         read_part(path, tolerance=TOLERANCE)
 
@@ -47,7 +46,7 @@ def test_a_huge_solid_is_refused_before_it_is_tessellated(tmp_path: Path) -> Non
 def test_the_memory_is_limited(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A torus that needs a hundred million triangles."""
     monkeypatch.setattr(tessellation, "MOST_MEMORY", 700 << 20)
-    path = write_step(tmp_path / "wide.step", BRepPrimAPI_MakeTorus(3e4, 1e4).Shape())
+    path = write_step(tmp_path / "wide.step", torus(3e4, 1e4))
     with pytest.raises(StepNcError, match=r"wide.step: Open CASCADE .*(0.68 GB|memory|alloc)"):
         read_part(path, tolerance=TOLERANCE)
 

@@ -20,7 +20,7 @@ from tests.service.rest.server import Server, made, over
 from tests.service.verification.files import write_log
 from tests.service.verification.logs import SLOT_MACHINE, slot_log
 from tests.service.verification.runs import fast_log, program
-from tests.service.verification.test_step_parts import POCKETED
+from tests.service.verification.test_step_parts import pocketed
 from tests.service.verification.test_without_program import (
     MILL,
     OFFSET,
@@ -255,7 +255,7 @@ def test_one_solid_of_a_step_file_takes_the_place_of_a_program(
     page.locator("#stock").fill(MILL.stock)
     page.locator("#tools-file").set_input_files(tools)
     expect(page.locator("#tools-place")).to_contain_text("tools.toml")
-    part = write_step(tmp_path / "part.step", lid, POCKETED)
+    part = write_step(tmp_path / "part.step", lid, pocketed())
     page.locator("#required-file").set_input_files(part)
     expect(page.locator("#required-place")).to_contain_text("part.step", timeout=LATE)
     page.locator("#verify").click()

@@ -7,6 +7,9 @@ from zipfile import ZipFile
 
 import numpy as np
 import pytest
+import skops.io
+from sklearn.linear_model import Ridge
+from sklearn.preprocessing import FunctionTransformer
 
 from service.learning.learn import learn
 from service.learning.learned import LearnedModel
@@ -72,9 +75,6 @@ def test_another_header_is_refused(
 
 
 def test_a_file_that_is_no_model_is_refused(tmp_path: Path) -> None:
-    import skops.io  # noqa: PLC0415 (loads most of scikit-learn)
-    from sklearn.linear_model import Ridge  # noqa: PLC0415
-
     path = tmp_path / "model.skops"
     for content in (b"", b"text", skops.io.dumps(Ridge())):
         path.write_bytes(content)
@@ -83,9 +83,6 @@ def test_a_file_that_is_no_model_is_refused(tmp_path: Path) -> None:
 
 
 def test_classes_outside_the_allow_list_are_never_made(tmp_path: Path) -> None:
-    import skops.io  # noqa: PLC0415 (loads most of scikit-learn)
-    from sklearn.preprocessing import FunctionTransformer  # noqa: PLC0415
-
     path = tmp_path / "model.skops"
     save_model(learned(tmp_path, "mlp"), path)
     with ZipFile(path) as archive:

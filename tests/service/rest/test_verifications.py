@@ -19,7 +19,7 @@ from tests.service.rest.samples import SLOT
 from tests.service.rest.server import Server, create_key, is_problem, made, over
 from tests.service.verification.files import write_log
 from tests.service.verification.logs import SLOT_MACHINE, slot_log
-from tests.service.verification.test_step_parts import POCKETED
+from tests.service.verification.test_step_parts import pocketed
 from tests.service.verification.test_without_program import (
     MILL,
     OFFSET,
@@ -167,7 +167,7 @@ def test_a_solid_of_a_step_file_is_the_required_part(
     files = {
         "log_id": ("log", write_log(tmp_path / "log.csv", POCKET + OFFSET)),
         "tools_id": ("tools", tools),
-        "required_id": ("required-part", write_step(tmp_path / "part.step", lid, POCKETED)),
+        "required_id": ("required-part", write_step(tmp_path / "part.step", lid, pocketed())),
     }
     ids = {
         name: made(

@@ -1,6 +1,7 @@
 """Required parts and stocks from STEP files are what STL files of the same parts are."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,11 +24,15 @@ from tests.service.verification.test_without_program import (
 )
 from tests.simulator.verification import test_revolved
 
-POCKETED = without(
-    block((0.0, 0.0, -12.0), (40.0, 30.0, 0.0)),
-    rounded((8.0, 7.0, -5.0), (32.0, 23.0, 1.0), 3.0),
-)
 OFFSET = 0.15
+
+
+def pocketed() -> Any:
+    """A block with a pocket, as a body of Open CASCADE."""
+    return without(
+        block((0.0, 0.0, -12.0), (40.0, 30.0, 0.0)),
+        rounded((8.0, 7.0, -5.0), (32.0, 23.0, 1.0), 3.0),
+    )
 
 
 def pair(
@@ -43,7 +48,7 @@ def pair(
 
 
 def test_an_offset_is_found_against_a_milled_solid(tmp_path: Path) -> None:
-    step = write_step(tmp_path / "part.step", POCKETED, schema="AP242DIS", unit="INCH")
+    step = write_step(tmp_path / "part.step", pocketed(), schema="AP242DIS", unit="INCH")
     mesh, solid = pair(tmp_path, pocket_inputs(tmp_path), step)
     assert mesh.has_errors
     assert solid.has_errors
@@ -79,7 +84,7 @@ def test_an_offset_is_found_against_a_turned_solid(tmp_path: Path) -> None:
 
 
 def test_a_solid_is_a_stock(tmp_path: Path) -> None:
-    path = write_step(tmp_path / "raw.stp", POCKETED, revolved(test_revolved.PROFILE))
+    path = write_step(tmp_path / "raw.stp", pocketed(), revolved(test_revolved.PROFILE))
     milled = stock_map(load_machine("vmc15"), raw_stock_of(f"{path}#1"))
     assert isinstance(milled, MillingStock)
     pocket = 24.0 * 16.0 - (4.0 - np.pi) * 9.0
