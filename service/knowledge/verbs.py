@@ -19,7 +19,7 @@ from kbe.errors import UnknownCorrection
 from kbe.factor import SAFE, factor_at
 from kbe.ledger import StoredCorrection
 from kbe.selection import EVERYTHING, Selection
-from kbe.store import Store, open_store
+from kbe.store import Store, open_store, open_to_read
 from kbe.store_location import parsed_place
 from service.knowledge.place import is_usual, make_folder
 from stepnc_model.errors import StepNcError
@@ -81,7 +81,7 @@ def accepted_factors(
     file = parsed_place(place).file
     if is_new_allowed and file and not Path(file).exists():
         return ()
-    with open_store(place, is_new_allowed=False) as store:
+    with open_to_read(place) as store:
         found = (
             (tool, store.accepted(Context(machine=machine, material=material, tool=tool)))
             for tool in dict.fromkeys(tools)
@@ -105,8 +105,13 @@ def _factor(tool: str, correction: LearnedCorrection, quantile: float) -> Accept
     )
 
 
-def record(place: str, outcomes: Sequence[ProcessOutcome]) -> None:
+def record(place: str, outcomes: Sequence[ProcessOutcome]) -> int:
     """Store the outcomes of a run, all or none; create the knowledge base if it is new.
+
+    Returns
+    -------
+    int
+        Number of new ones; the others were recorded before, and are not counted again.
 
     Raises
     ------
@@ -115,7 +120,21 @@ def record(place: str, outcomes: Sequence[ProcessOutcome]) -> None:
     """
     make_folder(place)
     with open_store(place) as store:
-        store.add(outcomes)
+        return store.add(outcomes)
+
+
+def recorded_text(new: int, *, of: int) -> str:
+    """Text that says how many outcomes of a file or run are new.
+
+    Examples
+    --------
+    >>> recorded_text(3, of=3)
+    '3 outcomes'
+    >>> recorded_text(0, of=3)
+    '0 outcomes (already recorded: 3 of 3)'
+    """
+    known = f" (already recorded: {of - new} of {of})" if new < of else ""
+    return f"{new} outcome{'' if new == 1 else 's'}{known}"
 
 
 @contextmanager
@@ -124,7 +143,7 @@ def readable(place: str) -> Iterator[Store | None]:
     if is_usual(place) and not Path(place).exists():
         yield None
         return
-    with open_store(place, is_new_allowed=False) as store:
+    with open_to_read(place) as store:
         yield store
 
 
@@ -262,7 +281,7 @@ def _entries(store: Store, ids: Sequence[int]) -> tuple[StoredCorrection, ...]:
 
 def back_up(place: str, file: Path) -> Content:
     """Copy the knowledge base to a new file."""
-    with open_store(place, is_new_allowed=False) as store:
+    with open_to_read(place) as store:
         return copies.backup(store, str(file))
 
 
@@ -280,7 +299,7 @@ def check(place: str) -> Content:
     StoreDamaged
         When the stored data are damaged.
     """
-    with open_store(place, is_new_allowed=False) as store:
+    with open_to_read(place) as store:
         store.check()
         return copies.content(store)
 
