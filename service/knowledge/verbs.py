@@ -15,7 +15,7 @@ from pathlib import Path
 
 from kbe import backup as copies
 from kbe.backup import Content
-from kbe.errors import UnknownCorrection
+from kbe.errors import StoreFull, StoreReadOnly, UnknownCorrection
 from kbe.factor import SAFE, factor_at
 from kbe.ledger import StoredCorrection
 from kbe.selection import EVERYTHING, Selection
@@ -135,6 +135,22 @@ def recorded_text(new: int, *, of: int) -> str:
     """
     known = f" (already recorded: {of - new} of {of})" if new < of else ""
     return f"{new} outcome{'' if new == 1 else 's'}{known}"
+
+
+def require_usable(place: str) -> str:
+    """Create the knowledge base if it is new; return why it can only be read, or nothing.
+
+    Raises
+    ------
+    KnowledgeError
+        When it cannot even be read.
+    """
+    try:
+        with open_store(place):
+            return ""
+    except (StoreFull, StoreReadOnly) as error:
+        with open_to_read(place):
+            return str(error)
 
 
 @contextmanager
