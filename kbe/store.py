@@ -231,7 +231,7 @@ class Store:
 def _unless_known(connection: Connection) -> "ReturningInsert[Any]":
     """Statement that inserts outcomes whose identity is new, and returns their ids."""
     is_server = connection.dialect.name == "postgresql"
-    made = (postgresql if is_server else sqlite).insert(outcome)
+    made = postgresql.insert(outcome) if is_server else sqlite.insert(outcome)
     return made.on_conflict_do_nothing(index_elements=IDENTITY).returning(outcome.c.id)
 
 

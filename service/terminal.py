@@ -27,7 +27,7 @@ class OutputFault(OSError):
 class OutputStream(io.FileIO):
     """Stdout, whose faults can be told from those of files and networks."""
 
-    def write(self, data: "ReadableBuffer", /) -> int | None:
+    def write(self, data: "ReadableBuffer", /) -> int:
         """Write some bytes.
 
         Raises

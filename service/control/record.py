@@ -16,7 +16,7 @@ from service.control.outcomes import RecordingContext, outcomes_of
 from service.control.run import ControlRun, Watcher, control
 from service.files import require_place
 from service.knowledge.place import make_folder, named_place, require_apart
-from service.knowledge.verbs import record, recorded_text
+from service.knowledge.verbs import record
 from service.reading import Tell, silent
 from service.requests.runs import ControlRequest
 from service.simulation.run import RunFiles
@@ -118,11 +118,11 @@ def keep(
     id = recorded or _digest(outcomes)
     outcomes = [replace(each, run=id) for each in outcomes]
     try:
-        new = record(place, outcomes)
+        found = record(place, outcomes)
     except ValueError as error:
         # A file name or user name that cannot be stored as text.
         raise StepNcError(f"the outcomes cannot be recorded: {error}") from error
-    tell(f"recorded: {recorded_text(new, of=len(outcomes))}, run {id}")
+    tell(f"recorded: {found}, run {id}")
 
 
 def _numbered(outcomes: Iterable[ProcessOutcome]) -> list[ProcessOutcome]:

@@ -16,7 +16,7 @@ from typing import Any
 
 from kbe.rows import IDENTITY, OUTCOME, AttributeColumn, outcome_row
 from service.files import read_bytes
-from service.knowledge.verbs import record, recorded_text
+from service.knowledge.verbs import RecordCount, record
 from stepnc_model.errors import StepNcError
 from stepnc_model.outcome import ProcessOutcome
 
@@ -34,7 +34,7 @@ WORDS = {
 }
 
 
-def add_outcomes(place: str, file: Path) -> str:
+def add_outcomes(place: str, file: Path) -> RecordCount:
     """Add the outcomes of a file to the knowledge base, all or none; say how many are new.
 
     Raises
@@ -52,7 +52,7 @@ def add_outcomes(place: str, file: Path) -> str:
         _outcome(row, f"{file}, outcome {number}")
         for number, row in enumerate(_numbered(rows), 1)
     ]
-    return recorded_text(record(place, outcomes), of=len(outcomes))
+    return record(place, outcomes)
 
 
 def _numbered(rows: list[Any]) -> Iterator[Any]:

@@ -105,13 +105,31 @@ def _factor(tool: str, correction: LearnedCorrection, quantile: float) -> Accept
     )
 
 
-def record(place: str, outcomes: Sequence[ProcessOutcome]) -> int:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecordCount:
+    """Outcomes that were to be recorded, and how many of them are new.
+
+    Examples
+    --------
+    >>> str(RecordCount(new=3, total=3))
+    '3 outcomes'
+    >>> str(RecordCount(new=0, total=3))
+    '0 outcomes (already recorded: 3 of 3)'
+    """
+
+    new: int
+    total: int
+
+    def __str__(self) -> str:
+        known = self.total - self.new
+        known_text = f" (already recorded: {known} of {self.total})" if known else ""
+        return f"{self.new} outcome{'' if self.new == 1 else 's'}{known_text}"
+
+
+def record(place: str, outcomes: Sequence[ProcessOutcome]) -> RecordCount:
     """Store the outcomes of a run, all or none; create the knowledge base if it is new.
 
-    Returns
-    -------
-    int
-        Number of new ones; the others were recorded before, and are not counted again.
+    Those that were recorded before are not counted again.
 
     Raises
     ------
@@ -120,21 +138,7 @@ def record(place: str, outcomes: Sequence[ProcessOutcome]) -> int:
     """
     make_folder(place)
     with open_store(place) as store:
-        return store.add(outcomes)
-
-
-def recorded_text(new: int, *, of: int) -> str:
-    """Text that says how many outcomes of a file or run are new.
-
-    Examples
-    --------
-    >>> recorded_text(3, of=3)
-    '3 outcomes'
-    >>> recorded_text(0, of=3)
-    '0 outcomes (already recorded: 3 of 3)'
-    """
-    known = f" (already recorded: {of - new} of {of})" if new < of else ""
-    return f"{new} outcome{'' if new == 1 else 's'}{known}"
+        return RecordCount(new=store.add(outcomes), total=len(outcomes))
 
 
 def require_usable(place: str) -> str:

@@ -3,6 +3,7 @@
 import signal
 import subprocess
 import sys
+from functools import partial
 from itertools import count
 from pathlib import Path
 
@@ -27,6 +28,12 @@ def lines(place: Path) -> int:
     return place.read_bytes().count(b"\n") - 1 if place.exists() else 0
 
 
+def some_lines(place: Path) -> int | None:
+    """Their number, once there are some."""
+    found = lines(place)
+    return found if found > 10 else None
+
+
 def test_rows_survive_whatever_signal_ends_a_recording(tmp_path: Path) -> None:
     """They do it at the same time, as starting them is what takes long."""
     request, run = run_of("paper000", "paper000", speed=5.0)
@@ -42,8 +49,8 @@ def test_rows_survive_whatever_signal_ends_a_recording(tmp_path: Path) -> None:
         }  # fmt: skip
         seen = {}
         for number, output in names.items():
-            partial = output.with_suffix(".partial.csv")
-            seen[number] = until(lambda place=partial: (n := lines(place)) > 10 and n)
+            journal = output.with_suffix(".partial.csv")
+            seen[number] = until(partial(some_lines, journal))
             programs[number].send_signal(number)
         codes = {number: ended(program) for number, program in programs.items()}
     assert codes == dict.fromkeys(SIGNALS, 0) | {signal.SIGKILL: -9}
@@ -58,12 +65,12 @@ def test_rows_survive_whatever_signal_ends_a_recording(tmp_path: Path) -> None:
 def test_announced_rows_are_on_the_disk(tmp_path: Path) -> None:
     """A clock that jumps makes it tell its progress after each part."""
     output, told = tmp_path / "run.csv", []
-    partial = tmp_path / "run.partial.csv"
+    journal = tmp_path / "run.partial.csv"
 
     def tell(text: str) -> None:
         number, _, what = text.partition(" ")
         if what == "rows":
-            told.append((int(number), lines(partial)))
+            told.append((int(number), lines(journal)))
 
     request, run = run_of("paper000", "paper000", speed=5.0)
     clock = count(step=10.0)

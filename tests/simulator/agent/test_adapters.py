@@ -4,6 +4,7 @@ import asyncio
 import socket
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
+from functools import partial
 
 import numpy as np
 import pytest
@@ -210,20 +211,23 @@ def served_samples(behind: float, count: int = 8) -> tuple[Agent, list[int], lis
     agent = Agent(model=model_from(TYPES), clock=lambda: now[0], size=200_000)
     told: list[str] = []
 
+    def has(number: int) -> bool:
+        return len(values_of(agent, "temp")) == number
+
     async def work(_: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         for number in range(count):
             now[0] += 500_000
             stamp = timestamp(now[0] - int(1e6 * behind))
             writer.write(f"{stamp}|temp|{number}\n".encode())
             await writer.drain()
-            await until(lambda wanted=number + 2: len(values_of(agent, "temp")) == wanted)
+            await until(partial(has, number + 2))
         await asyncio.sleep(30)
 
     async def run() -> None:
         server, address = await adapter(work)
         intake = AdapterIntake(agent=agent, tell=told.append)
         task = asyncio.create_task(listen_to(address, intake))
-        await until(lambda: len(values_of(agent, "temp")) == count + 1)
+        await until(partial(has, count + 1))
         task.cancel()
         server.close()
 
