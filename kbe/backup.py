@@ -14,7 +14,6 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
 
 from sqlalchemy import Connection, CursorResult, Table, func, insert, select, text
 from sqlalchemy.engine import URL
@@ -157,7 +156,7 @@ def _sync(path: str) -> None:
 def _copied(store: Store, fresh: StoreLocation) -> Content:
     """Copy a store to a file, and read the copy back completely."""
     if store.place.file:
-        _copy_pages(store.place.file, fresh)
+        _copy_pages(store.place, fresh)
         _require_one_file(fresh)
     else:
         with (
@@ -175,11 +174,10 @@ def _copied(store: Store, fresh: StoreLocation) -> Content:
     return found
 
 
-def _copy_pages(file: str, fresh: StoreLocation) -> None:
+def _copy_pages(place: StoreLocation, fresh: StoreLocation) -> None:
     """Copy an SQLite file as it is at one moment, without blocking its writers."""
-    address = f"file:{quote(os.path.abspath(file))}?mode=ro"
     with (
-        closing(sqlite3.connect(address, uri=True)) as source,
+        closing(sqlite3.connect(place.reading_address, uri=True)) as source,
         closing(sqlite3.connect(fresh.file)) as target,
     ):
         source.backup(target)
@@ -198,7 +196,7 @@ def _readable(path: str) -> Iterator[Store]:
     require_openable(place, is_new_allowed=False)
     with translated(place), tempfile.TemporaryDirectory(prefix="stepnc-restore-") as folder:
         copy = _moved(place, str(Path(folder) / "copy.db"))
-        _copy_pages(place.file, copy)
+        _copy_pages(place, copy)
         if reason := why_damaged(copy.file):
             raise StoreDamaged(place.shown, reason=reason)
         with open_place(copy, is_new_allowed=False) as store:

@@ -8,9 +8,11 @@ beginning, so that two writers wait for each other instead of failing in the mid
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 
 from sqlalchemy import Connection, create_engine, event
 from sqlalchemy.engine import Engine
+from sqlalchemy.pool import QueuePool
 
 from kbe.errors import DriverMissing, StoreDamaged
 from kbe.faults import translated
@@ -41,7 +43,11 @@ def connected(place: StoreLocation, *, patience: float = PATIENCE) -> Engine:
         When psycopg is not installed.
     """
     if place.file:
-        engine = create_engine(place.url, connect_args={"timeout": patience})
+        engine = (
+            create_engine("sqlite://", creator=partial(_immutable, place), poolclass=QueuePool)
+            if place.is_immutable
+            else create_engine(place.url, connect_args={"timeout": patience})
+        )
         event.listen(engine, "connect", _prepare)
         event.listen(engine, "begin", _begin)
         return engine
@@ -51,6 +57,11 @@ def connected(place: StoreLocation, *, patience: float = PATIENCE) -> Engine:
         )
     except ImportError as error:
         raise DriverMissing(place.shown) from error
+
+
+def _immutable(place: StoreLocation) -> sqlite3.Connection:
+    """Connection that needs no lock, and no file beside that of the store."""
+    return sqlite3.connect(place.reading_address, uri=True, check_same_thread=False)
 
 
 def _prepare(connection: sqlite3.Connection, _record: object) -> None:

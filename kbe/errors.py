@@ -11,6 +11,8 @@
     ├── StoreFull                       the disk is full
     ├── StoreTooNew(found, known)       a newer program made the store
     ├── StoreNotEmpty(rows)             a backup can only be restored into an empty store
+    ├── OutcomeDiffers(run, workingstep, column, recorded, value)
+    │                                   an outcome was recorded before with other values
     ├── BackupExists                    a backup is never overwritten
     ├── BackupDiffers                   a copy differs from its source
     └── UnknownCorrection(id)           no correction has this id
@@ -120,6 +122,44 @@ class StoreNotEmpty(KnowledgeError):
             place=place,
         )
         self.rows = rows
+
+
+class OutcomeDiffers(KnowledgeError):
+    """An outcome was recorded before, with other values.
+
+    Parameters
+    ----------
+    place : str
+        File, or address without password.
+    run, workingstep : str
+        Outcome that is meant.
+    column : str
+        First column that differs.
+    recorded, value : object
+        Value in the store, and the one that was to be added.
+    """
+
+    def __init__(
+        self,
+        place: str,
+        *,
+        run: str,
+        workingstep: str,
+        column: str,
+        recorded: object,
+        value: object,
+    ) -> None:
+        super().__init__(
+            f"run '{run}', workingstep '{workingstep}' is recorded already with {column} "
+            f"{recorded}, not {value}; nothing was added. Give another run an id of its own, "
+            "and a workingstep that ran again in this run another sequence",
+            place=place,
+        )
+        self.run = run
+        self.workingstep = workingstep
+        self.column = column
+        self.recorded = recorded
+        self.value = value
 
 
 class BackupExists(KnowledgeError):

@@ -42,6 +42,15 @@ NAMES = {"context": "", "specific_force": "k_c11"}
 EVALUATED = ("roughness", "time", "force", "feed")
 """Quantities of an outcome whose deviation is stored with it."""
 
+IDENTITY = ("run", "machine", "program", "workingstep", "sequence")
+"""Columns that say which outcome a row is; no two rows have the same values in all of them.
+
+Ids of runs of real machines are given by people, who may count from 1 on every machine.
+"""
+
+CIRCUMSTANCES = ("trace", "recorded_at", "recorded_by")
+"""Columns that say how an outcome was recorded; they may differ when it is recorded again."""
+
 GREATEST_DEVIATION = 1e100
 """Greatest deviation that is stored; beyond it, the square could overflow a double."""
 
@@ -103,6 +112,12 @@ def outcome_row(outcome: ProcessOutcome) -> dict[str, Value]:
             raise ValueError(f"{name}: implausible deviation by a factor of {deviation}")
         row[f"{name}_deviation"] = deviation
     return row
+
+
+def what_differs(row: Mapping[str, Value], other: Mapping[str, Value]) -> str:
+    """First column in which two rows of an outcome disagree; empty if they say the same."""
+    counted = (leaf.name for leaf in OUTCOME.leaves if leaf.name not in CIRCUMSTANCES)
+    return next((name for name in counted if row[name] != other[name]), "")
 
 
 def _plain(hint: Any) -> tuple[Any, bool]:

@@ -29,9 +29,9 @@ from sqlalchemy import (
 )
 from sqlalchemy.types import TypeDecorator, TypeEngine
 
-from kbe.rows import CORRECTION, EVALUATED, OUTCOME, AttributeColumn
+from kbe.rows import CORRECTION, EVALUATED, IDENTITY, OUTCOME, AttributeColumn
 
-VERSION = "0001"
+VERSION = "0002"
 """Version of the schema: the newest file of ``migrations/versions``."""
 
 VERSION_TABLE = "stepnc_kbe_version"
@@ -83,6 +83,7 @@ outcome = Table(
     Index("outcome_by_time", "recorded_at"),
     Index("outcome_by_program", "program", "recorded_at"),
     Index("outcome_by_run", "run"),
+    Index("outcome_identity", *IDENTITY, unique=True),
     # A covering index for evaluations, in the order in which they group.
     Index(
         "outcome_by_group",

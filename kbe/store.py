@@ -8,25 +8,51 @@ the correction that was accepted last and not withdrawn since: withdrawing it pu
 one back in force.
 """
 
+import os
+import shutil
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
 from datetime import datetime
+from tempfile import TemporaryDirectory
 from types import TracebackType
-from typing import Self
+from typing import TYPE_CHECKING, Any, Self, cast
 
-from sqlalchemy import Connection, func, insert, select, text
-from sqlalchemy.engine import Engine
+from sqlalchemy import Connection, bindparam, func, insert, select, text
+from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.engine import URL, Engine
 
 from kbe.connection import connected, reading, writing
-from kbe.errors import StoreDamaged, UnknownCorrection
+from kbe.errors import (
+    KnowledgeError,
+    OutcomeDiffers,
+    StoreDamaged,
+    StoreFull,
+    StoreReadOnly,
+    StoreUnavailable,
+    UnknownCorrection,
+)
 from kbe.groups import Group, group, grouped
 from kbe.ledger import Standing, StoredCorrection, entries, entry, in_force
 from kbe.migrate import migrate
-from kbe.rows import CORRECTION, OUTCOME, outcome_row, storable_text, utc
+from kbe.rows import (
+    CORRECTION,
+    IDENTITY,
+    OUTCOME,
+    Value,
+    outcome_row,
+    storable_text,
+    utc,
+    what_differs,
+)
 from kbe.schema import DECIDED, TABLES, correction, decision, outcome
 from kbe.selection import EVERYTHING, Selection, conditions
 from kbe.store_location import StoreLocation, parsed_place, require_openable
 from stepnc_model.outcome import Context, LearnedCorrection, ProcessOutcome
+
+if TYPE_CHECKING:
+    from sqlalchemy.sql.dml import ReturningInsert
 
 AT_ONCE = 1000
 """Number of rows fetched together."""
@@ -35,9 +61,17 @@ AT_ONCE = 1000
 class Store:
     """Open knowledge base, made by :func:`open_store`; ended by ``with`` or ``close``."""
 
-    def __init__(self, engine: Engine, place: StoreLocation) -> None:
+    def __init__(
+        self,
+        engine: Engine,
+        place: StoreLocation,
+        *,
+        folder: TemporaryDirectory[str] | None = None,
+    ) -> None:
         self.engine = engine
         self.place = place
+        self._folder = folder
+        """Folder of a copy, which goes when the store is closed."""
 
     def __enter__(self) -> Self:
         return self
@@ -53,22 +87,33 @@ class Store:
     def close(self) -> None:
         """Close all database connections."""
         self.engine.dispose()
+        if self._folder is not None:
+            self._folder.cleanup()
 
-    def add(self, outcomes: Sequence[ProcessOutcome]) -> None:
-        """Store outcomes: all of them, or none on failure.
+    def add(self, outcomes: Sequence[ProcessOutcome]) -> int:
+        """Store outcomes, all or none, except those recorded before; return how many are new.
+
+        An outcome is known by its run, machine, program, workingstep and sequence. So a
+        program that was killed before it could say that it had stored them may try again.
 
         Raises
         ------
         ValueError
             When a number is not finite, a time has no zone, or a text cannot be stored.
+        OutcomeDiffers
+            When an outcome is recorded already, with other values.
         KnowledgeError
             When the store cannot take them.
         """
         rows = [outcome_row(each) for each in outcomes]
         if not rows:
-            return
+            return 0
         with writing(self.engine, self.place) as connection:
-            connection.execute(insert(outcome), rows)
+            new = connection.execute(_unless_known(connection), rows).all()
+            # The rule, not the exception: none of them was known.
+            if len(new) < len(rows):
+                _require_recorded(connection, rows, self.place)
+        return len(new)
 
     def outcomes(self, selection: Selection = EVERYTHING) -> Iterator[ProcessOutcome]:
         """Iterate over outcomes by time, in one consistent state of the store."""
@@ -183,6 +228,38 @@ class Store:
                 deque(connection.execute(query), maxlen=0)
 
 
+def _unless_known(connection: Connection) -> "ReturningInsert[Any]":
+    """Statement that inserts outcomes whose identity is new, and returns their ids."""
+    is_server = connection.dialect.name == "postgresql"
+    made = postgresql.insert(outcome) if is_server else sqlite.insert(outcome)
+    return made.on_conflict_do_nothing(index_elements=IDENTITY).returning(outcome.c.id)
+
+
+def _require_recorded(
+    connection: Connection, rows: Sequence[dict[str, Value]], place: StoreLocation
+) -> None:
+    """Require that the store holds each of these rows with the values that it has here.
+
+    Raises
+    ------
+    OutcomeDiffers
+        For the first that it holds with others.
+    """
+    query = select(outcome).where(*(outcome.c[name] == bindparam(name) for name in IDENTITY))
+    for row in rows:
+        stored = connection.execute(query, {name: row[name] for name in IDENTITY}).mappings()
+        known = cast("Mapping[str, Value]", stored.one())
+        if name := what_differs(row, known):
+            raise OutcomeDiffers(
+                place.shown,
+                run=str(row["run"]),
+                workingstep=str(row["workingstep"]),
+                column=name,
+                recorded=known[name],
+                value=row[name],
+            )
+
+
 def require_whole(connection: Connection, place: StoreLocation) -> None:
     """Check the pages, indexes and references of an SQLite file.
 
@@ -229,3 +306,46 @@ def open_place(place: StoreLocation, *, is_new_allowed: bool) -> Store:
         engine.dispose()
         raise
     return Store(engine, place)
+
+
+def open_to_read(url_or_path: str) -> Store:
+    """Open a knowledge base for reading, also where nothing can be written.
+
+    SQLite writes files beside that of the store even to read it. Where it cannot, on a full
+    disk or one that is read-only, the file is read as it is; one that has a log of changes, or
+    that an earlier version has made, is copied to the folder of temporary files first.
+
+    Raises
+    ------
+    KnowledgeError
+        As :func:`open_store`.
+    """
+    place = parsed_place(url_or_path)
+    try:
+        return open_place(place, is_new_allowed=False)
+    except (StoreFull, StoreReadOnly, StoreUnavailable) as error:
+        if not place.file or not os.path.isfile(place.file):
+            raise
+        return _unwritable(place, error)
+
+
+def _unwritable(place: StoreLocation, why: KnowledgeError) -> Store:
+    """Open a file for reading that cannot be written, or nothing beside it."""
+    log = f"{place.file}-wal"
+    if not os.path.exists(log) or not os.path.getsize(log):
+        with suppress(StoreReadOnly):
+            return open_place(replace(place, is_immutable=True), is_new_allowed=False)
+    folder = None
+    try:
+        folder = TemporaryDirectory(prefix="stepnc-kbe-")
+        copy = os.path.join(folder.name, "copy.db")
+        shutil.copyfile(place.file, copy)
+        if os.path.exists(log):
+            shutil.copyfile(log, f"{copy}-wal")
+        url = URL.create("sqlite+pysqlite", database=copy)
+        found = open_place(replace(place, url=url, file=copy), is_new_allowed=False)
+    except (OSError, StoreFull) as error:
+        if folder is not None:
+            folder.cleanup()
+        raise why from error
+    return Store(found.engine, found.place, folder=folder)

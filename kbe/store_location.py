@@ -2,7 +2,7 @@
 
 import os
 from dataclasses import dataclass
-from urllib.parse import urlsplit
+from urllib.parse import quote, urlsplit
 
 from sqlalchemy.engine import URL, make_url
 from sqlalchemy.exc import ArgumentError
@@ -21,6 +21,14 @@ class StoreLocation:
     """Text shown to people, without a password."""
     file: str
     """Path of the file; empty for a server."""
+    is_immutable: bool = False
+    """Whether the file is read as it is, since nothing can be written beside it."""
+
+    @property
+    def reading_address(self) -> str:
+        """Address of the file for SQLite, by which nothing is written into it."""
+        how = "mode=ro&immutable=1" if self.is_immutable else "mode=ro"
+        return f"file:{quote(os.path.abspath(self.file))}?{how}"
 
 
 def parsed_place(url_or_path: str) -> StoreLocation:

@@ -104,7 +104,7 @@ class RunFile:
         self._file = GrowingFile(path)
         try:
             self._writer: _Rows = (
-                _CsvRows(self._file.stream, columns)
+                CsvRows(self._file.stream, columns)
                 if schema is None
                 else _ParquetRows(self._file.stream, schema)
             )
@@ -226,7 +226,7 @@ class _ParquetRows:
         self._writer.close()
 
 
-class _CsvRows:
+class CsvRows:
     """Lines of a CSV file; an empty cell is a missing value, texts stand in quotes."""
 
     def __init__(self, stream: BinaryIO, columns: Sequence[RunColumn]) -> None:
@@ -234,6 +234,7 @@ class _CsvRows:
         stream.write(b",".join(_quoted(each.name) for each in columns) + b"\n")
 
     def write(self, values: Sequence[Values]) -> None:
+        """Write rows as lines."""
         for begin in range(0, len(values[0]), AT_ONCE):
             rows = slice(begin, begin + AT_ONCE)
             cells = [_cells(each, rows) for each in values]

@@ -111,6 +111,8 @@ class ProcessOutcome:
     recorded_at: datetime
     """Time of recording, with time zone."""
     recorded_by: str
+    sequence: int = 0
+    """Number of earlier outcomes of this workingstep in the run: 0 unless it is run again."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

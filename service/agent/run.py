@@ -295,7 +295,7 @@ def adapted(
     model = read_model(files.device)
     tell(f"device model: {files.device}, schema {model.version}, {len(model.items)} data items")
     agent = Agent(model=model, clock=now, size=request.buffer)
-    intake = AdapterIntake(agent=agent)
+    intake = AdapterIntake(agent=agent, tell=tell)
     return agent, [partial(listen_to, address, intake) for address in addresses]
 
 

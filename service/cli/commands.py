@@ -236,7 +236,7 @@ def _add_convert(commands: Commands) -> None:
 def _run(options: argparse.Namespace) -> int:
     """Run a command and turn the project's errors into exit codes."""
     from service.extras import missing_extras_named
-    from service.terminal import drop_out, prepare, tell
+    from service.terminal import OutputFault, drop_out, prepare, tell
     from stepnc_model.errors import StepNcError
 
     prepare()
@@ -248,13 +248,22 @@ def _run(options: argparse.Namespace) -> int:
     except StepNcError as error:
         tell(f"error: {error}{_alternative(error, options)}")
         code = _exit_code(error)
-    except OSError as error:
+    except OutputFault as fault:
         # Buffered output has no reader any more; a reader that left (``| head``) is fine.
         drop_out()
-        if not isinstance(error, BrokenPipeError):
-            tell(f"error: stdout: {error.strerror}")
+        if not fault.is_reader_gone:
+            tell(f"error: stdout: {fault.strerror}")
             code = BAD_INPUT
+    except OSError as error:
+        tell(f"error: {_named(error)}")
+        code = BAD_INPUT
     return code
+
+
+def _named(error: OSError) -> str:
+    """What the system refused, with the file that it names."""
+    reason = error.strerror or str(error) or type(error).__name__
+    return f"{error.filename}: {reason}" if error.filename else reason
 
 
 def _alternative(error: Exception, options: argparse.Namespace) -> str:

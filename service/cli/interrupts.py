@@ -1,4 +1,6 @@
-"""Signals that ask a command to end: SIGINT (Ctrl-C) and SIGTERM, at any moment of a process.
+"""Signals that ask a command to end, at any moment of a process.
+
+They are SIGINT (Ctrl-C), SIGTERM, and SIGHUP of a terminal that closes.
 
 * While modules are loaded and options are read, a signal is held until all is ready.
 * While the command works, the first one raises KeyboardInterrupt. Launchers pass on what the
@@ -19,7 +21,7 @@ from typing import Any
 INTERRUPTED = 130
 """Exit code of an interrupted command, as of shells: 128 + SIGINT."""
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 INSISTING = 3
 """Number of the signal from which on each counts."""

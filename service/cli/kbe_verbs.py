@@ -244,8 +244,7 @@ def add_command(options: argparse.Namespace) -> int:
     from service.knowledge.added import add_outcomes
     from service.terminal import tell
 
-    count = add_outcomes(usual_place(options.kb), options.file)
-    tell(f"added: {count} outcomes")
+    tell(f"added: {add_outcomes(usual_place(options.kb), options.file)}")
     return OK
 
 

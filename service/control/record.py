@@ -1,11 +1,16 @@
 """Recording of a controlled run's outcomes in the knowledge base."""
 
 import getpass
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
-from uuid import uuid4
+from hashlib import file_digest, sha256
+from itertools import count
+from pathlib import Path
 
 from controller.orders import EventKind
+from kbe.rows import CIRCUMSTANCES, OUTCOME, Value
 from kbe.store_location import parsed_place, require_openable
 from service.control.outcomes import RecordingContext, outcomes_of
 from service.control.run import ControlRun, Watcher, control
@@ -16,6 +21,10 @@ from service.reading import Tell, silent
 from service.requests.runs import ControlRequest
 from service.simulation.run import RunFiles
 from stepnc_model.errors import StepNcError
+from stepnc_model.outcome import ProcessOutcome
+
+ID_LENGTH = 32
+"""Characters of the id of a run."""
 
 
 def control_recorded(
@@ -52,12 +61,25 @@ def control_recorded(
     if place is not None:
         kept = files.recorded or files.output
         trace = "" if kept is None else str(kept.resolve())
-        keep(run, place, by=by or getpass.getuser(), trace=trace, tell=tell)
+        recorded = "" if files.recorded is None else _id_of(files.recorded)
+        by = by or getpass.getuser()
+        keep(run, place, by=by, trace=trace, recorded=recorded, tell=tell)
     return run
 
 
-def keep(run: ControlRun, place: str, *, by: str, trace: str, tell: Tell = silent) -> None:
+def keep(
+    run: ControlRun,
+    place: str,
+    *,
+    by: str,
+    trace: str,
+    recorded: str = "",
+    tell: Tell = silent,
+) -> None:
     """Record the outcomes of a run, unless it was stopped.
+
+    The id of a run of the virtual machine is a digest of its outcomes: the same run with the
+    same seed says nothing new, and a job that is done again has the id it had before.
 
     Parameters
     ----------
@@ -68,6 +90,8 @@ def keep(run: ControlRun, place: str, *, by: str, trace: str, tell: Tell = silen
         Author of the record.
     trace : str
         Location of the samples.
+    recorded : str
+        Id of the recorded run that was evaluated; empty: it ran on the virtual machine.
     tell : callable
 
     Raises
@@ -79,7 +103,7 @@ def keep(run: ControlRun, place: str, *, by: str, trace: str, tell: Tell = silen
         return
     orders = any(event.kind is EventKind.ORDER for event in run.events)
     recording = RecordingContext(
-        run=uuid4().hex,
+        run=recorded,
         at=datetime.now(UTC),
         by=", ".join((
             by,
@@ -90,10 +114,35 @@ def keep(run: ControlRun, place: str, *, by: str, trace: str, tell: Tell = silen
         trace=trace,
         seed=run.seed,
     )
-    outcomes = outcomes_of(run, recording)
+    outcomes = _numbered(outcomes_of(run, recording))
+    id = recorded or _digest(outcomes)
+    outcomes = [replace(each, run=id) for each in outcomes]
     try:
-        record(place, outcomes)
+        found = record(place, outcomes)
     except ValueError as error:
         # A file name or user name that cannot be stored as text.
         raise StepNcError(f"the outcomes cannot be recorded: {error}") from error
-    tell(f"recorded: {len(outcomes)} outcomes, run {recording.run}")
+    tell(f"recorded: {found}, run {id}")
+
+
+def _numbered(outcomes: Iterable[ProcessOutcome]) -> list[ProcessOutcome]:
+    """Number the outcomes of each workingstep, which a program may run more than once."""
+    numbers: dict[str, Iterator[int]] = defaultdict(count)
+    return [replace(each, sequence=next(numbers[each.workingstep])) for each in outcomes]
+
+
+def _digest(outcomes: Sequence[ProcessOutcome]) -> str:
+    """Id of a run of the virtual machine, from what its outcomes say."""
+    said = [_said(each) for each in outcomes]
+    return sha256(repr(said).encode()).hexdigest()[:ID_LENGTH]
+
+
+def _said(outcome: ProcessOutcome) -> list[Value]:
+    """Values of an outcome, without how it was recorded."""
+    return [value for name, value in OUTCOME.row(outcome).items() if name not in CIRCUMSTANCES]
+
+
+def _id_of(recorded: Path) -> str:
+    """Id of a recorded run, whatever the name of its file and the options of its evaluation."""
+    with recorded.open("rb") as file:
+        return file_digest(file, "sha256").hexdigest()[:ID_LENGTH]

@@ -8,17 +8,21 @@ everything: the work is then submitted again by its owner.
 
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, Executor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from importlib.metadata import version
 from ipaddress import ip_address
 from pathlib import Path
 from platform import python_version
+from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 from service.execution.executors import Pools
 from service.extras import how_to_install
 from stepnc_model.errors import StepNcError
+
+if TYPE_CHECKING:
+    from distributed import Client
 
 SCHEMES = ("tcp", "tls")
 
@@ -71,23 +75,47 @@ def cluster(address: str, *, patience: float = PATIENCE) -> Iterator[Executor]:
     try:
         client = Client(address, timeout=patience, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
-        raise StepNcError(
-            f"--cluster {address}: no scheduler answers ({_first_line(error)}); start one with "
-            "`dask scheduler`, and workers with `dask worker ADDRESS`"
-        ) from error
+        raise _unanswered(address, error) from error
     try:
-        try:
-            client.wait_for_workers(1, timeout=patience)
-        except TimeoutError as error:
-            raise StepNcError(
-                f"--cluster {address}: has no worker; start one with `dask worker {address}`"
-            ) from error
-        _require_versions(address, client.run(versions, on_error="return"))
+        _require_workers(client, address, patience=patience)
         yield client.get_executor(pure=False)
-    except (KilledWorker, CommClosedError) as error:
+    except (KilledWorker, CommClosedError, TimeoutError) as error:
         raise BrokenExecutor(_first_line(error)) from error
     finally:
-        client.close(timeout=patience)
+        # A scheduler that is away does not answer to a farewell either.
+        with suppress(OSError):
+            client.close(timeout=patience)
+
+
+def _require_workers(client: "Client", address: str, *, patience: float) -> None:
+    """Require a worker, and the same versions on all.
+
+    Raises
+    ------
+    StepNcError
+        If there is none, one has other versions, or the scheduler has left.
+    """
+    try:
+        client.wait_for_workers(1, timeout=patience)
+    except TimeoutError as error:
+        raise StepNcError(
+            f"--cluster {address}: has no worker; start one with `dask worker {address}`"
+        ) from error
+    except OSError as error:
+        raise _unanswered(address, error) from error
+    try:
+        found = client.run(versions, on_error="return")
+    except OSError as error:
+        raise _unanswered(address, error) from error
+    _require_versions(address, found)
+
+
+def _unanswered(address: str, error: Exception) -> StepNcError:
+    """Error of a scheduler that is away."""
+    return StepNcError(
+        f"--cluster {address}: no scheduler answers ({_first_line(error)}); start one with "
+        "`dask scheduler`, and workers with `dask worker ADDRESS`, then repeat the command"
+    )
 
 
 def versions() -> dict[str, str]:

@@ -24,6 +24,7 @@ from service.progress import Ticker, bar
 from service.reading import Tell, silent
 from service.requests.factory import FactoryRequest
 from service.requests.fields import require_bounds
+from service.staged_folder import staged_folder
 from simulator.factory.machining import MachiningPlan
 from simulator.factory.measures import MeasureInterval, over_replications
 from simulator.factory.records import Listeners, StateSpent
@@ -117,11 +118,15 @@ def run_source(  # noqa: PLR0913 (each is a choice of the caller)
     cycles = PartCycles(tell=tell)
     plan = machining_plan(shop, cycles, place=source.name)
     plans = [machining_plan(each, cycles, place=source.name) for _, each in swept]
-    made = _first(shop, plan, request, folder, most_parts=most_parts, tell=tell)
-    written = 0
-    if folder is not None and request.documents:
-        maker = PartDocuments(shop, plan, Streams(seed=request.seed), tell=tell)
-        written = maker.write(made.chosen, folder / DOCUMENTS)
+    with ExitStack() as stack:
+        stage = (
+            None if folder is None else stack.enter_context(staged_folder(folder, tell=tell))
+        )
+        made = _first(shop, plan, request, stage, most_parts=most_parts, tell=tell)
+        written = 0
+        if stage is not None and request.documents:
+            maker = PartDocuments(shop, plan, Streams(seed=request.seed), tell=tell)
+            written = maker.write(made.chosen, stage / DOCUMENTS)
     numbers = range(request.replications)
     work = Replications(pools=pools, seed=request.seed, tell=tell, most_parts=most_parts)
     others, *found = work.measures([

@@ -28,13 +28,13 @@ from typing import IO, Any
 
 import structlog
 
-from kbe.store import open_store
 from service import log_lines
 from service.errors import Conflict, Unavailable
 from service.files import write_atomically
 from service.ids import new_id
 from service.jobs import child
 from service.jobs.task import UNFINISHED, clear
+from service.knowledge.verbs import require_usable
 from service.live.storage import storing
 from service.problem import plain_problem
 from service.storage import jobs
@@ -341,8 +341,8 @@ def main(folder: FolderAddress, workers: int, parent: int, *, level: str = "info
     """
     data_folder = known_data_folder(folder)
     with locked(data_folder.root):
-        with open_store(data_folder.knowledge):
-            """The store is created if it is new."""
+        if reason := require_usable(data_folder.knowledge):
+            LOG.warning("the knowledge base can only be read", reason=reason)
         runner = Runner(
             data_folder=data_folder, workers=workers, name=own_name(data_folder), level=level
         )

@@ -2,18 +2,21 @@
 
 For a real machine, measured values are recorded in such a file: a list of objects whose keys
 are the columns of the knowledge base, including their units. Keys of optional values may be
-omitted.
+omitted, and ``sequence``: then the outcomes of a workingstep of a run are numbered by their
+order. A file that is added again adds nothing.
 """
 
 import json
+from collections import defaultdict
+from collections.abc import Iterator
 from datetime import datetime
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from kbe.rows import OUTCOME, AttributeColumn, outcome_row
+from kbe.rows import IDENTITY, OUTCOME, AttributeColumn, outcome_row
 from service.files import read_bytes
-from service.knowledge.verbs import record
+from service.knowledge.verbs import RecordCount, record
 from stepnc_model.errors import StepNcError
 from stepnc_model.outcome import ProcessOutcome
 
@@ -31,8 +34,8 @@ WORDS = {
 }
 
 
-def add_outcomes(place: str, file: Path) -> int:
-    """Add the outcomes of a file to the knowledge base, all or none; return their number.
+def add_outcomes(place: str, file: Path) -> RecordCount:
+    """Add the outcomes of a file to the knowledge base, all or none; say how many are new.
 
     Raises
     ------
@@ -46,10 +49,28 @@ def add_outcomes(place: str, file: Path) -> int:
     if not isinstance(rows, list) or not rows:
         raise StepNcError(f"{file}: must hold a list with at least one outcome")
     outcomes = [
-        _outcome(row, f"{file}, outcome {number}") for number, row in enumerate(rows, 1)
+        _outcome(row, f"{file}, outcome {number}")
+        for number, row in enumerate(_numbered(rows), 1)
     ]
-    record(place, outcomes)
-    return len(outcomes)
+    return record(place, outcomes)
+
+
+def _numbered(rows: list[Any]) -> Iterator[Any]:
+    """Number those rows of a workingstep of a run that have no sequence, by their order.
+
+    Rows that say the same are one outcome, which stands in the file twice.
+    """
+    found: dict[str, list[str]] = defaultdict(list)
+    for row in rows:
+        if not isinstance(row, dict) or "sequence" in row:
+            yield row
+            continue
+        # Values of any type, as the rows are not checked yet.
+        known = found[repr([row.get(name) for name in IDENTITY])]
+        said = repr(sorted(row.items()))
+        if said not in known:
+            known.append(said)
+        yield {**row, "sequence": known.index(said)}
 
 
 def _outcome(row: object, where: str) -> ProcessOutcome:

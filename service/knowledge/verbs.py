@@ -15,11 +15,11 @@ from pathlib import Path
 
 from kbe import backup as copies
 from kbe.backup import Content
-from kbe.errors import UnknownCorrection
+from kbe.errors import StoreFull, StoreReadOnly, UnknownCorrection
 from kbe.factor import SAFE, factor_at
 from kbe.ledger import StoredCorrection
 from kbe.selection import EVERYTHING, Selection
-from kbe.store import Store, open_store
+from kbe.store import Store, open_store, open_to_read
 from kbe.store_location import parsed_place
 from service.knowledge.place import is_usual, make_folder
 from stepnc_model.errors import StepNcError
@@ -81,7 +81,7 @@ def accepted_factors(
     file = parsed_place(place).file
     if is_new_allowed and file and not Path(file).exists():
         return ()
-    with open_store(place, is_new_allowed=False) as store:
+    with open_to_read(place) as store:
         found = (
             (tool, store.accepted(Context(machine=machine, material=material, tool=tool)))
             for tool in dict.fromkeys(tools)
@@ -105,8 +105,31 @@ def _factor(tool: str, correction: LearnedCorrection, quantile: float) -> Accept
     )
 
 
-def record(place: str, outcomes: Sequence[ProcessOutcome]) -> None:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecordCount:
+    """Outcomes that were to be recorded, and how many of them are new.
+
+    Examples
+    --------
+    >>> str(RecordCount(new=3, total=3))
+    '3 outcomes'
+    >>> str(RecordCount(new=0, total=3))
+    '0 outcomes (already recorded: 3 of 3)'
+    """
+
+    new: int
+    total: int
+
+    def __str__(self) -> str:
+        known = self.total - self.new
+        known_text = f" (already recorded: {known} of {self.total})" if known else ""
+        return f"{self.new} outcome{'' if self.new == 1 else 's'}{known_text}"
+
+
+def record(place: str, outcomes: Sequence[ProcessOutcome]) -> RecordCount:
     """Store the outcomes of a run, all or none; create the knowledge base if it is new.
+
+    Those that were recorded before are not counted again.
 
     Raises
     ------
@@ -115,7 +138,23 @@ def record(place: str, outcomes: Sequence[ProcessOutcome]) -> None:
     """
     make_folder(place)
     with open_store(place) as store:
-        store.add(outcomes)
+        return RecordCount(new=store.add(outcomes), total=len(outcomes))
+
+
+def require_usable(place: str) -> str:
+    """Create the knowledge base if it is new; return why it can only be read, or nothing.
+
+    Raises
+    ------
+    KnowledgeError
+        When it cannot even be read.
+    """
+    try:
+        with open_store(place):
+            return ""
+    except (StoreFull, StoreReadOnly) as error:
+        with open_to_read(place):
+            return str(error)
 
 
 @contextmanager
@@ -124,7 +163,7 @@ def readable(place: str) -> Iterator[Store | None]:
     if is_usual(place) and not Path(place).exists():
         yield None
         return
-    with open_store(place, is_new_allowed=False) as store:
+    with open_to_read(place) as store:
         yield store
 
 
@@ -262,7 +301,7 @@ def _entries(store: Store, ids: Sequence[int]) -> tuple[StoredCorrection, ...]:
 
 def back_up(place: str, file: Path) -> Content:
     """Copy the knowledge base to a new file."""
-    with open_store(place, is_new_allowed=False) as store:
+    with open_to_read(place) as store:
         return copies.backup(store, str(file))
 
 
@@ -280,7 +319,7 @@ def check(place: str) -> Content:
     StoreDamaged
         When the stored data are damaged.
     """
-    with open_store(place, is_new_allowed=False) as store:
+    with open_to_read(place) as store:
         store.check()
         return copies.content(store)
 

@@ -2,13 +2,14 @@
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from service.reading import Tell, silent
+from service.recording.row_journal import RowJournal
 from service.requests.fields import require_bounds
 from service.requests.recording import RecordingRequest
 from service.run_file import ColumnKind, RunColumn, RunFile, Values, require_suffix, words_of
@@ -77,8 +78,10 @@ def record(
         rows.rows(client.state())
         rows.last()
     file = RunFile(output, file_columns(columns))
+    journal = RowJournal(output, file_columns(columns))
     keeper = _Keeper(
         file=file,
+        journal=journal,
         columns=columns,
         rows=rows,
         tell=tell,
@@ -87,7 +90,7 @@ def record(
         is_on=not request.is_next_run,
         was_running=rows.held(EXECUTION) in {*RUNNING, None},
     )
-    with file.closing(is_whole=True):
+    with _journalled(journal, tell), file.closing(is_whole=True):
         try:
             with closing(client.stream()) as parts:
                 keeper.run(parts, request)
@@ -95,6 +98,18 @@ def record(
             tell("interrupted: the file is complete up to here")
         keeper.end()
     return keeper.recording(output)
+
+
+@contextmanager
+def _journalled(journal: RowJournal, tell: Tell) -> Iterator[None]:
+    """Remove the journal once the file is written; leave it, and say so, where it is not."""
+    try:
+        yield
+    except BaseException:
+        journal.close()
+        tell(f"rows that were recorded before: {journal.place}")
+        raise
+    journal.remove()
 
 
 def record_kept(url: str, output: Path, *, tell: Tell = silent) -> Recording:
@@ -134,6 +149,8 @@ class _Keeper:
     """Keeps rows until there are enough for a group of the file. Running state."""
 
     file: RunFile
+    journal: RowJournal | None = None
+    """Rows on the disk before they are announced; None: the agent still has them."""
     columns: Sequence[RecordedColumn]
     rows: RowMaker
     tell: Tell
@@ -198,7 +215,10 @@ class _Keeper:
         if part.fault or part.lost or part.is_restarted:
             self.rows.interrupt()
         self.count += len(part.observations)
+        before = len(self._waiting)
         self._keep(self.rows.rows(part.observations))
+        if self.journal is not None and len(self._waiting) > before:
+            self.journal.write(file_values(self._waiting[before:], self.columns))
         if len(self._waiting) >= ROWS:
             self._flush()
         self._progress()
@@ -234,6 +254,8 @@ class _Keeper:
     def _progress(self) -> None:
         if self.clock() - self._told >= EVERY:
             self._told = self.clock()
+            if self.journal is not None:
+                self.journal.sync()
             self.tell(f"{self.file.rows + len(self._waiting)} rows")
 
     def _flush(self) -> None:

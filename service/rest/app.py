@@ -5,15 +5,16 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from typing import Any
 
+import structlog
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from fastapi.openapi.utils import get_openapi
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
-from kbe.store import open_store
 from service import log_lines
 from service.agent.shop import ShopAgent
+from service.knowledge.verbs import require_usable
 from service.lifeline import end_with_parent
 from service.monitor.monitor import MonitorSet
 from service.problem import plain_problem, problem_of, retry_after
@@ -42,6 +43,8 @@ from service.rest.settings import Settings, handed_on
 from service.rest.streams import StreamHub
 from service.storage.folder import DataFolder, known_data_folder, open_data_folder
 from stepnc_model.errors import StepNcError
+
+LOG = structlog.get_logger("app")
 
 TITLE = "stepnc-optimiser"
 BY_KIND = "planner; for trials and controlled runs operator"
@@ -73,8 +76,8 @@ def application(settings: Settings) -> FastAPI:
 
 
 def _on(data_folder: DataFolder, settings: Settings) -> FastAPI:
-    with open_store(data_folder.knowledge):
-        """The store is created if it is new."""
+    if reason := require_usable(data_folder.knowledge):
+        LOG.warning("only reading is possible", reason=reason)
     app = _routed()
     app.state.data_folder, app.state.settings, app.state.hub = (
         data_folder,

@@ -1,5 +1,7 @@
 """Routes for operators of the service: health checks, metrics, version."""
 
+from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
 from fastapi import APIRouter, Request, Response
@@ -15,6 +17,9 @@ from service.storage import jobs
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobState
 
+SMALL = 4096
+"""Bytes of a file that shows whether the disk has room."""
+
 ROUTES = APIRouter(tags=["service"])
 
 
@@ -26,7 +31,7 @@ async def healthz(request: Request) -> Response:
 
 @ROUTES.get("/readyz", summary="Check that requests can be served")
 async def readyz(request: Request) -> Response:
-    """Report whether the database answers and a runner is alive; 503 if not."""
+    """Report whether the database answers, a runner lives and the disk has room; else 503."""
     found = await answered(_state, data_folder_of(request))
     return json_reply(request, found, status=200 if all(found.values()) else 503)
 
@@ -58,7 +63,18 @@ async def about(request: Request) -> Response:
 
 
 def _state(data_folder: DataFolder) -> dict[str, Any]:
+    has_room = _has_room(data_folder.root)
     try:
-        return {"database": True, "runner": is_alive(data_folder)}
+        return {"database": True, "runner": is_alive(data_folder), "room": has_room}
     except ServiceError:
-        return {"database": False, "runner": False}
+        return {"database": False, "runner": False, "room": has_room}
+
+
+def _has_room(folder: Path) -> bool:
+    """Whether a small file can be written."""
+    try:
+        with TemporaryFile(dir=folder) as file:
+            file.write(bytes(SMALL))
+    except OSError:
+        return False
+    return True

@@ -3,6 +3,9 @@
 Readers never wait for a writer (write-ahead log); once a call returns, its changes are on disk
 (``synchronous=FULL``). Each thread has its own connection. A file that was moved away or
 replaced is no longer written, since those changes would be lost. Running state.
+
+On a full disk SQLite cannot make the files that it needs beside the database, not even to read
+it. Then the database is read as it is, until there is room, and whoever writes is refused.
 """
 
 import os
@@ -10,8 +13,9 @@ import sqlite3
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
+from urllib.parse import quote
 
 from service.errors import Unavailable
 
@@ -106,15 +110,26 @@ class FileDatabase:
         self.file = file
         self._local = threading.local()
         self._inode: tuple[int, int] | None = None
-        with self.writing() as connection:
-            _migrate(connection, file)
+        try:
+            with self.writing() as connection:
+                _migrate(connection, file)
+        except Unavailable:
+            # A full disk lets nobody write, but what is of this version can be read.
+            if not file.is_file() or not self._is_current():
+                raise
         self._inode = self._found()
 
     @contextmanager
     def reading(self) -> Iterator[FileConnection]:
         """Provide a connection for queries."""
-        with self._answering():
-            yield self._connection()
+        with self._answering(), ExitStack() as stack:
+            try:
+                found = self._connection()
+            except sqlite3.Error:
+                if not self._is_without_log():
+                    raise
+                found = stack.enter_context(closing(self._unchanging()))
+            yield found
 
     @contextmanager
     def writing(self) -> Iterator[FileConnection]:
@@ -146,6 +161,28 @@ class FileDatabase:
                 raise
             self._local.connection = known
         return known
+
+    def _unchanging(self) -> FileConnection:
+        """Connection that needs no file beside the database; for one query, as others write."""
+        address = f"file:{quote(str(self.file.resolve()))}?mode=ro&immutable=1"
+        found = sqlite3.connect(address, uri=True, factory=FileConnection)
+        found.create_function("wall_clock", 0, time.time)
+        found.row_factory = sqlite3.Row
+        return found
+
+    def _is_without_log(self) -> bool:
+        """Whether all that was stored stands in the file itself."""
+        log = self.file.with_name(f"{self.file.name}-wal")
+        return self.file.is_file() and not (log.exists() and log.stat().st_size)
+
+    def _is_current(self) -> bool:
+        """Whether the file can be read, and has the version of this program."""
+        try:
+            with self.reading() as connection:
+                (version,) = connection.execute("PRAGMA user_version").fetchone()
+        except Unavailable:
+            return False
+        return bool(version == len(SCHEMA))
 
     def close(self) -> None:
         """Close this thread's connection."""

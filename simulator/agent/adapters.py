@@ -23,6 +23,12 @@ AGAIN = 2.0
 USUAL_HEARTBEAT = 10.0
 """s between pings; an adapter may ask for another"""
 
+SKEW = 2.0
+"""s between the clocks of an adapter and the agent from which on it is told"""
+
+ENOUGH = 3
+"""parts with newer stamps after which a clock is judged"""
+
 MOST_WAITING = 100_000
 """lines that may wait for a slow agent, until it is dropped"""
 
@@ -40,6 +46,8 @@ class AdapterIntake:
     """What adapters tell: repeated values and small changes are dropped. Running state."""
 
     agent: Agent
+    tell: Callable[[str], None] = field(default=lambda _: None)
+    """takes messages on adapters"""
     _last: dict[int, tuple[int, Value]] = field(default_factory=dict)
 
     def take(self, observations: Sequence[ShdrObservation]) -> None:
@@ -66,7 +74,8 @@ class AdapterIntake:
             time, value = last
             if value == seen.value and not item.is_discrete:
                 return False
-            if item.period and seen.time - time < 1e6 * item.period:
+            # A clock that was set back tells no period.
+            if item.period and 0 <= seen.time - time < 1e6 * item.period:
                 return False
             both = isinstance(value, float) and isinstance(seen.value, float)
             if item.minimum_delta and both and abs(seen.value - value) < item.minimum_delta:  # type: ignore[operator]
@@ -75,18 +84,63 @@ class AdapterIntake:
         return True
 
 
+@dataclass(kw_only=True)
+class AdapterClock:
+    """Clock of an adapter against that of the agent. Running state.
+
+    What waits on the way makes an adapter seem slow, and so does what holds since long, which
+    an adapter tells at first: so the least of several differences counts, of stamps that are
+    newer than all before.
+    """
+
+    newest: int | None = None
+    """µs since 1970"""
+    count: int = 0
+    """how often a part with a newer stamp came"""
+    behind: int | None = None
+    """least difference so far, µs; negative: the adapter is ahead"""
+    is_judged: bool = False
+
+    def skew(self, times: Sequence[int], now: int) -> float | None:
+        """Seconds that the clock is behind, once and only if they are many.
+
+        Parameters
+        ----------
+        times : sequence of int, µs since 1970
+            Stamps of a part.
+        now : int, µs since 1970
+            When it came, by the clock of the agent.
+        """
+        newest = max(times, default=None)
+        if self.is_judged or newest is None:
+            return None
+        if self.newest is not None and newest > self.newest:
+            self.count += 1
+            behind = now - newest
+            self.behind = behind if self.behind is None else min(self.behind, behind)
+        self.newest = max(newest, self.newest or newest)
+        if self.count < ENOUGH or self.behind is None:
+            return None
+        self.is_judged = True
+        seconds = self.behind / 1e6
+        return seconds if abs(seconds) >= SKEW else None
+
+
 async def listen_to(address: AdapterAddress, intake: AdapterIntake) -> None:
     """Keep a connection to an adapter, and take what it tells, until cancelled."""
+    clock = AdapterClock()
     while True:
         told: set[int] = set()
         with suppress(OSError, TimeoutError):
-            await _listen_once(address, intake, told)
+            await _listen_once(address, intake, told, clock)
         if told:
             intake.forget(sorted(told))
         await asyncio.sleep(AGAIN)
 
 
-async def _listen_once(address: AdapterAddress, intake: AdapterIntake, told: set[int]) -> None:
+async def _listen_once(
+    address: AdapterAddress, intake: AdapterIntake, told: set[int], clock: AdapterClock
+) -> None:
     reader, writer = await asyncio.open_connection(address.host, address.port)
     agent, heartbeat = intake.agent, USUAL_HEARTBEAT
     pinger = asyncio.create_task(_ping(writer, lambda: heartbeat))
@@ -108,10 +162,23 @@ async def _listen_once(address: AdapterAddress, intake: AdapterIntake, told: set
                 elif not text.startswith("*"):
                     found += read_line(text, agent.model, agent.clock)
             told.update(each.item for each in found)
+            skew = clock.skew([each.time for each in found], agent.clock())
+            if skew is not None:
+                intake.tell(_skewed(address, skew))
             intake.take(found)
     finally:
         pinger.cancel()
         writer.close()
+
+
+def _skewed(address: AdapterAddress, seconds: float) -> str:
+    """What is told of a clock that is wrong."""
+    how = "behind" if seconds > 0.0 else "ahead of"
+    return (
+        f"adapter {address.host}:{address.port}: its clock is {abs(seconds):.1f} s {how} that "
+        "of the agent; its timestamps are kept, and cannot be compared with those of others. "
+        "Set its clock"
+    )
 
 
 def _begin(agent: Agent, told: set[int]) -> None:

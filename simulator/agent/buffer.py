@@ -1,7 +1,8 @@
 """Ring buffer of observations, with checkpoints of the state. Running state.
 
 Observations are kept as columns and written as XML once, when they are first asked for.
-Sequence numbers start at 1 and never repeat; timestamps never go back.
+Sequence numbers start at 1 and never repeat: they give the order. Timestamps are those of the
+senders, whose clocks may differ, so that they may go back.
 """
 
 from collections.abc import Callable, Sequence
@@ -94,6 +95,7 @@ class ObservationBuffer:
     def __post_init__(self) -> None:
         # Some more than are shown, so that each that is shown comes after a checkpoint.
         self._room = self.size + EVERY
+        self._latest = self.now
         self._items: Ints = np.zeros(self._room, dtype=np.int64)
         self._times: Ints = np.zeros(self._room, dtype=np.int64)
         self._values: list[Value] = [None] * self._room
@@ -127,24 +129,23 @@ class ObservationBuffer:
 
     @property
     def last_time(self) -> int:
-        """Timestamp of the newest observation, µs since 1970."""
-        return int(self._times[self.last % self._room])
+        """Latest timestamp so far, µs since 1970."""
+        return self._latest
 
     def append(self, items: Ints, times: Ints, values: Sequence[Value]) -> None:
-        """Add observations in the order of time.
+        """Add observations in the order in which they came.
 
         Parameters
         ----------
         items : array (N,)
             Numbers of the data items.
         times : array (N,), µs since 1970
-            A time before that of the newest observation counts as that.
+            Kept as they are, in any order.
         values : sequence (N,)
         """
         begin, count = 0, len(items)
-        if self.next > 1:
-            times = np.maximum(times, self.last_time)
-        times = np.maximum.accumulate(times)
+        if count:
+            self._latest = max(self._latest, int(times.max()))
         while begin < count:
             # Up to the next checkpoint and the end of the ring.
             to_checkpoint = EVERY - (self.next - 1) % EVERY

@@ -36,7 +36,7 @@ def fill(store: Store, outcomes: list[ProcessOutcome], proposal: LearnedCorrecti
     """Everything that a store can hold; ids with a gap, as PostgreSQL leaves after an error."""
     store.add(outcomes)
     with writing(store.engine, store.place) as connection:
-        row = {"id": 10_000} | outcome_row(replace(outcomes[0], force_ratio=None))
+        row = {"id": 10_000} | outcome_row(replace(outcomes[0], force_ratio=None, sequence=1))
         connection.execute(insert(outcome), row)
     kept, dropped, open_one = (
         store.propose(replace(proposal, log_centre=centre)) for centre in (0.1, 0.2, 0.3)

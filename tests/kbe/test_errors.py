@@ -5,6 +5,7 @@ from kbe.errors import (
     BackupExists,
     DriverMissing,
     KnowledgeError,
+    OutcomeDiffers,
     StoreBusy,
     StoreDamaged,
     StoreFull,
@@ -26,6 +27,12 @@ ALL = [
     (StoreFull("a.db"), "Free some space"),
     (StoreTooNew("a.db", found="0009", known="0001"), "install the newer"),
     (StoreNotEmpty("a.db", rows=3), "restore into a new file"),
+    (
+        OutcomeDiffers(
+            "a.db", run="7", workingstep="WS", column="time_s", recorded=1.0, value=2.0
+        ),
+        "an id of its own",
+    ),
     (BackupExists("a.db"), "name another"),
     (BackupDiffers("a.db"), "try again"),
     (UnknownCorrection("a.db", id=7), "list them"),

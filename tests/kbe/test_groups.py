@@ -23,6 +23,7 @@ def test_group_counts_and_averages(store: Store, outcome: ProcessOutcome) -> Non
             force=EvaluatedQuantity(predicted=800.0, measured=force),
             feed=EvaluatedQuantity(measured=14.0),
             recorded_at=outcome.recorded_at + timedelta(hours=(3 * index) % 5),
+            sequence=index,
         )
         for index, force in enumerate(MEASURED)
     ])
@@ -47,7 +48,8 @@ def test_groups_are_told_apart_and_in_order(store: Store, outcome: ProcessOutcom
     for machine, material, tool, kind in keys:
         context = Context(machine=machine, material=material, tool=tool)
         feature = replace(outcome.feature, kind=kind)
-        store.add([replace(outcome, context=context, feature=feature)] * 2)
+        one = replace(outcome, context=context, feature=feature, run=f"{context} {kind}")
+        store.add([one, replace(one, sequence=1)])
     found = store.groups()
     assert [
         (group.context.machine, group.context.material, group.context.tool, group.feature_kind)

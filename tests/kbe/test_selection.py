@@ -26,6 +26,7 @@ def varied(outcome: ProcessOutcome) -> list[ProcessOutcome]:
             program=program,
             run=run,
             recorded_at=outcome.recorded_at + timedelta(hours=index % 7),
+            sequence=index,
         )
         for index, (machine, material, tool, kind, program, run) in enumerate(
             product(WORDS, repeat=6)

@@ -97,13 +97,13 @@ def test_stream_that_is_left_keeps_nobody_waiting(store: Store, outcomes: Outcom
     store.add(outcomes(3))
     for _ in range(40):
         next(store.outcomes())
-    store.add(outcomes(1))
+    store.add(outcomes(1, run="run-2"))
     assert store.count() == 4
 
 
 def test_contexts_are_told_once_each(store: Store, outcomes: OutcomeMaker) -> None:
     other = Context(machine="vmc15", material="Al", tool="endmill 16")
-    store.add([replace(each, context=other) for each in outcomes(2)] + outcomes(2))
+    store.add([replace(each, context=other) for each in outcomes(2, run="run-2")] + outcomes(2))
     assert store.contexts() == (other, outcomes(1)[0].context)
 
 
@@ -129,7 +129,7 @@ def test_row_that_is_no_outcome_is_damage(store: Store, outcomes: OutcomeMaker) 
     """Another program may add rows; what they hold is not beyond doubt."""
     store.add(outcomes(1))
     columns = [column.name for column in outcome_table.columns if column.name != "id"]
-    change = {"immersion": "'SIDEWAYS'"}
+    change = {"immersion": "'SIDEWAYS'", "sequence": "1"}
     values = ", ".join(change.get(name, name) for name in columns)
     with writing(store.engine, store.place) as connection:
         names = ", ".join(columns)

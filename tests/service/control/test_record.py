@@ -23,7 +23,11 @@ def test_a_run_is_recorded_where_a_knowledge_base_is_named(tmp_path: Path) -> No
     found = newest(place, EVERYTHING, limit=10)
     assert found.total == 1
     assert found.outcomes[0].recorded_by == "Ada, virtual machine, kc:1.1"
-    assert told[-1] == f"recorded: 1 outcomes, run {found.outcomes[0].run}"
+    assert told[-1] == f"recorded: 1 outcome, run {found.outcomes[0].run}"
+    # The same run with the same seed says nothing new, also when somebody else asks for it.
+    control_recorded(*request(disturbances=words), knowledge=place, by="Bob", tell=told.append)
+    assert newest(place, EVERYTHING, limit=10) == found
+    assert "already recorded: 1 of 1" in told[-1]
 
 
 def test_without_one_nothing_is_recorded(

@@ -4,6 +4,7 @@ import shutil
 import subprocess
 import threading
 from collections.abc import Iterator
+from concurrent.futures import BrokenExecutor
 from functools import partial
 from pathlib import Path
 
@@ -182,3 +183,38 @@ def test_no_thread_of_a_cluster_is_left(shared: LocalCluster) -> None:
     for _ in range(2):
         assert list(results(pools, work.square, [(2,)], tell=print, what="squares")) == [(0, 4)]
     assert threading.active_count() <= before + 1
+
+
+class AwayClient:
+    """Client of a scheduler that left after it was reached."""
+
+    def __init__(self, *_: object, **__: object) -> None: ...
+
+    def wait_for_workers(self, *_: object, **__: object) -> None: ...
+
+    def run(self, *_: object, **__: object) -> dict[str, object]:
+        return {}
+
+    def get_executor(self, **_: object) -> "AwayClient":
+        return self
+
+    def close(self, **_: object) -> None:
+        raise TimeoutError
+
+
+@pytest.mark.parametrize("call", ["wait_for_workers", "run", "close"])
+def test_a_scheduler_that_leaves_is_named(monkeypatch: pytest.MonkeyPatch, call: str) -> None:
+    """Dask's errors are OSErrors without a reason, as of any file."""
+    address = "tcp://127.0.0.1:8786"
+
+    def gone(*_: object, **__: object) -> None:
+        raise OSError
+
+    monkeypatch.setattr("distributed.Client", AwayClient)
+    with monkeypatch.context() as patch:
+        if call != "close":
+            patch.setattr(AwayClient, call, gone)
+        with pytest.raises((StepNcError, BrokenExecutor)) as caught, cluster(address):
+            raise TimeoutError
+    if call != "close":
+        assert address in str(caught.value)

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from kbe.errors import OutcomeDiffers
 from kbe.selection import EVERYTHING
 from kbe.store import open_store
 from service.flat_file import Format
@@ -42,14 +43,14 @@ def written(folder: Path, rows: Any) -> Path:
 def test_what_was_exported_is_added_unchanged(kb: str, tmp_path: Path) -> None:
     file, place = tmp_path / "out.json", str(tmp_path / "new.db")
     count = export_outcomes(kb, EVERYTHING, file=file, form=Format.JSON)
-    assert add_outcomes(place, file) == count
+    assert add_outcomes(place, file).new == count
     with open_store(kb) as old, open_store(place) as new:
         assert list(new.outcomes()) == list(old.outcomes())
 
 
 def test_what_nobody_measured_may_be_left_out(tmp_path: Path) -> None:
     place = str(tmp_path / "new.db")
-    assert add_outcomes(place, written(tmp_path, [LEAST])) == 1
+    assert add_outcomes(place, written(tmp_path, [LEAST])).new == 1
     with open_store(place) as store:
         (outcome,) = store.outcomes()
     assert outcome.force.measured == 812.0
@@ -99,3 +100,14 @@ def test_what_is_no_json_is_refused(tmp_path: Path) -> None:
     path.write_bytes(b"\xff{")
     with pytest.raises(StepNcError, match="is not valid JSON"):
         add_outcomes(str(tmp_path / "new.db"), path)
+
+
+def test_a_file_that_is_added_again_adds_nothing(tmp_path: Path) -> None:
+    """A workingstep that ran twice is two outcomes; a row that stands there twice is one."""
+    place = str(tmp_path / "new.db")
+    again = {**LEAST, "recorded_at": "2026-03-02T09:00:00+01:00", "mode": "QC"}
+    file = written(tmp_path, [LEAST, again, LEAST])
+    assert str(add_outcomes(place, file)) == "2 outcomes (already recorded: 1 of 3)"
+    assert str(add_outcomes(place, file)) == "0 outcomes (already recorded: 3 of 3)"
+    with pytest.raises(OutcomeDiffers):
+        add_outcomes(place, written(tmp_path, [{**LEAST, "mode": "EC"}]))

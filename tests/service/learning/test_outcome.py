@@ -23,7 +23,7 @@ NAMES = {"part": ("one",), "machine": ("paper003",), "material": ("aisi1018",)}
 def test_a_plan_gets_the_factor_once_it_is_accepted(tmp_path: Path) -> None:
     file, place = tmp_path / "kc.json", str(tmp_path / "shop.db")
     write_outcome(file, FOUND, program=PART, names=NAMES)
-    assert add_outcomes(place, file) == 1
+    assert add_outcomes(place, file).new == 1
     (found,) = review(place, ReviewRequest())
     assert found.entry is not None
     tool = {"machine": "paper003", "material": "aisi1018", "tools": ["END MILL 8MM"]}

@@ -4,13 +4,23 @@ import asyncio
 import socket
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
+from functools import partial
 
 import numpy as np
 import pytest
 
 from simulator.agent import adapters
-from simulator.agent.adapters import AdapterAddress, AdapterIntake, ShdrServer, listen_to
+from simulator.agent.adapters import (
+    AdapterAddress,
+    AdapterClock,
+    AdapterIntake,
+    ShdrServer,
+    listen_to,
+)
 from simulator.agent.agent import Agent
+from simulator.agent.documents import timestamp
+from simulator.agent.shdr import ShdrObservation
+from tests.every_case import every_case
 from tests.simulator.agent.test_model import TYPES, model_from
 
 T0 = "2026-01-02T03:04:05.6Z"
@@ -193,3 +203,70 @@ def test_one_agent_feeds_another() -> None:
     asyncio.run(run())
     told = values_of(second, "avail")
     assert told[-5000:] == [f"word{n}" for n in range(5000)]
+
+
+def served_samples(behind: float, count: int = 8) -> tuple[Agent, list[int], list[str]]:
+    """Agent, stamps and messages of samples 0.5 s apart, by a clock that is wrong."""
+    now = [1_700_000_000_000_000]
+    agent = Agent(model=model_from(TYPES), clock=lambda: now[0], size=200_000)
+    told: list[str] = []
+
+    def has(number: int) -> bool:
+        return len(values_of(agent, "temp")) == number
+
+    async def work(_: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        for number in range(count):
+            now[0] += 500_000
+            stamp = timestamp(now[0] - int(1e6 * behind))
+            writer.write(f"{stamp}|temp|{number}\n".encode())
+            await writer.drain()
+            await until(partial(has, number + 2))
+        await asyncio.sleep(30)
+
+    async def run() -> None:
+        server, address = await adapter(work)
+        intake = AdapterIntake(agent=agent, tell=told.append)
+        task = asyncio.create_task(listen_to(address, intake))
+        await until(partial(has, count + 1))
+        task.cancel()
+        server.close()
+
+    asyncio.run(run())
+    span = np.arange(agent.buffer.first, agent.buffer.next)
+    items, times = agent.buffer.take(span)
+    return agent, times[items == agent.model.index["temp"]].tolist()[1:], told
+
+
+@every_case(
+    ("behind", "said"), [(0.0, ""), (300.0, "300.0 s behind"), (-40.0, "40.0 s ahead of")]
+)
+def test_stamps_are_those_of_the_adapter_and_a_wrong_clock_is_told(
+    behind: float, said: str
+) -> None:
+    agent, stamps, told = served_samples(behind)
+    assert set(np.diff(stamps).tolist()) == {500_000}
+    assert agent.clock() - stamps[-1] == 1e6 * behind
+    assert len(told) == bool(said)
+    assert all(said in each for each in told)
+
+
+def test_a_clock_is_judged_by_what_is_new() -> None:
+    """At first an adapter tells what holds since long, and the net may be slow."""
+    clock = AdapterClock()
+    second = 1_000_000
+    assert clock.skew([0], 900 * second) is None
+    assert clock.skew([], 901 * second) is None
+    assert clock.skew([0], 902 * second) is None
+    assert clock.skew([903 * second], 930 * second) is None
+    assert clock.skew([931 * second], 931 * second) is None
+    assert clock.skew([932 * second], 990 * second) is None
+    assert clock.is_judged
+
+
+def test_values_after_a_clock_was_set_back_are_taken() -> None:
+    agent = new_agent()
+    intake = AdapterIntake(agent=agent)
+    feed = agent.model.index["feed"]
+    for time, value in ((900, 10.0), (100, 20.0), (101, 30.0), (103, 40.0)):
+        intake.take([ShdrObservation(feed, time * 1_000_000, value)])
+    assert values_of(agent, "feed")[1:] == [10.0, 20.0, 40.0]

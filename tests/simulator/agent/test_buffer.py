@@ -94,8 +94,9 @@ def test_what_held_at_any_time_is_known_while_it_is_kept(
     assert held(buffer, buffer.last) == shown(values, buffer.last)
 
 
-def test_times_are_kept_in_order() -> None:
+def test_times_are_kept_as_they_are() -> None:
     buffer = ObservationBuffer(model=MODEL, size=1000, now=50)
     buffer.append(np.zeros(4, dtype=int), np.array([60, 40, 70, 65]), [1.0, 2.0, 3.0, 4.0])
     _, times = buffer.take(np.arange(COUNT + 1, COUNT + 5))
-    assert times.tolist() == [60, 60, 70, 70]
+    assert times.tolist() == [60, 40, 70, 65]
+    assert buffer.last_time == 70
