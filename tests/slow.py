@@ -61,6 +61,7 @@ SLOW = (
     "service/rest/test_monitors.py",
     "service/rest/test_mutations.py",
     "service/rest/test_openapi.py",
+    "service/rest/test_paths_in_fields.py",
     "service/rest/test_programs.py",
     "service/rest/test_rate.py",
     "service/rest/test_serve.py",

@@ -1,8 +1,11 @@
 """Routes for operators of the service: health checks, metrics, version."""
 
-from typing import Any
+import asyncio
+from collections.abc import Awaitable
+from typing import TypeVar
 
 from fastapi import APIRouter, Request, Response
+from starlette.concurrency import run_in_threadpool
 
 from service.errors import ServiceError
 from service.jobs.runner import is_alive
@@ -17,6 +20,16 @@ from service.storage.jobs import JobState
 
 ROUTES = APIRouter(tags=["service"])
 
+T = TypeVar("T")
+
+READY = 5.0
+"""Time within which a thread takes a task that is over at once, in s.
+
+A process whose threads all hang in files or locks still answers ``/healthz``, which needs none.
+"""
+
+SILENT = {"database": False, "runner": False}
+
 
 @ROUTES.get("/healthz", summary="Check that the process answers")
 async def healthz(request: Request) -> Response:
@@ -26,8 +39,13 @@ async def healthz(request: Request) -> Response:
 
 @ROUTES.get("/readyz", summary="Check that requests can be served")
 async def readyz(request: Request) -> Response:
-    """Report whether the database answers and a runner is alive; 503 if not."""
-    found = await answered(_state, data_folder_of(request))
+    """Report whether database, threads of requests and runner do their work; 503 if not."""
+    data_folder = data_folder_of(request)
+    state, has_threads = await asyncio.gather(
+        _in_time(answered(_state, data_folder), SILENT),
+        _in_time(run_in_threadpool(lambda: True), False),
+    )
+    found = {**state, "threads": has_threads}
     return json_reply(request, found, status=200 if all(found.values()) else 503)
 
 
@@ -57,8 +75,17 @@ async def about(request: Request) -> Response:
     )
 
 
-def _state(data_folder: DataFolder) -> dict[str, Any]:
+def _state(data_folder: DataFolder) -> dict[str, bool]:
     try:
         return {"database": True, "runner": is_alive(data_folder)}
     except ServiceError:
-        return {"database": False, "runner": False}
+        return SILENT
+
+
+async def _in_time(answer: Awaitable[T], otherwise: T) -> T:
+    """Await an answer for the time that a thread may take to do nothing."""
+    try:
+        async with asyncio.timeout(READY):
+            return await answer
+    except TimeoutError:
+        return otherwise

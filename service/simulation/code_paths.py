@@ -14,6 +14,7 @@ from re import IGNORECASE, compile
 import numpy as np
 
 from service.raw_stock import GivenStock, larger_stock_map, raw_stock_of, stock_map
+from service.requests.stock import RawPart
 from service.simulation.setup import CountedIterator, PreparedRun
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import table_tool
@@ -97,7 +98,7 @@ class CodePaths:
     name : str
     tools : dict or None
         Tools by number; None: any tool may run, and nothing is cut.
-    stock : str
+    stock : str or StockFile
         Raw part, as :func:`service.raw_stock.raw_stock_of` reads it; empty: nothing is cut.
     """
 
@@ -109,7 +110,7 @@ class CodePaths:
         *,
         name: str,
         tools: dict[int, TableTool] | None,
-        stock: str,
+        stock: RawPart,
     ) -> None:
         self.machine, self.material = machine, material
         self.name, self.stock = name, stock
