@@ -64,9 +64,6 @@ NOT_PLACED = (
 )
 """Flags of moves whose place over the stock is not known, or that may not be executed."""
 
-BRIDGE = 0
-"""Line of moves that stand for those that are left out: what they meet is no fault."""
-
 CLEARANCE = 5.0
 """Distance from the stock at which the tool goes around moves that are left out, mm."""
 
@@ -98,8 +95,8 @@ class CodePaths:
     name : str
     tools : dict or None
         Tools by number; None: any tool may run, and nothing is cut.
-    stock : str or StockFile
-        Raw part, as :func:`service.raw_stock.raw_stock_of` reads it; empty: nothing is cut.
+    stock : RawPart
+        Numbers or a file; empty: nothing is cut.
     """
 
     def __init__(

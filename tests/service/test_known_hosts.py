@@ -93,7 +93,7 @@ def require_guarded(app: Application) -> None:
     """Every method and path of an application asks for a known host."""
     for path in ("/current", "/probe", "/runs", "/runs/x/current", "/d?x=1", "/asset/A"):
         for method in ("GET", "HEAD", "PUT", "POST", "DELETE", "OPTIONS"):
-            asked = {"method": method, "path": path}
+            asked: dict[str, Any] = {"method": method, "path": path}
             assert answer(app, scope("evil.example:5000", **asked)) == 403
             assert answer(app, scope("planner.shop:99999", **asked)) == 403
             assert answer(app, scope("[127.0.0.1]", **asked)) == 403

@@ -50,7 +50,7 @@ def text_fields(document: dict[str, Any]) -> Iterator[TextField]:
     for route, operations in document["paths"].items():
         for method, operation in operations.items():
             for each in operation.get("parameters", ()):
-                if any(texts(document, each["schema"])):
+                if list(texts(document, each["schema"])):
                     yield TextField(
                         method=method, route=route, where=each["in"], place=(each["name"],)
                     )
