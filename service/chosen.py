@@ -70,13 +70,28 @@ def material_for(name: str, program: Program) -> MaterialMatch:
 
 def load_material_named(name: str) -> MaterialMatch:
     """Find a material by library name, file path, or any designation used in catalogues."""
-    if name in material_names() or Path(name).suffix == ".toml":
-        return MaterialMatch(
-            material=load_material(name),
-            certainty=Certainty.EXACT,
-            reason=f"'{name}' as requested",
-        )
-    return match_material((name,))
+    if Path(name).suffix == ".toml":
+        return _as_requested(name)
+    return library_material(name)
+
+
+def library_material(name: str) -> MaterialMatch:
+    """Find a material by library name or any designation used in catalogues; never a file.
+
+    Raises
+    ------
+    UnknownMaterial
+        When the library has none.
+    """
+    return _as_requested(name) if name in material_names() else match_material((name,))
+
+
+def _as_requested(name: str) -> MaterialMatch:
+    return MaterialMatch(
+        material=load_material(name),
+        certainty=Certainty.EXACT,
+        reason=f"'{name}' as requested",
+    )
 
 
 def require_axes(machine: Machine) -> None:

@@ -3,17 +3,18 @@
 import os
 import tempfile
 from collections.abc import Iterable, Iterator
+from io import TextIOWrapper
 from pathlib import Path
 
 from stepnc_model.errors import StepNcError, WriteError
-from stepnc_model.regular_file import why_irregular
+from stepnc_model.regular_file import open_regular, why_irregular
 
 
 def read_bytes(path: Path) -> bytes:
     """Read all bytes of a file; raise StepNcError when it cannot be read."""
     try:
-        require_regular(path)
-        return path.read_bytes()
+        with open_regular(path) as file:
+            return file.read()
     except OSError as error:
         raise StepNcError(f"{path}: {_reason(error)}") from error
     except ValueError as error:
@@ -42,8 +43,7 @@ LONGEST_LINE = 100_000
 def open_lines(path: Path) -> Iterator[str]:
     """Yield the lines of a text file lazily; errors of opening are raised at once."""
     try:
-        require_regular(path)
-        file = path.open(encoding="utf-8", errors="replace")
+        file = TextIOWrapper(open_regular(path), encoding="utf-8", errors="replace")
     except OSError as error:
         raise StepNcError(f"{path}: {_reason(error)}") from error
     except ValueError as error:

@@ -1,4 +1,4 @@
-"""HTTP protocol with bounds on a request head and an end for streams.
+"""HTTP protocol with bounds on a request head, one host, and an end for streams.
 
 The server underneath bounds neither time nor size of a head: it would wait without end for a
 client that never completes it, and keep it in memory. Bodies are bounded by the access
@@ -7,12 +7,16 @@ and log a fault.
 """
 
 import asyncio
+import re
 from typing import Any
 
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
 HEAD_S = 10.0
 """Time within which a request head must arrive, in s."""
+
+END_OF_HOST = re.compile(rb"[/?#]")
+"""What follows the host of an absolute request target."""
 
 HEAD_BYTES = 1 << 16
 """Largest size of a request head beyond its first chunk, in bytes."""
@@ -74,7 +78,26 @@ class BoundedHttpProtocol(HttpToolsProtocol):
     def on_headers_complete(self) -> None:
         """Note that a request head is complete (see httptools)."""
         self._begin, self._is_head = None, False
+        self._take_host_of_target()
         super().on_headers_complete()
+
+    def _take_host_of_target(self) -> None:
+        """Let the host of an absolute request target replace the Host header.
+
+        RFC 9112 §3.2.2 demands it: who checks the header would be told one host and asked for
+        another. The base class drops the host of the target.
+        """
+        _, mark, rest = self.url.partition(b"://")
+        if self.url.startswith(b"/") or not mark:
+            return
+        host = END_OF_HOST.split(rest, maxsplit=1)[0]
+        # In place: the scope has the same list. A second header stays one too many.
+        names = [name for name, _ in self.headers]
+        if b"host" not in names:
+            self.headers.append((b"host", host))
+        for number, name in enumerate(names):
+            if name == b"host":
+                self.headers[number] = (name, host)
 
     def _expect(self) -> None:
         self._begin = self.loop.time()

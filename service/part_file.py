@@ -14,6 +14,7 @@ from service.stl import HEADER, RECORD, VERTEX, is_binary_stl, stl_triangles
 from simulator.motion.segments import Floats
 from stepnc_model.errors import Part21Error, StepNcError
 from stepnc_model.part21.reader import Part21File
+from stepnc_model.regular_file import open_regular
 
 PACKED = (b"PK\x03\x04", b"\x1f\x8b")
 """Beginning of a ZIP archive and of a gzip stream, in which STEP files come."""
@@ -49,17 +50,6 @@ def part_place(text: str) -> tuple[Path, str]:
     if not mark or not name or Path(text).is_file():
         return Path(text), ""
     return Path(name), solid
-
-
-def place_text(path: Path, solid: str) -> str:
-    """Text that :func:`part_place` splits into a file and a solid of it.
-
-    Examples
-    --------
-    >>> place_text(Path("part.step"), "2")
-    'part.step#2'
-    """
-    return f"{path}{CHOICE}{solid}" if solid else str(path)
 
 
 def read_part(path: Path, *, solid: str = "", tolerance: float) -> PartMesh:
@@ -109,7 +99,7 @@ def require_part_form(path: Path) -> None:
     StepNcError
         When its beginning and its size are those of neither.
     """
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         head = file.read(LOOKED_AT)
     count = int.from_bytes(head[HEADER - 4 : HEADER], "little")
     is_binary = len(head) >= HEADER and path.stat().st_size == HEADER + RECORD * count

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from service.brep.bodies import USUAL_TOLERANCE, ProgramBodies, stock_around
-from service.file_names import PROGRAMS
 from service.files import read_bytes
 from service.numbers import require_size, stock_in
-from service.part_file import part_place, read_part
+from service.part_file import read_part
+from service.requests.stock import KEPT_SUFFIX, RawPart, StockFile
 from simulator.machine.virtual import StockMap
 from simulator.motion.segments import Floats
 from simulator.removal.engage import MillingStock
@@ -28,14 +28,6 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, Stock
 from stepnc_model.toolpath.frame import Frame, workpiece_frame
 from stepnc_model.toolpath.task import drawn_stock, raw_body
-
-KEPT_SUFFIX = ".npz"
-"""Ending of a file that keeps a stock."""
-
-MESH_SUFFIX = ".stl"
-
-PART_SUFFIXES = frozenset({MESH_SUFFIX, ".step"}) | PROGRAMS
-"""Usual endings of files that have a part; their content tells how they are read."""
 
 OFF_AXIS = 1e-6
 """Greatest distance of a bar's axis from that of a lathe, mm."""
@@ -55,47 +47,37 @@ class GivenStock:
     """File it was read from; empty for numbers."""
 
 
-def file_of_stock(text: str) -> Path | None:
+def file_of_stock(given: RawPart) -> Path | None:
     """Path of the file that a stock is read from; None for numbers."""
-    path = part_place(text.strip())[0]
-    if path.suffix.lower() == KEPT_SUFFIX or path.suffix.lower() in PART_SUFFIXES:
-        return path
-    return path if "," not in text and path.is_file() else None
+    return given.path if isinstance(given, StockFile) else None
 
 
-def raw_stock_of(text: str) -> GivenStock:
+def raw_stock_of(given: RawPart) -> GivenStock:
     """Read a raw part.
 
     Parameters
     ----------
-    text : str
+    given : str or StockFile
         Numbers in mm: ``x0,y0,z0,x1,y1,z1`` of a box, ``diameter,z0,z1`` of a bar about zero,
         ``diameter,length`` of a bar that ends at z = 0, or ``x,y,diameter,z0,z1`` of an upright
-        bar elsewhere. Otherwise the path of an STL file in mm, of a STEP file with a solid
-        (``part.step``, or ``part.step#SOLID`` where it has several), or of a stock that a run
-        kept (``.npz``).
+        bar elsewhere; a text is never a path. Or an STL file in mm, a STEP file with a solid,
+        or a stock that a run kept (``.npz``).
 
     Raises
     ------
     StepNcError
         When the numbers or the file are invalid, or the size is not that of a stock.
     """
-    path = file_of_stock(text)
-    if path is not None and path.suffix.lower() == KEPT_SUFFIX:
+    if not isinstance(given, StockFile):
+        return GivenStock(bounds=stock_in(given))
+    path = given.path
+    if path.suffix.lower() == KEPT_SUFFIX:
         bounds, kept = kept_stock(read_bytes(path), str(path))
         return GivenStock(bounds=bounds, kept=kept, name=str(path))
-    if path is not None:
-        solid = part_place(text.strip())[1]
-        triangles = read_part(path, solid=solid, tolerance=USUAL_TOLERANCE).triangles
-        raw = GivenStock(bounds=bounds_of(triangles), triangles=triangles, name=str(path))
-        _require_size(raw)
-        return raw
-    if "," not in text:
-        raise StepNcError(
-            f"stock '{text}': expected numbers separated by commas, an STL file "
-            f"({MESH_SUFFIX}), a STEP file (.step) or a kept stock ({KEPT_SUFFIX})"
-        )
-    return GivenStock(bounds=stock_in(text))
+    triangles = read_part(path, solid=given.solid, tolerance=USUAL_TOLERANCE).triangles
+    raw = GivenStock(bounds=bounds_of(triangles), triangles=triangles, name=str(path))
+    _require_size(raw)
+    return raw
 
 
 def stock_map(machine: Machine, raw: GivenStock) -> StockMap:
@@ -188,7 +170,7 @@ def body_map(
     return turning_stock_of(mesh) if is_turning else milling_stock_of(mesh, cell=cell)
 
 
-def given_stock(text: str) -> GivenStock:
+def given_stock(given: RawPart) -> GivenStock:
     """Read a raw part that was not cut before: numbers, a mesh or a solid.
 
     Raises
@@ -196,7 +178,7 @@ def given_stock(text: str) -> GivenStock:
     StepNcError
         As :func:`raw_stock_of`; when it is a stock that an earlier run kept.
     """
-    raw = raw_stock_of(text)
+    raw = raw_stock_of(given)
     if raw.kept is not None:
         raise StepNcError(
             f"{raw.name}: a kept stock serves NC code only: name numbers, an STL file or a "

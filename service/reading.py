@@ -9,6 +9,7 @@ from service.brep.bodies import ProgramBodies
 from service.files import read_bytes
 from service.numbers import feed_in
 from service.requests.given import ProgramRequest
+from service.requests.stock import RawPart
 from stepnc_model.errors import StepNcError
 from stepnc_model.given import Completed, GivenData, completed
 from stepnc_model.part21.reader import Part21File
@@ -31,7 +32,7 @@ def silent(_message: str) -> None:
 
 
 def read_program(
-    path: Path, *, units: str, name: str = "", stock: str = "", tell: Tell = silent
+    path: Path, *, units: str, name: str = "", stock: RawPart = "", tell: Tell = silent
 ) -> Program:
     """Read a program from a file; its name is the file's name unless another is given.
 
@@ -122,13 +123,13 @@ def program_in(
     return Program(file, units=profile, name=name, stock=bounds, bodies=bodies)
 
 
-def read_stock(text: str) -> "GivenStock | None":
-    """Read a raw part as the user gives it, in numbers or as a file; None for no text."""
-    if not text:
+def read_stock(given: RawPart) -> "GivenStock | None":
+    """Read a raw part, in numbers or from a file; None for an empty text."""
+    if not given:
         return None
     from service.raw_stock import given_stock  # noqa: PLC0415 (numpy)
 
-    return given_stock(text)
+    return given_stock(given)
 
 
 def unit_profile(name: str) -> UnitProfile:

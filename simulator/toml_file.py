@@ -19,7 +19,7 @@ from msgspec import inspect
 
 from simulator.errors import LibraryError
 from simulator.toml_bounds import MOST_BYTES, require_bounded
-from stepnc_model.regular_file import why_irregular
+from stepnc_model.regular_file import open_regular
 
 LONGEST_SHOWN = 80
 """characters of a value or a key in a message"""
@@ -159,9 +159,7 @@ def read_text(path: Path) -> str:
 def read_bounded(path: Path, *, most: int = MOST_BYTES) -> bytes:
     """Bytes of a library file, which is small."""
     try:
-        if reason := why_irregular(path):
-            raise LibraryError(reason, path=str(path))
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             data = file.read(most + 1)
     except ValueError as error:
         raise LibraryError(

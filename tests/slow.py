@@ -39,6 +39,7 @@ SLOW = (
     "service/rest/test_monitors.py",
     "service/rest/test_mutations.py",
     "service/rest/test_openapi.py",
+    "service/rest/test_paths_in_fields.py",
     "service/rest/test_serve.py",
     "service/rest/test_serve_database.py",
     "service/rest/test_serve_store.py",

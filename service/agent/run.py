@@ -17,6 +17,7 @@ from service.extras import missing_extras_named
 from service.file_names import LOGS, plain_name
 from service.files import require_place, write_atomically
 from service.http_protocol import BoundedHttpProtocol
+from service.known_hosts import for_known_hosts, known_hosts
 from service.reading import Tell, silent
 from service.requests.agent import AgentRequest
 from service.requests.fields import require_bounds
@@ -207,6 +208,7 @@ def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent
             stack.callback(runs.RunKeeper(agent, repository, tell=tell).close)
             app = with_runs(app, repository)
         tell(f"MTConnect agent: http://{place_of(listener)}/current")
+        app = for_known_hosts(app, known_hosts(request.host, request.host_names))
         run_server(agent, app, [*work, *broker(agent)], listener, shdr=shdr)
 
 

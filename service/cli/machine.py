@@ -156,6 +156,7 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
     StepNcError
         When options of NC code alone are given without --nc.
     """
+    from service.requests.stock import raw_part_in
     from service.simulation.of_code import CodeRequest
     from service.simulation.run import RunFiles
     from stepnc_model.errors import StepNcError
@@ -171,7 +172,7 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
             dialect=options.dialect,
             tools=options.tools,
             tools_unit=length_unit(options.tools_unit),
-            stock=options.stock or "",
+            stock=raw_part_in(options.stock or ""),
         )
     return RunFiles(
         file=file,

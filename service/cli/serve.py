@@ -21,7 +21,6 @@ USUAL_RATE = 50.0
 
 LEVELS = ("debug", "info", "warning", "error")
 ROLES = ("viewer", "planner", "operator")
-LOOPBACK = ("127.0.0.1", "::1", "localhost")
 
 SERVE = """examples:
   stepnc serve
@@ -61,7 +60,8 @@ def add_service_commands(commands: Commands) -> None:
         action="append",
         default=[],
         metavar="HOST",
-        help="a host name by which clients reach this computer; repeatable",
+        help="a host name by which clients reach this computer, beside its addresses; "
+        "repeatable",
     )
     add(
         "--agent",
@@ -138,6 +138,7 @@ def _add_data(parser: argparse.ArgumentParser) -> None:
 
 
 def _serve(options: argparse.Namespace) -> int:
+    from service.known_hosts import LOOPBACK
     from service.monitor.source import sources_of
     from service.rest.serve import ServerOptions, serve
     from service.rest.settings import MIB, Settings

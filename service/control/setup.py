@@ -15,7 +15,7 @@ from optimiser.modes import Mode
 from optimiser.optimise import optimise_program
 from optimiser.safety import LEAST_QUANTILE
 from optimiser.source import from_features
-from service.chosen import load_material_named
+from service.chosen import library_material
 from service.control.planned import PlannedWorkingstep
 from service.knowledge.corrected import factors_for
 from service.progress import Ticker, bar
@@ -111,7 +111,7 @@ def hardness_against(match: MaterialMatch) -> Callable[[str], float]:
     cut = match.material.kienzle
 
     def ratio(name: str) -> float:
-        other = load_material_named(name).material.kienzle
+        other = library_material(name).material.kienzle
         return float(other.k_c11 / cut.k_c11 * CHIP ** (cut.m_c - other.m_c))
 
     return ratio

@@ -12,6 +12,7 @@ from service.factory.plan import machining_plan
 from service.factory.published import ShopPublisher
 from service.factory.source import chosen_shop, source_of_file
 from service.factory.timelines import FASTEST, part_timelines
+from service.known_hosts import for_known_hosts, known_hosts
 from service.reading import Tell, silent
 from service.requests.factory import FactoryRequest, LiveFactoryRequest
 from service.requests.fields import require_bounds
@@ -74,7 +75,8 @@ def serve_shop(
             renamed = "" if name == machine.name else f", device {name}"
             tell(f"machine {machine.name}{renamed}: http://{place_of(listener)}/{name}/current")
         tell(f"MTConnect agent: http://{place_of(listener)}/current")
-        run_server(agent, application(agent), [work.run], listener)
+        hosts = known_hosts(live.host, live.host_names)
+        run_server(agent, for_known_hosts(application(agent), hosts), [work.run], listener)
 
 
 def require_live(request: FactoryRequest) -> None:

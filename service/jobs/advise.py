@@ -38,7 +38,7 @@ def run(task: RunningJob) -> None:
     kind = programs.get(task.data_folder, task.job.program).kind
     advise = _advise_code if kind is ProgramKind.NC_CODE else _advise_program
     with naming(names):
-        advise(task, task.named(request), file, tools, names)
+        advise(task, request, file, tools, names)
 
 
 def _advise_program(

@@ -10,7 +10,6 @@ from service.files import write_atomically
 from service.jobs.logs import log_of, told
 from service.jobs.task import REPORT, RunningJob
 from service.requests.stored_cycle_time import QueuedCycleTime
-from service.storage.library import machine_word
 
 
 def run(task: RunningJob) -> None:
@@ -29,7 +28,7 @@ def run(task: RunningJob) -> None:
         found = cycle_time(
             CycleTimeRequest(
                 file=program,
-                machine=machine_word(task.data_folder, request.machine),
+                machine=request.machine,
                 log="" if log is None else str(log.path),
                 program=request,
                 control=request.control,

@@ -31,7 +31,7 @@ def run(task: RunningJob) -> None:
         file=file, name=name, output=samples_place(task.folder), report=task.folder / REPORT
     )
     with live.writer:
-        simulation = simulate(task.named(request), files, tell=task.tell, watchers=(live,))
+        simulation = simulate(request, files, tell=task.tell, watchers=(live,))
     if simulation.trace is not None:
         page = simulation_page(simulation, simulation.trace, material=simulation.material)
         write_atomically(task.folder / REPORT, page.encode(errors="replace"))

@@ -45,9 +45,7 @@ def run_control(task: RunningJob) -> None:
     files = RunFiles(
         file=file, name=name, output=samples_place(task.folder), report=task.folder / REPORT
     )
-    session = prepare(
-        task.named(request), files, knowledge=task.data_folder.knowledge, tell=task.tell
-    )
+    session = prepare(request, files, knowledge=task.data_folder.knowledge, tell=task.tell)
     live = LiveControl(session)
 
     def tell(status: Mapping[str, Any]) -> None:

@@ -15,19 +15,17 @@ from service.files import write_atomically
 from service.live.folder import LiveFolder
 from service.progress import share_in
 from service.requests.fields import R, loaded
+from service.requests.given import ProgramRequest
+from service.requests.stock import StockFile
 from service.storage import jobs
 from service.storage.folder import DataFolder
 from service.storage.jobs import Job, JobKind
 
 if TYPE_CHECKING:
-    from service.requests.advice import AdviceRequest
-    from service.requests.runs import RunRequest
     from service.requests.stored_advice import StoredAdviceRequest
     from service.requests.stored_verification import QueuedVerification
-    from service.requests.verification import VerificationRequest
 
-N = TypeVar("N", bound="AdviceRequest | RunRequest | VerificationRequest")
-"""Type of requests that name a machine and a material."""
+P = TypeVar("P", bound=ProgramRequest)
 
 S = TypeVar("S", bound="StoredAdviceRequest | QueuedVerification")
 """Type of requests that may name an uploaded raw part."""
@@ -68,22 +66,34 @@ class RunningJob:
     _said: float = field(default=0.0)
 
     def request(self, kind: type[R]) -> R:
-        """Return the request of the job."""
-        return loaded(kind, self.job.request)
+        """Return the request of the job, with machine and material of library or shop.
 
-    def named(self, request: N) -> N:
+        What a client names is looked up here, in the one place through which every request
+        comes: the code behind it takes paths too.
+
+        Raises
+        ------
+        UnknownMachine, Unreadable
+            When the machine is not known, or the material is no name.
+        """
+        found = loaded(kind, self.job.request)
+        return self._named(found) if isinstance(found, ProgramRequest) else found
+
+    def _named(self, request: P) -> P:
         """Return the request with machine and material names of the shop replaced by paths."""
         # Slow to import; the runner and many jobs name neither.
         from service.storage.library import machine_word, material_word  # noqa: PLC0415
 
-        return replace(
-            request,
-            machine=machine_word(self.data_folder, request.machine),
-            material=material_word(self.data_folder, request.material),
-        )
+        words = {"machine": machine_word, "material": material_word}
+        own = {
+            name: word(self.data_folder, getattr(request, name))
+            for name, word in words.items()
+            if hasattr(request, name)
+        }
+        return replace(request, **own)  # type: ignore[arg-type]
 
     def with_stock(self, request: S, names: dict[Path, str]) -> S:
-        """Return the request with the path of an uploaded raw part, and note the file's name.
+        """Return the request with the file of an uploaded raw part, and note its name.
 
         Raises
         ------
@@ -92,12 +102,11 @@ class RunningJob:
         """
         if request.stock_id is None:
             return request
-        from service.part_file import place_text  # noqa: PLC0415 (numpy)
         from service.storage import files  # noqa: PLC0415 (used by those who name one)
 
         path = files.require_file(self.data_folder, request.stock_id, files.FileKind.STOCK)
         names[path] = files.get(self.data_folder, request.stock_id).name
-        return replace(request, stock=place_text(path, request.stock_solid))
+        return replace(request, stock=StockFile(path=path, solid=request.stock_solid))
 
     @property
     def folder(self) -> Path:

@@ -42,7 +42,7 @@ def run(task: RunningJob) -> None:
         found = verify(
             log.path,
             program,
-            task.named(request),
+            request,
             inputs=VerificationInputs(
                 tools=tools, required=required, solid=request.required_solid
             ),

@@ -48,6 +48,15 @@ class AgentRequest(SimulationRequest):
         About("port to listen on; 0: any that is free", flag="--port", metavar="N"),
     ] = 5000  # fmt: skip
     host: Annotated[str, About("address to listen on", flag="--host")] = "127.0.0.1"
+    host_names: Annotated[
+        tuple[Name, ...],
+        MaxLen(100),
+        About(
+            "a host name by which clients reach this computer, beside its addresses; "
+            "repeatable",
+            flag="--name", metavar="HOST",
+        ),
+    ] = ()  # fmt: skip
     shdr_port: Annotated[
         int | None,
         Interval(ge=0, le=65535),

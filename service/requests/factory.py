@@ -91,6 +91,15 @@ class LiveFactoryRequest(Request):
     host: Annotated[str, About("with --live: address to listen on", flag="--host")] = (
         "127.0.0.1"
     )
+    host_names: Annotated[
+        tuple[Name, ...],
+        MaxLen(100),
+        About(
+            "with --live: a host name by which clients reach this computer, beside its "
+            "addresses; repeatable",
+            flag="--name", metavar="HOST",
+        ),
+    ] = ()  # fmt: skip
     buffer: Annotated[
         int,
         Interval(ge=1000, le=1 << 22),

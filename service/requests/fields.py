@@ -6,7 +6,7 @@ help, the OpenAPI schemas, and the checks of values. Field names are keys in JSO
 """
 
 import argparse
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, Field, dataclass, fields, replace
 from enum import StrEnum
 from types import UnionType
@@ -47,6 +47,8 @@ class About:
     """Option on the command line; empty: none."""
     metavar: str | None = None
     examples: tuple[object, ...] = ()
+    read: Callable[[str], object] | None = None
+    """Reads the text of the option; None: its type tells how. Values in JSON never pass it."""
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
         """Return the JSON schema with description and examples; called by pydantic."""
@@ -192,6 +194,8 @@ def _read(field: RequestField, typed: Any) -> Any:
 
 
 def _member(field: RequestField, typed: Any) -> Any:
+    if field.about.read is not None:
+        return field.about.read(typed)
     if isinstance(field.kind, type) and issubclass(field.kind, StrEnum):
         return member_of(field.kind, typed, field.label)
     if field.kind is float and isinstance(typed, str):

@@ -7,12 +7,10 @@ from typing import Annotated
 from annotated_types import MaxLen
 
 from service.requests.fields import LONGEST_NAME, About, Request
+from service.requests.stock import StockText, raw_part_in
 from stepnc_model.units import AUTO, PROFILES
 
 Name = Annotated[str, MaxLen(LONGEST_NAME)]
-
-StockText = Annotated[str, MaxLen(4096)]
-"""Raw part: numbers, or a path of the usual greatest length."""
 
 Units = StrEnum("Units", {name.replace("-", "_"): name for name in (*PROFILES, AUTO)})  # type: ignore[misc]
 """Unit profiles of files, by name, and ``auto``."""
@@ -51,7 +49,7 @@ class ProgramRequest(Request):
             "of a box, diameter,z0,z1 or diameter,length of a bar, x,y,diameter,z0,z1 of an "
             "upright bar; on the command line also an STL or STEP file (part.step#SOLID), of "
             "NC code an .npz file of --keep-stock too",
-            flag="--stock", metavar="STOCK", examples=("0,0,-30,100,120,5",),
+            flag="--stock", metavar="STOCK", examples=("0,0,-30,100,120,5",), read=raw_part_in,
         ),
     ] = ""  # fmt: skip
     given: Annotated[

@@ -7,7 +7,8 @@ from annotated_types import Interval
 
 from service.requests.advice import MachineName, MaterialName
 from service.requests.fields import About
-from service.requests.given import Name, ProgramRequest, StockText
+from service.requests.given import Name, ProgramRequest
+from service.requests.stock import StockText, raw_part_in
 
 INCH_THOUSANDTH = 0.0254
 """0.001 inch in mm, which paper 004 resolves."""
@@ -24,7 +25,7 @@ class VerificationRequest(ProgramRequest):
         About(
             "raw part where there is no program, or it defines none, in mm: "
             "x0,y0,z0,x1,y1,z1 or diameter,z0,z1; on the command line also an STL or STEP file",
-            flag="--stock", metavar="STOCK", examples=("0,0,-30,100,120,5",),
+            flag="--stock", metavar="STOCK", examples=("0,0,-30,100,120,5",), read=raw_part_in,
         ),
     ] = ""  # fmt: skip
     zero: Annotated[

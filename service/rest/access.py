@@ -17,13 +17,14 @@ from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.errors import Forbidden, TooLarge, Unauthorised, Unreadable
+from service.known_hosts import known_hosts
 from service.problem import plain_problem, problem_of, retry_after
 from service.rest.asking import answered
 from service.rest.logs import RequestLog
 from service.rest.metrics import count
 from service.rest.rate import RateLimit, SharedRateLimit
 from service.rest.rights import LOOKING, is_protected, require, role_for
-from service.rest.settings import LOOPBACK, Settings
+from service.rest.settings import Settings
 from service.storage import keys
 from service.storage.folder import DataFolder
 from service.storage.keys import Key, Role
@@ -39,9 +40,6 @@ UPLOADS = frozenset({"/v1/programs", "/v1/files"})
 
 PATIENT = 5.0
 """Time for which a valid key is not looked up again, in s."""
-
-PLACE = re.compile(r"(?:\[([0-9a-f:.]+)\]|([^:@/\[\]]*))(?::\d*)?")
-"""Host and optional port of a Host header, RFC 9110 §4.2.3."""
 
 GONE = 499
 """Status in metrics and log when the client disconnected before the answer."""
@@ -120,9 +118,7 @@ class AccessMiddleware:
             self._shared_rate = SharedRateLimit(
                 data_folder.database, settings.rate, burst=settings.burst
             )
-        self._names = frozenset(
-            name.lower() for name in ({settings.host, *settings.names} | LOOPBACK)
-        )
+        self._hosts = known_hosts(settings.host, settings.names)
         self._log = RequestLog() if settings.has_request_log else None
         # Request ids: a random prefix for the process, then a counter.
         self._prefix, self._count_of = secrets.token_hex(6), count_up(1)
@@ -181,9 +177,7 @@ class AccessMiddleware:
 
     def _require_known_host(self, scope: Scope, headers: dict[bytes, bytes]) -> None:
         """Refuse unknown host names and changes requested by pages of other sites."""
-        place = headers.get(b"host", b"").decode("latin-1").lower()
-        if _host(place) not in self._names:
-            raise Forbidden(f"host '{place}' is not a name of this service; add it with --name")
+        place = self._hosts.require(scope)
         if scope["method"] in LOOKING:
             return
         site = headers.get(b"sec-fetch-site", b"same-origin")
@@ -289,20 +283,9 @@ class AccessMiddleware:
 
 
 def _require_once(headers: Iterable[tuple[bytes, bytes]]) -> None:
-    """Refuse a second Host or Authorization header: readers would disagree which one counts.
-
-    RFC 9112 §3.2 demands 400 for a second Host.
-    """
-    names = [name.lower() for name, _ in headers]
-    for name in (b"host", b"authorization"):
-        if names.count(name) > 1:
-            raise Unreadable(f"the header {name.decode().title()} is given more than once")
-
-
-def _host(place: str) -> str:
-    """Return the host name without port; empty if there is none."""
-    found = PLACE.fullmatch(place)
-    return "" if found is None else found[1] or found[2]
+    """Refuse a second Authorization header: readers would disagree which one counts."""
+    if [name.lower() for name, _ in headers].count(b"authorization") > 1:
+        raise Unreadable("the header Authorization is given more than once")
 
 
 async def _refuse(send: Send, problem: dict[str, Any], error: StepNcError | None) -> None:

@@ -1,7 +1,8 @@
 """Dependencies of the routes: data folder, settings, pages, idempotency keys."""
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from threading import BoundedSemaphore
@@ -11,7 +12,7 @@ from fastapi import Depends, Header, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from optimiser.source import why_elsewhere
-from service.errors import Unreadable
+from service.errors import Unavailable, Unreadable
 from service.monitor.monitor import MonitorSet
 from service.program_kind import ProgramKind
 from service.reading import read_given, selected
@@ -140,6 +141,9 @@ async def fetched(data_folder: DataFolder, path: Path) -> Path:
 READING = BoundedSemaphore(2)
 """Limits how many programs are read at once to check requests; each is held in memory."""
 
+READING_WAIT = 30.0
+"""Longest time to wait for one of them, in s: readers that hang must not hold all threads."""
+
 Require = Callable[[DataFolder, JobRequest], None]
 """Check that refuses a request which cannot be carried out."""
 
@@ -172,7 +176,7 @@ def runnable(data_folder: DataFolder, asked: JobRequest) -> None:
 def _require_possible(data_folder: DataFolder, asked: JobRequest) -> None:
     """Refuse an unknown workingstep, and a machine that can run none of the workingsteps."""
     words = asked.request
-    with READING:
+    with reading_in_turn():
         file = data_folder.fetched(data_folder.program_file(asked.program))
         given = loaded(ProgramRequest, {name: words[name] for name in GIVEN if name in words})
         program = read_given(file, given).program
@@ -183,6 +187,25 @@ def _require_possible(data_folder: DataFolder, asked: JobRequest) -> None:
         reasons = [why_elsewhere(step, machine) for step in steps]
     if reasons and all(reasons):
         raise StepNcError(f"no workingstep can be run on this machine: {reasons[0]}")
+
+
+@contextmanager
+def reading_in_turn() -> Iterator[None]:
+    """Block in which a program is read, while few others are.
+
+    Raises
+    ------
+    Unavailable
+        When no other reading ends in time.
+    """
+    if not READING.acquire(timeout=READING_WAIT):
+        raise Unavailable(
+            f"other programs are still being read after {READING_WAIT:g} s; try again"
+        )
+    try:
+        yield
+    finally:
+        READING.release()
 
 
 def page_reply(request: Request, page: Page[Any], items: list[Any]) -> Response:

@@ -1,10 +1,13 @@
 """Routes for operators of the service: health checks, metrics, version."""
 
+import asyncio
+from collections.abc import Awaitable
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import Any
+from typing import TypeVar
 
 from fastapi import APIRouter, Request, Response
+from starlette.concurrency import run_in_threadpool
 
 from service.errors import ServiceError
 from service.jobs.runner import is_alive
@@ -22,6 +25,16 @@ SMALL = 4096
 
 ROUTES = APIRouter(tags=["service"])
 
+T = TypeVar("T")
+
+READY = 5.0
+"""Time within which a thread takes a task that is over at once, in s.
+
+A process whose threads all hang in files or locks still answers ``/healthz``, which needs none.
+"""
+
+SILENT = {"database": False, "runner": False, "room": False}
+
 
 @ROUTES.get("/healthz", summary="Check that the process answers")
 async def healthz(request: Request) -> Response:
@@ -31,8 +44,13 @@ async def healthz(request: Request) -> Response:
 
 @ROUTES.get("/readyz", summary="Check that requests can be served")
 async def readyz(request: Request) -> Response:
-    """Report whether the database answers, a runner lives and the disk has room; else 503."""
-    found = await answered(_state, data_folder_of(request))
+    """Report whether database, threads, runner and disk do their work; 503 if not."""
+    data_folder = data_folder_of(request)
+    state, has_threads = await asyncio.gather(
+        _in_time(answered(_state, data_folder), SILENT),
+        _in_time(run_in_threadpool(lambda: True), False),
+    )
+    found = {**state, "threads": has_threads}
     return json_reply(request, found, status=200 if all(found.values()) else 503)
 
 
@@ -62,19 +80,28 @@ async def about(request: Request) -> Response:
     )
 
 
-def _state(data_folder: DataFolder) -> dict[str, Any]:
+def _state(data_folder: DataFolder) -> dict[str, bool]:
     has_room = _has_room(data_folder.root)
     try:
         return {"database": True, "runner": is_alive(data_folder), "room": has_room}
     except ServiceError:
-        return {"database": False, "runner": False, "room": has_room}
+        return {**SILENT, "room": has_room}
 
 
 def _has_room(folder: Path) -> bool:
-    """Whether a small file can be written."""
+    """True if a small file can be written."""
     try:
         with TemporaryFile(dir=folder) as file:
             file.write(bytes(SMALL))
     except OSError:
         return False
     return True
+
+
+async def _in_time(answer: Awaitable[T], otherwise: T) -> T:
+    """Await an answer for the time that a thread may take to do nothing."""
+    try:
+        async with asyncio.timeout(READY):
+            return await answer
+    except TimeoutError:
+        return otherwise

@@ -6,13 +6,12 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 from service.errors import Unavailable
+from service.known_hosts import LOOPBACK
 from service.monitor.source import MonitorSource
 from service.storage.folder import FolderAddress
 
 VARIABLE = "STEPNC_SERVE"
 """Environment variable that passes the settings from process to process."""
-
-LOOPBACK = frozenset({"127.0.0.1", "::1", "localhost"})
 
 MIB = 1 << 20
 

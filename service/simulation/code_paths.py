@@ -14,6 +14,7 @@ from re import IGNORECASE, compile
 import numpy as np
 
 from service.raw_stock import GivenStock, larger_stock_map, raw_stock_of, stock_map
+from service.requests.stock import RawPart
 from service.simulation.setup import CountedIterator, PreparedRun
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import table_tool
@@ -63,9 +64,6 @@ NOT_PLACED = (
 )
 """Flags of moves whose place over the stock is not known, or that may not be executed."""
 
-BRIDGE = 0
-"""Line of moves that stand for those that are left out: what they meet is no fault."""
-
 CLEARANCE = 5.0
 """Distance from the stock at which the tool goes around moves that are left out, mm."""
 
@@ -97,8 +95,8 @@ class CodePaths:
     name : str
     tools : dict or None
         Tools by number; None: any tool may run, and nothing is cut.
-    stock : str
-        Raw part, as :func:`service.raw_stock.raw_stock_of` reads it; empty: nothing is cut.
+    stock : RawPart
+        Numbers or a file; empty: nothing is cut.
     """
 
     def __init__(
@@ -109,7 +107,7 @@ class CodePaths:
         *,
         name: str,
         tools: dict[int, TableTool] | None,
-        stock: str,
+        stock: RawPart,
     ) -> None:
         self.machine, self.material = machine, material
         self.name, self.stock = name, stock

@@ -15,6 +15,7 @@ from service.files import open_lines, read_bytes
 from service.raw_stock import raw_stock_of, stock_map
 from service.reading import one_of, read_given
 from service.requests.runs import RunRequest
+from service.requests.stock import RawPart
 from service.simulation.called_tools import called_tool_findings, with_called_tools
 from service.simulation.code_paths import CodePaths
 from service.simulation.setup import (
@@ -55,7 +56,7 @@ class CodeRequest:
     """Tool table, in any format that is read."""
     tools_unit: FileUnit | None = None
     """Unit of a tool table that names none; None: mm."""
-    stock: str = ""
+    stock: RawPart = ""
     """Raw part, as :func:`service.raw_stock.raw_stock_of` reads it; empty: unknown."""
 
 

@@ -11,10 +11,11 @@ from service.files import require_place
 from service.numbers import numbers_in
 from service.paths.remarks import tell_remarks
 from service.progress import Ticker, bar
-from service.raw_stock import KEPT_SUFFIX, file_of_stock
+from service.raw_stock import file_of_stock
 from service.reading import Tell, silent
 from service.requests.fields import require_bounds
 from service.requests.runs import ForceView, SimulationRequest
+from service.requests.stock import KEPT_SUFFIX, RawPart
 from service.run_file import require_suffix
 from service.simulation.gathering import RunCollector, SampleWatcher
 from service.simulation.of_code import CodeRequest, from_code
@@ -248,7 +249,7 @@ def machine_of(
     )
 
 
-def _require_files(files: RunFiles, stock: str) -> None:
+def _require_files(files: RunFiles, stock: RawPart) -> None:
     """Refuse invalid combinations of files before anything is read."""
     code = files.code
     if code is not None and files.file is not None and (code.tools or code.stock):

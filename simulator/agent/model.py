@@ -18,7 +18,7 @@ from typing import Any
 from lxml import etree
 
 from simulator.errors import AgentError
-from stepnc_model.regular_file import why_irregular
+from stepnc_model.regular_file import open_regular
 
 MOST_BYTES = 1 << 22
 """of a device model"""
@@ -259,9 +259,7 @@ def read_streams_root(path: Path) -> Any:
 def _content(path: Path, *, most: int) -> bytes:
     """Content of a file, and one byte more than the most."""
     try:
-        if reason := why_irregular(path):
-            raise AgentError(f"{path}: {reason}")
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             return file.read(most + 1)
     except OSError as error:
         raise AgentError(f"{path}: cannot be read: {error.strerror}") from error

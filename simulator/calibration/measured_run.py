@@ -11,6 +11,7 @@ from array import array
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from io import TextIOWrapper
 from itertools import chain
 from pathlib import Path
 
@@ -19,7 +20,7 @@ import numpy as np
 from simulator.errors import CalibrationError
 from simulator.motion.segments import Floats, Ints
 from stepnc_model.errors import Finding, Severity
-from stepnc_model.regular_file import why_irregular
+from stepnc_model.regular_file import open_regular
 
 TIME = "time_s"
 POSITIONS = tuple(f"{axis}_axis_position_actual" for axis in "xyz")
@@ -160,9 +161,7 @@ def read_columns(
 def _rows(path: Path) -> Iterator[list[str]]:
     """Rows of a CSV file, read lazily; the heading determines the separator."""
     try:
-        if reason := why_irregular(path):
-            raise CalibrationError(reason, path=str(path))
-        with path.open(encoding="utf-8-sig", newline="") as stream:
+        with TextIOWrapper(open_regular(path), encoding="utf-8-sig", newline="") as stream:
             heading = stream.readline()
             mark = next((each for each in SEPARATORS if each in heading), ",")
             for row in csv.reader(chain((heading,), stream), delimiter=mark):

@@ -9,7 +9,9 @@ from pathlib import Path
 import pytest
 
 from service.files import open_lines, read_bytes, write_atomically
+from stepnc_model import regular_file
 from stepnc_model.errors import StepNcError, WriteError
+from stepnc_model.regular_file import open_regular
 from tests.every_case import every_case
 from tests.full_disk import files_of_at_most
 
@@ -114,6 +116,21 @@ def test_a_pipe_is_refused_before_it_blocks(
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(StepNcError, match="is a pipe, not a regular file"):
         read(tmp_path / "pipe")
+
+
+def test_a_pipe_that_takes_the_place_of_a_file_does_not_block(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It was a regular file when it was looked at."""
+    monkeypatch.setattr(regular_file, "why_irregular", lambda _: "")
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "device").symlink_to("/dev/zero")
+    for name in ("pipe", "device"):
+        with pytest.raises(OSError, match=f"is a {name}, not a regular file"):
+            open_regular(tmp_path / name)
+    (tmp_path / "file").write_bytes(b"content")
+    with open_regular(tmp_path / "file") as file:
+        assert file.read() == b"content"
 
 
 def test_a_socket_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,7 +8,7 @@ from contextlib import suppress
 
 import pytest
 import uvicorn
-from starlette.types import Receive, Scope, Send
+from starlette.types import ASGIApp, Receive, Scope, Send
 
 from service import http_protocol
 from service.http_protocol import HEAD_BYTES, BoundedHttpProtocol
@@ -26,13 +26,22 @@ async def hello(scope: Scope, receive: Receive, send: Send) -> None:
     await send({"type": "http.response.body", "body": b"hello"})
 
 
-def talked(talk: Talk) -> None:
+async def named(scope: Scope, receive: Receive, send: Send) -> None:
+    """Answers with the Host headers and the path of a request."""
+    hosts = [value for name, value in scope["headers"] if name == b"host"]
+    body = b"|".join((*hosts, scope["path"].encode()))
+    headers = [(b"content-length", str(len(body)).encode())]
+    await send({"type": "http.response.start", "status": 200, "headers": headers})
+    await send({"type": "http.response.body", "body": body})
+
+
+def talked(talk: Talk, app: ASGIApp = hello) -> None:
     """A client says something to the server, and both end."""
 
     async def both() -> None:
         with socket.create_server(("127.0.0.1", 0)) as line:
             config = uvicorn.Config(
-                hello,
+                app,
                 http=BoundedHttpProtocol,
                 ws="none",
                 lifespan="off",
@@ -179,3 +188,24 @@ def test_a_stream_ends_with_its_server(reads: bool, caplog: pytest.LogCaptureFix
         asyncio.run(both())
     assert ended == ["http.disconnect"]
     assert not caplog.records
+
+
+@pytest.mark.parametrize(
+    ("head", "told"),
+    [
+        (b"GET /a HTTP/1.1\r\nHost: localhost", b"localhost|/a"),
+        (b"GET http://evil:80/a?b HTTP/1.1\r\nHost: localhost", b"evil:80|/a"),
+        (b"GET http://evil/?b=://c HTTP/1.1\r\nHost: localhost", b"evil|/"),
+        (b"GET http://evil/ HTTP/1.0\r\nAccept: */*", b"evil|/"),
+        (b"GET http://evil/ HTTP/1.1\r\nHost: a\r\nHost: b", b"evil|evil|/"),
+        (b"GET /a://evil/ HTTP/1.1\r\nHost: localhost", b"localhost|/a://evil/"),
+    ],
+)
+def test_an_absolute_target_names_the_host(head: bytes, told: bytes) -> None:
+    async def ask(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        writer.write(head + b"\r\n\r\n")
+        answer = await reader.readuntil(b"\r\n\r\n")
+        assert answer.startswith(b"HTTP/1.1 200")
+        assert (await reader.readexactly(len(told))) == told
+
+    talked(ask, named)

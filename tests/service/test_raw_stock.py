@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from service.raw_stock import GivenStock, file_of_stock, raw_stock_of, stock_map
+from service.raw_stock import GivenStock, raw_stock_of, stock_map
+from service.requests.stock import StockFile, raw_part_in
 from simulator.library import load_machine
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
@@ -21,17 +22,17 @@ BLOCK = Stock(low=(0.0, 0.0, -20.0), high=(60.0, 40.0, 0.0))
 BAR = Stock(low=(-10.0, -10.0, -30.0), high=(10.0, 10.0, 0.0), radius=10.0)
 
 
-def mesh_file(folder: Path, *, is_round: bool = False) -> str:
+def mesh_file(folder: Path, *, is_round: bool = False) -> StockFile:
     file = folder / "part.stl"
     ends = [(-30.0, 0.0), (-30.0, 10.0), (0.0, 10.0), (0.0, 0.0)]
     write_stl(file, revolved(ends) if is_round else box((0.0, 0.0, -20.0), (60.0, 40.0, 0.0)))
-    return str(file)
+    return StockFile(path=file)
 
 
-def kept_file(folder: Path, stock: MillingStock | TurningStock) -> str:
+def kept_file(folder: Path, stock: MillingStock | TurningStock) -> StockFile:
     file = folder / "kept.npz"
     file.write_bytes(stock_bytes(stock))
-    return str(file)
+    return StockFile(path=file)
 
 
 def test_numbers_are_a_box_or_a_bar() -> None:
@@ -97,7 +98,7 @@ def test_a_bar_beside_the_axis_stands_on_a_mill_only() -> None:
 )
 def test_what_is_no_stock_is_refused(text: str, told: str) -> None:
     with pytest.raises(StepNcError) as refused:
-        raw_stock_of(text)
+        raw_stock_of(raw_part_in(text))
     assert str(refused.value).startswith(told)
 
 
@@ -105,16 +106,9 @@ def test_a_mesh_without_height_is_refused_with_its_file(tmp_path: Path) -> None:
     file = tmp_path / "flat.stl"
     write_stl(file, box((0.0, 0.0, 0.0), (60.0, 40.0, 0.001)))
     with pytest.raises(StepNcError, match=r"flat.stl: stock: z from 0 to 0.001 mm: must span"):
-        raw_stock_of(str(file))
+        raw_stock_of(StockFile(path=file))
 
 
 def test_a_mesh_too_far_away_is_refused(tmp_path: Path) -> None:
     with pytest.raises(StepNcError, match="stock: z from 0 to 200000 mm"):
         stock_map(MILL, GivenStock(bounds=Stock(low=(0, 0, 0), high=(1, 1, 2e5))))
-
-
-@pytest.mark.parametrize(
-    ("text", "file"), [("a.STL", "a.STL"), ("a/b.npz", "a/b.npz"), ("1,2,3", None), ("", None)]
-)
-def test_files_are_told_by_their_ending(text: str, file: str | None) -> None:
-    assert file_of_stock(text) == (None if file is None else Path(file))

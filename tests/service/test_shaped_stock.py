@@ -11,6 +11,7 @@ from service.reading import given_data, read_program
 from service.requests.advice import AdviceRequest
 from service.requests.given import ProgramRequest
 from service.requests.runs import SimulationRequest
+from service.requests.stock import StockFile
 from service.simulation.run import RunFiles, simulate
 from service.usecases import AdviceFiles, OptimiseResult, optimise
 from simulator.library import load_machine
@@ -118,4 +119,4 @@ def test_a_kept_stock_is_refused_for_a_program(tmp_path: Path) -> None:
     stock = MillingStock(Stock(low=(0.0, 0.0, -5.0), high=(9.0, 9.0, 0.0)), cell=0.5)
     path.write_bytes(stock_bytes(stock))
     with pytest.raises(StepNcError, match=r"kept.npz: a kept stock serves NC code only"):
-        given_stock(str(path))
+        given_stock(StockFile(path=path))

@@ -82,7 +82,6 @@ THROUGH = {
     "service/jobs/test_verify.py": ("service/jobs/logs.py",),
     "service/learning/test_score.py": ("service/learning/recorded.py",),
     "service/rest/test_agent.py": ("service/agent/shop.py",),
-    "service/rest/test_code_advice.py": ("service/requests/stored_advice.py",),
     "service/rest/test_factories.py": ("service/rest/factory_views.py",),
     "service/rest/test_monitors.py": ("service/rest/monitor_views.py",),
     "service/rest/test_programs.py": ("service/rest/uploads.py",),

@@ -16,7 +16,8 @@ from service.control.setup import (
     preview_of,
     steps_of,
 )
-from simulator.library import load_material
+from simulator.errors import UnknownMaterial
+from simulator.library import load_material, material_path
 from simulator.spec import Certainty, MaterialMatch
 from stepnc_model.errors import StepNcError
 from tests.asking import AskedControl
@@ -38,6 +39,14 @@ def test_hardness_is_the_ratio_of_kienzle_forces() -> None:
     assert ratio("inconel718") == pytest.approx(3300.0 / 1500.0 * 0.1 ** (0.22 - 0.24))
     with pytest.raises(StepNcError, match="unknown material 'butter'"):
         ratio("butter")
+
+
+def test_a_disturbance_names_a_material_and_reads_no_file() -> None:
+    """Its words come from requests too: ``material:c45.toml@1s`` would read any file."""
+    ratio = hardness_against(matched("c45"))
+    for path in (str(material_path("c45")), "../../x.toml"):
+        with pytest.raises(UnknownMaterial):
+            ratio(path)
 
 
 def test_the_law_is_told_of_forces_where_the_override_acts(session: Session) -> None:

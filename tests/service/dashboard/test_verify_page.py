@@ -22,7 +22,7 @@ from tests.service.verification.logs import SLOT_MACHINE, slot_log
 from tests.service.verification.runs import fast_log, program
 from tests.service.verification.test_step_parts import pocketed
 from tests.service.verification.test_without_program import (
-    MILL,
+    BLOCK,
     OFFSET,
     POCKET,
     pocket_inputs,
@@ -252,7 +252,7 @@ def test_one_solid_of_a_step_file_takes_the_place_of_a_program(
     page.locator("#machine").select_option("vmc15")
     page.locator("#more-options summary").click()
     page.locator("#cell").fill("0.2")
-    page.locator("#stock").fill(MILL.stock)
+    page.locator("#stock").fill(BLOCK)
     page.locator("#tools-file").set_input_files(tools)
     expect(page.locator("#tools-place")).to_contain_text("tools.toml")
     part = write_step(tmp_path / "part.step", lid, pocketed())

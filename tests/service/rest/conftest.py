@@ -1,7 +1,7 @@
 """A real server that all tests of this folder share; nobody may end it or fill it up."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import httpx
 import pytest
@@ -47,6 +47,20 @@ class Done:
     verification: str
     cycle: str
     factory: str
+
+
+OF = {
+    "programs": "program", "advice": "advice", "simulations": "simulation",
+    "control-runs": "control", "trials": "trial", "evaluations": "evaluation",
+    "reviews": "review", "jobs": "simulation", "verifications": "verification",
+    "files": "file", "cycle-times": "cycle", "factories": "factory",
+}  # fmt: skip
+"""What of the things that were made is at a path."""
+
+
+def id_of(done: Done, path: str) -> str:
+    """Id of the thing that was made of the kind of a path."""
+    return str(asdict(done)[OF[path.split("/")[2]]])
 
 
 @pytest.fixture(scope="session")

@@ -103,6 +103,9 @@ def test_a_request_keeps_its_id_unless_it_is_none(client: httpx.Client) -> None:
         "[::2]:80",
         "a@127.0.0.1",
         "0.0.0.0",
+        "127.0.0.1:99999999",
+        "localhost:0",
+        "[127.0.0.1]",
     ],
 )
 def test_a_name_that_is_not_ours_is_refused(client: httpx.Client, host: str) -> None:
@@ -345,3 +348,19 @@ def test_a_second_host_is_refused(client: httpx.Client) -> None:
     with socket.create_connection((client.base_url.host, client.base_url.port or 80)) as line:
         line.sendall(f"GET /v1/jobs HTTP/1.1\r\nHost: {name}\r\nHost: {name}\r\n\r\n".encode())
         assert line.recv(100).startswith(b"HTTP/1.1 400")
+
+
+def test_the_host_of_an_absolute_target_counts(client: httpx.Client) -> None:
+    """RFC 9112, 3.2.2: who checks the header would be told a name that was not asked for."""
+    own = client.base_url.netloc.decode()
+    for target, host, status in (
+        ("http://evil.example/v1/jobs", own, 403),
+        (f"http://{own}/v1/jobs", own, 200),
+        (f"http://{own}/v1/jobs", "evil.example", 200),
+    ):
+        with socket.create_connection((
+            client.base_url.host,
+            client.base_url.port or 80,
+        )) as line:
+            line.sendall(f"GET {target} HTTP/1.1\r\nHost: {host}\r\n\r\n".encode())
+            assert line.recv(100).startswith(f"HTTP/1.1 {status}".encode()), target

@@ -1,7 +1,6 @@
 """The OpenAPI document against the real server: what it promises is what comes."""
 
 from collections.abc import Iterator
-from dataclasses import asdict
 from typing import Any
 
 import httpx
@@ -18,7 +17,7 @@ from schemathesis.specs.openapi.checks import (
 )
 
 from simulator.library import DATA
-from tests.service.rest.conftest import Done
+from tests.service.rest.conftest import Done, id_of
 from tests.service.rest.server import Server
 
 CHECKS = [
@@ -31,15 +30,6 @@ CHECKS = [
 
 EXAMPLES = 15
 """requests to each operation"""
-
-OF = {
-    "programs": "program", "advice": "advice", "simulations": "simulation",
-    "control-runs": "control", "trials": "trial", "evaluations": "evaluation",
-    "reviews": "review", "jobs": "simulation", "verifications": "verification",
-    "files": "file", "cycle-times": "cycle", "factories": "factory",
-}  # fmt: skip
-"""what of the things that were made is at a path"""
-
 
 MACHINE = (DATA / "machines" / "vmc15.toml").read_text(encoding="utf-8")
 
@@ -62,10 +52,6 @@ def operations(document: dict[str, Any]) -> Iterator[Any]:
         operation = found.ok()
         if not operation.path.endswith("/events"):
             yield operation
-
-
-def id_of(done: Done, path: str) -> str:
-    return str(asdict(done)[OF[path.split("/")[2]]])
 
 
 def faults_of(operation: Any, service: Server, done: Done) -> str:

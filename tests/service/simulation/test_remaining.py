@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from service.raw_stock import raw_stock_of
+from service.requests.stock import StockFile
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles, Simulation, simulate
 from simulator.removal.engage import MillingStock
@@ -40,7 +41,10 @@ def test_a_run_goes_on_with_what_another_left(tmp_path: Path) -> None:
     rest = run(tmp_path, BEGIN + ACROSS + END, str(tmp_path / "first.npz"), "both.npz")
     found = first.whole.volume + rest.whole.volume
     assert found == pytest.approx(whole.whole.volume, rel=2e-3)
-    kept = [raw_stock_of(str(tmp_path / f"{name}.npz")).kept for name in ("whole", "both")]
+    kept = [
+        raw_stock_of(StockFile(path=tmp_path / f"{name}.npz")).kept
+        for name in ("whole", "both")
+    ]
     heights = [each.map.grid.heights for each in kept if isinstance(each, MillingStock)]
     assert len(heights) == 2
     assert np.array_equal(heights[0], heights[1])
@@ -56,7 +60,7 @@ def test_a_turned_bar_goes_on(tmp_path: Path) -> None:
     assert first.whole.volume > 0.0
     found = first.whole.volume + second.whole.volume
     assert found == pytest.approx(whole.whole.volume, rel=1e-3)
-    assert isinstance(raw_stock_of(str(tmp_path / "bar.npz")).kept, TurningStock)
+    assert isinstance(raw_stock_of(StockFile(path=tmp_path / "bar.npz")).kept, TurningStock)
 
 
 def test_a_stock_that_no_tool_touches_is_told_with_both_spans(tmp_path: Path) -> None:

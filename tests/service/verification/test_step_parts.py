@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from service.raw_stock import raw_stock_of, stock_map
+from service.requests.stock import StockFile
 from service.verification.run import Verification, VerificationInputs, verify
 from simulator.library import load_machine
 from simulator.motion.segments import Floats
@@ -85,10 +86,10 @@ def test_an_offset_is_found_against_a_turned_solid(tmp_path: Path) -> None:
 
 def test_a_solid_is_a_stock(tmp_path: Path) -> None:
     path = write_step(tmp_path / "raw.stp", pocketed(), revolved(test_revolved.PROFILE))
-    milled = stock_map(load_machine("vmc15"), raw_stock_of(f"{path}#1"))
+    milled = stock_map(load_machine("vmc15"), raw_stock_of(StockFile(path=path, solid="1")))
     assert isinstance(milled, MillingStock)
     pocket = 24.0 * 16.0 - (4.0 - np.pi) * 9.0
     assert milled.map.volume == pytest.approx(14_400.0 - 5.0 * pocket, rel=1e-3)
-    turned = stock_map(load_machine("lathe22"), raw_stock_of(f"{path}#2"))
+    turned = stock_map(load_machine("lathe22"), raw_stock_of(StockFile(path=path, solid="2")))
     assert isinstance(turned, TurningStock)
     assert turned.outer.max() == pytest.approx(18.0, abs=1e-6)

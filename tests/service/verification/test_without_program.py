@@ -20,7 +20,8 @@ from tests.simulator.verification import test_required, test_revolved
 from tests.simulator.verification.block import sampled
 from tests.simulator.verification.meshes import revolved
 
-MILL = VerificationRequest(machine="vmc15", stock="0,0,-12,40,30,0", cell_mm=0.2)
+BLOCK = "0,0,-12,40,30,0"
+MILL = VerificationRequest(machine="vmc15", stock=BLOCK, cell_mm=0.2)
 LATHE = VerificationRequest(machine="lathe22", stock="40,-50,0.5")
 POCKET = sampled(test_required.pocket_way(), 0.0417)
 TURNED = sampled(test_revolved.WAY, 0.0437)
@@ -104,7 +105,7 @@ def test_the_command_writes_json_page_and_places(
     with pytest.raises(SystemExit) as ended:
         main([
             "verify", str(log), "--tools", str(given.tools), "--required", str(given.required),
-            "--stock", MILL.stock, "--machine", "vmc15", "--cell-mm", "0.2", "--json",
+            "--stock", BLOCK, "--machine", "vmc15", "--cell-mm", "0.2", "--json",
             "--report", str(page), "-o", str(places),
         ])  # fmt: skip
     assert ended.value.code == LIMIT_EXCEEDED
