@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Any
 OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED = 0, 3, 4, 5, 6
 """Exit codes; with ``NOTHING_ADVISED`` ``optimise`` says that it wrote no program."""
 
+GREATEST_REPEATS = 1_000_000_000
+"""Greatest number of repeats of NC code that can be allowed."""
+
 CONTROLS = "linuxcnc, fanuc, haas, sinumerik, heidenhain or canonical"
 
 if TYPE_CHECKING:
@@ -70,6 +73,33 @@ def program_request(options: argparse.Namespace) -> "ProgramRequest":
     request = from_options(ProgramRequest, options)
     require_bounds(request)
     return request
+
+
+def add_most_repeats(parser: argparse.ArgumentParser) -> None:
+    """Add the option that bounds how much NC code may repeat."""
+    parser.add_argument(
+        "--most-repeats",
+        type=repeats,
+        default=None,
+        metavar="N",
+        help="blocks, and moves, that NC code may execute beyond those of its file, by calls, "
+        "loops and repeated cycles (default: 1000000, which take about 100 MB and 10 s)",
+    )
+
+
+def repeats(word: str) -> int:
+    """Return a number of repeats.
+
+    Raises
+    ------
+    ArgumentTypeError
+        When the argument is no number from 0 to ``GREATEST_REPEATS``.
+    """
+    if not (word.isascii() and word.isdigit() and int(word[:20]) <= GREATEST_REPEATS):
+        raise argparse.ArgumentTypeError(
+            f"{word[:20]!r}: expected a number from 0 to {GREATEST_REPEATS}"
+        )
+    return int(word)
 
 
 def add_json(parser: argparse.ArgumentParser) -> None:
