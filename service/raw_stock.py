@@ -29,6 +29,9 @@ from stepnc_model.program import Program, Stock
 from stepnc_model.toolpath.frame import Frame, workpiece_frame
 from stepnc_model.toolpath.task import drawn_stock, raw_body
 
+MOST_BYTES = 1 << 27
+"""Largest file of a kept stock, bytes; the most cells take half of it."""
+
 KEPT_SUFFIX = ".npz"
 """Ending of a file that keeps a stock."""
 
@@ -82,7 +85,7 @@ def raw_stock_of(text: str) -> GivenStock:
     """
     path = file_of_stock(text)
     if path is not None and path.suffix.lower() == KEPT_SUFFIX:
-        bounds, kept = kept_stock(read_bytes(path), str(path))
+        bounds, kept = kept_stock(read_bytes(path, most=MOST_BYTES), str(path))
         return GivenStock(bounds=bounds, kept=kept, name=str(path))
     if path is not None:
         solid = part_place(text.strip())[1]

@@ -14,6 +14,7 @@ from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 DAMAGES = (
     BadZipFile,
     EOFError,
+    IndexError,
     NotImplementedError,
     OSError,
     RuntimeError,

@@ -9,9 +9,6 @@ from typing import TYPE_CHECKING, Any
 OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED = 0, 3, 4, 5, 6
 """Exit codes; with ``NOTHING_ADVISED`` ``optimise`` says that it wrote no program."""
 
-GREATEST_REPEATS = 1_000_000_000
-"""Greatest number of repeats of NC code that can be allowed."""
-
 CONTROLS = "linuxcnc, fanuc, haas, sinumerik, heidenhain or canonical"
 
 if TYPE_CHECKING:
@@ -93,12 +90,10 @@ def repeats(word: str) -> int:
     Raises
     ------
     ArgumentTypeError
-        When the argument is no number from 0 to ``GREATEST_REPEATS``.
+        When the argument is no number of at most nine digits.
     """
-    if not (word.isascii() and word.isdigit() and int(word[:20]) <= GREATEST_REPEATS):
-        raise argparse.ArgumentTypeError(
-            f"{word[:20]!r}: expected a number from 0 to {GREATEST_REPEATS}"
-        )
+    if not (word.isascii() and word.isdigit() and len(word) <= 9):
+        raise argparse.ArgumentTypeError(f"{word[:20]!r}: expected a number up to 999999999")
     return int(word)
 
 

@@ -74,7 +74,7 @@ def load_model(path: Path) -> LearnedModel:
         When the file is no model, is of another version of scikit-learn, or has a class outside
         the allow-list.
     """
-    data = read_bytes(path)
+    data = read_bytes(path, most=MOST_BYTES)
     header = _read_header(data, path)
     version = header["scikit_learn"]
     if version != sklearn.__version__:
