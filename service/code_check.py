@@ -4,16 +4,21 @@ Subprograms and loops let a small program execute for minutes, and the check of 
 takes that long too: neither may hold up the requests that a web process answers meanwhile.
 """
 
+import signal
 import subprocess
 import sys
 from pathlib import Path
 
 from service.code_contents import check_code
 from service.code_contents_output import code_json
+from service.process_limits import GIB, ProcessLimits, limit_process
 from stepnc_model.errors import StepNcError
 
 LONGEST = 120.0
 """Time limit of a check, in s."""
+
+MOST_MEMORY = 4 * GIB
+"""Limit of the address space of a check, bytes."""
 
 REFUSED = 3
 """Exit code of a check that ends with an error of the project."""
@@ -41,6 +46,9 @@ def checked_code(file: Path, *, name: str, longest: float = LONGEST) -> bytes:
     except subprocess.TimeoutExpired:
         text = f"the check takes longer than {longest:g} s, the limit of this service"
         raise StepNcError(f"{name}: {text}; check it with `stepnc check`") from None
+    if done.returncode == -signal.SIGXCPU:
+        text = f"the check takes longer than {LONGEST:g} s, the limit of this service"
+        raise StepNcError(f"{name}: {text}; check it with `stepnc check`")
     if done.returncode == REFUSED:
         raise StepNcError(f"{name}: {done.stderr.decode(errors='replace').strip()}")
     if done.returncode:
@@ -51,10 +59,14 @@ def checked_code(file: Path, *, name: str, longest: float = LONGEST) -> bytes:
 def main() -> int:
     """Check the file that the command line names; return the exit code."""
     file, name = sys.argv[1:]
+    limit_process(ProcessLimits(memory=MOST_MEMORY, processor=int(LONGEST) + 1))
     try:
         text = code_json(check_code(Path(file), name=name))
     except StepNcError as error:
         sys.stderr.write(str(error))
+        return REFUSED
+    except MemoryError:
+        sys.stderr.write(f"the check needs more than {MOST_MEMORY / GIB:g} GB of memory")
         return REFUSED
     sys.stdout.buffer.write(text.encode())
     return 0

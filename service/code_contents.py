@@ -65,7 +65,9 @@ def is_code(path: Path) -> bool:
     return path.suffix.lower() in NC_SUFFIXES
 
 
-def check_code(path: Path, *, control: str = "", name: str = "") -> CodeContents:
+def check_code(
+    path: Path, *, control: str = "", name: str = "", most_repeats: int | None = None
+) -> CodeContents:
     """Read NC code and execute it; return what it says.
 
     Parameters
@@ -75,6 +77,8 @@ def check_code(path: Path, *, control: str = "", name: str = "") -> CodeContents
         Name of its control; empty: recognised by what the code says.
     name : str
         Name of the program; empty: the name of its file.
+    most_repeats : int, optional
+        Blocks and moves that may be executed beyond those of the file.
 
     Raises
     ------
@@ -83,7 +87,7 @@ def check_code(path: Path, *, control: str = "", name: str = "") -> CodeContents
         without end.
     """
     dialect = one_of(Dialect, control, "control") if control else None
-    program = read_program(read_bytes(path), dialect=dialect)
+    program = read_program(read_bytes(path), dialect=dialect, most_repeats=most_repeats)
     return CodeContents(
         name=name or path.name,
         control=program.dialect.value,

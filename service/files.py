@@ -9,11 +9,23 @@ from pathlib import Path
 from stepnc_model.errors import StepNcError, WriteError
 from stepnc_model.regular_file import open_regular, why_irregular
 
+MOST_BYTES = 1 << 31
+"""Largest file that is read as a whole, bytes."""
 
-def read_bytes(path: Path) -> bytes:
-    """Read all bytes of a file; raise StepNcError when it cannot be read."""
+
+def read_bytes(path: Path, *, most: int = MOST_BYTES) -> bytes:
+    """Read all bytes of a file.
+
+    Raises
+    ------
+    StepNcError
+        When it cannot be read, or is larger than ``most``, which is known before it is read.
+    """
     try:
         with open_regular(path) as file:
+            size = os.fstat(file.fileno()).st_size
+            if size > most:
+                raise StepNcError(f"{path}: {size} bytes; at most {most} are read")
             return file.read()
     except OSError as error:
         raise StepNcError(f"{path}: {_reason(error)}") from error

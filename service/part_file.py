@@ -19,6 +19,9 @@ from stepnc_model.regular_file import open_regular
 PACKED = (b"PK\x03\x04", b"\x1f\x8b")
 """Beginning of a ZIP archive and of a gzip stream, in which STEP files come."""
 
+MOST_BYTES = 1 << 28
+"""Largest file of a part, bytes; the most triangles take 10 MB, or 60 MB as text."""
+
 LOOKED_AT = 1 << 16
 """Bytes at the beginning of a file that tell what it is."""
 
@@ -69,7 +72,7 @@ def read_part(path: Path, *, solid: str = "", tolerance: float) -> PartMesh:
     StepNcError
         When the file cannot be read, or has no such part.
     """
-    content = read_bytes(path)
+    content = read_bytes(path, most=MOST_BYTES)
     if not _is_step(content):
         return PartMesh(triangles=stl_triangles(content, path))
     triangles = solid_triangles(_solids(content, path, solid), tolerance=tolerance)
@@ -84,7 +87,7 @@ def require_part(path: Path) -> None:
     StepNcError
         As :func:`read_part`; several solids are allowed.
     """
-    content = read_bytes(path)
+    content = read_bytes(path, most=MOST_BYTES)
     if _is_step(content):
         require_solids(_solids(content, path))
     else:

@@ -29,6 +29,9 @@ from stepnc_model.program import Program, Stock
 from stepnc_model.toolpath.frame import Frame, workpiece_frame
 from stepnc_model.toolpath.task import drawn_stock, raw_body
 
+MOST_BYTES = 1 << 27
+"""Largest file of a kept stock, bytes; the most cells take half of it."""
+
 OFF_AXIS = 1e-6
 """Greatest distance of a bar's axis from that of a lathe, mm."""
 
@@ -72,7 +75,7 @@ def raw_stock_of(given: RawPart) -> GivenStock:
         return GivenStock(bounds=stock_in(given))
     path = given.path
     if path.suffix.lower() == KEPT_SUFFIX:
-        bounds, kept = kept_stock(read_bytes(path), str(path))
+        bounds, kept = kept_stock(read_bytes(path, most=MOST_BYTES), str(path))
         return GivenStock(bounds=bounds, kept=kept, name=str(path))
     triangles = read_part(path, solid=given.solid, tolerance=USUAL_TOLERANCE).triangles
     raw = GivenStock(bounds=bounds_of(triangles), triangles=triangles, name=str(path))

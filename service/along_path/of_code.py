@@ -63,6 +63,8 @@ class CodeFiles:
     report: Path | None = None
     feeds: Path | None = None
     """CSV table of the feeds along the paths, to be written."""
+    most_repeats: int | None = None
+    """Blocks and moves that may be executed beyond those of the file; None: as usual."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,7 +98,9 @@ def optimise_code(
     output = _output(files)
     name = files.name or files.file.name
     library = _tools(request, files)
-    program = read_program(read_bytes(files.file), dialect=request.dialect)
+    program = read_program(
+        read_bytes(files.file), dialect=request.dialect, most_repeats=files.most_repeats
+    )
     if request.is_unrolled:
         straight = unrolled(program)
         program = straight.program

@@ -166,7 +166,12 @@ def _paths_of_written(source: CodeSource, rewritten: RewrittenCode) -> CodePaths
     """Paths of the rewritten code."""
     program = source.program
     return source.paths_of(
-        read_program(rewritten.data, dialect=program.dialect, machine=program.machine)
+        read_program(
+            rewritten.data,
+            dialect=program.dialect,
+            machine=program.machine,
+            most_repeats=program.most_repeats,
+        )
     )
 
 

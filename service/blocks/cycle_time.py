@@ -61,6 +61,8 @@ class CycleTimeRequest:
     """Deviation of the junction control, mm."""
     output: Path | None = None
     """Modified program; None: none is written."""
+    most_repeats: int | None = None
+    """Blocks and moves of NC code beyond those of its file; None: as usual."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -129,7 +131,11 @@ class _Source:
         """Run of NC code, without what cannot be run."""
         request = self.request
         return from_code(
-            CodeRequest(code=request.file, dialect=request.dialect),
+            CodeRequest(
+                code=request.file,
+                dialect=request.dialect,
+                most_repeats=request.most_repeats,
+            ),
             RunRequest(machine=request.machine),
             program=None,
             keep_going=True,

@@ -6,7 +6,6 @@ the process has limits of time and memory, and its end is an error of the file. 
 
 import json
 import os
-import resource
 import signal
 import subprocess
 import sys
@@ -18,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from service.extras import has_package, how_to_install
+from service.process_limits import ProcessLimits, limit_process
 from simulator.motion.segments import Floats, Ints
 from stepnc_model.errors import StepNcError
 
@@ -187,9 +187,7 @@ def main() -> int:
     """Read the file that the command line names, within the limits; return the exit code."""
     words = json.loads(sys.argv[1])
     seconds = int(words["longest"]) + 1
-    resource.setrlimit(resource.RLIMIT_AS, (words["most_memory"],) * 2)
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    limit_process(ProcessLimits(memory=words["most_memory"], processor=seconds))
     # Open CASCADE tells its progress there.
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
     try:

@@ -8,6 +8,7 @@ from service.cli.options import (
     OK,
     Commands,
     add_json,
+    add_most_repeats,
     add_program_options,
     program_request,
     text,
@@ -76,6 +77,7 @@ def _cycle_time_options(parser: argparse.ArgumentParser) -> None:
     add_program_options(parser)
     add("--machine", default="", help="one of `stepnc machines`, or your own file")
     add("--dialect", default="", metavar="NAME", help=f"dialect of NC code: {CONTROLS}")
+    add_most_repeats(parser)
     add("--control", default="fir", metavar="NAME",
         help="motion control: fir (default), junction or exact-stop")  # fmt: skip
     add("--deviation-mm", type=float, default=0.01, metavar="MM",
@@ -156,6 +158,7 @@ def _cycle_time(options: argparse.Namespace) -> int:
             control=member_of(ControlModelName, options.control, "control"),
             deviation=options.deviation_mm,
             output=options.output,
+            most_repeats=options.most_repeats,
         ),
         tell=tell,
     )

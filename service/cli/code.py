@@ -27,6 +27,7 @@ def optimise_code(options: argparse.Namespace) -> int:
         dry_run=options.dry_run,
         report=options.report,
         feeds=options.feeds_csv,
+        most_repeats=options.most_repeats,
     )
     found = optimise(from_options(AdviceRequest, options), files, tell=tell)
     write_views(found, files, tell=tell)

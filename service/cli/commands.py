@@ -29,6 +29,7 @@ from service.cli.options import (
     add_cluster,
     add_json,
     add_knowledge,
+    add_most_repeats,
     add_program,
     program_request,
 )
@@ -176,6 +177,7 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         "wipers",
     )
     add("--tools-unit", default="", metavar="UNIT", help="unit of a tool.tbl: mm or inch")
+    add_most_repeats(parser)
     add_knowledge(parser, "supplies accepted corrections of k_c")
     add(
         "--feeds-csv",
@@ -209,6 +211,7 @@ def _check_options(parser: argparse.ArgumentParser) -> None:
         help="control of NC code: linuxcnc, fanuc, haas, sinumerik or heidenhain; default: "
         "guessed from the code",
     )
+    add_most_repeats(parser)
     add_json(parser)
     parser.set_defaults(run=_check)
 
@@ -396,7 +399,9 @@ def _check_code(options: argparse.Namespace) -> int:
         raise StepNcError(
             "--units, --stock, --set, --teeth and --feed are for STEP-NC programs"
         )
-    contents = check_code(options.file, control=options.control)
+    contents = check_code(
+        options.file, control=options.control, most_repeats=options.most_repeats
+    )
     if options.json:
         from service.code_contents_output import code_json
 

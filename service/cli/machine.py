@@ -4,7 +4,15 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from service.cli.options import BAD_INPUT, CONTROLS, LIMIT_EXCEEDED, OK, Commands, add_json
+from service.cli.options import (
+    BAD_INPUT,
+    CONTROLS,
+    LIMIT_EXCEEDED,
+    OK,
+    Commands,
+    add_json,
+    add_most_repeats,
+)
 
 if TYPE_CHECKING:
     from service.requests.runs import RunRequest
@@ -37,6 +45,7 @@ def add_code(parser: argparse.ArgumentParser) -> None:
         "library of Fusion (.json, .tools), HSMWorks (.hsmlib) or FreeCAD (.fctl)",
     )
     add("--tools-unit", default="", metavar="UNIT", help="unit of a tool.tbl: mm or inch")
+    add_most_repeats(parser)
 
 
 def _add_calibrate(commands: Commands) -> None:
@@ -173,6 +182,7 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
             tools=options.tools,
             tools_unit=length_unit(options.tools_unit),
             stock=raw_part_in(options.stock or ""),
+            most_repeats=options.most_repeats,
         )
     return RunFiles(
         file=file,

@@ -72,6 +72,31 @@ def program_request(options: argparse.Namespace) -> "ProgramRequest":
     return request
 
 
+def add_most_repeats(parser: argparse.ArgumentParser) -> None:
+    """Add the option that bounds how much NC code may repeat."""
+    parser.add_argument(
+        "--most-repeats",
+        type=repeats,
+        default=None,
+        metavar="N",
+        help="blocks, and moves, that NC code may execute beyond those of its file, by calls, "
+        "loops and repeated cycles (default: 1000000, which take about 100 MB and 10 s)",
+    )
+
+
+def repeats(word: str) -> int:
+    """Return a number of repeats.
+
+    Raises
+    ------
+    ArgumentTypeError
+        When the argument is no number of at most nine digits.
+    """
+    if not (word.isascii() and word.isdigit() and len(word) <= 9):
+        raise argparse.ArgumentTypeError(f"{word[:20]!r}: expected a number up to 999999999")
+    return int(word)
+
+
 def add_json(parser: argparse.ArgumentParser) -> None:
     """Add the option for JSON output."""
     parser.add_argument("--json", action="store_true", help="print JSON instead of a table")

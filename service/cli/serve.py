@@ -56,6 +56,13 @@ def add_service_commands(commands: Commands) -> None:
     add("--workers", type=int, default=1, metavar="N", help="web processes (default: 1)")
     add("--jobs", type=int, default=1, metavar="N", help="jobs that run at once (default: 1)")
     add(
+        "--job-memory",
+        type=int,
+        default=8,
+        metavar="GB",
+        help="address space of a job, of which libraries reserve 1 to 2 GB (default: 8)",
+    )
+    add(
         "--name",
         action="append",
         default=[],
@@ -140,6 +147,7 @@ def _add_data(parser: argparse.ArgumentParser) -> None:
 def _serve(options: argparse.Namespace) -> int:
     from service.known_hosts import LOOPBACK
     from service.monitor.source import sources_of
+    from service.process_limits import GIB
     from service.rest.serve import ServerOptions, serve
     from service.rest.settings import MIB, Settings
 
@@ -165,6 +173,7 @@ def _serve(options: argparse.Namespace) -> int:
             settings=settings,
             workers=options.workers,
             jobs=options.jobs,
+            job_memory=options.job_memory * GIB,
             certificate=options.tls_cert,
             key=options.tls_key,
         )
@@ -180,6 +189,7 @@ def _require(options: argparse.Namespace) -> None:
         ("port", options.port, 0, 65_535),
         ("workers", options.workers, 1, 64),
         ("jobs", options.jobs, 1, 64),
+        ("job-memory", options.job_memory, 2, 4096),
         ("upload-mb", options.upload_mb, 1, 1024),
         ("rate", 0.0 if options.rate is None else options.rate, 0.0, 1e6),
     ):

@@ -15,6 +15,7 @@ from pyarrow import parquet
 
 from service.dataset.rows import COLUMNS, SCHEMA
 from service.files import read_bytes, write_atomically
+from service.parquet_pieces import parquet_file, parquet_pieces
 from service.rendering.records import dump
 from service.run_file import RunFile, words_of
 from stepnc_model.errors import StepNcError, WriteError
@@ -106,12 +107,17 @@ class DatasetFolder:
         path = self.place(number)
         if not path.exists():
             return 0
-        rows: int = _opened(path).metadata.num_rows
+        with _opened(path) as file:
+            rows: int = file.metadata.num_rows
         return rows
 
     def partition(self, number: int) -> pa.Table:
         """Rows of a partition."""
-        return _opened(self.place(number)).read()
+        place = self.place(number)
+        with _opened(place) as file:
+            schema = file.schema_arrow
+        found = list(parquet_pieces(place, rows=self.rows))
+        return pa.Table.from_batches(found, schema=schema)
 
     def write(self, number: int, rows: pa.Table) -> None:
         """Write a partition, whole or not at all.
@@ -170,7 +176,7 @@ def _opened(path: Path) -> parquet.ParquetFile:
         When it is no Parquet file with the columns of a data set.
     """
     try:
-        file = parquet.ParquetFile(pa.BufferReader(read_bytes(path)))
+        file = parquet_file(path)
     except pa.ArrowInvalid as error:
         text = f"{path}: is no Parquet file: delete it, and its rows are made again"
         raise StepNcError(text) from error

@@ -1,6 +1,7 @@
 """Process of a single job, which ends with the runner that started it."""
 
 import logging
+import resource
 import signal
 import sys
 from collections.abc import Callable, Iterator, Mapping
@@ -18,6 +19,7 @@ from service.extras import missing_extras_named
 from service.jobs.task import LARGE, UNFINISHED, RunningJob, clear
 from service.lifeline import end_with_parent
 from service.problem import plain_problem, problem_of
+from service.process_limits import GIB, ProcessLimits, limit_process
 from service.storage import jobs
 from service.storage.folder import FolderAddress, known_data_folder
 from service.storage.jobs import Job, JobKind, JobState
@@ -70,6 +72,12 @@ class JobEnd:
     problem: Mapping[str, Any] | None = None
 
 
+def limited_main(limits: ProcessLimits, folder: FolderAddress, id: str, attempt: int) -> None:
+    """Run a claimed job within limits of memory and processor time."""
+    limit_process(limits)
+    main(folder, id, attempt)
+
+
 def main(folder: FolderAddress, id: str, attempt: int) -> None:
     """Run a claimed job and record how it ended; nothing if a later attempt has taken over."""
     end_with_parent()
@@ -109,10 +117,18 @@ def _end_of(task: RunningJob) -> JobEnd:
         problem = problem_of(error, hidden=str(task.data_folder.files))
         return JobEnd(state=JobState.FAILED, problem=problem)
     except MemoryError:
-        detail = "the job needed more memory than is available"
+        detail = f"the job needed more memory than {_memory()}"
         problem = plain_problem(507, "Out of memory", detail)
         return JobEnd(state=JobState.FAILED, problem=problem)
     return JobEnd(state=JobState.SUCCEEDED)
+
+
+def _memory() -> str:
+    """What a job may take, in words."""
+    most = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if most == resource.RLIM_INFINITY:
+        return "is available"
+    return f"the {most / GIB:.3g} GB that a job may take (`stepnc serve --job-memory`)"
 
 
 @contextmanager

@@ -37,6 +37,7 @@ from service.jobs.task import UNFINISHED, clear
 from service.knowledge.verbs import require_usable
 from service.live.storage import storing
 from service.problem import plain_problem
+from service.process_limits import GIB, ProcessLimits
 from service.storage import jobs
 from service.storage.folder import DataFolder, FolderAddress, known_data_folder
 from service.storage.jobs import Job, JobState
@@ -58,6 +59,9 @@ LONGEST = 2 * 3600.0
 
 LONGEST_PACED = 12 * 3600.0
 """Time limit of a paced job, in s; one that lasts longer than a shift was forgotten."""
+
+MOST_MEMORY = 8 * GIB
+"""Usual greatest address space of a job, bytes; its libraries alone reserve 1 to 2 GB."""
 
 MOST_PACED = 16
 """Largest number of paced jobs that run at once."""
@@ -102,6 +106,8 @@ class Runner:
     """Name of the runner in the database."""
     level: str = "info"
     """Level of the log of its jobs."""
+    memory: int = MOST_MEMORY
+    """Greatest address space of a job, bytes."""
     is_stopping: bool = False
     running: dict[str, Running] = field(default_factory=dict)
     _ends: list[SilentEnd] = field(default_factory=list)
@@ -204,7 +210,9 @@ class Runner:
 
     def _start(self, context: multiprocessing.context.ForkServerContext, job: Job) -> bool:
         LOG.info("job started", job=job.id, kind=job.kind.value, attempt=job.attempt)
-        arguments = (self.level, child.main, self.data_folder.address, job.id, job.attempt)
+        limits = ProcessLimits(memory=self.memory, processor=_processor(job))
+        address = self.data_folder.address
+        arguments = (self.level, child.limited_main, limits, address, job.id, job.attempt)
         process = context.Process(target=log_lines.reported, args=arguments, daemon=False)
         try:
             process.start()
@@ -234,8 +242,17 @@ class Runner:
             end = SilentEnd(job=job, state=JobState.CANCELLED, problem=None)
         elif each.is_overdue:
             end = SilentEnd(job=job, state=JobState.FAILED, problem=_too_long(job))
+        elif code == -signal.SIGXCPU:
+            problem = plain_problem(
+                422,
+                "Too long",
+                f"took more than {_processor(job) / 3600.0:g} h of processor time, the limit "
+                "of such a job",
+            )
+            end = SilentEnd(job=job, state=JobState.FAILED, problem=problem)
         else:
-            end = SilentEnd(job=job, state=JobState.FAILED, problem=jobs.lost(_why(code)))
+            problem = jobs.lost(_why(code, self.memory))
+            end = SilentEnd(job=job, state=JobState.FAILED, problem=problem)
         self._ends.append(end)
         LOG.info("job ended", job=job.id, kind=job.kind.value, exit_code=code)
 
@@ -255,6 +272,11 @@ def _longest(job: Job) -> float:
     return LONGEST_PACED if job.is_paced else LONGEST
 
 
+def _processor(job: Job) -> int:
+    """Limit of processor time of a job, s: it may use all processors for its time."""
+    return int(_longest(job)) * (os.cpu_count() or 1)
+
+
 def _too_long(job: Job) -> dict[str, Any]:
     """Return the problem of a job that exceeded its time limit."""
     detail = f"not finished after {_longest(job) / 3600.0:g} h, the time limit of such a job"
@@ -270,7 +292,10 @@ def _ask_to_end(each: Running) -> None:
         each.process.kill()
 
 
-def _why(code: int | None) -> str:
+def _why(code: int | None, memory: int) -> str:
+    if code in {-signal.SIGABRT, -signal.SIGSEGV, -signal.SIGBUS}:
+        name = signal.Signals(-code).name
+        return f"by {name}, as where a library lacks memory: a job may take {memory / GIB:g} GB"
     if code is not None and code < 0:
         return f"by {signal.Signals(-code).name}"
     return f"exit code {code}"
@@ -331,7 +356,14 @@ def own_name(data_folder: DataFolder) -> str:
         return f"{socket.gethostname()} {file.read_text('ascii').strip()}"
 
 
-def main(folder: FolderAddress, workers: int, parent: int, *, level: str = "info") -> None:
+def main(
+    folder: FolderAddress,
+    workers: int,
+    parent: int,
+    *,
+    level: str = "info",
+    memory: int = MOST_MEMORY,
+) -> None:
     """Run jobs as long as the server lives that started this process.
 
     Raises
@@ -344,7 +376,11 @@ def main(folder: FolderAddress, workers: int, parent: int, *, level: str = "info
         if reason := require_usable(data_folder.knowledge):
             LOG.warning("the knowledge base can only be read", reason=reason)
         runner = Runner(
-            data_folder=data_folder, workers=workers, name=own_name(data_folder), level=level
+            data_folder=data_folder,
+            workers=workers,
+            name=own_name(data_folder),
+            level=level,
+            memory=memory,
         )
 
         def stop(_signal: int, _frame: FrameType | None) -> None:

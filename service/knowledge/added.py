@@ -20,6 +20,9 @@ from service.knowledge.verbs import RecordCount, record
 from stepnc_model.errors import StepNcError
 from stepnc_model.outcome import ProcessOutcome
 
+MOST_BYTES = 1 << 28
+"""Largest file of outcomes, bytes."""
+
 LARGEST = 2**63 - 1
 """Largest whole number that a column of the knowledge base can hold."""
 
@@ -43,7 +46,7 @@ def add_outcomes(place: str, file: Path) -> RecordCount:
         With row, key and value of the first error.
     """
     try:
-        rows = json.loads(read_bytes(file))
+        rows = json.loads(read_bytes(file, most=MOST_BYTES))
     except (ValueError, RecursionError) as error:
         raise StepNcError(f"{file}: is not valid JSON: {error}") from error
     if not isinstance(rows, list) or not rows:

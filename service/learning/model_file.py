@@ -25,12 +25,19 @@ from service.learning.power_law import PowerLaw
 from service.learning.table import PHYSICS, Features
 from service.rendering.records import dump
 from stepnc_model.errors import StepNcError
+from stepnc_model.zip_member import DAMAGES, read_member, require_sizes
 
 HEADER = "stepnc.json"
 FORMAT = "stepnc-model-2"
 
 MOST_BYTES = 1 << 30
 """Bytes of a model once it is unpacked."""
+
+FREE_BYTES, BYTES_PER_BYTE = 1 << 27, 64
+"""Bytes to which a file of any size may unpack, and further ones for each byte of the file."""
+
+MOST_OF_HEADER = 1 << 25
+"""Bytes of the header once it is unpacked."""
 
 ALLOWED = frozenset({
     "sklearn.gaussian_process.kernels.ConstantKernel",
@@ -67,7 +74,7 @@ def load_model(path: Path) -> LearnedModel:
         When the file is no model, is of another version of scikit-learn, or has a class outside
         the allow-list.
     """
-    data = read_bytes(path)
+    data = read_bytes(path, most=MOST_BYTES)
     header = _read_header(data, path)
     version = header["scikit_learn"]
     if version != sklearn.__version__:
@@ -132,11 +139,20 @@ def _read_header(data: bytes, path: Path) -> dict[str, Any]:
     try:
         with ZipFile(BytesIO(data)) as archive:
             size = sum(each.file_size for each in archive.infolist())
-            if size > MOST_BYTES:
-                raise StepNcError(f"{path}: {size} bytes exceed {MOST_BYTES} bytes, the most")
-            header = json.loads(archive.read(HEADER))
-    except (BadZipFile, KeyError, ValueError, NotImplementedError) as error:
+            most = min(MOST_BYTES, FREE_BYTES + BYTES_PER_BYTE * len(data))
+            if size > most:
+                raise StepNcError(
+                    f"{path}: unpacks to {size} bytes; at most {most} are accepted of a file "
+                    f"of {len(data)} bytes"
+                )
+            member = archive.getinfo(HEADER)
+            header = json.loads(read_member(archive, member, most=MOST_OF_HEADER))
+            # skops reads members as a whole, also those of which the directory lies.
+            require_sizes(archive, most=most)
+    except KeyError as error:
         raise StepNcError(f"{path}: is no model of `stepnc learn`") from error
+    except DAMAGES as error:
+        raise StepNcError(f"{path}: is no model of `stepnc learn`: {error}") from error
     kinds = {"scikit_learn": str, "kind": str, "target": str, "physics": str, "numbers": list,
              "names": dict, "low": dict, "high": dict, "rows": int, "mean": float, "law": list,
              "predictor": list, "residuals": list, "manifest": str}  # fmt: skip

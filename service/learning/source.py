@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pyarrow as pa
-from pyarrow import csv, parquet
+from pyarrow import csv
 
 from service.dataset.folder import MANIFEST, DatasetFolder
 from service.dataset.rows import SCHEMA
 from service.files import read_bytes, require_regular
+from service.parquet_pieces import parquet_file, parquet_pieces
 from stepnc_model.errors import StepNcError
 
 PIECE = 16_384
@@ -23,6 +24,9 @@ BLOCK = 1 << 20
 
 MOST_ROWS = 10_000_000
 """Rows of a table that are read at most."""
+
+MOST_HELD = 1 << 30
+"""Bytes of a table that is held as a whole."""
 
 TYPES = {each.name: each.type for each in SCHEMA if each.name != "row"}
 """Types of known columns in CSV files."""
@@ -42,7 +46,16 @@ class RowSource:
         StepNcError
             When the path holds no data set, or no rows.
         """
-        pieces = list(self.pieces(first, last))
+        pieces: list[pa.Table] = []
+        size = 0
+        for piece in self.pieces(first, last):
+            size += piece.nbytes
+            if size > MOST_HELD:
+                raise StepNcError(
+                    f"{self.path}: the rows take more than {MOST_HELD} bytes, the most that is "
+                    "held at once: leave out columns that are not needed, or split the table"
+                )
+            pieces.append(piece)
         if not pieces:
             raise StepNcError(f"{self.path}: no rows yet")
         return pa.concat_tables(pieces)
@@ -88,10 +101,9 @@ class RowSource:
             if self.path.suffix == ".csv":
                 yield from self._of_csv(columns)
                 return
-            # Buffers of the reader would keep the columns of the whole file.
-            with _opened(self.path) as file:
-                for batch in file.iter_batches(PIECE, columns=columns):
-                    yield pa.Table.from_batches([batch])
+            _require_parquet(self.path)
+            for batch in parquet_pieces(self.path, rows=PIECE, columns=columns):
+                yield pa.Table.from_batches([batch])
         except (pa.ArrowException, UnicodeDecodeError) as error:
             text = str(error).split("\n", maxsplit=1)[0]
             raise StepNcError(f"{self.path}: cannot be read: {text}") from error
@@ -117,17 +129,16 @@ def read_table(path: Path) -> pa.Table:
     return RowSource(path).table(0, MOST_ROWS)
 
 
-def _opened(path: Path) -> parquet.ParquetFile:
-    """Parquet file, opened.
+def _require_parquet(path: Path) -> None:
+    """Refuse a file that is no Parquet file.
 
     Raises
     ------
     StepNcError
-        When it is none.
     """
     require_regular(path)
     try:
-        return parquet.ParquetFile(path, pre_buffer=False)
+        parquet_file(path).close()
     except pa.ArrowInvalid as error:
         text = str(error).split("\n", maxsplit=1)[0]
         raise StepNcError(f"{path}: is not a Parquet file: {text}") from error

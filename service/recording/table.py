@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pyarrow as pa
 from pyarrow import csv as arrow_csv
-from pyarrow import parquet
 
 from service.files import require_regular
+from service.parquet_pieces import parquet_file, parquet_pieces
 from stepnc_model.errors import StepNcError
 
 TABLES = frozenset({".parquet", ".csv"})
@@ -46,7 +46,8 @@ def headings(path: Path) -> list[str]:
         raise StepNcError(f"{path}: no such file")
     try:
         if path.suffix.lower() == ".parquet":
-            return list(parquet.read_schema(path).names)
+            with parquet_file(path) as file:
+                return list(file.schema_arrow.names)
         line = _first_line(path)
         return next(csv.reader([line], delimiter=_delimiter(line)), [])
     except FAULTS as error:
@@ -80,9 +81,7 @@ def batches(path: Path, kinds: Mapping[str, pa.DataType]) -> Iterator[pa.RecordB
 def _pieces(path: Path, kinds: Mapping[str, pa.DataType]) -> Iterator[pa.RecordBatch]:
     require_regular(path)
     if path.suffix.lower() == ".parquet":
-        # Buffers of the reader would keep the columns of the whole file.
-        with parquet.ParquetFile(path, pre_buffer=False) as file:
-            yield from file.iter_batches(ROWS, columns=list(kinds))
+        yield from parquet_pieces(path, rows=ROWS, columns=list(kinds))
         return
     mark = _delimiter(_first_line(path))
     yield from arrow_csv.open_csv(

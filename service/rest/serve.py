@@ -57,6 +57,8 @@ class ServerOptions:
     """Number of web processes."""
     jobs: int
     """Number of jobs that run at once."""
+    job_memory: int = runner.MOST_MEMORY
+    """Greatest address space of a job, bytes."""
     certificate: Path | None = None
     key: Path | None = None
 
@@ -191,7 +193,8 @@ class RunnerKeeper:
 
     def __init__(self, start: ServerOptions, folder: FolderAddress) -> None:
         level = start.settings.level
-        self._arguments = (level, run_jobs, folder, start.jobs, os.getpid(), level)
+        bounds = (start.jobs, start.job_memory)
+        self._arguments = (level, run_jobs, folder, *bounds, os.getpid(), level)
         self._is_stopping = threading.Event()
         self._process: SpawnProcess | None = None
         self._thread = threading.Thread(target=self._keep, daemon=True)
@@ -225,10 +228,10 @@ class RunnerKeeper:
                 self._process = self._started()
 
 
-def run_jobs(folder: FolderAddress, workers: int, parent: int, level: str) -> None:
+def run_jobs(folder: FolderAddress, workers: int, memory: int, parent: int, level: str) -> None:
     """Run jobs; main function of the runner process."""
     try:
-        runner.main(folder, workers, parent, level=level)
+        runner.main(folder, workers, parent, level=level, memory=memory)
     except StepNcError as error:
         # The message says what is wrong; no traceback is needed.
         LOG.error("jobs cannot be run", reason=str(error))  # noqa: TRY400

@@ -58,6 +58,8 @@ class CodeRequest:
     """Unit of a tool table that names none; None: mm."""
     stock: RawPart = ""
     """Raw part, as :func:`service.raw_stock.raw_stock_of` reads it; empty: unknown."""
+    most_repeats: int | None = None
+    """Blocks and moves that may be executed beyond those of the file; None: as usual."""
 
 
 def from_code(
@@ -157,11 +159,14 @@ def _paths_of_any_origin(
     dialect = one_of(Dialect, request.dialect.lower(), "dialect") if request.dialect else None
     data = read_bytes(request.code)
     found = recognise(data).machine
-    program = read_program(data, dialect=dialect, machine=found)
+    most = request.most_repeats
+    program = read_program(data, dialect=dialect, machine=found, most_repeats=most)
     is_without_y = bool((np.nan_to_num(program.moves.end[:, 1]) == 0.0).all())
     if is_without_y and found is MachineType.MILL and machine.kind is MachineKind.LATHE:
         # Nothing else may show that code is for a lathe.
-        program = read_program(data, dialect=dialect, machine=MachineType.LATHE)
+        program = read_program(
+            data, dialect=dialect, machine=MachineType.LATHE, most_repeats=most
+        )
     if program.machine is not _kind(machine):
         raise StepNcError(
             f"{request.code.name}: this is code for a {found.value}, and {machine.name} is a "

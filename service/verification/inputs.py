@@ -5,10 +5,9 @@ from datetime import datetime
 from pathlib import Path
 from xml.parsers import expat
 
-from pyarrow import parquet
-
 from service.agent.replay import LONGEST_LINE
 from service.files import require_regular
+from service.parquet_pieces import parquet_file
 from service.part_file import require_part, require_part_form
 from service.recording.signals import POSITIONS
 from service.recording.table import TABLES, headings
@@ -60,7 +59,8 @@ def _require_table(path: Path) -> None:
         if needed not in names:
             raise StepNcError(f"{path}: no column {needed}")
     if path.suffix.lower() == ".parquet":
-        rows = parquet.read_metadata(path).num_rows
+        with parquet_file(path) as file:
+            rows = file.metadata.num_rows
         if not 0 < rows <= MOST_ROWS:
             raise StepNcError(f"{path}: {rows} rows: it must be 1 to {MOST_ROWS}")
 

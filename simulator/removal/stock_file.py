@@ -5,9 +5,9 @@ of the low and of the high corner, and the radius of a bar or 0, mm), and ``heig
 ``outer`` and ``inner`` (C,), mm. Coordinates are those of the setup in which it was cut.
 """
 
-import zipfile
 from collections.abc import Mapping
 from io import BytesIO
+from zipfile import ZipFile
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import BarRadii, TurningStock
 from simulator.removal.zmap import MOST_CELLS, HeightGrid, zmap_of_heights
 from stepnc_model.program import Stock
+from stepnc_model.zip_member import DAMAGES, read_member
 
 VERSION = 1
 
@@ -102,21 +103,15 @@ def _arrays(data: bytes, name: str) -> dict[str, Floats]:
     """Arrays of an archive; each is checked before room is made for it."""
     found: dict[str, Floats] = {}
     try:
-        with zipfile.ZipFile(BytesIO(data)) as archive:
+        with ZipFile(BytesIO(data)) as archive:
             size = sum(each.file_size for each in archive.infolist())
             if size > MOST_BYTES:
                 message = f"arrays of {size} bytes; at most {MOST_BYTES} are accepted"
                 raise LibraryError(message, path=name)
             for each in archive.infolist():
-                content = archive.read(each)
+                content = read_member(archive, each, most=each.file_size)
                 found[each.filename.removesuffix(".npy")] = _parsed(content)
-    except (
-        zipfile.BadZipFile,
-        EOFError,
-        ValueError,
-        NotImplementedError,
-        RuntimeError,
-    ) as error:
+    except DAMAGES as error:
         raise LibraryError(f"is not a kept stock: {error}", path=name) from error
     return found
 

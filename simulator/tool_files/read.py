@@ -5,11 +5,11 @@ The content tells the format, not the name of the file: TOML and CSV with the co
 of HSMWorks (``.hsmlib``) and of FreeCAD (``.fctl``, ``.fctb``).
 """
 
-import zipfile
 from dataclasses import dataclass
 from enum import StrEnum
 from io import BytesIO
 from pathlib import Path
+from zipfile import ZipFile
 
 from simulator.errors import LibraryError
 from simulator.toml_file import read_bounded
@@ -23,6 +23,7 @@ from simulator.tool_files.linuxcnc import is_tool_line, read_linuxcnc
 from simulator.tool_files.placed_row import PlacedRow, ToolRows
 from simulator.tool_table import TableTool, read_tool_rows, tool_of_row
 from stepnc_model.errors import Finding
+from stepnc_model.zip_member import DAMAGES, read_member
 
 MOST_BYTES = 1 << 25
 """Greatest size of a library of a CAM system, bytes, also when unpacked."""
@@ -123,15 +124,12 @@ def _decoded(data: bytes, path: Path) -> str:
 def _unpacked(data: bytes, path: Path) -> str:
     """Document in an archive."""
     try:
-        with zipfile.ZipFile(BytesIO(data)) as archive, archive.open(ARCHIVED) as file:
-            content = file.read(MOST_BYTES + 1)
+        with ZipFile(BytesIO(data)) as archive:
+            content = read_member(archive, archive.getinfo(ARCHIVED), most=MOST_BYTES)
     except KeyError as error:
         raise LibraryError(f"the archive has no {ARCHIVED}", path=str(path)) from error
-    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError) as error:
+    except DAMAGES as error:
         raise LibraryError(f"is a damaged archive: {error}", path=str(path)) from error
-    if len(content) > MOST_BYTES:
-        message = f"{ARCHIVED} is larger than {MOST_BYTES} bytes, the most"
-        raise LibraryError(message, path=str(path))
     return _decoded(content, path)
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stepnc_model.errors import PostError
-from stepnc_model.nc.recorder import MoveRecorder
+from stepnc_model.nc.recorder import RAISED, MoveRecorder
 from stepnc_model.nc.text import NcText
 
 DEEPEST = 50
@@ -19,6 +19,12 @@ DEEPEST = 50
 
 MOST_REPEATED = 1_000_000
 """Greatest number of executed blocks beyond the blocks of the file."""
+
+MOVES_PER_BLOCK = 10
+"""Moves of each block of the file that do not count as repeated: a hole takes 4 or 5."""
+
+BYTES_PER_REPEAT = 40
+"""Mean bytes of a repeated block; longer ones, which take longer, may be repeated less."""
 
 BEHIND_THE_END = (
     "stands behind the end of the program and is not executed: the feeds from here stay as "
@@ -53,8 +59,19 @@ class ProgramFlow:
         self._recorder = recorder
         self._levels: list[_Level] = []
         self._executed = 0
+        self._bytes = 0
+        """Bytes of the executed blocks."""
+        self.allow(MOST_REPEATED)
         self.trace: list[int] | None = None
         """Blocks in the order of their execution, without those that steer; None: not kept."""
+
+    def allow(self, most: int) -> None:
+        """Bound the blocks, and the moves, that are executed beyond those of the file.
+
+        Counts bound the time too: on a slow machine the same programs are refused.
+        """
+        self._most = most
+        self._recorder.bound(self._text, MOVES_PER_BLOCK * len(self._text) + most)
 
     @property
     def is_called(self) -> bool:
@@ -83,13 +100,23 @@ class ProgramFlow:
         PostError
             If the program repeats blocks too often.
         """
+        text = self._text
         self._executed += 1
+        self._bytes += int(text.starts[block + 1] - text.starts[block])
         if self.trace is not None:
             self.trace.append(block)
-        if self._executed > len(self._text) + MOST_REPEATED:
+        if self._executed > len(text) + self._most:
             raise PostError(
-                f"the program repeats more than {MOST_REPEATED} blocks: is this loop endless?",
-                line=self._text.line(block),
+                f"the program repeats more than {self._most} blocks: is this loop endless? "
+                f"{RAISED}",
+                line=text.line(block),
+            )
+        most = BYTES_PER_REPEAT * self._most
+        if self._bytes > len(text.data) + most:
+            raise PostError(
+                f"the program repeats blocks of more than {most} bytes, {BYTES_PER_REPEAT} for "
+                f"each of {self._most} blocks: is this loop endless? {RAISED}",
+                line=text.line(block),
             )
 
     def steered(self, following: int) -> None:

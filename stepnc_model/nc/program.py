@@ -48,10 +48,16 @@ class NcProgram:
     """Length of one unit of the program at its end, mm."""
     findings: tuple[Finding, ...]
     """What was not understood, and what is missing, by line."""
+    most_repeats: int | None = None
+    """Blocks and moves beyond those of the file that were allowed; None: as usual."""
 
 
 def read_program(
-    data: bytes, *, dialect: Dialect | None = None, machine: MachineType | None = None
+    data: bytes,
+    *,
+    dialect: Dialect | None = None,
+    machine: MachineType | None = None,
+    most_repeats: int | None = None,
 ) -> NcProgram:
     r"""Read an NC program and execute it.
 
@@ -63,6 +69,9 @@ def read_program(
         Control; guessed from the program if it is not given.
     machine : MachineType, optional
         Kind of machine; guessed as well.
+    most_repeats : int, optional
+        Greatest number of executed blocks, and of moves, beyond those of the file; by default
+        ``MOST_REPEATED`` of :mod:`stepnc_model.nc.flow`.
 
     Raises
     ------
@@ -82,7 +91,7 @@ def read_program(
         raise PostError("canonical commands are no NC code: name the control of the program")
     kind = guess.machine if machine is None else machine
     text = text_of(data, chosen)
-    control = control_of(text, chosen, kind)
+    control = control_of(text, chosen, kind, most_repeats=most_repeats)
     if data.startswith((BOM_UTF16_LE, BOM_UTF16_BE)):
         control.remarks.warn(0, "the file is UTF-16 text: save it as ASCII or UTF-8")
     control.run()
@@ -98,11 +107,21 @@ def read_program(
         moves=moves,
         unit=control.scale,
         findings=control.remarks.all(),
+        most_repeats=most_repeats,
     )
 
 
-def control_of(text: NcText, dialect: Dialect, machine: MachineType) -> Control:
-    """Control that executes a program."""
+def control_of(
+    text: NcText, dialect: Dialect, machine: MachineType, *, most_repeats: int | None = None
+) -> Control:
+    """Control that executes a program, within a number of repeats."""
+    control = _control(text, dialect, machine)
+    if most_repeats is not None:
+        control.flow.allow(most_repeats)
+    return control
+
+
+def _control(text: NcText, dialect: Dialect, machine: MachineType) -> Control:
     if dialect is Dialect.HEIDENHAIN:
         return HeidenhainControl(text)
     if dialect is Dialect.SINUMERIK:

@@ -4,9 +4,11 @@ import struct
 from array import array
 from collections.abc import Sequence
 from math import isnan, nan
+from sys import maxsize
 
 import numpy as np
 
+from stepnc_model.errors import PostError
 from stepnc_model.nc.moves import (
     ARC_NUMBERS,
     PLANES,
@@ -16,7 +18,11 @@ from stepnc_model.nc.moves import (
     MoveKind,
     NcMoves,
 )
+from stepnc_model.nc.text import NcText
 from stepnc_model.toolpath.path import ArcPlane, Point
+
+RAISED = "--most-repeats N allows more"
+"""What to do where a program exceeds its bound."""
 
 _PACKED = struct.Struct("<7d6ib")
 _FLAGS_AT = 7 * 8 + 5 * 4
@@ -73,6 +79,12 @@ class MoveRecorder:
         self._index = 0
         self._rows = bytearray()
         self._arcs = array("d")
+        self._text: NcText | None = None
+        self._most_bytes = maxsize
+
+    def bound(self, text: NcText, most: int) -> None:
+        """Refuse to record more moves of a program than a number."""
+        self._text, self._most_bytes = text, most * _PACKED.size
 
     @property
     def at(self) -> list[float]:
@@ -146,6 +158,8 @@ class MoveRecorder:
         is_unfed = not self.word > 0.0 and not flags & MoveFlag.MACRO_FEED
         if is_unfed and kind in {MoveKind.LINE, MoveKind.ARC}:
             flags |= MoveFlag.NO_FEED.value
+        if len(self._rows) >= self._most_bytes:
+            raise self._too_many()
         here, there = self._at, list(end)
         self.at = there
         self._rows += _PACKED.pack(
@@ -159,6 +173,14 @@ class MoveRecorder:
             self._index,
             flags,
             kind,
+        )
+
+    def _too_many(self) -> PostError:
+        """Error of a program with more moves than allowed, as of cycles that repeat."""
+        return PostError(
+            f"the program makes more than {self._most_bytes // _PACKED.size} moves: do its "
+            f"repeats have the right numbers? {RAISED}",
+            line=0 if self._text is None else self._text.line(self.block),
         )
 
     def moves(self) -> NcMoves:

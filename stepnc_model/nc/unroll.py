@@ -56,7 +56,8 @@ def unrolled(program: NcProgram) -> UnrolledProgram:
         When the unrolled program would make other moves, as where a subprogram has variables
         of its own.
     """
-    control = control_of(program.text, program.dialect, program.machine)
+    most = program.most_repeats
+    control = control_of(program.text, program.dialect, program.machine, most_repeats=most)
     trace: list[int] = []
     control.flow.trace = trace
     control.run()
@@ -66,7 +67,10 @@ def unrolled(program: NcProgram) -> UnrolledProgram:
     closing = [at for at in range(last + 1, len(text)) if END.fullmatch(text.block(at))]
     lines = _lines(program, [*opening, *trace, *closing[-1:]])
     again = read_program(
-        "".join(lines).encode("latin-1"), dialect=program.dialect, machine=program.machine
+        "".join(lines).encode("latin-1"),
+        dialect=program.dialect,
+        machine=program.machine,
+        most_repeats=most,
     )
     if not _are_same(program.moves, again.moves):
         raise PostError(

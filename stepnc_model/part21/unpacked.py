@@ -9,12 +9,12 @@ References
 .. [2] RFC 1952 (gzip).
 """
 
-import struct
 import zlib
 from io import BytesIO
-from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile, ZipInfo
+from zipfile import ZipFile, ZipInfo
 
 from stepnc_model.errors import Part21Error
+from stepnc_model.zip_member import DAMAGES, METHODS, read_member
 
 MAX_UNPACKED = 1 << 28
 """Greatest length of an unpacked file, bytes."""
@@ -26,18 +26,6 @@ ROOT = "iso-10303.p21"
 _ZIP = (b"PK\x03\x04", b"PK\x05\x06")
 """First bytes of an archive, and of one without files."""
 _GZIP = b"\x1f\x8b"
-_DAMAGES = (
-    BadZipFile,
-    EOFError,
-    NotImplementedError,
-    OSError,
-    RuntimeError,
-    ValueError,
-    struct.error,
-    zlib.error,
-)
-"""What the standard library raises for a damaged archive, depending on where it is damaged."""
-_METHODS = (ZIP_STORED, ZIP_DEFLATED)
 _GZIP_WINDOW = 16 + zlib.MAX_WBITS
 _OPENING = b"ISO-10303-21"
 _PEEKED = 4096
@@ -93,7 +81,7 @@ def _from_zip(data: bytes) -> bytes:
     try:
         with ZipFile(BytesIO(data)) as archive:
             return _read(archive, _member(archive))
-    except _DAMAGES as error:
+    except DAMAGES as error:
         raise Part21Error(f"the ZIP archive cannot be read: {error}") from error
 
 
@@ -106,28 +94,28 @@ def _member(archive: ZipFile) -> ZipInfo:
     for each in members:
         if each.flag_bits & 1:
             raise Part21Error(f"'{each.filename}' in the ZIP archive is encrypted")
-        if each.compress_type not in _METHODS:
+        if each.compress_type not in METHODS:
             message = f"'{each.filename}' in the ZIP archive is neither stored nor deflated"
             raise Part21Error(message)
     roots = [each for each in members if each.filename.lower() == ROOT]
-    found = roots or [each for each in members if _OPENING in _read(archive, each, _PEEKED)]
+    found = roots or [each for each in members if _OPENING in _beginning(archive, each)]
     if len(found) != 1:
         count = len(found) or "no"
         raise Part21Error(f"the ZIP archive holds {count} Part 21 files instead of one")
     return found[0]
 
 
-def _read(archive: ZipFile, member: ZipInfo, limit: int | None = None) -> bytes:
-    """Read a file of an archive, or its beginning."""
-    with archive.open(member) as file:
-        if limit is not None:
-            return file.read(limit).upper()
-        if member.file_size > MAX_UNPACKED:
-            raise _too_long()
-        content = file.read(MAX_UNPACKED + 1)
-    if len(content) > MAX_UNPACKED:
+def _read(archive: ZipFile, member: ZipInfo) -> bytes:
+    """Read a file of an archive."""
+    if member.file_size > MAX_UNPACKED:
         raise _too_long()
-    return content
+    return read_member(archive, member, most=member.file_size)
+
+
+def _beginning(archive: ZipFile, member: ZipInfo) -> bytes:
+    """Beginning of a file of an archive, in capitals."""
+    with archive.open(member) as file:
+        return file.read(_PEEKED).upper()
 
 
 def _too_long() -> Part21Error:

@@ -139,3 +139,17 @@ def test_a_socket_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         listener.bind("s")
         with pytest.raises(StepNcError, match="is a socket, not a regular file"):
             read_bytes(Path("s"))
+
+
+def test_a_file_that_is_larger_than_its_budget_is_refused_before_it_is_read(
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / "sparse.stp"
+    with path.open("wb") as file:
+        file.truncate(1 << 40)
+    with pytest.raises(StepNcError, match=f"{1 << 40} bytes; at most {1 << 31}"):
+        read_bytes(path)
+    path.write_bytes(b"four")
+    assert read_bytes(path, most=4) == b"four"
+    with pytest.raises(StepNcError, match="at most 3"):
+        read_bytes(path, most=3)

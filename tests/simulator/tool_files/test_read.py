@@ -71,7 +71,7 @@ def test_an_archive_that_unpacks_too_far_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "a.tools"
     with ZipFile(file, "w", compression=8) as archive:
         archive.writestr("tools.json", b" " * ((1 << 25) + 1))
-    assert refusal(file) == "tools.json is larger than 33554432 bytes, the most"
+    assert "unpacks to more than 33554432 bytes" in refusal(file)
 
 
 def test_a_unit_is_only_for_tables_that_name_none(tmp_path: Path) -> None:
