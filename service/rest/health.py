@@ -1,13 +1,12 @@
 """Routes for operators of the service: health checks, metrics, version."""
 
-from pathlib import Path
-from tempfile import TemporaryFile
 from typing import Any
 
 from fastapi import APIRouter, Request, Response
 
 from service.errors import ServiceError
 from service.jobs.runner import is_alive
+from service.live.storage import has_room
 from service.rest.asking import answered
 from service.rest.context import data_folder_of, owner_of, settings_of
 from service.rest.metrics import JOBS, TYPE, exposition
@@ -16,9 +15,6 @@ from service.rest.replies import json_reply
 from service.storage import jobs
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobState
-
-SMALL = 4096
-"""Bytes of a file that shows whether the disk has room."""
 
 ROUTES = APIRouter(tags=["service"])
 
@@ -63,18 +59,8 @@ async def about(request: Request) -> Response:
 
 
 def _state(data_folder: DataFolder) -> dict[str, Any]:
-    has_room = _has_room(data_folder.root)
+    is_roomy = has_room(data_folder.root)
     try:
-        return {"database": True, "runner": is_alive(data_folder), "room": has_room}
+        return {"database": True, "runner": is_alive(data_folder), "room": is_roomy}
     except ServiceError:
-        return {"database": False, "runner": False, "room": has_room}
-
-
-def _has_room(folder: Path) -> bool:
-    """Whether a small file can be written."""
-    try:
-        with TemporaryFile(dir=folder) as file:
-            file.write(bytes(SMALL))
-    except OSError:
-        return False
-    return True
+        return {"database": False, "runner": False, "room": is_roomy}
