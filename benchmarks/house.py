@@ -29,6 +29,7 @@ ALLOWED = {
     "optimiser.profile.tangential_limit": "problems made by hand",
     "optimiser.profile_program.solver_profile": "judge of the sweep, in tests and benchmarks",
     "kbe.migrations.versions.0001_outcomes.upgrade": "Alembic calls it by this name",
+    "kbe.migrations.versions.0002_identity.upgrade": "Alembic calls it by this name",
     "service.rest.app.application": "the application by itself, for tests and other servers",
     "service.rest.app.openapi": "the document by itself, for the pages",
     "simulator.machine.samples.Rotation": "codes of a column, for readers of samples",
@@ -59,7 +60,11 @@ print(sum(name.split(".")[0] in product for name in names))
 ENTITIES = "stepnc_model.entities"
 """read by their EXPRESS names, which no name in the source tells"""
 
-MIGRATIONS = (("kbe.migrations.env", ""), ("kbe.migrations.versions.0001_outcomes", ""))
+MIGRATIONS = (
+    ("kbe.migrations.env", ""),
+    ("kbe.migrations.versions.0001_outcomes", ""),
+    ("kbe.migrations.versions.0002_identity", ""),
+)
 """found by their folder"""
 
 Name = tuple[str, str]

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from threading import Timer, main_thread
 from time import monotonic, sleep
 from types import FrameType
@@ -18,6 +19,7 @@ from service.errors import StorageFull, Unavailable
 from service.extras import missing_extras_named
 from service.jobs.task import LARGE, UNFINISHED, RunningJob, clear
 from service.lifeline import end_with_parent
+from service.live.storage import has_room
 from service.problem import plain_problem, problem_of
 from service.process_limits import GIB, ProcessLimits, limit_process
 from service.storage import jobs
@@ -33,6 +35,9 @@ WITHOUT_ROOM = (StorageFull, StoreFull, WriteError)
 PATIENCE = 600.0
 """Time for which a call that failed is repeated, in s: work of hours outlives the restart of a
 server, and a bucket that is away."""
+
+UNTIL_ROOM = 5.0
+"""Time between two looks whether a full disk has room again, in s."""
 
 AGAIN = 1.0
 """Delay between two attempts of a database call, in s."""
@@ -82,8 +87,9 @@ def main(folder: FolderAddress, id: str, attempt: int) -> None:
     """Run a claimed job and record how it ended; nothing if a later attempt has taken over."""
     end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    data_folder = _insisting(lambda: known_data_folder(folder))
-    job = _insisting(lambda: jobs.get(data_folder, id))
+    root = Path(folder.root)
+    data_folder = _insisting(root, lambda: known_data_folder(folder))
+    job = _insisting(root, lambda: jobs.get(data_folder, id))
     if job.attempt != attempt:
         return
     task = RunningJob(data_folder=data_folder, job=job)
@@ -105,22 +111,35 @@ def main(folder: FolderAddress, id: str, attempt: int) -> None:
 
 
 def _end_of(task: RunningJob) -> JobEnd:
-    """Do the work of a job, and return how it has ended."""
+    """Do the work of a job, and return how it has ended; begin anew when the disk was full."""
+    while True:
+        end, error = _tried(task)
+        is_without_room = isinstance(error, (*WITHOUT_ROOM, Unavailable))
+        # What the job has freed may be all that lacked: then it needs more than there is. A
+        # run at a pace cannot be done again: people have watched it, and given orders.
+        if not is_without_room or task.job.is_paced or has_room(task.data_folder.root):
+            return end
+        while not has_room(task.data_folder.root):
+            sleep(UNTIL_ROOM)
+
+
+def _tried(task: RunningJob) -> tuple[JobEnd, StepNcError | None]:
+    """Do the work of a job once; the end of it, and the error that it would be."""
     try:
         if task.make_folder():
             with missing_extras_named(f"the {task.job.kind.value}"):
                 _work(task.job)(task)
-            _insisting(task.publish)
+            _insisting(task.data_folder.root, task.publish)
     except StepNcError as error:
         if isinstance(error, WITHOUT_ROOM):
             clear(task.folder, LARGE)
         problem = problem_of(error, hidden=str(task.data_folder.files))
-        return JobEnd(state=JobState.FAILED, problem=problem)
+        return JobEnd(state=JobState.FAILED, problem=problem), error
     except MemoryError:
         detail = f"the job needed more memory than {_memory()}"
         problem = plain_problem(507, "Out of memory", detail)
-        return JobEnd(state=JobState.FAILED, problem=problem)
-    return JobEnd(state=JobState.SUCCEEDED)
+        return JobEnd(state=JobState.FAILED, problem=problem), None
+    return JobEnd(state=JobState.SUCCEEDED), None
 
 
 def _memory() -> str:
@@ -159,17 +178,20 @@ def _finish(task: RunningJob, end: JobEnd) -> None:
         # Rows of a run that was ended are kept, where there is room for them.
         with suppress(Unavailable):
             task.publish()
-    _insisting(lambda: jobs.finish(task.data_folder, task.job, end.state, problem=end.problem))
+    _insisting(
+        task.data_folder.root,
+        lambda: jobs.finish(task.data_folder, task.job, end.state, problem=end.problem),
+    )
 
 
-def _insisting(ask: Callable[[], T]) -> T:
-    """Return the result of a database call, repeated for a while when it fails."""
+def _insisting(root: Path, ask: Callable[[], T]) -> T:
+    """Return the result of a call, repeated for a while when it fails, or the disk is full."""
     begin = monotonic()
     while True:
         try:
             return ask()
         except Unavailable:
-            if monotonic() - begin > PATIENCE:
+            if monotonic() - begin > PATIENCE and has_room(root):
                 raise
             sleep(AGAIN)
 

@@ -4,11 +4,16 @@ import errno
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryFile
 
 from service.errors import StorageFull, Unavailable
 
 FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 """Error numbers of the operating system that mean that the disk or the quota is full."""
+
+SMALL = 4096
+"""Bytes of a file that shows whether the disk has room."""
 
 
 @contextmanager
@@ -33,6 +38,16 @@ def storing(what: str) -> Iterator[None]:
         if error.errno in FULL:
             raise StorageFull(f"{what}: {error.strerror}") from error
         raise Unavailable(f"{what}: {error.strerror or error}") from error
+
+
+def has_room(folder: Path) -> bool:
+    """Whether a small file can be written into a folder."""
+    try:
+        with TemporaryFile(dir=folder) as file:
+            file.write(bytes(SMALL))
+    except OSError:
+        return False
+    return True
 
 
 def write_whole(descriptor: int, content: bytes) -> None:

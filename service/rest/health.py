@@ -2,8 +2,6 @@
 
 import asyncio
 from collections.abc import Awaitable
-from pathlib import Path
-from tempfile import TemporaryFile
 from typing import TypeVar
 
 from fastapi import APIRouter, Request, Response
@@ -11,6 +9,7 @@ from starlette.concurrency import run_in_threadpool
 
 from service.errors import ServiceError
 from service.jobs.runner import is_alive
+from service.live.storage import has_room
 from service.rest.asking import answered
 from service.rest.context import data_folder_of, owner_of, settings_of
 from service.rest.metrics import JOBS, TYPE, exposition
@@ -19,9 +18,6 @@ from service.rest.replies import json_reply
 from service.storage import jobs
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobState
-
-SMALL = 4096
-"""Bytes of a file that shows whether the disk has room."""
 
 ROUTES = APIRouter(tags=["service"])
 
@@ -81,21 +77,11 @@ async def about(request: Request) -> Response:
 
 
 def _state(data_folder: DataFolder) -> dict[str, bool]:
-    has_room = _has_room(data_folder.root)
+    is_roomy = has_room(data_folder.root)
     try:
-        return {"database": True, "runner": is_alive(data_folder), "room": has_room}
+        return {"database": True, "runner": is_alive(data_folder), "room": is_roomy}
     except ServiceError:
-        return {**SILENT, "room": has_room}
-
-
-def _has_room(folder: Path) -> bool:
-    """True if a small file can be written."""
-    try:
-        with TemporaryFile(dir=folder) as file:
-            file.write(bytes(SMALL))
-    except OSError:
-        return False
-    return True
+        return {**SILENT, "room": is_roomy}
 
 
 async def _in_time(answer: Awaitable[T], otherwise: T) -> T:

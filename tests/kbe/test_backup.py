@@ -239,6 +239,6 @@ def test_disk_without_second_names_takes_a_backup_too(
 def test_copy_that_differs_is_refused(store: Store, outcomes: OutcomeMaker) -> None:
     store.add(outcomes(2))
     wanted = content(store)
-    store.add(outcomes(1))
+    store.add(outcomes(1, run="next"))
     with pytest.raises(BackupDiffers), reading(store.engine, store.place) as connection:
         _require_same(connection, wanted, store.place)

@@ -214,3 +214,23 @@ def test_a_pipe_has_no_colours_whatever_no_color_says(
         monkeypatch.setenv("NO_COLOR", wish)
         assert stepnc("check", PARTS / "bracket.stpnc") == OK
         assert "\x1b" not in capsys.readouterr().out
+
+
+def test_a_fault_of_something_else_is_not_told_as_one_of_stdout(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """A network that is away has no reason and no file."""
+
+    def work(error: OSError) -> int:
+        raise error
+
+    for error, said in (
+        (TimeoutError(), "error: TimeoutError\n"),
+        (
+            PermissionError(13, "Permission denied", "a.txt"),
+            "error: a.txt: Permission denied\n",
+        ),
+    ):
+        options = argparse.Namespace(command="check", run=lambda _, fault=error: work(fault))
+        assert commands._run(options) == BAD_INPUT
+        assert capsys.readouterr().err == said

@@ -4,6 +4,7 @@ import logging
 import signal
 import sqlite3
 from collections.abc import Iterator
+from contextlib import ExitStack
 from typing import Any
 
 import pytest
@@ -14,6 +15,7 @@ from service.problem import problem_of
 from service.storage import database, jobs, programs
 from service.storage.folder import DATABASE, open_data_folder
 from service.storage.jobs import Job, JobKind, JobState
+from tests.full_disk import files_of_at_most
 from tests.service.jobs.conftest import Shop, made_shop
 from tests.service.live.room import within_room
 from tests.service.rest.samples import SAMPLE
@@ -157,6 +159,27 @@ def test_a_job_without_room_says_so_and_frees_what_it_took(idle: Shop) -> None:
     assert str(root) not in str(found.problem)
     left = {each.name for each in idle.data_folder.job_folder(job.id).iterdir()}
     assert left <= {"status.json"}
+
+
+def test_a_job_waits_for_room_on_a_full_disk(
+    idle: Shop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    idle.order(JobKind.ADVICE)
+    claimed = jobs.claim(idle.data_folder)
+    assert claimed is not None
+    task = RunningJob(data_folder=idle.data_folder, job=claimed)
+    waits: list[float] = []
+    with ExitStack() as stack:
+
+        def wait(seconds: float) -> None:
+            waits.append(seconds)
+            stack.close()
+
+        monkeypatch.setattr(child, "sleep", wait)
+        stack.enter_context(files_of_at_most(0))
+        end = child._end_of(task)
+    assert (end.state, waits) == (JobState.SUCCEEDED, [child.UNTIL_ROOM])
+    assert (task.folder / "result.json").is_file()
 
 
 def test_what_another_attempt_left_half_done_is_cleared_away(idle: Shop) -> None:

@@ -7,7 +7,7 @@ import pytest
 from service.errors import Unavailable
 from service.jobs.runner import beat, is_alive
 from service.knowledge.verbs import require_usable
-from service.rest.health import _has_room
+from service.live.storage import has_room
 from service.storage import jobs
 from service.storage.folder import open_data_folder
 from tests.full_disk import files_of_at_most
@@ -23,13 +23,13 @@ def test_a_data_folder_on_a_full_disk_is_opened_and_read(tmp_path: Path) -> None
         assert is_alive(opened)
         assert not jobs.counts(opened)
         assert "the disk is full" in require_usable(opened.knowledge)
-        assert not _has_room(tmp_path)
+        assert not has_room(tmp_path)
         with pytest.raises(Unavailable):
             beat(opened)
     beat(opened)
     assert is_alive(opened)
     assert not require_usable(opened.knowledge)
-    assert _has_room(tmp_path)
+    assert has_room(tmp_path)
     opened.database.close()
 
 
