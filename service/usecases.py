@@ -15,6 +15,7 @@ from service.files import (
     beside,
     is_same,
     require_place,
+    require_places,
     write_atomically,
     write_lines,
 )
@@ -358,12 +359,7 @@ def _output(files: AdviceFiles) -> Path:
             raise WriteError(message, path=str(output))
         if not files.dry_run:
             require_place(output, apart_from=files.file)
-    for place in (files.report, files.feeds):
-        if place is not None:
-            require_place(place, apart_from=files.file)
-            require_place(place, apart_from=output)
-    if files.report is not None and files.feeds is not None:
-        require_place(files.feeds, apart_from=files.report)
+    require_places([files.report, files.feeds], apart_from=[files.file, output])
     return output
 
 
@@ -415,9 +411,7 @@ def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path 
     if request.nc_control is None:
         return None
     place = beside(output, request.nc_control.suffix)
-    for other in (files.file, output, files.report, files.feeds):
-        if other is not None:
-            require_place(place, apart_from=other)
+    require_places([place], apart_from=[files.file, output, files.report, files.feeds])
     return place
 
 

@@ -16,6 +16,7 @@ from simulator.motion.segments import Floats
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import BarRadii, TurningStock
 from simulator.removal.zmap import MOST_CELLS, HeightGrid, zmap_of_heights
+from stepnc_model.part21.unpacked import ARCHIVE_DAMAGES
 from stepnc_model.program import Stock
 
 VERSION = 1
@@ -110,13 +111,7 @@ def _arrays(data: bytes, name: str) -> dict[str, Floats]:
             for each in archive.infolist():
                 content = archive.read(each)
                 found[each.filename.removesuffix(".npy")] = _parsed(content)
-    except (
-        zipfile.BadZipFile,
-        EOFError,
-        ValueError,
-        NotImplementedError,
-        RuntimeError,
-    ) as error:
+    except ARCHIVE_DAMAGES as error:
         raise LibraryError(f"is not a kept stock: {error}", path=name) from error
     return found
 

@@ -23,6 +23,7 @@ from simulator.tool_files.linuxcnc import is_tool_line, read_linuxcnc
 from simulator.tool_files.placed_row import PlacedRow, ToolRows
 from simulator.tool_table import TableTool, read_tool_rows, tool_of_row
 from stepnc_model.errors import Finding
+from stepnc_model.part21.unpacked import ARCHIVE_DAMAGES
 
 MOST_BYTES = 1 << 25
 """Greatest size of a library of a CAM system, bytes, also when unpacked."""
@@ -127,7 +128,7 @@ def _unpacked(data: bytes, path: Path) -> str:
             content = file.read(MOST_BYTES + 1)
     except KeyError as error:
         raise LibraryError(f"the archive has no {ARCHIVED}", path=str(path)) from error
-    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError) as error:
+    except ARCHIVE_DAMAGES as error:
         raise LibraryError(f"is a damaged archive: {error}", path=str(path)) from error
     if len(content) > MOST_BYTES:
         message = f"{ARCHIVED} is larger than {MOST_BYTES} bytes, the most"

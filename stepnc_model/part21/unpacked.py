@@ -26,7 +26,7 @@ ROOT = "iso-10303.p21"
 _ZIP = (b"PK\x03\x04", b"PK\x05\x06")
 """First bytes of an archive, and of one without files."""
 _GZIP = b"\x1f\x8b"
-_DAMAGES = (
+ARCHIVE_DAMAGES = (
     BadZipFile,
     EOFError,
     NotImplementedError,
@@ -93,7 +93,7 @@ def _from_zip(data: bytes) -> bytes:
     try:
         with ZipFile(BytesIO(data)) as archive:
             return _read(archive, _member(archive))
-    except _DAMAGES as error:
+    except ARCHIVE_DAMAGES as error:
         raise Part21Error(f"the ZIP archive cannot be read: {error}") from error
 
 
