@@ -151,7 +151,7 @@ def optimise(
     plan = replace(plan, findings=(*plan.findings, *(along.above_limits if along else ())))
     if request.nc_control is not None and nc_place is not None:
         # NC code first: where it cannot be made, nothing is written.
-        code = _nc_code(_read_again(program, data), request.nc_control, along, tell)
+        code = _nc_code(_read_again(program, data), request, along, tell)
         if not files.dry_run:
             tell(f"NC code: {nc_place} ({write_lines(nc_place, code)} lines)")
     if along is not None and request.writes_toolpaths:
@@ -416,16 +416,18 @@ def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path 
 
 
 def _nc_code(
-    program: Program, control: Dialect, along: "FeedsAlongPath | None", tell: Tell
+    program: Program, request: AdviceRequest, along: "FeedsAlongPath | None", tell: Tell
 ) -> Iterator[str]:
     """Generate NC code of the optimised program."""
+    control, is_exact = request.nc_control or Dialect.LINUXCNC, request.is_exact_path
     from service.paths.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (numpy, shapely)
 
     if along is not None:
         from service.along_path.of_program import nc_lines_along  # noqa: PLC0415 (numpy, shapely)
 
-        return nc_lines_along(program, along, control)
-    return nc_lines(with_feeds(paths_of(program, tell=tell), keep_going=False), control)
+        return nc_lines_along(program, along, control, is_exact=is_exact)
+    paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
+    return nc_lines(paths, control, is_exact=is_exact)
 
 
 def _read_again(program: Program, data: bytes) -> Program:

@@ -72,6 +72,7 @@ SLOW = (
     "service/storage/test_library.py",
     "service/storage/test_server_database.py",
     "service/test_bad_control.py",
+    "service/test_every_missing_instance.py",
     "service/test_bad_paths.py",
     "service/test_bad_simulations.py",
     "service/test_http_protocol.py",

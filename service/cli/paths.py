@@ -59,6 +59,11 @@ def _post_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--cycles", action="store_true", help="use the control's own drilling cycles"
     )
+    parser.add_argument(
+        "--exact-path",
+        action="store_true",
+        help="exact stops at corners, instead of rounding them within the path tolerance",
+    )
     _add_keep_going(parser)
     parser.set_defaults(run=_post)
 
@@ -116,6 +121,7 @@ def _post(options: argparse.Namespace) -> int:
             program=program_request(options),
             output=options.output,
             cycles=options.cycles,
+            exact_path=options.exact_path,
             keep_going=options.keep_going,
         ),
         tell=tell,
