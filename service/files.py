@@ -85,7 +85,11 @@ def is_same(one: Path, other: Path) -> bool:
     try:
         if one.resolve() == other.resolve():
             return True
-        return one.exists() and other.exists() and one.samefile(other)
+        if one.exists() and other.exists():
+            return one.samefile(other)
+        # Two new files whose names differ in case only are one file on many disks.
+        is_new = not one.exists() and not other.exists()
+        return is_new and str(one.resolve()).casefold() == str(other.resolve()).casefold()
     except OSError as error:
         raise StepNcError(f"{error.filename}: {_reason(error)}") from error
     except RuntimeError as error:
@@ -109,10 +113,54 @@ def beside(path: Path, suffix: str) -> Path:
 
 def require_place(path: Path, *, apart_from: Path) -> None:
     """Refuse an output path that is another file of the run, or whose folder does not exist."""
-    if is_same(path, apart_from):
-        raise WriteError(f"is the same file as {apart_from}; name another file", path=str(path))
-    if not path.parent.is_dir():
-        raise WriteError("the folder does not exist", path=str(path))
+    require_places([path], apart_from=[apart_from])
+
+
+def require_places(
+    outputs: Iterable[Path | None], *, apart_from: Iterable[Path | None] = ()
+) -> None:
+    """Refuse outputs as :func:`require_distinct` does, and those whose folder does not exist.
+
+    Raises
+    ------
+    WriteError
+    """
+    places = list(outputs)
+    require_distinct(places, apart_from=apart_from)
+    for place in places:
+        if place is not None and not place.parent.is_dir():
+            raise WriteError("the folder does not exist", path=str(place))
+
+
+def require_distinct(
+    outputs: Iterable[Path | None], *, apart_from: Iterable[Path | None] = ()
+) -> None:
+    """Refuse outputs of one command that are the same file, or a file that it reads.
+
+    Symbolic and hard links, ``..`` and, for new files, letter case are seen through. What one
+    output overwrites would be lost without a word.
+
+    Parameters
+    ----------
+    outputs : iterable of Path or None
+        Places to be written; None where an output was not asked for.
+    apart_from : iterable of Path or None
+        Files that are read.
+
+    Raises
+    ------
+    WriteError
+        With the first such place.
+    """
+    others = [each for each in apart_from if each is not None]
+    for place in outputs:
+        if place is None:
+            continue
+        for other in others:
+            if is_same(place, other):
+                message = f"is the same file as {other}; name another file"
+                raise WriteError(message, path=str(place))
+        others.append(place)
 
 
 def write_atomically(path: Path, data: bytes) -> None:

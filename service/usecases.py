@@ -15,6 +15,7 @@ from service.files import (
     beside,
     is_same,
     require_place,
+    require_places,
     write_atomically,
     write_lines,
 )
@@ -150,7 +151,7 @@ def optimise(
     plan = replace(plan, findings=(*plan.findings, *(along.above_limits if along else ())))
     if request.nc_control is not None and nc_place is not None:
         # NC code first: where it cannot be made, nothing is written.
-        code = _nc_code(_read_again(program, data), request.nc_control, along, tell)
+        code = _nc_code(_read_again(program, data), request, along, tell)
         if not files.dry_run:
             tell(f"NC code: {nc_place} ({write_lines(nc_place, code)} lines)")
     if along is not None and request.writes_toolpaths:
@@ -358,12 +359,7 @@ def _output(files: AdviceFiles) -> Path:
             raise WriteError(message, path=str(output))
         if not files.dry_run:
             require_place(output, apart_from=files.file)
-    for place in (files.report, files.feeds):
-        if place is not None:
-            require_place(place, apart_from=files.file)
-            require_place(place, apart_from=output)
-    if files.report is not None and files.feeds is not None:
-        require_place(files.feeds, apart_from=files.report)
+    require_places([files.report, files.feeds], apart_from=[files.file, output])
     return output
 
 
@@ -415,23 +411,23 @@ def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path 
     if request.nc_control is None:
         return None
     place = beside(output, request.nc_control.suffix)
-    for other in (files.file, output, files.report, files.feeds):
-        if other is not None:
-            require_place(place, apart_from=other)
+    require_places([place], apart_from=[files.file, output, files.report, files.feeds])
     return place
 
 
 def _nc_code(
-    program: Program, control: Dialect, along: "FeedsAlongPath | None", tell: Tell
+    program: Program, request: AdviceRequest, along: "FeedsAlongPath | None", tell: Tell
 ) -> Iterator[str]:
     """Generate NC code of the optimised program."""
+    control, is_exact = request.nc_control or Dialect.LINUXCNC, request.is_exact_path
     from service.paths.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (numpy, shapely)
 
     if along is not None:
         from service.along_path.of_program import nc_lines_along  # noqa: PLC0415 (numpy, shapely)
 
-        return nc_lines_along(program, along, control)
-    return nc_lines(with_feeds(paths_of(program, tell=tell), keep_going=False), control)
+        return nc_lines_along(program, along, control, is_exact=is_exact)
+    paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
+    return nc_lines(paths, control, is_exact=is_exact)
 
 
 def _read_again(program: Program, data: bytes) -> Program:

@@ -31,7 +31,7 @@ from stepnc_model.errors import (
 )
 from stepnc_model.paper002 import PRINTED, ConsistentRecord, read_printed
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.part21.values import Ref, Value
+from stepnc_model.part21.values import Derived, Ref, Typed, Value
 
 
 def circles(edges: Mapping[int, tuple[int, ...]]) -> Iterator[tuple[int, int]]:
@@ -89,8 +89,33 @@ class Inspection:
     """Ids of referenced instances, except the optimisation, which refers back to operations."""
 
 
+_VALUES = (str, int, float, tuple, Typed, Derived)
+"""Types of values that stand in an entity where the schema requires another entity."""
+
 _DISPENSABLE = ("its_secplane", "implicit_tolerance")
 """Required attributes that many files lack, and that are read as not given."""
+
+
+def is_about_values(error: Exception) -> bool:
+    """Whether an error can come from values of a file, and not from the code alone.
+
+    Code that asks an object of its own for an attribute that it does not have is wrong,
+    whatever the file holds.
+    """
+    if not isinstance(error, AttributeError):
+        return True
+    return error.obj is None or isinstance(error.obj, (Entity, *_VALUES))
+
+
+def is_about_nothing(error: Exception) -> bool:
+    """Whether an error shows by itself that a value is missing, empty or out of range.
+
+    An optional attribute that is not given is no fault of its own, so that nothing near the
+    instance need be faulty.
+    """
+    if isinstance(error, AttributeError):
+        return error.obj is None
+    return not isinstance(error, TypeError) or "NoneType" in str(error)
 
 
 class Model:

@@ -237,8 +237,8 @@ def _value(written: str, text: str) -> Value:
     data = "\n".join((*lines, "END-ISO-10303-21;")).encode()
     try:
         file = Part21File.from_bytes(data)
-        values = file.parameters(1)
-    except (Part21Error, KeyError):
+        values = file.parameters(1) if 1 in file else ()
+    except Part21Error:
         values = ()
     if len(values) != 1 or len(file.ids()) != 1:
         raise SchemaError(f"'{text}': '{written}' is not a value of Part 21")

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, fields
 from math import isfinite
 from typing import Any, cast
 
-from stepnc_model.binding import Model, to_parameters
+from stepnc_model.binding import Model, is_about_values, to_parameters
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.measures import (
     DescriptiveParameter,
@@ -174,7 +174,9 @@ def read_entities(model: Model, ref: Ref[Entity]) -> AdviceRecord | None:
     """Read the record of an operation's optimisation; None if it is incomplete."""
     try:
         return _checked(_from_entities(model, ref))
-    except (AttributeError, TypeError, ValueError, SchemaError):
+    except (AttributeError, TypeError, ValueError, SchemaError) as error:
+        if not is_about_values(error):
+            raise
         # A record of another program: some reference is dangling or leads to something else.
         return None
 

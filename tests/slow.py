@@ -44,6 +44,7 @@ SLOW = (
     "service/rest/test_serve_database.py",
     "service/rest/test_serve_store.py",
     "service/storage/test_server_database.py",
+    "service/test_every_missing_instance.py",
     "service/trial/test_run.py",
     "service/verification/test_run.py",
     "simulator/factory/test_calendar.py",

@@ -25,7 +25,7 @@ from service.files import (
     beside,
     is_same,
     read_bytes,
-    require_place,
+    require_places,
     write_atomically,
 )
 from service.numbers import tool_numbers_in
@@ -190,13 +190,13 @@ def _output(files: CodeFiles) -> Path:
     if files.in_place:
         if files.output is not None:
             raise StepNcError("--in-place and --output exclude each other")
+        require_places([files.report, files.feeds], apart_from=[files.file])
         return files.file
     output = files.output or beside(files.file, f".optimised{files.file.suffix}")
     if is_same(files.file, output):
         raise WriteError("is the input file; use --in-place to overwrite it", path=str(output))
-    for place in (output, files.report, files.feeds):
-        if place is not None and not files.dry_run:
-            require_place(place, apart_from=files.file)
+    if not files.dry_run:
+        require_places([output, files.report, files.feeds], apart_from=[files.file])
     return output
 
 

@@ -16,8 +16,9 @@ from service.reading import Tell, silent
 from service.requests.advice import AdviceRequest
 from service.simulation.setup import PreparedRun, prepared_program
 from stepnc_model.post import block_feeds
+from stepnc_model.post.blocks import Block
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.dialects import write
+from stepnc_model.post.dialects import with_exact_stops, write
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program
 
@@ -67,7 +68,9 @@ def along_program(
     return along_path(PathSource(prepare=prepare, bounds=bounds_at), task, tell=tell)
 
 
-def nc_lines_along(program: Program, along: FeedsAlongPath, control: Dialect) -> Iterator[str]:
+def nc_lines_along(
+    program: Program, along: FeedsAlongPath, control: Dialect, *, is_exact: bool = False
+) -> Iterator[str]:
     """Generate NC code of a program at the planned feeds, line by line.
 
     Parameters
@@ -76,9 +79,12 @@ def nc_lines_along(program: Program, along: FeedsAlongPath, control: Dialect) ->
         The program that was planned.
     along : FeedsAlongPath
     control : Dialect
+    is_exact : bool
+        Whether corners get exact stops.
     """
     paths = with_feeds(paths_of(program), keep_going=False)
     blocks = blocks_of(program, paths.items, name=Path(program.name).stem)
     numbered = BlockLog((0, block) for block in blocks)
     fed = block_feeds.with_feeds(numbered, along.feeds)
-    return write((each.block for each in fed), control)
+    found: Iterator[Block] = (each.block for each in fed)
+    return write(with_exact_stops(found, control) if is_exact else found, control)

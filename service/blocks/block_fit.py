@@ -39,6 +39,9 @@ COLUMNS = {
 }
 """Columns of a table by unit; the first two are needed."""
 
+LEAST_IN_TABLE = 1e-6
+"""Least number in such a table, far below any control; its square stays a number."""
+
 PAPER_FEEDS = (0.7, 3.6, 7.2, 10.5, 14.6, 35.6, 71.2, 106.7, 147.68)
 """Feeds of Table 2 of paper 004 at its spacings, in/min."""
 
@@ -139,10 +142,10 @@ def _table_points(path: Path, unit: LengthUnit) -> list[SpacingFeed]:
     points = []
     for number, row in enumerate(rows, start=2):
         for name, value in row.items():
-            if value is None or not 0.0 < value < 1e6:
+            if value is None or not LEAST_IN_TABLE <= value < 1e6:
                 shown = "empty" if value is None else f"{value:g}"
                 raise StepNcError(
-                    f"{path}: row {number}: {name} {shown}: it must be above 0 and below 1e6"
+                    f"{path}: row {number}: {name} {shown}: expected {LEAST_IN_TABLE:g} to 1e6"
                 )
         spacing, feed, radius, commanded = (row.get(name) for name in COLUMNS[unit])
         points.append(

@@ -59,7 +59,7 @@ def _of(file: Part21File, ids: tuple[int, ...]) -> Exchange:
     lines = [HEAD]
     for id in ids:
         start, end = file.span(id)
-        lines += (_without_comments(file.data[start:end]), b"\n")
+        lines += (_without_comments(file.scanned[start:end]), b"\n")
     return Exchange(data=b"".join((*lines, TAIL)), ids=ids)
 
 

@@ -10,6 +10,7 @@ from service.cli.options import (
     add_json,
     add_most_repeats,
     add_program_options,
+    output_path,
     program_request,
     text,
 )
@@ -47,9 +48,14 @@ def _add_fit(commands: Commands) -> None:
         help="position of the program's zero in the log, in mm (default: 0,0,0, or searched)",
     )
     add("--machine", default="", help="one of `stepnc machines`, or your own file")
-    add("-o", "--output", type=Path, metavar="TOML",
+    add("-o", "--output", type=output_path, metavar="TOML",
         help="write the machine with its block time")  # fmt: skip
-    add("--report", type=Path, metavar="HTML", help="write a self-contained page with a plot")
+    add(
+        "--report",
+        type=output_path,
+        metavar="HTML",
+        help="write a self-contained page with a plot",
+    )
     add_json(parser)
     parser.set_defaults(run=_fit)
 
@@ -82,9 +88,14 @@ def _cycle_time_options(parser: argparse.ArgumentParser) -> None:
         help="motion control: fir (default), junction or exact-stop")  # fmt: skip
     add("--deviation-mm", type=float, default=0.01, metavar="MM",
         help="path deviation of the junction control, mm (default: 0.01)")  # fmt: skip
-    add("-o", "--output", type=Path, metavar="CODE",
+    add("-o", "--output", type=output_path, metavar="CODE",
         help="write NC code with each feed lowered to what will be reached")  # fmt: skip
-    add("--report", type=Path, metavar="HTML", help="write a self-contained page with a plot")
+    add(
+        "--report",
+        type=output_path,
+        metavar="HTML",
+        help="write a self-contained page with a plot",
+    )
     add_json(parser)
     parser.set_defaults(run=_cycle_time)
 
@@ -94,7 +105,12 @@ def _test_options(parser: argparse.ArgumentParser) -> None:
     from service.requests.fields import add_options
 
     parser.add_argument(
-        "-o", "--output", type=Path, required=True, metavar="FILE", help="NC code to write"
+        "-o",
+        "--output",
+        type=output_path,
+        required=True,
+        metavar="FILE",
+        help="NC code to write",
     )
     add_options(parser, BlockTestRequest)
     parser.set_defaults(run=_test)

@@ -31,6 +31,7 @@ from service.cli.options import (
     add_knowledge,
     add_most_repeats,
     add_program,
+    output_path,
     program_request,
 )
 from service.cli.paths import add_path_commands
@@ -158,7 +159,7 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
     add(
         "-o",
         "--output",
-        type=Path,
+        type=output_path,
         metavar="FILE",
         help="default: FILE.optimised.stpnc; of a folder: another folder",
     )
@@ -181,12 +182,17 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
     add_knowledge(parser, "supplies accepted corrections of k_c")
     add(
         "--feeds-csv",
-        type=Path,
+        type=output_path,
         metavar="CSV",
         help="write the feeds along the paths as a table",
     )
     add("--dry-run", action="store_true", help="write no STEP-NC file")
-    add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
+    add(
+        "--report",
+        type=output_path,
+        metavar="HTML",
+        help="write a self-contained page with plots",
+    )
     add_cluster(parser)
     add_json(parser)
     parser.set_defaults(run=_optimise)
@@ -232,12 +238,13 @@ def _add_convert(commands: Commands) -> None:
     what.add_argument(
         "--profile", help="write the optimisation records in profile optimisation or standard"
     )
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
+    parser.add_argument("-o", "--output", type=output_path, required=True, metavar="FILE")
     parser.set_defaults(run=_convert)
 
 
 def _run(options: argparse.Namespace) -> int:
     """Run a command and turn the project's errors into exit codes."""
+    from service.cli.places import require_own_places
     from service.extras import missing_extras_named
     from service.terminal import OutputFault, drop_out, prepare, tell
     from stepnc_model.errors import StepNcError
@@ -246,6 +253,7 @@ def _run(options: argparse.Namespace) -> int:
     code = OK
     try:
         with missing_extras_named(getattr(options, "command", "optimise")):
+            require_own_places(options)
             code = options.run(options)
         sys.stdout.flush()
     except StepNcError as error:

@@ -12,6 +12,7 @@ from service.cli.options import (
     Commands,
     add_json,
     add_knowledge,
+    output_path,
     text,
 )
 
@@ -64,8 +65,19 @@ def _options(parser: argparse.ArgumentParser) -> None:
         metavar="LOW,HIGH",
         help="override band, %% (default 20,120); the guard may go lower to protect the tool",
     )
-    add("-o", "--output", type=Path, metavar="FILE", help="write the run, .parquet or .csv")
-    add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
+    add(
+        "-o",
+        "--output",
+        type=output_path,
+        metavar="FILE",
+        help="write the run, .parquet or .csv",
+    )
+    add(
+        "--report",
+        type=output_path,
+        metavar="HTML",
+        help="write a self-contained page with plots",
+    )
     add(
         "--recorded",
         metavar="FILE|URL",

@@ -27,7 +27,7 @@ from service.cli.kbe_verbs import (
     withdraw_command,
     write_command,
 )
-from service.cli.options import Commands, add_json, text
+from service.cli.options import Commands, add_json, output_path, text
 
 USAGE = 2
 
@@ -113,7 +113,7 @@ def _add_table(verbs: Commands) -> None:
         "--json", action="store_const", const="json", dest="format", help="--format json"
     )
     parser.add_argument(
-        "-o", "--output", type=Path, metavar="FILE", help="output file (default: stdout)"
+        "-o", "--output", type=output_path, metavar="FILE", help="output file (default: stdout)"
     )
 
 
@@ -209,7 +209,7 @@ def _add_export(verbs: Commands) -> None:
     add = parser.add_argument
     add("what", choices=("outcomes", "corrections", "table"))
     add("--format", choices=tuple(SUFFIXES.values()), help="default: by the file extension")
-    add("-o", "--output", type=Path, required=True, metavar="FILE")
+    add("-o", "--output", type=output_path, required=True, metavar="FILE")
     _add_table_options(parser)
 
 
@@ -222,7 +222,7 @@ def _add_write(verbs: Commands) -> None:
     add = parser.add_argument
     add("file", type=Path, metavar="FILE", help="the program that was run")
     add("--run", type=text, default="", dest="of_run", metavar="ID", help="default: newest run")
-    add("-o", "--output", type=Path, metavar="FILE", help="default: FILE.recorded.stpnc")
+    add("-o", "--output", type=output_path, metavar="FILE", help="default: FILE.recorded.stpnc")
 
 
 def _add_read(verbs: Commands) -> None:
@@ -244,7 +244,7 @@ def _add_copies(verbs: Commands) -> None:
     restore = _verb(
         verbs, "restore", restore_command, "fill an empty knowledge base from a backup"
     )
-    for parser in (back_up, restore):
-        parser.add_argument("file", type=Path, metavar="FILE")
+    for parser, kind in ((back_up, output_path), (restore, Path)):
+        parser.add_argument("file", type=kind, metavar="FILE")
         add_json(parser)
     add_json(_verb(verbs, "check", check_command, "check the integrity of all stored data"))

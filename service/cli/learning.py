@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from service.cli.options import LIMIT_EXCEEDED, OK, Commands, add_json
+from service.cli.options import LIMIT_EXCEEDED, OK, Commands, add_json, output_path
 from stepnc_model.errors import StepNcError
 
 if TYPE_CHECKING:
@@ -32,11 +32,16 @@ def _learn_options(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("dataset", type=Path, metavar="DATASET", help="folder, .parquet or .csv")
     add_options(parser, LearnRequest)
-    add("-o", "--output", type=Path, metavar="FILE", help="write the model, .skops")
-    add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
+    add("-o", "--output", type=output_path, metavar="FILE", help="write the model, .skops")
+    add(
+        "--report",
+        type=output_path,
+        metavar="HTML",
+        help="write a self-contained page with plots",
+    )
     add(
         "--outcome",
-        type=Path,
+        type=output_path,
         metavar="JSON",
         help="with --on-physics: write the factor on k_c for `stepnc kbe add`",
     )
@@ -81,7 +86,7 @@ def _score_options(parser: argparse.ArgumentParser) -> None:
 
 def _learn(options: argparse.Namespace) -> int:
     """Run the command ``stepnc learn``."""
-    from service.files import require_place, write_atomically
+    from service.files import require_places, write_atomically
     from service.learning.learn import learn
     from service.learning.model_file import save_model
     from service.learning.output import learned_json, learned_page, print_learned
@@ -89,9 +94,7 @@ def _learn(options: argparse.Namespace) -> int:
     from service.requests.learning import LearnRequest
     from service.terminal import tell, write_out
 
-    for place in (options.output, options.report, options.outcome):
-        if place is not None:
-            require_place(place, apart_from=options.dataset)
+    require_places([options.output, options.report, options.outcome])
     if (options.outcome is None) is not (options.program is None):
         raise StepNcError("--outcome and --program belong together")
     if options.outcome is not None and not options.is_on_physics:

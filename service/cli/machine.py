@@ -12,6 +12,7 @@ from service.cli.options import (
     Commands,
     add_json,
     add_most_repeats,
+    output_path,
 )
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ def _calibrate_options(parser: argparse.ArgumentParser) -> None:
     add(
         "-o",
         "--output",
-        type=Path,
+        type=output_path,
         metavar="TOML",
         help="write the calibrated machine, or the [[tool_life]] table of a material",
     )
@@ -119,7 +120,13 @@ def _add_tap_test(commands: Commands) -> None:
     add("--modes", type=int, metavar="N", help="number of modes (default: by peaks)")
     add("--source", default="", help="who measured, with which holder and overhang")
     add("--machine", default="", help="one of `stepnc machines`, or your own file")
-    add("-o", "--output", type=Path, metavar="TOML", help="write the machine with its modes")
+    add(
+        "-o",
+        "--output",
+        type=output_path,
+        metavar="TOML",
+        help="write the machine with its modes",
+    )
     add_json(parser)
     parser.set_defaults(run=_tap_test)
 
@@ -141,12 +148,23 @@ def _simulate_options(parser: argparse.ArgumentParser) -> None:
     add_options(parser, SimulationRequest, usual={"rate_hz": USUAL_RATE})
     add_code(parser)
     add("--carbon-g-kwh", type=float, metavar="G", help="grams of CO2 per kWh (default 480)")
-    add("-o", "--output", type=Path, metavar="FILE", help="write the run, .parquet or .csv")
-    add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
-    add("--keep-stock", type=Path, metavar="NPZ",
+    add(
+        "-o",
+        "--output",
+        type=output_path,
+        metavar="FILE",
+        help="write the run, .parquet or .csv",
+    )
+    add(
+        "--report",
+        type=output_path,
+        metavar="HTML",
+        help="write a self-contained page with plots",
+    )
+    add("--keep-stock", type=output_path, metavar="NPZ",
         help="write the remaining stock, which --stock of a later run can take",
     )  # fmt: skip
-    add("--mtconnect", type=Path, metavar="XML",
+    add("--mtconnect", type=output_path, metavar="XML",
         help="write the run as an MTConnect document; in a folder its name is MACHINE_PART.xml",
     )  # fmt: skip
     add("--schema", default="2.7", help="schema version of it: 1.3, 2.0 or 2.7 (default)")

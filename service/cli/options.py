@@ -37,9 +37,26 @@ class CommandParser(argparse.ArgumentParser):
             fill(self)
 
     def parse_known_args(self, *args: Any, **words: Any) -> Any:
-        """Parse known arguments after adding the options."""
+        """Parse known arguments after adding the options; note which of them are outputs."""
         self.complete()
-        return super().parse_known_args(*args, **words)
+        namespace, rest = super().parse_known_args(*args, **words)
+        if names := output_names(self):
+            namespace.output_names = names
+        return namespace, rest
+
+
+def output_path(word: str) -> Path:
+    """Type of an argument that names a file or folder to be written.
+
+    The places of a command's outputs are told from those of its inputs by this type, and
+    compared before it starts (:mod:`service.cli.places`).
+    """
+    return Path(word)
+
+
+def output_names(parser: argparse.ArgumentParser) -> tuple[str, ...]:
+    """Names of the arguments of a command that are outputs."""
+    return tuple(each.dest for each in parser._actions if each.type is output_path)
 
 
 def add_program(parser: argparse.ArgumentParser) -> None:

@@ -10,6 +10,7 @@ from service.cli.options import (
     Commands,
     add_json,
     add_program,
+    output_path,
     program_request,
 )
 
@@ -32,7 +33,9 @@ def _add_toolpath(commands: Commands) -> None:
 def _toolpath_options(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     _add_keep_going(parser)
-    parser.add_argument("--plot", type=Path, metavar="PNG", help="draw paths, coloured by type")
+    parser.add_argument(
+        "--plot", type=output_path, metavar="PNG", help="draw paths, coloured by type"
+    )
     add_json(parser)
     parser.set_defaults(run=_toolpath)
 
@@ -49,12 +52,17 @@ def _post_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o",
         "--output",
-        type=Path,
+        type=output_path,
         metavar="FILE",
         help="default: next to the program, with the control's file extension",
     )
     parser.add_argument(
         "--cycles", action="store_true", help="use the control's own drilling cycles"
+    )
+    parser.add_argument(
+        "--exact-path",
+        action="store_true",
+        help="exact stops at corners, instead of rounding them within the path tolerance",
     )
     _add_keep_going(parser)
     parser.set_defaults(run=_post)
@@ -113,6 +121,7 @@ def _post(options: argparse.Namespace) -> int:
             program=program_request(options),
             output=options.output,
             cycles=options.cycles,
+            exact_path=options.exact_path,
             keep_going=options.keep_going,
         ),
         tell=tell,

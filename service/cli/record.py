@@ -1,9 +1,8 @@
 """``stepnc record``: a machine's MTConnect data as a file."""
 
 import argparse
-from pathlib import Path
 
-from service.cli.options import OK, Commands
+from service.cli.options import OK, Commands, output_path
 
 
 def add_record_command(commands: Commands) -> None:
@@ -20,7 +19,14 @@ def _record_options(parser: argparse.ArgumentParser) -> None:
 
     add = parser.add_argument
     add("url", metavar="URL", help="the agent, http://HOST:PORT or http://HOST:PORT/DEVICE")
-    add("-o", "--output", type=Path, required=True, metavar="FILE", help=".parquet or .csv")
+    add(
+        "-o",
+        "--output",
+        type=output_path,
+        required=True,
+        metavar="FILE",
+        help=".parquet or .csv",
+    )
     add_options(parser, RecordingRequest)
     parser.set_defaults(run=_record)
 

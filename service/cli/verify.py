@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from service.cli.options import LIMIT_EXCEEDED, OK, Commands, add_json
+from service.cli.options import LIMIT_EXCEEDED, OK, Commands, add_json, output_path
 
 
 def add_verify_command(commands: Commands) -> None:
@@ -50,18 +50,23 @@ def _verify_options(parser: argparse.ArgumentParser) -> None:
     add(
         "-o",
         "--output",
-        type=Path,
+        type=output_path,
         metavar="FILE",
         help="write the deviations of places on the surface, .parquet or .csv",
     )
-    add("--report", type=Path, metavar="HTML", help="write a self-contained page with pictures")
+    add(
+        "--report",
+        type=output_path,
+        metavar="HTML",
+        help="write a self-contained page with pictures",
+    )
     add_json(parser)
     parser.set_defaults(run=_verify)
 
 
 def _verify(options: argparse.Namespace) -> int:
     """``stepnc verify``."""
-    from service.files import require_place, write_atomically
+    from service.files import require_places, write_atomically
     from service.part_file import part_place
     from service.requests.fields import from_options
     from service.requests.verification import VerificationRequest
@@ -71,11 +76,7 @@ def _verify(options: argparse.Namespace) -> int:
 
     request = from_options(VerificationRequest, options)
     required, solid = part_place(options.required) if options.required else (None, "")
-    outputs = [each for each in (options.output, options.report) if each is not None]
-    for each in outputs:
-        require_place(each, apart_from=Path(options.log))
-        if options.program is not None:
-            require_place(each, apart_from=options.program)
+    require_places([options.output, options.report])
     if options.output is not None:
         require_suffix(options.output)
     found = verify(

@@ -228,10 +228,14 @@ class MachineMonitor:
                     self._follow()
                 except StepNcError as error:
                     self._fail(str(error))
-                except (ArithmeticError, AttributeError, LookupError, ValueError) as error:
+                except (ArithmeticError, ValueError) as error:
                     # A document of another shape than any known; the next may be better.
                     LOG.exception("monitoring failed", machine=self.source.name)
                     self._fail(f"the answer cannot be read: {error}")
+                except Exception:
+                    # A mistake of this program; the other machines are monitored on.
+                    LOG.exception("monitoring failed", machine=self.source.name)
+                    self._fail("internal error, see the log")
                 self._pause(PAUSES[min(failures, len(PAUSES) - 1)])
                 failures += 1
 

@@ -22,7 +22,7 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.plausibility import refusal
 from stepnc_model.post.blocks import Cycles, MachineType
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.dialects import read, write
+from stepnc_model.post.dialects import read, with_exact_stops, write
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program, ProgramLine, ResolvedWorkingstep, Stock
 from stepnc_model.technology import programmed
@@ -85,6 +85,8 @@ class PostRequest:
     """What is given about the program beyond its file."""
     output: Path | None = None
     cycles: bool = False
+    exact_path: bool = False
+    """Whether the control stops at corners instead of rounding them."""
     keep_going: bool = False
 
 
@@ -171,7 +173,8 @@ def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
     paths = with_remarks(paths_of(program, keep_going=request.keep_going, tell=tell), tell)
     paths = with_feeds(paths, keep_going=request.keep_going, tell=tell)
     cycles = Cycles.OWN if request.cycles else Cycles.EXPANDED
-    count = write_lines(output, nc_lines(paths, control, cycles))
+    lines = nc_lines(paths, control, cycles, is_exact=request.exact_path)
+    count = write_lines(output, lines)
     tell(f"written: {output} ({count} lines)")
     return paths
 
@@ -245,9 +248,23 @@ def _left_out(ref: Ref[Entity], name: str) -> Function:
     return Function(ref=ref, keyword=LEFT_OUT, id=name)
 
 
-def nc_lines(paths: Paths, control: Dialect, cycles: Cycles = Cycles.EXPANDED) -> Iterator[str]:
-    """Generate NC code of tool paths, line by line."""
+def nc_lines(
+    paths: Paths,
+    control: Dialect,
+    cycles: Cycles = Cycles.EXPANDED,
+    *,
+    is_exact: bool = False,
+) -> Iterator[str]:
+    """Generate NC code of tool paths, line by line.
+
+    Raises
+    ------
+    PostError
+        If exact stops are asked for, and are not written for the control.
+    """
     blocks = blocks_of(paths.program, paths.items, name=Path(paths.program.name).stem)
+    if is_exact:
+        blocks = with_exact_stops(blocks, control)
     return write(blocks, control, cycles=cycles)
 
 

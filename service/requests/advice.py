@@ -83,6 +83,15 @@ class AdviceRequest(ProgramRequest):
             name="control", flag="--nc", metavar="CONTROL", examples=("linuxcnc",),
         ),
     ] = None  # fmt: skip
+    is_exact_path: Annotated[
+        bool,
+        About(
+            "NC code with exact stops at corners, instead of rounding them within the path "
+            "tolerance",
+            name="exact_path",
+            flag="--exact-path",
+        ),
+    ] = False
     has_pareto: Annotated[
         bool, About("also compute the front of time, roughness and energy", flag="--pareto")
     ] = False

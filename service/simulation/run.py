@@ -7,7 +7,7 @@ from pathlib import Path
 
 from service.buckets import BucketedRun
 from service.chosen import require_axes
-from service.files import require_place
+from service.files import require_places
 from service.numbers import numbers_in
 from service.paths.remarks import tell_remarks
 from service.progress import Ticker, bar
@@ -264,13 +264,9 @@ def _require_files(files: RunFiles, stock: RawPart) -> None:
     if files.kept is not None and files.kept.suffix.lower() != KEPT_SUFFIX:
         raise WriteError(f"must end with {KEPT_SUFFIX}", path=str(files.kept))
     outputs = [files.output, files.report, files.kept]
-    for row, place in enumerate(outputs):
-        if place is None:
-            continue
-        for other in (*inputs, *outputs[:row]):
-            if other is not None:
-                require_place(place, apart_from=other)
-        if place.exists() and not place.is_file():
+    require_places(outputs, apart_from=inputs)
+    for place in outputs:
+        if place is not None and place.exists() and not place.is_file():
             raise WriteError("is not a regular file", path=str(place))
 
 

@@ -37,6 +37,12 @@ UNITS = (*MM_PER_N, ACCELERANCE)
 MM_PER_M = 1e3
 HIGHEST = 100_000.0
 """Highest plausible frequency, Hz; no tap excites more."""
+LOWEST = 1e-3
+"""Lowest frequency above 0 that is read, Hz; a line below it tells nothing of a mode."""
+MOST_RECEPTANCE = 1e6
+"""Greatest plausible receptance, mm/N."""
+LEAST_RECEPTANCE = 1e-12
+"""Least plausible receptance at the highest peak, mm/N; no machine is that stiff."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -53,7 +59,7 @@ class FrequencyResponse:
 def read_response(path: Path) -> FrequencyResponse:
     """Read and check a frequency response from a CSV file.
 
-    A first row at 0 Hz is skipped: it contains no information on modes.
+    Rows below 0.001 Hz are skipped: they contain no information on modes.
 
     Raises
     ------
@@ -72,15 +78,21 @@ def read_response(path: Path) -> FrequencyResponse:
     unit = _unit(columns, path)
     frequency = columns[FREQUENCY]
     _check_frequency(frequency, lines=lines, path=path)
-    rows = frequency > 0.0
+    rows = frequency >= LOWEST
     frequency = frequency[rows]
     measured = columns[f"real_{unit}"][rows] + 1j * columns[f"imag_{unit}"][rows]
-    if not np.abs(measured).any():
+    if not len(frequency):
+        message = f"no frequency of at least {LOWEST:g} Hz"
+        raise CalibrationError(message, path=str(path), column=FREQUENCY)
+    if not measured.any():
         raise CalibrationError("all values are zero", path=str(path), column=f"real_{unit}")
     factor = MM_PER_N.get(unit, 1.0) * np.ones(len(frequency))
     if unit == ACCELERANCE:
         factor = -MM_PER_M / (2.0 * np.pi * frequency) ** 2
-    receptance: Complex = (factor * measured).astype(np.complex128)
+    with np.errstate(over="ignore", invalid="ignore"):
+        receptance: Complex = (factor * measured).astype(np.complex128)
+        size = np.abs(receptance)
+    _check_receptance(size, lines=lines[rows], path=path, column=f"real_{unit}")
     return FrequencyResponse(name=path.stem, frequency=frequency, receptance=receptance)
 
 
@@ -130,6 +142,18 @@ def _check_frequency(frequency: Floats, *, lines: Ints, path: Path) -> None:
         message = f"{frequency[row]:g} Hz, expected 0 to {HIGHEST:g} Hz"
         line = int(lines[row])
         raise CalibrationError(message, path=str(path), line=line, column=FREQUENCY)
+
+
+def _check_receptance(size: Floats, *, lines: Ints, path: Path, column: str) -> None:
+    """Check that receptances are those of a machine, so that their squares are numbers."""
+    row = int(np.argmax(size))
+    # A value that overflowed is not a number, and the greatest to argmax.
+    if not LEAST_RECEPTANCE <= size[row] <= MOST_RECEPTANCE:
+        message = (
+            f"a greatest receptance of {size[row]:.3g} mm/N: expected {LEAST_RECEPTANCE:g} to "
+            f"{MOST_RECEPTANCE:g} mm/N; check the unit"
+        )
+        raise CalibrationError(message, path=str(path), line=int(lines[row]), column=column)
 
 
 LEAST_PEAK = 0.1

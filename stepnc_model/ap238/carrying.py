@@ -16,6 +16,7 @@ from importlib.resources import files
 
 from stepnc_model.ap238.instances import references
 from stepnc_model.errors import Finding, Part21Error, Severity
+from stepnc_model.part21.page_quotes import masked
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref, Value
 from stepnc_model.part21.writer import format_value, line_start, spliced
@@ -153,11 +154,12 @@ def _below(file: Part21File, refs: list[Ref[object]]) -> list[int]:
 
 def _renumbered(text: bytes, numbers: dict[int, int]) -> bytes:
     """Text of an instance or a value with other numbers."""
-
-    def number(match: re.Match[bytes]) -> bytes:
-        return match[0] if match[1] is None else b"#%d" % numbers[int(match[1])]
-
-    return _REFERENCE.sub(number, text)
+    pieces, at = [], 0
+    for match in _REFERENCE.finditer(masked(text)):
+        if match[1] is not None:
+            pieces += (text[at : match.start()], b"#%d" % numbers[int(match[1])])
+            at = match.end()
+    return b"".join((*pieces, text[at:]))
 
 
 def _left_out(file: Part21File, root: int, reason: str) -> Finding:

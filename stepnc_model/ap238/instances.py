@@ -55,15 +55,25 @@ class Instances:
         return id in self.file
 
     def parts(self, id: int) -> tuple[Part, ...]:
-        """Entities of an instance with their parameters; none if it is malformed."""
+        """Entities of an instance with their parameters.
+
+        Raises
+        ------
+        Part21Error, SchemaError
+            If the instance is malformed or does not exist: the program would silently lack it.
+        """
         if id not in self._parts:
             if len(self._parts) >= MOST_KEPT:
                 self._parts.clear()
-            try:
-                self._parts[id] = self.file.parts(id)
-            except Part21Error:  # a finding of the file
-                self._parts[id] = ()
+            self._parts[id] = self.file.parts(id)
         return self._parts[id]
+
+    def _readable(self, id: int) -> tuple[Part, ...]:
+        """Entities of an instance that may have nothing to do with the program."""
+        try:
+            return self.parts(id)
+        except Part21Error:  # a finding of the file
+            return ()
 
     def is_a(self, id: int, name: str) -> bool:
         """Whether an instance is of an entity or of a subtype."""
@@ -72,7 +82,7 @@ class Instances:
         keyword = self.file.keyword(id)
         if keyword:
             return is_a(keyword, name)
-        return any(is_a(part, name) for part, _ in self.parts(id))
+        return any(is_a(part, name) for part, _ in self._readable(id))
 
     def slots(self, id: int, attribute: str) -> tuple[Slot, ...]:
         """Positions of an attribute; several where supertypes share a name."""
@@ -152,7 +162,7 @@ class Instances:
         if self._complex is None:
             found: dict[str, list[int]] = {}
             for id in self.file.ids_of(""):
-                for keyword, _ in self.parts(id):
+                for keyword, _ in self._readable(id):
                     found.setdefault(keyword, []).append(id)
             self._complex = found
         return self._complex

@@ -7,6 +7,7 @@ References
 .. [1] ISO 10303-21:2016, 8.2 (file_description, file_name, file_schema).
 """
 
+import re
 from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -14,9 +15,10 @@ from functools import cached_property
 from heapq import merge
 from typing import Self
 
-from stepnc_model.errors import Finding, FindingList, Severity
+from stepnc_model.errors import Finding, FindingList, SchemaError, Severity
 from stepnc_model.part21.grammar import closing, skip_blank
 from stepnc_model.part21.index import Index
+from stepnc_model.part21.page_quotes import masked
 from stepnc_model.part21.places import Lines, SyntaxSlip, error_at
 from stepnc_model.part21.record import InstanceRecord, Part, parse_record, part_spans
 from stepnc_model.part21.structure import FileStructure, Statement, read_structure
@@ -121,7 +123,7 @@ class Part21File:
             comment, define an id twice, or exceed a limit of the reader.
         """
         plain = unpacked(data)
-        return cls(data=plain, name=name, structure=read_structure(plain))
+        return cls(data=plain, name=name, structure=read_structure(masked(plain)))
 
     def __contains__(self, id: int) -> bool:
         return id in self._index.positions
@@ -139,7 +141,7 @@ class Part21File:
 
     def keyword(self, id: int) -> str:
         """Entity name in upper case; empty for a complex instance."""
-        return self._index.keywords[self._index.codes[self._index.positions[id]]]
+        return self._index.keywords[self._index.codes[self._position(id)]]
 
     def parameters(self, id: int) -> tuple[Value, ...]:
         """Parameters of a simple instance as Python values.
@@ -199,7 +201,7 @@ class Part21File:
 
     def span(self, id: int) -> tuple[int, int]:
         """Byte span of an instance's text, ``#id=...;``."""
-        position = self._index.positions[id]
+        position = self._position(id)
         return self._index.starts[position], self._index.ends[position]
 
     def line(self, id: int) -> int:
@@ -225,11 +227,16 @@ class Part21File:
         """
         for statement in self.structure.statements:
             if statement.keyword == "FILE_SCHEMA":
-                inner = skip_blank(self.data, statement.bracket + 1, slips=[])
+                inner = skip_blank(self.scanned, statement.bracket + 1, slips=[])
                 if self.data.startswith(b"(", inner):
-                    return inner + 1, closing(self.data, inner) - 1
+                    return inner + 1, closing(self.scanned, inner) - 1
                 return statement.bracket + 1, statement.end - 1
         raise error_at(self.data, 0, "FILE_SCHEMA is missing")
+
+    @cached_property
+    def scanned(self) -> bytes:
+        r"""Bytes to search for strings: those of the file, with ``\S\'`` masked."""
+        return masked(self.data)
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
@@ -261,7 +268,7 @@ class Part21File:
 
     @cached_property
     def _header(self) -> HeaderReading:
-        return read_header(self.data, self.structure.statements)
+        return read_header(self.scanned, self.structure.statements)
 
     @cached_property
     def _ids_by_keyword(self) -> "dict[str, array[int]]":
@@ -272,6 +279,32 @@ class Part21File:
             columns[code].append(id)
         return found
 
+    def _position(self, id: int) -> int:
+        """Position of an instance in the index.
+
+        Raises
+        ------
+        SchemaError
+            If the file has no such instance: a fault of the file that refers to it.
+        """
+        try:
+            return self._index.positions[id]
+        except KeyError:
+            raise self._missing(int(id)) from None
+
+    def _missing(self, id: int) -> SchemaError:
+        """Error about an instance that does not exist, with the first that refers to it."""
+        pattern = re.compile(rb"#0*%d(?![0-9])(?!\s*=)" % id)
+        for other in self._index.ids:
+            start, end = self.span(other)
+            if (found := pattern.search(self.data, start, end)) is not None:
+                return SchemaError(
+                    f"#{id} does not exist in this file",
+                    entity=self.label(other),
+                    line=self._lines.line(found.start()),
+                )
+        return SchemaError("does not exist in this file", entity=f"#{id}")
+
     def _body(self, id: int) -> int:
         """Offset behind the ``=`` of an instance."""
         start, end = self.span(id)
@@ -279,9 +312,8 @@ class Part21File:
 
     def _text(self, id: int) -> str:
         """Text of an instance from ``#`` to ``;``, one character per byte."""
-        index = self._index
-        position = index.positions[id]
-        return self.data[index.starts[position] : index.ends[position]].decode("latin-1")
+        start, end = self.span(id)
+        return self.scanned[start:end].decode("latin-1")
 
     def _read(self, id: int) -> InstanceRecord:
         return parse_record(self._text(id).partition("=")[2])

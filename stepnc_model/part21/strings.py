@@ -20,7 +20,8 @@ _DIRECTIVE = re.compile(
     r"|\\X4\\(?P<four>(?>(?:[0-9A-Fa-f]{8})+))\\X0\\"
     r"|\\X\\(?P<one>[0-9A-Fa-f]{2})"
     r"|\\P(?P<page>[A-I])\\"
-    r"|\\S\\(?P<high>[\x20-\x7e])"
+    r"|\\S\\(?P<section>'')(?!')"
+    r"|\\S\\(?P<high>[\x20-\x7e\xa7])"
     r"|\\(?P<print>[NF])\\"
     r"|[\x80-\xff]++"
 )
@@ -55,6 +56,9 @@ def decode(raw: str) -> str:
         if match["page"]:
             page = f"iso8859-{ord(match['page']) - ord('A') + 1}"
             return ""
+        if match["section"]:
+            # Some writers double the apostrophe here, too.
+            return _high_half("'", page=page)
         if match["high"]:
             return _high_half(match["high"], page=page) or match[0]
         return _meaning(match)

@@ -21,7 +21,9 @@ COMMENT = r"(?>/\*(?s:.*?)\*/)"
 MAX_ID_DIGITS = 18
 """Greatest number of digits of an instance name."""
 
-_MAX_DIGITS = 4000
+_MAX_DIGITS = 308
+"""Greatest number of digits of an integer; each then has a value as a real, too."""
+
 TOKEN = re.compile(
     rf"(?P<blank>\s++|{COMMENT}|\\[NF]\\)"
     rf"|(?P<keyword>{KEYWORD})(?=(?>(?:\s++|{COMMENT}){{0,1000}})\()"

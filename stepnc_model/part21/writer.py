@@ -241,11 +241,11 @@ class Edits:
         KeyError, IndexError
             If there is no such instance or parameter.
         """
+        if id not in self:
+            raise KeyError(id)
         if self.file.keyword(id):
             self.replace_parameter(id, position, value)
             return
-        if id in self._removed:
-            raise KeyError(id)
         self._in_parts[id, part, position] = format_value(value)
 
     def append_parameter(self, id: int, value: Value) -> None:
@@ -361,7 +361,7 @@ class Edits:
         """Current parameters of an instance, as a list to be modified in place."""
         if id in self._added:
             return self._added[id].parameters
-        if id in self._removed:
+        if id not in self:
             raise KeyError(id)
         if id not in self._changed:
             self._changed[id] = list(self.file.parameter_spans(id))

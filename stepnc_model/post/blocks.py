@@ -95,6 +95,8 @@ class Comment:
     text: str
     workingstep: str = ""
     """Name of the workingstep that begins here."""
+    tolerance: float | None = None
+    """Path tolerance of that workingstep, mm; 0: exact stops. None: whatever is in force."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,11 +1,12 @@
 """Common interface for writing and reading the NC code of all supported controls."""
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from typing import Protocol
 
 from stepnc_model.errors import PostError
 from stepnc_model.post import canonical, heidenhain
-from stepnc_model.post.blocks import Block, Cycles, MachineType
+from stepnc_model.post.blocks import Block, Comment, Cycles, MachineType
 from stepnc_model.post.canonical import Canonical, commands
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.fanuc import HAAS, Fanuc, FanucReader
@@ -61,6 +62,28 @@ PLACES: dict[Dialect, int] = {
 def coordinate_increment(control: Dialect) -> float:
     """Smallest step of a written coordinate, mm."""
     return float(10.0 ** -PLACES[control])
+
+
+WITHOUT_EXACT_STOPS = frozenset({Dialect.CANONICAL, Dialect.HEIDENHAIN})
+"""Controls for which exact stops are not written; Klartext has no modal word for them."""
+
+
+def with_exact_stops(blocks: Iterable[Block], control: Dialect) -> Iterator[Block]:
+    """Blocks whose workingsteps run with exact stops instead of a path tolerance.
+
+    Raises
+    ------
+    PostError
+        If exact stops are not written for the control.
+    """
+    if control in WITHOUT_EXACT_STOPS:
+        raise PostError(f"exact stops are not written for {control.value}: omit --exact-path")
+    return (
+        replace(block, tolerance=0.0)
+        if isinstance(block, Comment) and block.workingstep
+        else block
+        for block in blocks
+    )
 
 
 def write(

@@ -35,6 +35,7 @@ from stepnc_model.post.iso_reader import IsoReader
 from stepnc_model.post.words import (
     CANNED,
     COMMON,
+    EXACT_OR_CUTTING,
     LENGTHS,
     PER_TIME,
     GCode,
@@ -100,6 +101,8 @@ FANUC = DialectTraits(
 class Fanuc(IsoCode):
     """Writer of NC code for Fanuc and Haas controls."""
 
+    exact_codes: ClassVar[tuple[str, ...]] = ("G61", "G64")
+
     def __init__(self, manner: DialectTraits = FANUC) -> None:
         super().__init__()
         self.manner = manner
@@ -122,6 +125,7 @@ class Fanuc(IsoCode):
 
     def end(self, _: ProgramEnd) -> Iterator[str]:
         """Write the program end and the percent sign."""
+        yield from self.inexact()
         yield from self.line("M30")
         yield "%"
 
@@ -196,14 +200,18 @@ class Fanuc(IsoCode):
         yield from self.line("G80")
 
 
-MILL: dict[str, GCode] = COMMON | PER_TIME | LENGTHS | CANNED
-LATHE: dict[str, GCode] = COMMON | {
-    "G21": GCodeAction.NOTHING,
-    "G50": GCodeAction.SPEED_LIMIT,
-    "G80": GCodeAction.CANCEL,
-    "G98": RateMode.PER_MINUTE,
-    "G99": RateMode.PER_REVOLUTION,
-}
+MILL: dict[str, GCode] = COMMON | EXACT_OR_CUTTING | PER_TIME | LENGTHS | CANNED
+LATHE: dict[str, GCode] = (
+    COMMON
+    | EXACT_OR_CUTTING
+    | {
+        "G21": GCodeAction.NOTHING,
+        "G50": GCodeAction.SPEED_LIMIT,
+        "G80": GCodeAction.CANCEL,
+        "G98": RateMode.PER_MINUTE,
+        "G99": RateMode.PER_REVOLUTION,
+    }
+)
 TAPS = {
     SpindleDirection.CLOCKWISE: GCodeAction.TAP,
     SpindleDirection.COUNTERCLOCKWISE: GCodeAction.LEFT_TAP,

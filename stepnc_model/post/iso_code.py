@@ -69,6 +69,8 @@ class IsoCode(ABC):
         CycleKind.BORE: "G85",
         CycleKind.BORE_STOP: "G86",
     }
+    exact_codes: ClassVar[tuple[str, ...]] = ()
+    """Codes of exact stops and of the control's own rounding of corners; empty: none."""
     dwelling: ClassVar[frozenset[CycleKind]] = frozenset({CycleKind.DWELL})
     """Cycles that dwell at the bottom."""
 
@@ -184,8 +186,15 @@ class IsoCode(ABC):
             yield " ".join(kept)
 
     def comment(self, block: Comment) -> Iterator[str]:
-        """Write a comment on a separate line."""
+        """Write a comment on a separate line, and exact stops of a workingstep."""
         yield self.text(block.text)
+        if self.exact_codes and block.tolerance == 0.0:
+            yield from self.line(self.modal.word("path", self.exact_codes[0]))
+
+    def inexact(self) -> Iterator[str]:
+        """End exact stops: the next program may rely on the control's own mode."""
+        if self.exact_codes and not self.modal.word("path", self.exact_codes[0]):
+            yield from self.line(self.exact_codes[1])
 
     def message(self, block: Message) -> Iterator[str]:
         """Write a message as a comment; not all controls show text without stopping."""

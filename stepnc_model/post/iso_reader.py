@@ -75,6 +75,9 @@ class IsoReader(ABC):
     head: ClassVar[re.Pattern[str]] = re.compile("%")
     """Pattern of lines without NC words, such as the percent sign."""
 
+    path_letters: ClassVar[str] = ""
+    """Letters of the words that belong to a path mode."""
+
     def __init__(self, machine: MachineType) -> None:
         self.machine = machine
         self.at: Point = (0.0, 0.0, 0.0)
@@ -159,6 +162,8 @@ class IsoReader(ABC):
         words.take("N")
         acts = [self._act(code) for code in words.codes]
         self.settle(acts, words)
+        for letter in self.path_letters if GCodeAction.PATH_MODE in acts else "":
+            words.take(letter)
         yield from self.tool(words)
         yield from self._spindle(words, changed=GCodeAction.SURFACE_SPEED in acts)
         yield from self._switches(words)

@@ -28,6 +28,7 @@ from stepnc_model.post.iso_reader import IsoReader
 from stepnc_model.post.words import (
     CANNED,
     COMMON,
+    EXACT_OR_CUTTING,
     LENGTHS,
     PER_TIME,
     GCode,
@@ -96,6 +97,18 @@ class LinuxCnc(IsoCode):
         is_active = plain.upper().replace(" ", "").startswith(ACTIVE)
         return bracketed(f"- {plain}" if is_active else plain, LONGEST)
 
+    def comment(self, block: Comment) -> Iterator[str]:
+        """Write a comment, and the path mode of the workingstep that begins with it.
+
+        Without one the program would run in the mode of the program before it: M2 keeps it, and
+        after a plain G64 a corner is cut by millimetres.
+        """
+        yield from super().comment(block)
+        if block.tolerance is not None:
+            tolerance = self.number(block.tolerance, self.places)
+            mode = f"G64 P{tolerance}" if block.tolerance else "G61"
+            yield from self.line(self.modal.word("path", mode))
+
     def message(self, block: Message) -> Iterator[str]:
         """Write a message to the operator's screen."""
         yield bracketed(f"MSG,{block.text}", LONGEST)
@@ -130,8 +143,12 @@ class LinuxCnc(IsoCode):
 class LinuxCncReader(IsoReader):
     """Reader of LinuxCNC NC code."""
 
+    path_letters: ClassVar[str] = "PQ"
+    """Tolerances of G64: of corners, and of lines that are joined."""
+
     codes: Mapping[MachineType, Mapping[str, GCode]] = {
         machine: COMMON
+        | EXACT_OR_CUTTING
         | PER_TIME
         | LENGTHS
         | CANNED
@@ -139,6 +156,7 @@ class LinuxCncReader(IsoReader):
             "G7": GCodeAction.DIAMETER,
             "G33": GCodeAction.THREAD,
             "G33.1": GCodeAction.TAP,
+            "G61.1": GCodeAction.PATH_MODE,
             "G91.1": GCodeAction.NOTHING,
         }
         for machine in MachineType

@@ -42,6 +42,7 @@ from stepnc_model.post.blocks import (
     ToolChange,
 )
 from stepnc_model.post.modal_state import ModalState, conditions, constant_speed, coolant_of
+from stepnc_model.post.path_tolerance import path_tolerance
 from stepnc_model.program import Program
 from stepnc_model.tool import tool_of
 from stepnc_model.toolpath.path import (
@@ -188,6 +189,7 @@ class _Sequence:
         self.coolant = Coolant()
         self._known: dict[Feed, ModalState] = {}
         self._notes: set[str] = set()
+        self._steps = {int(step.ref): step for step in program.workingsteps}
 
     def blocks(self, name: str) -> Iterator[Block]:
         """Neutral blocks of the whole program."""
@@ -228,7 +230,11 @@ class _Sequence:
 
     def _path(self, path: ToolPath) -> Iterator[Block]:
         """Blocks of one workingstep."""
-        yield Comment(text=path.id, workingstep=path.id)
+        yield Comment(
+            text=path.id,
+            workingstep=path.id,
+            tolerance=path_tolerance(self.program, self._steps.get(int(path.workingstep))),
+        )
         beside = max(abs(point[1]) for point in (path.start, *(m.end for m in path.moves)))
         if self.machine is MachineType.LATHE and beside > ON_LATHE:
             raise PostError(f"y = {beside:g} mm in a turning program: a lathe has no y axis")

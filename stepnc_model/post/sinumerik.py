@@ -54,6 +54,7 @@ PECKING = frozenset({CycleKind.PECK, CycleKind.CHIP_BREAK})
 class Sinumerik(IsoCode):
     """Writer of NC code for the Sinumerik 840D."""
 
+    exact_codes: ClassVar[tuple[str, ...]] = ("G60", "G64")
     speed_places: ClassVar[int] = 3
     last_number: ClassVar[int] = 99_999_999
     cycle_codes: ClassVar[Mapping[CycleKind, str]] = {
@@ -94,7 +95,8 @@ class Sinumerik(IsoCode):
 
     def end(self, _: ProgramEnd) -> Iterator[str]:
         """Write the program end."""
-        return self.line("M30")
+        yield from self.inexact()
+        yield from self.line("M30")
 
     def text(self, text: str) -> str:
         """Comment to the end of the line."""
@@ -205,6 +207,8 @@ CODES: dict[str, GCode] = (
     | PER_TIME
     | {
         "G33": GCodeAction.THREAD,
+        "G60": GCodeAction.PATH_MODE,
+        "G64": GCodeAction.PATH_MODE,
         "G90": GCodeAction.NOTHING,
         "G331": GCodeAction.TAP,
         "G332": GCodeAction.TAP_OUT,

@@ -191,6 +191,8 @@ class GCodeAction(Enum):
     CANCEL = auto()
     TO_RETRACT = auto()
     TO_START = auto()
+    PATH_MODE = auto()
+    """Exact stops, or how far corners may be rounded; the path is the same."""
 
 
 GCode = GCodeAction | ArcPlane | RateMode | CycleKind
@@ -210,6 +212,10 @@ COMMON: dict[str, GCode] = {
     "G54": GCodeAction.NOTHING,
     "G96": GCodeAction.SURFACE_SPEED,
     "G97": GCodeAction.SPINDLE_SPEED,
+}
+EXACT_OR_CUTTING: dict[str, GCode] = {
+    "G61": GCodeAction.PATH_MODE,
+    "G64": GCodeAction.PATH_MODE,
 }
 PER_TIME: dict[str, GCode] = {
     "G94": RateMode.PER_MINUTE,

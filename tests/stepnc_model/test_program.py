@@ -1,6 +1,7 @@
 """A program is walked in order; what makes a workingstep unusable is a fault with its place."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -321,3 +322,32 @@ def test_an_executable_that_no_entity_describes_is_kept_and_shown() -> None:
     assert [each.keyword for each in program.executables][-1] == "COFFEE_BREAK"
     assert len(program.workingsteps) == 1
     assert any("COFFEE_BREAK" in finding.message for finding in program.findings())
+
+
+class TestMistakesOfTheCode:
+    """Errors that no value of a file can cause are not told as faults of the file."""
+
+    def program(self) -> Program:
+        part = Path(__file__).parents[2] / "examples" / "parts" / "paper002.stpnc"
+        return Program.load(part)
+
+    def test_a_mistyped_attribute_of_an_own_object_passes(self) -> None:
+        program = self.program()
+        step: Any = program.workingsteps[0]
+        for wrong in (lambda: step.operaton, lambda: program.get(step.ref).its_featur):  # type: ignore[attr-defined]
+            with pytest.raises(AttributeError), program.using(step.ref):
+                wrong()
+
+    def test_a_wrong_call_passes_where_the_file_has_no_fault(self) -> None:
+        program = self.program()
+        step: Any = program.workingsteps[0]
+        with pytest.raises(TypeError), program.using(step.technology_ref):
+            len(3)  # type: ignore[arg-type]
+
+    def test_a_value_that_is_not_given_is_a_fault_of_the_file(self) -> None:
+        program = self.program()
+        missing: Any = None
+        ref = program.workingsteps[0].ref
+        for use in (lambda: missing.x, lambda: missing * 2.0, lambda: 1.0 / 0.0):
+            with pytest.raises(SchemaError, match="line"), program.using(ref):
+                use()

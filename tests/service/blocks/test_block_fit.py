@@ -132,7 +132,7 @@ def failed(folder: Path, text: str, **rest: object) -> BlockFitResult:
 @every_case(
     ("text", "rest", "message"),
     [
-        ("spacing_in,feed_in_min\n0.1,0\n", {}, "row 2: feed_in_min 0: it must be above 0"),
+        ("spacing_in,feed_in_min\n0.1,0\n", {}, "row 2: feed_in_min 0: expected 1e-06"),
         ("spacing_in,feed_in_min\n0.1,\n", {}, "feed_in_min empty"),
         ("spacing_in,feed\n0.1,1\n", {}, "no column feed_in_min"),
         ("spacing_in,feed_in_min\n0.1,1\n", {}, "1 different spacings"),

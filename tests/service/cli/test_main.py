@@ -1,5 +1,6 @@
 """The command line: exit codes, what goes to stdout and what to stderr, and when."""
 
+import argparse
 import json
 import os
 import signal
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from service.cli import commands
 from service.cli.main import main, optimise_main
 
 ROOT = Path(__file__).parents[3]

@@ -4,6 +4,7 @@ import pytest
 
 from stepnc_model.ap238.instances import Instances, references
 from stepnc_model.ap238.view import AimView
+from stepnc_model.errors import Part21Error
 from stepnc_model.part21.values import Ref, Typed, Value
 from tests.stepnc_model.ap238.samples import exported, read
 
@@ -53,8 +54,10 @@ def test_instances_that_refer_here_are_found_with_their_subtypes() -> None:
     assert instances().referrers(5, "ACTION_METHOD_RELATIONSHIP", "relating_method") == [4]
 
 
-def test_a_malformed_instance_has_no_attributes() -> None:
-    assert instances().value(7, "name") is None
+def test_a_malformed_instance_is_refused_where_it_is_read() -> None:
+    with pytest.raises(Part21Error):
+        instances().value(7, "name")
+    assert not instances().is_a(7, "ACTION_PROPERTY")
 
 
 def test_references_are_found_in_lists_and_typed_values() -> None:
