@@ -120,6 +120,9 @@ def parquet_pieces(
         budget = _PageBudget(path, file.metadata, names)
         # A piece across groups would gather the dictionaries of all of them first.
         for group in range(file.num_row_groups):
+            if not file.metadata.row_group(group).num_rows:
+                # It has no pages.
+                continue
             budget.require(group)
             for batch in file.iter_batches(rows, row_groups=[group], columns=names):
                 left -= _require_texts(batch, left, path)

@@ -20,15 +20,24 @@ class ProcessLimits:
     """Longest processor time of all threads together, s."""
 
 
+LAST_SECONDS = 5
+"""Processor time between the signal that names the limit (SIGXCPU) and SIGKILL, s."""
+
+
 def limit_process(limits: ProcessLimits) -> None:
     """Limit this process, and those that it starts, unless it is limited more already."""
-    _lower(resource.RLIMIT_AS, limits.memory)
-    _lower(resource.RLIMIT_CPU, limits.processor)
+    _lower(resource.RLIMIT_AS, limits.memory, limits.memory)
+    # At the hard limit the system kills without the signal that tells why.
+    most = max(1, limits.processor)
+    _lower(resource.RLIMIT_CPU, most, most + LAST_SECONDS)
     # What is left of a process that was ended for its size would fill the disk.
-    _lower(resource.RLIMIT_CORE, 0)
+    _lower(resource.RLIMIT_CORE, 0, 0)
 
 
-def _lower(kind: int, most: int) -> None:
-    _, hard = resource.getrlimit(kind)
-    if hard == resource.RLIM_INFINITY or hard > most:
-        resource.setrlimit(kind, (most, most))
+def _lower(kind: int, soft: int, hard: int) -> None:
+    old_soft, old_hard = resource.getrlimit(kind)
+    resource.setrlimit(kind, (_lesser(old_soft, soft), _lesser(old_hard, hard)))
+
+
+def _lesser(one: int, other: int) -> int:
+    return other if one == resource.RLIM_INFINITY else min(one, other)

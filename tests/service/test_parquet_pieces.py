@@ -100,3 +100,9 @@ def test_an_honest_table_comes_whole_in_the_types_of_the_file(tmp_path: Path) ->
         names = ["tool", "execution"]
         chosen = pa.Table.from_batches(list(parquet_pieces(path, rows=1000, columns=names)))
         assert chosen.equals(table.select(names))
+
+
+def test_a_table_without_rows_has_no_pieces(tmp_path: Path) -> None:
+    path = tmp_path / "empty.parquet"
+    parquet.write_table(repeated("a", 0), path)
+    assert list(parquet_pieces(path, rows=10)) == []

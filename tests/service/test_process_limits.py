@@ -1,5 +1,6 @@
 """Limits that a process sets for itself, and what a job says that exceeds them."""
 
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -13,7 +14,7 @@ import resource
 from service.process_limits import GIB, ProcessLimits, limit_process
 limit_process(ProcessLimits(memory=2 * GIB, processor=100))
 limit_process(ProcessLimits(memory=4 * GIB, processor=50))
-print(*(resource.getrlimit(kind)[1] for kind in (resource.RLIMIT_AS, resource.RLIMIT_CPU)))
+print(*(resource.getrlimit(kind)[0] for kind in (resource.RLIMIT_AS, resource.RLIMIT_CPU)))
 try:
     bytes(3 * GIB)
 except MemoryError:
@@ -42,6 +43,18 @@ def said(words: str, *arguments: str) -> str:
 
 def test_limits_are_lowered_and_never_raised() -> None:
     assert said(LOWERED).split() == [str(2 << 30), "50", "refused"]
+
+
+BUSY = """
+from service.process_limits import GIB, ProcessLimits, limit_process
+limit_process(ProcessLimits(memory=2 * GIB, processor=1))
+sum(range(10 ** 12))
+"""
+
+
+def test_the_end_by_processor_time_can_be_told_from_other_ends() -> None:
+    done = subprocess.run([sys.executable, "-c", BUSY], capture_output=True, check=False)
+    assert done.returncode == -signal.SIGXCPU
 
 
 def test_a_job_that_takes_too_much_memory_says_how_much_it_may(tmp_path: Path) -> None:
