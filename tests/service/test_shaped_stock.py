@@ -11,7 +11,7 @@ from service.reading import given_data, read_program
 from service.requests.advice import AdviceRequest
 from service.requests.given import ProgramRequest
 from service.requests.runs import SimulationRequest
-from service.requests.stock import StockFile
+from service.requests.stock import RawPart, StockFile
 from service.simulation.run import RunFiles, simulate
 from service.usecases import AdviceFiles, OptimiseResult, optimise
 from simulator.library import load_machine
@@ -39,7 +39,7 @@ def without_raw(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def half_cut(tmp_path: Path) -> str:
+def half_cut(tmp_path: Path) -> StockFile:
     """The plate as a mesh; half of its slot is there already."""
     path = tmp_path / "half.stl"
     plate = [
@@ -49,15 +49,17 @@ def half_cut(tmp_path: Path) -> str:
         box((50.8, 0.0, -12.7), (101.6, 101.6, 0.0)),
     ]
     write_stl(path, np.concatenate(plate))
-    return str(path)
+    return StockFile(path=path)
 
 
-def advised(file: Path, stock: str) -> OptimiseResult:
+def advised(file: Path, stock: RawPart) -> OptimiseResult:
     request = AdviceRequest(stock=stock, is_along_path=True, **PLAN)  # type: ignore[arg-type]
     return optimise(request, AdviceFiles(file=file, dry_run=True))
 
 
-def test_plan_and_feeds_see_the_shape_of_a_stock(without_raw: Path, half_cut: str) -> None:
+def test_plan_and_feeds_see_the_shape_of_a_stock(
+    without_raw: Path, half_cut: StockFile
+) -> None:
     whole = advised(without_raw, "0,0,-12.7,101.6,101.6,0")
     half = advised(without_raw, half_cut)
     volumes = [each.plan.advices[0].cut for each in (whole, half)]
@@ -80,7 +82,7 @@ def test_plan_and_feeds_see_the_shape_of_a_stock(without_raw: Path, half_cut: st
     assert not [each for each in whole.told if "is a body" in each.message]
 
 
-def test_a_run_cuts_the_shape_of_a_stock(without_raw: Path, half_cut: str) -> None:
+def test_a_run_cuts_the_shape_of_a_stock(without_raw: Path, half_cut: StockFile) -> None:
     request = SimulationRequest(**PLAN, stock=half_cut)  # type: ignore[arg-type]
     found = simulate(request, RunFiles(file=without_raw))
     assert found.whole.volume == pytest.approx(HALF, rel=0.02)
@@ -88,7 +90,7 @@ def test_a_run_cuts_the_shape_of_a_stock(without_raw: Path, half_cut: str) -> No
         simulate(request, RunFiles(file=SLOT))
 
 
-def test_given_data_keep_the_shape_of_a_stock(without_raw: Path, half_cut: str) -> None:
+def test_given_data_keep_the_shape_of_a_stock(without_raw: Path, half_cut: StockFile) -> None:
     program = read_program(without_raw, units="iso", stock=half_cut)
     technology = program.workingsteps[0].technology_ref
     request = ProgramRequest(given=(f"{technology}.feedrate=0.005",))
@@ -106,7 +108,7 @@ def test_a_body_that_cannot_be_turned_counts_as_the_bar_around_it(tmp_path: Path
     shaft = tmp_path / "shaft.stpnc"
     text = Path("examples/parts/shaft.stpnc").read_text("utf-8")
     shaft.write_text(text.replace("0.02,$,$,#33,", "0.02,$,$,$,"), "utf-8")
-    program = read_program(shaft, units="iso", stock=str(path))
+    program = read_program(shaft, units="iso", stock=StockFile(path=path))
     stocks = ClampedStocks(program, load_machine("lathe22"), body_map)
     bar = stocks.before(program.workingsteps[0])
     assert isinstance(bar, TurningStock)

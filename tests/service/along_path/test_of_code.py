@@ -15,6 +15,7 @@ from optimiser.along_path.tool_bounds import bounds_of_tool
 from service.along_path.code_output import code_advice_json, print_code_advice
 from service.along_path.of_code import CodeAdvice, CodeFiles, optimise_code
 from service.requests.advice import AdviceRequest
+from service.requests.stock import RawPart, StockFile
 from service.usecases import AdviceFiles, optimise
 from simulator.removal.engage import MillingStock
 from simulator.removal.stock_file import stock_bytes
@@ -321,7 +322,7 @@ OVER = (
 """A slot, then passes in air, 2.5 mm and 0.5 mm over the block."""
 
 
-def stocks(folder: Path) -> dict[str, str]:
+def stocks(folder: Path) -> dict[str, RawPart]:
     """The same block as numbers, as a mesh, and as an earlier run left it."""
     write_stl(folder / "part.stl", box((0.0, 0.0, -20.0), (100.0, 80.0, 0.0)))
     block = Stock(low=(0.0, 0.0, -20.0), high=(100.0, 80.0, 0.0))
@@ -329,8 +330,8 @@ def stocks(folder: Path) -> dict[str, str]:
     return {
         "box": "0,0,-20,100,80,0",
         "bar": "50,40,150,-20,0",
-        "mesh": str(folder / "part.stl"),
-        "kept": str(folder / "left.npz"),
+        "mesh": StockFile(path=folder / "part.stl"),
+        "kept": StockFile(path=folder / "left.npz"),
     }
 
 

@@ -103,7 +103,7 @@ def bodies(done: Done) -> dict[str, Any]:
         "/v1/control-runs": {**run, "pace": 0.0, "is_recorded": False},
         "/v1/cycle-times": logged,
         "/v1/verifications": {**logged, "cell_mm": 1.0},
-        "/v1/factories": {"sample": "line", "hours": 1.0},
+        "/v1/factories": {"sample": "line"},
         "/v1/factories/{id}/changes": {"failure": {"repair_min": 1.0}},
     }
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from service.raw_stock import raw_stock_of
-from service.requests.stock import StockFile
+from service.requests.stock import StockFile, raw_part_in
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles, Simulation, simulate
 from simulator.removal.engage import MillingStock
@@ -26,7 +26,7 @@ def run(folder: Path, code: str, stock: str, kept: str = "", **more: str) -> Sim
     program.write_text(code, encoding="ascii")
     tools.write_text(TOOLS, encoding="ascii")
     request, files = asked_simulation(
-        code=CodeRequest(code=program, tools=tools, stock=stock),
+        code=CodeRequest(code=program, tools=tools, stock=raw_part_in(stock)),
         machine=more.get("machine", "vmc15"),
         material="c45",
         control="exact-stop",

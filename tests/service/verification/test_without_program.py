@@ -9,6 +9,7 @@ import pytest
 
 from service.cli.main import main
 from service.cli.options import BAD_INPUT, LIMIT_EXCEEDED
+from service.requests.stock import StockFile
 from service.requests.verification import VerificationRequest
 from service.verification.facts import surface_deviations
 from service.verification.run import Verification, VerificationInputs, verify
@@ -161,13 +162,13 @@ def test_a_cast_part_is_a_stock(tmp_path: Path) -> None:
     stock = write_stl(tmp_path / "cast.stl", test_required.HALF_CAST)
     given = pocket_inputs(tmp_path)
     log = write_log(tmp_path / "log.csv", POCKET)
-    found = verify(log, None, replace(MILL, stock=str(stock)), inputs=given)
+    found = verify(log, None, replace(MILL, stock=StockFile(path=stock)), inputs=given)
     assert not found.has_errors
     half = 12.0 * 16.0 * 5.0 - 0.5 * (4.0 - np.pi) * 9.0 * 5.0
     assert found.volumes.logged == pytest.approx(half, rel=0.01)
     assert found.volumes.programmed == pytest.approx(half, rel=0.01)
     aside = write_log(tmp_path / "aside.csv", POCKET + 4.0 * OFFSET)
-    found = verify(aside, None, replace(MILL, stock=str(stock)), inputs=given)
+    found = verify(aside, None, replace(MILL, stock=StockFile(path=stock)), inputs=given)
     assert found.has_errors
     beyond = found.places[found.places.is_beyond & found.places.is_wall]
     assert beyond.position[:, 0].min() > 19.5
@@ -181,7 +182,7 @@ def test_a_turned_blank_is_a_stock(tmp_path: Path) -> None:
     for radius in (20.0, 19.0):
         ends = ((-50.0, 0.0), (-50.0, radius), (0.5, radius), (0.5, 0.0))
         stock = write_stl(tmp_path / f"bar{radius:g}.stl", revolved(ends))
-        found = verify(log, None, replace(LATHE, stock=str(stock)), inputs=given)
+        found = verify(log, None, replace(LATHE, stock=StockFile(path=stock)), inputs=given)
         assert not found.places.is_beyond.any()
         volumes.append(found.volumes.logged)
     bar = verify(log, None, LATHE, inputs=given)
