@@ -1,14 +1,17 @@
 """The command line: exit codes, what goes to stdout and what to stderr, and when."""
 
+import argparse
 import json
 import os
 import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
 
+from service.cli import commands
 from service.cli.main import main, optimise_main
 
 ROOT = Path(__file__).parents[3]
@@ -221,13 +224,16 @@ def test_a_fault_of_something_else_is_not_told_as_one_of_stdout(
 ) -> None:
     """A network that is away has no reason and no file."""
 
-    def work(error: OSError) -> int:
+    def work(error: OSError, _: argparse.Namespace) -> int:
         raise error
 
     for error, said in (
         (TimeoutError(), "error: TimeoutError\n"),
-        (PermissionError(13, "Permission denied", "a.txt"), "error: a.txt: Permission denied\n"),
+        (
+            PermissionError(13, "Permission denied", "a.txt"),
+            "error: a.txt: Permission denied\n",
+        ),
     ):
-        options = argparse.Namespace(command="check", run=lambda _, fault=error: work(fault))
+        options = argparse.Namespace(command="check", run=partial(work, error))
         assert commands._run(options) == BAD_INPUT
         assert capsys.readouterr().err == said
