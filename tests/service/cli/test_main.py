@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -223,7 +224,7 @@ def test_a_fault_of_something_else_is_not_told_as_one_of_stdout(
 ) -> None:
     """A network that is away has no reason and no file."""
 
-    def work(error: OSError) -> int:
+    def work(error: OSError, _: argparse.Namespace) -> int:
         raise error
 
     for error, said in (
@@ -233,6 +234,6 @@ def test_a_fault_of_something_else_is_not_told_as_one_of_stdout(
             "error: a.txt: Permission denied\n",
         ),
     ):
-        options = argparse.Namespace(command="check", run=lambda _, fault=error: work(fault))
+        options = argparse.Namespace(command="check", run=partial(work, error))
         assert commands._run(options) == BAD_INPUT
         assert capsys.readouterr().err == said
