@@ -95,12 +95,7 @@ def main(folder: FolderAddress, id: str, attempt: int) -> None:
     task = RunningJob(data_folder=data_folder, job=job)
     _say_as_progress(task)
     try:
-        try:
-            with _cancellable():
-                end = _end_of(task)
-        except Cancelled:
-            # Also where it came between two lines of what handles an error.
-            end = JobEnd(state=JobState.CANCELLED)
+        end = _end_unless_cancelled(task)
     except BaseException:
         # The server's log has the traceback; the client learns that it is not at fault.
         detail = f"internal error in job '{id}'; see the log of the server"
@@ -108,6 +103,24 @@ def main(folder: FolderAddress, id: str, attempt: int) -> None:
         _finish(task, JobEnd(state=JobState.FAILED, problem=fault))
         raise
     _finish(task, end)
+
+
+def _end_unless_cancelled(task: RunningJob) -> JobEnd:
+    """Do the work of a job, and return how it has ended; it may be asked to end before."""
+    asked: list[int] = []
+    try:
+        with _cancellable(asked):
+            end = _end_of(task)
+    except Cancelled:
+        # Also where it came between two lines of what handles an error.
+        return JobEnd(state=JobState.CANCELLED)
+    except Exception:
+        # Compiled code, such as that of pydantic, puts an error of its own in its place.
+        if not asked:
+            raise
+        return JobEnd(state=JobState.CANCELLED)
+    is_broken_off = asked and end.state is JobState.FAILED
+    return JobEnd(state=JobState.CANCELLED) if is_broken_off else end
 
 
 def _end_of(task: RunningJob) -> JobEnd:
@@ -151,12 +164,23 @@ def _memory() -> str:
 
 
 @contextmanager
-def _cancellable() -> Iterator[None]:
-    """Raise Cancelled where the runner asks the job to end, and only within this block."""
+def _cancellable(asked: list[int]) -> Iterator[None]:
+    """Raise Cancelled where the runner asks the job to end, and only within this block.
+
+    Parameters
+    ----------
+    asked : list of int
+        Gets the number of each signal that has asked for it.
+    """
     others = sys.unraisablehook
+
+    def cancel(number: int, frame: FrameType | None) -> None:
+        asked.append(number)
+        _cancel(number, frame)
+
     sys.unraisablehook = partial(_cancel_again, others)
     try:
-        signal.signal(signal.SIGTERM, _cancel)
+        signal.signal(signal.SIGTERM, cancel)
         yield
     finally:
         # A function instead of SIG_IGN: Python reports a signal that came just before as lost.

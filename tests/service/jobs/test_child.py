@@ -15,6 +15,7 @@ from service.problem import problem_of
 from service.storage import database, jobs, programs
 from service.storage.folder import DATABASE, open_data_folder
 from service.storage.jobs import Job, JobKind, JobState
+from stepnc_model.errors import StepNcError
 from tests.full_disk import files_of_at_most
 from tests.service.jobs.conftest import Shop, made_shop
 from tests.service.live.room import within_room
@@ -217,17 +218,34 @@ class Dropped:
         signal.raise_signal(signal.SIGTERM)
 
 
+@pytest.mark.parametrize("error", [ZeroDivisionError, StepNcError])
+def test_an_error_in_place_of_a_request_to_end_is_no_fault(
+    idle: Shop, monkeypatch: pytest.MonkeyPatch, error: type[Exception]
+) -> None:
+    """Compiled code that is interrupted raises an error of its own."""
+
+    def swallow(_task: RunningJob) -> None:
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        except child.Cancelled:
+            raise error("interrupted") from None
+
+    monkeypatch.setattr(advise, "run", swallow)
+    job = ran(idle, idle.order(JobKind.ADVICE))
+    assert (job.state, job.problem) == (JobState.CANCELLED, None)
+
+
 def test_a_request_to_end_within_a_destructor_is_repeated_where_it_counts() -> None:
     def work() -> None:
         Dropped()
         until(lambda: None, within=20.0)
 
-    with pytest.raises(child.Cancelled), child._cancellable():
+    with pytest.raises(child.Cancelled), child._cancellable([]):
         work()
 
 
 def test_a_request_to_end_after_the_end_changes_nothing() -> None:
-    with child._cancellable():
+    with child._cancellable([]):
         """The work of a job."""
     signal.raise_signal(signal.SIGTERM)
 
