@@ -107,12 +107,16 @@ def is_about_values(error: Exception) -> bool:
     return error.obj is None or isinstance(error.obj, (Entity, *_VALUES))
 
 
-def is_about_nothing(error: Exception) -> bool:
-    """Whether an error shows by itself that a value is missing, empty or out of range.
+def is_of_file(error: Exception, fault: Finding | None) -> bool:
+    """Whether an error comes from the values of a file, given the fault found near them.
 
-    An optional attribute that is not given is no fault of its own, so that nothing near the
-    instance need be faulty.
+    Without a fault the error itself must show that a value is missing, empty or out of range:
+    an optional attribute that is not given is no fault of its own.
     """
+    if not is_about_values(error):
+        return False
+    if fault is not None:
+        return True
     if isinstance(error, AttributeError):
         return error.obj is None
     return not isinstance(error, TypeError) or "NoneType" in str(error)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 from stepnc_model.ap238.view import AimView, is_aim
-from stepnc_model.binding import Model, is_about_nothing, is_about_values
+from stepnc_model.binding import Model, is_of_file
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import (
     IfStatement,
@@ -253,18 +253,15 @@ class Program:
 
         The binding is tolerant: an entity may hold None or an invalid number where the schema
         requires a value. The code that uses it then fails, and here the error gets a place: the
-        nearest fault among the given instances and their references, if any. A mistake of the
-        code itself passes: it must not be told as a fault of the file.
+        nearest fault among the given instances and their references. A mistake of code passes.
         """
         try:
             yield
         except ValueError as error:
             raise self.error(str(error), ref) from error
         except (ArithmeticError, AttributeError, IndexError, TypeError) as error:
-            if not is_about_values(error):
-                raise
             fault = self.model.fault_near(ref, *(other for other in near if other is not None))
-            if fault is None and not is_about_nothing(error):
+            if not is_of_file(error, fault):
                 raise
             if fault is None:
                 message = "a required attribute is missing, of the wrong type, or out of range"

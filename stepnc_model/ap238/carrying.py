@@ -154,7 +154,8 @@ def _below(file: Part21File, refs: list[Ref[object]]) -> list[int]:
 
 def _renumbered(text: bytes, numbers: dict[int, int]) -> bytes:
     """Text of an instance or a value with other numbers."""
-    pieces, at = [], 0
+    pieces: list[bytes] = []
+    at = 0
     for match in _REFERENCE.finditer(masked(text)):
         if match[1] is not None:
             pieces += (text[at : match.start()], b"#%d" % numbers[int(match[1])])

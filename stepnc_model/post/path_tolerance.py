@@ -40,8 +40,8 @@ def path_tolerance(program: Program, step: ResolvedWorkingstep | None) -> float:
     """
     if step is None:
         return FINISHING
-    left = [getattr(step.operation, name, None) for name in _ALLOWANCES]
-    allowances = [each for each in left if each is not None]
+    left = (getattr(step.operation, name, None) for name in _ALLOWANCES)
+    allowances = [float(each) for each in left if each is not None]
     if allowances and min(allowances) > 0.0:
         return max(min(SHARE * min(allowances), ROUGHING), FINISHING)
     widths = [width for feature in step.features for width in _widths(program, feature)]

@@ -46,6 +46,17 @@ def test_a_program_comes_back_byte_for_byte(client: httpx.Client) -> None:
     is_problem(client.delete(f"/v1/programs/{id}"), 404)
 
 
+def test_findings_of_a_program_without_an_instance_are_no_error_of_the_server(
+    client: httpx.Client,
+) -> None:
+    for id in (b"#50", b"#13", b"#10"):
+        damaged = DATA.replace(id + b"=", b"#999=")
+        program = made(client.post("/v1/programs", content=damaged), 201)
+        answer = client.get(f"/v1/programs/{program}/findings")
+        assert answer.status_code in {200, 422}, answer.text
+        assert f"{id.decode()} does not exist in this file" in answer.text
+
+
 def test_a_sample_needs_no_body(client: httpx.Client) -> None:
     answer = client.post("/v1/programs?example=shaft")
     assert answer.status_code == 201
