@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pyarrow.parquet as pq
@@ -265,8 +266,8 @@ def test_who_has_no_login_is_asked_for_a_name(
 def test_an_export_that_is_asked_to_end_leaves_what_was_there(
     kb: str, tmp_path: Path, shop_outcomes: tuple[ProcessOutcome, ...]
 ) -> None:
-    for _ in range(10):
-        record(kb, shop_outcomes)
+    for number in range(1, 11):
+        record(kb, [replace(each, sequence=number) for each in shop_outcomes])
     file = tmp_path / "outcomes.json"
     file.write_text("before", encoding="ascii")
     code = (

@@ -35,7 +35,7 @@ def hard(kb: str, shop_outcomes: tuple[ProcessOutcome, ...]) -> list[ProcessOutc
     last = shop_outcomes[-1]
     bare = replace(
         last, force_ratio=None, immersion=None, specific_force=None, force=EvaluatedQuantity(),
-        strategy="", trace="",
+        strategy="", trace="", sequence=1,
     )  # fmt: skip
     evil = replace(
         last,

@@ -125,7 +125,7 @@ def test_outcomes_without_a_ratio_teach_nothing(
     wild = ForceRatio(log_mean=9.0, log_deviation=0.1, readings=400)
     first = shop_outcomes[0]
     knowledge.record(
-        place, [replace(first, force_ratio=None), replace(first, force_ratio=wild)]
+        place, [replace(first, force_ratio=None), replace(first, force_ratio=wild, sequence=1)]
     )
     found = one(review(place, ALL))
     assert found.change is ReviewResult.NOTHING_TO_LEARN
