@@ -568,12 +568,14 @@ def test_the_requests_of_the_reference_agent_as_a_client(serve: Serve) -> None:
         assert sequences(PartReader(answer).part()) == [int(following)]
 
 
-def test_timestamps_never_go_back(serve: Serve) -> None:
+def test_timestamps_are_as_sent_and_sequence_numbers_give_the_order(serve: Serve) -> None:
     served = serve()
     served.add("vmc15_xpos", [1.0], begin=BEGIN + 10_000_000)
     served.add("vmc15_xpos", [2.0], begin=BEGIN)
-    stamps = [each.get("timestamp") for each in observations(served.root("/sample"))]
-    assert stamps == sorted(stamps)
+    later, earlier = observations(served.root("/sample"))[-2:]
+    assert (later.text, earlier.text) == ("1", "2")
+    assert later.get("timestamp", "") > earlier.get("timestamp", "")
+    assert int(later.get("sequence", "")) < int(earlier.get("sequence", ""))
 
 
 def test_texts_are_escaped_and_illegal_signs_replaced(serve: Serve) -> None:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from stepnc_model.errors import Part21Error, Severity
+from stepnc_model.errors import Part21Error, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
 from tests.every_case import every_case
 from tests.stepnc_model.part21.test_reader import (
@@ -142,9 +142,10 @@ def test_duplicate_id_names_both_lines() -> None:
         file_of("#5=A();", "#6=B();", "#5=A();")
 
 
-def test_absent_id_is_a_key_error() -> None:
-    with pytest.raises(KeyError):
+def test_absent_instance_is_named() -> None:
+    with pytest.raises(SchemaError) as refused:
         file_of("#1=A();").parameters(2)
+    assert refused.value.entity == "#2"
 
 
 @every_case("unit", ["'", '"', "/*", "*/", "(", "#1=", ";", "DATA;", "ENDSEC;", "A("])
