@@ -32,9 +32,12 @@ if os.environ.pop("PYTHONDONTWRITEBYTECODE", None):
     sys.pycache_prefix = os.environ.setdefault("PYTHONPYCACHEPREFIX", folder)
     sys.dont_write_bytecode = False
 
-# A shell lets what it starts in the background ignore interrupts, and all that this starts too.
+# A shell lets what it starts in the background ignore interrupts, and all that this starts too;
+# nohup does the same with the end of the terminal.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 # How long an example takes says nothing on a machine that others use as well. Drawn anew, a
 # rare one would turn a run of CI red that has nothing to do with the change.
