@@ -34,6 +34,9 @@ GradeNumber = Annotated[float, quantity(1, 9_999)]
 NEAR_NAMES = 5
 """Number of names listed if a material is unknown."""
 
+SLIP = 0.85
+"""Similarity above which a word that is no word of a kind is a misspelt one."""
+
 LONGEST_NAME = 40
 """Number of characters of a text that are compared when searching similar names."""
 
@@ -65,6 +68,7 @@ class MetalKind(FileTable, frozen=True, kw_only=True):
 class GuessFile(FileTable, frozen=True, kw_only=True):
     """Guesses that names of materials allow."""
 
+    spelt: tuple[str, ...] = ()
     family: tuple[MaterialFamily, ...]
     kind: tuple[MetalKind, ...]
 
@@ -181,10 +185,12 @@ def _nearest(candidate: str, family: MaterialFamily, *, number: int) -> Material
 
 
 def _by_kind(texts: tuple[str, ...], guesses: GuessFile) -> MaterialGuess | None:
-    """The material that stands for a kind of metal which the texts name."""
+    """The material that stands for a kind of metal which the texts name, if spelt rightly."""
     for text in texts:
         whole = normalised(text)
         words = {normalised(word) for word in SEPARATORS.split(text)}
+        if any(_is_misspelt(word, guesses.spelt) for word in words):
+            continue
         for kind in guesses.kind:
             if words.intersection(kind.equals) or any(part in whole for part in kind.contains):
                 return MaterialGuess(
@@ -193,6 +199,14 @@ def _by_kind(texts: tuple[str, ...], guesses: GuessFile) -> MaterialGuess | None
                     "one stands",
                 )
     return None
+
+
+def _is_misspelt(word: str, spelt: Sequence[str]) -> bool:
+    """Whether a word is nearly one of a kind of metal, but none, nor its plural."""
+    start = word[:LONGEST_NAME]
+    if start in spelt or start.removesuffix("s") in spelt:
+        return False
+    return bool(get_close_matches(start, spelt, n=1, cutoff=SLIP))
 
 
 def _near(texts: tuple[str, ...], names: Mapping[str, str]) -> tuple[str, ...]:

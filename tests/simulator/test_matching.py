@@ -106,6 +106,30 @@ def test_a_slip_of_the_pen_is_answered_with_the_name_meant() -> None:
     assert caught.value.near[0] == "16mncr5"
 
 
+@every_case(
+    ("text", "near"),
+    [
+        ("titanum", "titanium2"),
+        ("titaniun", "titanium2"),
+        ("Titanuim alloy", "titanium2"),
+        ("stainles steel", None),
+        ("aluminim", None),
+        ("steell", None),
+        ("inconell", "inconel625"),
+        ("cooper", "copper"),
+    ],
+)
+def test_a_misspelt_kind_of_metal_is_refused_not_guessed(text: str, near: str | None) -> None:
+    with pytest.raises(UnknownMaterial, match=text) as caught:
+        match_material([text])
+    assert near is None or near in caught.value.near
+
+
+@every_case("text", ["Titan", "titanio", "Titanlegierung", "steels", "Edelstahl", "aluminio"])
+def test_kinds_of_metal_in_other_languages_are_guessed(text: str) -> None:
+    assert match_material([text]).certainty is Certainty.GUESS
+
+
 @pytest.mark.parametrize("texts", [[], [""], ["  ", ""]])
 def test_a_program_that_names_no_material_is_an_error_that_lists_all(texts: list[str]) -> None:
     with pytest.raises(UnknownMaterial) as caught:
