@@ -9,8 +9,9 @@ from optimiser.cut import Cut
 from optimiser.holding import HoldingLoad
 from optimiser.modes import Mode
 from optimiser.problem import BoundSide, Limit, LimitName, Setting
+from optimiser.required import UncheckedLimit
 from optimiser.safety import USUAL_QUANTILE
-from optimiser.stability import Stability
+from optimiser.stability import ChatterRisk, Stability, risk_of
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Finding
@@ -134,6 +135,16 @@ class Advice:
     """Load on the chuck, vice or clamps; None in air, or for a drill on a milling machine."""
     stability: Stability | None = None
     """Chatter stability of the cut; None where chatter does not depend on its depth."""
+    unchecked: tuple[UncheckedLimit, ...] = ()
+    """Required limits that could not be looked at, or only by a stand-in."""
+
+    @property
+    def chatter_risk(self) -> ChatterRisk | None:
+        """Depth beyond the optimistic end of an estimate of the stable depth; None if not."""
+        state = self.after or self.before
+        if state is None or self.stability is None:
+            return None
+        return risk_of(self.stability, state.setting.depth)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -173,6 +184,16 @@ class Plan:
         """Whether any workingstep has no feasible setting."""
         return any(advice.status is AdviceStatus.INFEASIBLE for advice in self.advices) or any(
             each.is_infeasible for each in self.refused
+        )
+
+    @property
+    def unchecked(self) -> tuple[tuple[Advice, UncheckedLimit], ...]:
+        """Required limits of the advised workingsteps that could not be looked at."""
+        return tuple(
+            (advice, limit)
+            for advice in self.advices
+            if advice.status is AdviceStatus.ADVISED
+            for limit in advice.unchecked
         )
 
     @property

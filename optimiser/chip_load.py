@@ -6,6 +6,8 @@ chips stay longer in the cut and evacuate badly from a slot, so the feed falls, 
 to the slot factor of the catalogue.
 """
 
+from math import pi
+
 from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind
 from simulator.physics.engagement import conventional
@@ -16,6 +18,9 @@ GREATEST_THINNING = 4.0
 
 With more, a wall that comes closer would give many times the chip that the edge bears.
 """
+
+USUAL_CHIP_RATIO = 2.0 / pi
+"""Mean chip thickness over feed per tooth at half the diameter, from the side."""
 
 FINISH_NOSE_FEED = 0.5
 """Greatest feed per revolution over the nose radius for finishing.
@@ -40,55 +45,113 @@ def _factor(cut: Cut, at: CuttingConditions) -> float:
 
 
 def feed_origin(cut: Cut, at: CuttingConditions) -> str:
-    """Describe how the engagement changed the catalogue feed; empty if it did not."""
+    """Describe where the greatest feed comes from; empty for the plain catalogue value."""
     factor = _factor(cut, at)
-    return "" if factor == 1.0 else f"{factor:.3g} × the catalogue value at this engagement"
+    told = "" if factor == 1.0 else f"{factor:.3g} × the catalogue value at this engagement"
+    if at.grade is None or not is_borrowed_feed(cut, at):
+        return told
+    feed = catalogue_feed(cut, at)
+    if feed is not None and cut.programmed.feed > feed * factor:
+        return f"as programmed, above {at.grade.borrowed}"
+    return f"{told}, {at.grade.borrowed}" if told else at.grade.borrowed
 
 
 def least_feed(cut: Cut, at: CuttingConditions) -> float | None:
     """Least recommended feed per tooth, mm; below it the edges rub. None if not recommended."""
     bounds: list[float | None] = []
-    if at.grade is not None:
+    if at.grade is not None and not at.grade.borrowed:
         teeth = 1 if cut.kind is CutKind.MILLING else cut.tool.teeth
         ratio = at.grade.min_feed_ratio
         if at.grade.min_feed is not None:
             bounds.append(at.grade.min_feed / teeth)
         if ratio is not None and cut.tool.diameter > 0.0:
-            bounds.append(ratio * cut.tool.diameter / teeth)
+            bounds.append(ratio * at.grade.size(cut.tool.diameter) / teeth)
     ratio = at.material.min_feed_per_tooth_ratio
-    if cut.tool_kind is ToolKind.ENDMILL and ratio is not None:
-        bounds.append(ratio * cut.tool.diameter)
+    if ratio is not None and _is_solid_carbide(cut, at):
+        bounds.append(ratio * _size(cut, at))
     lowest = min((each for each in bounds if each), default=None)
     return None if lowest is None else lowest * min(1.0, _factor(cut, at))
 
 
 def greatest_feed(cut: Cut, at: CuttingConditions) -> float | None:
-    """Greatest feed per tooth for the material and grade at this engagement, mm."""
+    """Greatest feed per tooth for the material and grade at this engagement, mm.
+
+    Windows of another group are no reason to slow a program down.
+    """
     feed = catalogue_feed(cut, at)
-    return None if feed is None else feed * _factor(cut, at)
+    if feed is None:
+        return None
+    highest = feed * _factor(cut, at)
+    return max(highest, cut.programmed.feed) if is_borrowed_feed(cut, at) else highest
+
+
+def is_borrowed_feed(cut: Cut, at: CuttingConditions) -> bool:
+    """Whether the greatest feed comes from a window of another group."""
+    is_borrowed = at.grade is not None and at.grade.borrowed != ""
+    return is_borrowed and not _own_feeds(cut, at)
+
+
+def borrowed_datum(at: CuttingConditions) -> str:
+    """Datum that would bring windows of the material's own group."""
+    if not at.material.iso_group:
+        return f"iso_group in the file of '{at.material.name}'"
+    return f"a tool for ISO group {at.material.iso_group}, or its windows in a tool table"
+
+
+def _own_feeds(cut: Cut, at: CuttingConditions) -> list[float]:
+    """Greatest feeds per tooth that the material's own file gives for this tool, mm."""
+    ratio = at.material.max_feed_per_tooth_ratio
+    bounds = [at.material.max_feed_per_tooth]
+    if ratio is not None and _is_solid_carbide(cut, at):
+        bounds.append(ratio * _size(cut, at))
+    return [bound for bound in bounds if bound is not None]
 
 
 def catalogue_feed(cut: Cut, at: CuttingConditions) -> float | None:
     """Greatest feed per tooth for the material and grade at their reference engagement, mm."""
-    bounds = [at.material.max_feed_per_tooth]
+    bounds = _own_feeds(cut, at)
     grade = at.grade
-    if grade is not None:
-        if cut.kind is CutKind.TURNING and cut.corner_radius > 0.0:
-            # With a wiper the nose does not form the surface: only its strength counts.
-            is_finish = cut.is_finishing and not cut.tool.has_wiper
-            share = FINISH_NOSE_FEED if is_finish else ROUGH_NOSE_FEED
-            bounds.append(share * cut.corner_radius)
+    if grade is not None and cut.kind is CutKind.TURNING and cut.corner_radius > 0.0:
+        # With a wiper the nose does not form the surface: only its strength counts.
+        is_finish = cut.is_finishing and not cut.tool.has_wiper
+        share = FINISH_NOSE_FEED if is_finish else ROUGH_NOSE_FEED
+        bounds.append(share * cut.corner_radius)
+    # What the material's own file says goes before what another group says.
+    if grade is not None and (not grade.borrowed or is_borrowed_feed(cut, at)):
         teeth = 1 if cut.kind is CutKind.MILLING else cut.tool.teeth
         if grade.max_feed is not None:
             bounds.append(grade.max_feed / teeth)
         if grade.max_feed_ratio is not None and cut.tool.diameter > 0.0:
-            bounds.append(grade.max_feed_ratio * cut.tool.diameter / teeth)
-        ratio = at.material.max_feed_per_tooth_ratio
-        is_carbide = at.cutting_material is CuttingMaterial.CARBIDE
-        if ratio is not None and is_carbide and cut.tool_kind is ToolKind.ENDMILL:
-            bounds.append(ratio * cut.tool.diameter)
-    known = [bound for bound in bounds if bound is not None]
-    return min(known) if known else None
+            bounds.append(grade.max_feed_ratio * grade.size(cut.tool.diameter) / teeth)
+    return min(bounds, default=None)
+
+
+def _size(cut: Cut, at: CuttingConditions) -> float:
+    """Diameter to which ratios of the diameter apply, mm."""
+    return cut.tool.diameter if at.grade is None else at.grade.size(cut.tool.diameter)
+
+
+def least_chip(cut: Cut, at: CuttingConditions) -> float:
+    """Chip thickness below which the edges rub, mm; 0 if nothing is known of the tool.
+
+    The edges of the smallest tools are sharper than is typical: what their catalogue feed cuts
+    at the usual width does not rub.
+    """
+    grade = at.grade
+    if grade is None:
+        return 0.0
+    if grade.min_feed_ratio is None or cut.tool.diameter <= 0.0:
+        return grade.min_chip_thickness
+    is_mill = cut.kind is CutKind.MILLING
+    ratio = USUAL_CHIP_RATIO if is_mill else 1.0 / cut.tool.teeth
+    feed = grade.min_feed_ratio * grade.size(cut.tool.diameter)
+    return min(grade.min_chip_thickness, ratio * feed)
+
+
+def _is_solid_carbide(cut: Cut, at: CuttingConditions) -> bool:
+    """Whether the feeds per tooth of the material's file are for this tool."""
+    is_carbide = at.cutting_material is CuttingMaterial.CARBIDE
+    return is_carbide and cut.tool_kind is ToolKind.ENDMILL
 
 
 def engagement_factor(cut: Cut, grade: ToolGrade) -> float:

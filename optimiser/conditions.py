@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 from optimiser.bar_grip import BarGrip
-from simulator.spec import CuttingMaterial, Machine, ToolGrade, WorkMaterial
+from simulator.spec import CuttingMaterial, Machine, ToolGrade, ToolKind, WorkMaterial
+from simulator.tool_windows import grade_for
 from simulator.work_holding import Holding
 from stepnc_model.record_limits import NO_LIMITS, RecordLimits
 
@@ -32,7 +33,8 @@ class CuttingConditions:
     material: WorkMaterial
     cutting_material: CuttingMaterial
     grade: ToolGrade | None
-    """Grade of the tool; ``None`` when the material has no tool limits."""
+    """Tool with its windows; ``None`` on a machine with only stated limits whose material
+    names no group: its source has no tool limits."""
     roughness: float | None
     """Roughness Ra that this surface must keep, mm; None: no requirement."""
     deflection: PermittedDeflection = PermittedDeflection()
@@ -51,3 +53,16 @@ class CuttingConditions:
     """Where the bar is gripped; None when not turned or not stated."""
     bar_deflection: PermittedDeflection | None = None
     """Permitted bending of a bar; None when it is not limited."""
+
+
+def tool_grade(
+    kind: ToolKind, cutting_material: CuttingMaterial, machine: Machine, material: WorkMaterial
+) -> ToolGrade | None:
+    """Tool with its windows in a material, as a machine takes them.
+
+    The source of a machine with only stated limits may name a material without a group: then
+    nothing of the tool is added to it.
+    """
+    if machine.only_stated_limits and not material.iso_group:
+        return None
+    return grade_for(kind, cutting_material, material)

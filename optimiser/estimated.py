@@ -13,8 +13,8 @@ from optimiser.estimate_turning import mean_diameter, turning_cut
 from optimiser.problem import Setting
 from optimiser.side_by_side import Result, one_by_one
 from simulator.edge_material import edge_material
-from simulator.library import grade_for
 from simulator.spec import CuttingMaterial, Machine, WorkMaterial
+from simulator.tool_windows import grade_for
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program, ResolvedWorkingstep

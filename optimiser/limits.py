@@ -10,18 +10,26 @@ except to the least speed of the spindle.
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import inf, pi
 
 from optimiser import loads
-from optimiser.chip_load import catalogue_feed, feed_origin, greatest_feed, least_feed
+from optimiser.chip_load import (
+    borrowed_datum,
+    catalogue_feed,
+    feed_origin,
+    greatest_feed,
+    is_borrowed_feed,
+    least_chip,
+    least_feed,
+)
 from optimiser.conditions import CuttingConditions, PermittedDeflection
 from optimiser.cut import Cut, CutKind
 from optimiser.problem import BoundSide, Limit, LimitName, Monomial
 from optimiser.roughness import surface_limits
 from optimiser.workingstep import told
 from simulator.edge_material import correction_of, edge_material
-from simulator.library import find_window, grade_for
+from simulator.library import find_window, reaming_allowances
 from simulator.physics.drilling import LIPS_ONLY
 from simulator.physics.holding import usable_speed
 from simulator.physics.spindle import CurveSegment, curve_segments
@@ -34,6 +42,7 @@ from simulator.spec import (
     ToolKind,
     WorkMaterial,
 )
+from simulator.tool_windows import grade_for
 from simulator.work_holding import Chuck
 from stepnc_model.technology import Programmed
 from stepnc_model.tool import Tool
@@ -45,6 +54,12 @@ PLUNGE_FEED_RATIO = 0.5
 Near the axis the edges hardly move; Fanar, general catalogue 2021, p. 329, uses 25 to 50 % of
 the table feed on the way into the material.
 """
+
+LEAST_ALLOWANCE = 1e-6
+"""Least allowance of a reamer that is distinguished from none, mm."""
+
+VENDOR_FEED = "max_feed_mm of the tool in a tool table"
+"""Datum that brings a greatest feed where no source gives one."""
 
 STRAIGHT_DOWN = "straight down"
 """Words added to the limits of a plunge to distinguish them from those along the pass."""
@@ -79,6 +94,7 @@ def limits_of(cut: Cut, at: CuttingConditions) -> tuple[Limit, ...]:
     return (
         *_load_limits(cut, at),
         *_depth_limits(cut, at),
+        *allowance_limits(cut, at),
         *_record_limits(cut, at),
         *surface_limits(cut, at),
         *(surface_limits(cut.floor, at) if cut.floor is not None else ()),
@@ -109,7 +125,7 @@ def _plunge_limits(cut: Cut, plunge: Cut, at: CuttingConditions) -> Iterator[Lim
     highest = catalogue_feed(cut, at)
     borne = cut.programmed.feed
     if highest is not None:
-        rubbing = at.grade.min_chip_thickness / _chip_ratio(cut) if at.grade else 0.0
+        rubbing = least_chip(cut, at) / _chip_ratio(cut)
         borne = min(highest, max(PLUNGE_FEED_RATIO * highest, rubbing))
     yield Limit(
         name=LimitName.PROGRAMMED_FEED if highest is None else LimitName.FEED_PER_TOOTH,
@@ -143,6 +159,27 @@ def spindle_limits(cut: Cut, at: CuttingConditions, segment: CurveSegment) -> tu
     floor = cut.floor
     swept = _spindle_limits(floor, at, segment)
     return (*limits, *(limit.at_depth(floor.total_depth) for limit in swept))
+
+
+def allowance_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
+    """Limits on what a reamer takes off the diameter; none if the hole before is unknown."""
+    known = cut.previous_diameter > 0.0 or cut.widest_drilled is not None
+    if cut.tool_kind is not ToolKind.REAMER or not known or at.machine.only_stated_limits:
+        return
+    found = next(each for each in reaming_allowances() if cut.tool.diameter <= each.up_to)
+    left = cut.drilled_diameter - cut.previous_diameter
+    for bound, sense in (
+        (found.greatest, BoundSide.AT_MOST),
+        (found.least, BoundSide.AT_LEAST),
+    ):
+        yield Limit(
+            name=LimitName.ALLOWANCE,
+            load=Monomial(coefficient=max(left, LEAST_ALLOWANCE)),
+            bound=bound,
+            unit="mm",
+            sense=sense,
+            origin=f"on the diameter, {found.source}",
+        )
 
 
 def _spindle_limits(
@@ -238,9 +275,21 @@ def tool_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
             unit="mm",
             step=0.01,
             origin=feed_origin(cut, at),
+            datum=borrowed_datum(at) if is_borrowed_feed(cut, at) else "",
         )
     if at.grade is None:
         return
+    if highest is None and not at.machine.only_stated_limits:
+        yield Limit(
+            name=LimitName.PROGRAMMED_FEED,
+            load=feed,
+            bound=cut.programmed.feed,
+            unit="mm",
+            step=0.01,
+            origin=f"no source for more with {at.grade.name}",
+            datum=VENDOR_FEED,
+            stands_for=LimitName.FEED_PER_TOOTH,
+        )
     lowest = least_feed(cut, at)
     if lowest is not None and not at.machine.only_stated_limits:
         yield Limit(
@@ -255,7 +304,7 @@ def tool_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
     yield Limit(
         name=LimitName.CHIP_THICKNESS,
         load=Monomial(coefficient=_chip_ratio(cut), feed_exponent=1.0),
-        bound=at.grade.min_chip_thickness,
+        bound=least_chip(cut, at),
         unit="mm",
         sense=BoundSide.AT_LEAST,
         step=0.001,
@@ -320,29 +369,94 @@ def _record_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
 
 def _depth_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
     """Limit on the depth of one pass from machine, tool and grade."""
-    grade = at.grade
+    if cut.kind not in {CutKind.MILLING, CutKind.TURNING}:
+        return
+    of_tool = _grade_depth(cut, at)
     bounds = [at.machine.max_axial_depth, cut.depth_bound, at.bounds.axial_depth]
-    if grade is not None:
-        ratio = grade.max_depth_ratio
-        bounds += [grade.max_depth, ratio * cut.diameter if ratio is not None else None]
-    known = [bound for bound in bounds if bound is not None]
-    if known and cut.kind in {CutKind.MILLING, CutKind.TURNING}:
+    known = [bound for bound in (*bounds, of_tool.bound) if bound is not None]
+    if known:
+        is_of_tool = min(known) == of_tool.bound
         yield Limit(
             name=LimitName.AXIAL_DEPTH,
             load=Monomial(coefficient=1.0, depth_exponent=1.0),
             bound=min(known),
             unit="mm",
+            origin=of_tool.origin if is_of_tool else "",
+            datum=of_tool.datum if is_of_tool else "",
         )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Sourced:
+    """Bound with its origin, and the datum that would bring a better one."""
+
+    bound: float | None = None
+    origin: str = ""
+    datum: str = ""
+
+
+def _grade_depth(cut: Cut, at: CuttingConditions) -> _Sourced:
+    """Greatest depth of a pass by the windows of the tool, mm."""
+    grade, given = at.grade, cut.programmed.depth
+    if grade is None:
+        return _Sourced()
+    bounds = [grade.max_depth, depth_by_diameter(cut, at, grade)]
+    known = [bound for bound in bounds if bound is not None]
+    if not known:
+        if grade.has_feeds or at.machine.only_stated_limits:
+            return _Sourced()
+        origin = f"no source for more with {grade.name}"
+        return _Sourced(bound=given, origin=origin, datum="a catalogue of the tool")
+    found = _borrowed(min(known), given, at)
+    if found.origin or not _is_wide(cut, at, grade):
+        return found
+    return replace(found, origin=f"for a width of {_width_ratio(cut):.3g} of the diameter")
+
+
+def depth_by_diameter(cut: Cut, at: CuttingConditions, grade: ToolGrade) -> float | None:
+    """Greatest depth of a pass as a ratio of the diameter, mm; None without one.
+
+    Beyond the width of the window it falls linearly with a_e/D to that in a full slot.
+    """
+    ratio, window = grade.max_depth_ratio, grade.depth_window
+    if ratio is None:
+        return None
+    if window is not None and _is_wide(cut, at, grade):
+        beyond = (_width_ratio(cut) - window.width_ratio) / (1.0 - window.width_ratio)
+        ratio -= min(1.0, beyond) * (ratio - min(ratio, window.slot_ratio))
+    return ratio * grade.size(cut.diameter)
+
+
+def _is_wide(cut: Cut, at: CuttingConditions, grade: ToolGrade) -> bool:
+    """Whether a milling cut is wider than the depths of the tool are meant for."""
+    window = grade.depth_window
+    if window is None or cut.kind is not CutKind.MILLING or at.machine.only_stated_limits:
+        return False
+    return _width_ratio(cut) > window.width_ratio + WRITTEN
+
+
+def _width_ratio(cut: Cut) -> float:
+    """Radial width over diameter where the force is greatest."""
+    return min(cut.radial_width / cut.diameter, 1.0) if cut.diameter > 0.0 else 0.0
+
+
+def _borrowed(bound: float, given: float, at: CuttingConditions) -> _Sourced:
+    """Bound by a window of the tool: one of another group does not slow a program down."""
+    if at.grade is None or not at.grade.borrowed:
+        return _Sourced(bound=bound)
+    above = "as programmed, above " if given > bound else ""
+    origin = f"{above}{at.grade.borrowed}"
+    return _Sourced(bound=max(bound, given), origin=origin, datum=borrowed_datum(at))
 
 
 def speed_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
     """Limits on cutting speed and spindle speed."""
-    low, high = cutting_speed_window(at)
+    low, high = cutting_speed_window(at)[0], _greatest_cutting_speed(cut, at)
     spindle = at.machine.spindle
     velocity = Monomial(coefficient=pi * cut.diameter, speed_exponent=1.0)
     turning = Monomial(coefficient=1.0, speed_exponent=1.0)
     for name, load, bound, sense in (
-        (LimitName.CUTTING_SPEED, velocity, high, BoundSide.AT_MOST),
+        (LimitName.CUTTING_SPEED, velocity, high.bound, BoundSide.AT_MOST),
         (LimitName.CUTTING_SPEED, velocity, low, BoundSide.AT_LEAST),
         (LimitName.SPINDLE_SPEED, turning, spindle.max_speed, BoundSide.AT_MOST),
         (LimitName.SPINDLE_SPEED, turning, spindle.min_speed, BoundSide.AT_LEAST),
@@ -359,7 +473,24 @@ def speed_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
             unit="m/min" if is_velocity else "rpm",
             scale=M_MIN if is_velocity else RPM,
             step=10.0 if is_velocity else 100.0,
+            origin=high.origin if is_velocity and sense is BoundSide.AT_MOST else "",
+            datum=high.datum if is_velocity and sense is BoundSide.AT_MOST else "",
         )
+
+
+def _greatest_cutting_speed(cut: Cut, at: CuttingConditions) -> _Sourced:
+    """Greatest cutting speed, mm/s; the programmed one without a source."""
+    high, grade = cutting_speed_window(at)[1], at.grade
+    if grade is None or at.machine.only_stated_limits:
+        return _Sourced(bound=high)
+    given = pi * cut.diameter * cut.programmed.speed
+    if high is None:
+        datum = f"a [[window]] of {at.cutting_material} in the file of '{at.material.name}'"
+        origin = f"no source for more with {grade.name}"
+        return _Sourced(bound=given, origin=origin, datum=datum)
+    if high != grade.max_cutting_speed:
+        return _Sourced(bound=high)
+    return _borrowed(high, given, at)
 
 
 def _chuck_speed(at: CuttingConditions) -> float | None:
@@ -377,6 +508,11 @@ def cutting_speed_window(at: CuttingConditions) -> tuple[float | None, float | N
         return None, None
     window = find_window(at.material, grade.tool_kind, at.cutting_material)
     low, high = grade.min_cutting_speed, grade.max_cutting_speed
+    if grade.borrowed:
+        # What the material's own file says goes before what another group says.
+        if window is None or window.max_cutting_speed is None:
+            return None, high
+        return window.min_cutting_speed, window.max_cutting_speed
     if window is not None:
         low = low if low is not None else window.min_cutting_speed
         high = high if high is not None else window.max_cutting_speed

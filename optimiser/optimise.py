@@ -21,28 +21,28 @@ from optimiser.advice import (
     RefusedWorkingstep,
 )
 from optimiser.asked_of_holding import holding_findings, with_holding
-from optimiser.conditions import CuttingConditions, PermittedDeflection
+from optimiser.conditions import CuttingConditions, PermittedDeflection, tool_grade
 from optimiser.cut import Cut
 from optimiser.errors import Infeasible, OptimisationError
 from optimiser.estimate_turning import mean_diameter
 from optimiser.formulate import OptimisationTask, problem_of, state_of
 from optimiser.front import front_of
 from optimiser.holding import holding_load
-from optimiser.limits import is_bent, why_thread_too_fast, why_too_fast
+from optimiser.limits import allowance_limits, is_bent, why_thread_too_fast, why_too_fast
 from optimiser.modes import Free, Mode
 from optimiser.passes import AdviceContext, best_of
 from optimiser.plunge_feed import plunge_fault, plunge_findings
-from optimiser.problem import Problem
+from optimiser.problem import BoundSide, Problem
 from optimiser.reasons import passed_limits, plunge_reason, reason_of
+from optimiser.required import unchecked_limits
 from optimiser.requirement import required_roughness
 from optimiser.roughness import LAND_SHARE, roughness_load
 from optimiser.source import CutSource, WiperCutSource, why_elsewhere
 from optimiser.stability import estimate_texts, stability_of
 from optimiser.tolerance import permitted_deflection
 from simulator.edge_material import edge_material
-from simulator.errors import LibraryError
-from simulator.library import find_grade
-from simulator.spec import CuttingMaterial, Machine, MachineKind, MaterialMatch, ToolGrade
+from simulator.spec import CuttingMaterial, Machine, MachineKind, MaterialMatch
+from simulator.tool_windows import why_unsuited
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError
 from stepnc_model.program import Program, ResolvedWorkingstep
@@ -170,13 +170,7 @@ def advise(
     )
     if conditions.is_synchronised or not _is_cut_with_feed(step):
         cuts.leave_out(step)
-        reason = "the feed is bound to the pitch of the thread"
-        diameter = _thread_diameter(program, step, tool)
-        too_fast = why_thread_too_fast(
-            tool, conditions, machine, material.material, diameter=diameter
-        )
-        kept = _kept(untouched, reason, too_fast)
-        return kept, _too_fast(program, kept)
+        return _thread(program, untouched, machine, material)
     elsewhere = why_elsewhere(step, machine)
     if elsewhere:
         cuts.leave_out(step)
@@ -207,6 +201,10 @@ def advise(
         findings.append(program.finding(Severity.WARNING, idle, step.operation_ref))
         state = _in_air(before) if cut.is_air else before
         return replace(untouched, reason=idle, before=state, after=state), findings
+    impossible = _why_impossible(cut, at, tool)
+    if impossible:
+        status = AdviceStatus.INFEASIBLE
+        return replace(untouched, status=status, reason=impossible, after=None), findings
     advice = untouched
     if conditions.inhibition:
         reason = f"{conditions.inhibition}: the program locks this feed"
@@ -228,8 +226,61 @@ def advise(
     state = advice.after or before
     load = holding_load(used or cut, at, state.setting)
     fault = plunge_fault(used, at, is_allowed=may)
-    advice = replace(advice, plunge_fault=fault, holding_load=load)
+    limits = tuple(load.limit for load in state.loads)
+    advice = replace(
+        advice,
+        plunge_fault=fault,
+        holding_load=load,
+        unchecked=unchecked_limits(used or cut, at, limits),
+    )
     return advice, findings + passed_limits(program, advice)
+
+
+def _why_impossible(cut: Cut, at: CuttingConditions, tool: Tool) -> str:
+    """Reason why this tool cannot cut this material; empty if it can, or if nothing is known.
+
+    A machine with only stated limits knows nothing beyond its source.
+    """
+    if at.machine.only_stated_limits:
+        return ""
+    if at.grade is None:
+        return f"the library knows no such tool of {at.cutting_material} as '{tool.id}'"
+    return why_unsuited(at.cutting_material, at.material) or _why_not_reamed(cut, at)
+
+
+def _why_not_reamed(cut: Cut, at: CuttingConditions) -> str:
+    """Allowance that a reamer cannot take off; empty if it can, or if it is too small."""
+    for limit in allowance_limits(cut, at):
+        if limit.sense is BoundSide.AT_MOST and not limit.holds(1.0, 1.0, 1.0):
+            return f"{exact.told(limit, limit.load.value(1.0, 1.0, 1.0), 1.0)} {limit.origin}"
+    return ""
+
+
+def _thread(
+    program: Program, untouched: Advice, machine: Machine, material: MaterialMatch
+) -> tuple[Advice, list[Finding]]:
+    """Advice for a thread, whose feed is its pitch: only its speed can be checked."""
+    step, tool = untouched.workingstep, untouched.tool
+    unsuited = _why_thread_impossible(tool, machine, material)
+    if unsuited:
+        return replace(untouched, status=AdviceStatus.INFEASIBLE, reason=unsuited), []
+    too_fast = why_thread_too_fast(
+        tool,
+        untouched.programmed,
+        machine,
+        material.material,
+        diameter=_thread_diameter(program, step, tool),
+    )
+    kept = _kept(untouched, "the feed is bound to the pitch of the thread", too_fast)
+    return kept, _too_fast(program, kept)
+
+
+def _why_thread_impossible(tool: Tool, machine: Machine, material: MaterialMatch) -> str:
+    """Reason why a threading tool cannot cut this material; empty if it can."""
+    if machine.only_stated_limits:
+        return ""
+    edge = edge_material(tool.edge_material) or CuttingMaterial.CARBIDE
+    return why_unsuited(edge, material.material)
 
 
 def _bounds(
@@ -373,12 +424,10 @@ def _conditions(
         text = f"tool '{cut.tool.id}' names no cutting material: carbide assumed"
         findings.append(program.finding(Severity.NOTE, text, step.tool_ref))
     work = material.material
-    grade: ToolGrade | None = None
-    if work.iso_group:
-        try:
-            grade = find_grade(cut.tool_kind, cutting_material, work.iso_group)
-        except LibraryError as error:
-            findings.append(program.finding(Severity.WARNING, str(error), step.tool_ref))
+    grade = tool_grade(cut.tool_kind, cutting_material, machine, work)
+    if grade is not None and grade.borrowed:
+        text = f"tool '{cut.tool.id}' has {grade.borrowed}"
+        findings.append(program.finding(Severity.WARNING, text, step.tool_ref))
     is_turned = cut.kind.is_turned
     if is_turned is not (machine.kind is MachineKind.LATHE):
         text = f"{step.operation_type} on '{machine.name}', which is a {machine.kind.value}"

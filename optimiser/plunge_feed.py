@@ -23,7 +23,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from optimiser import loads
-from optimiser.chip_load import catalogue_feed
+from optimiser.chip_load import catalogue_feed, least_chip
 from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind
 from optimiser.limits import (
@@ -118,7 +118,7 @@ def _permitted(cut: Cut, at: CuttingConditions, *, ratio: float) -> float | None
     highest = catalogue_feed(cut, at)
     if highest is None:
         return None
-    rubbing = at.grade.min_chip_thickness if at.grade else 0.0
+    rubbing = least_chip(cut, at)
     return min(highest, max(ratio * highest, rubbing))
 
 

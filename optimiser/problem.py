@@ -43,6 +43,7 @@ class LimitName(StrEnum):
     HOLDING_FORCE = "holding_force"
     ROUGHNESS = "roughness"
     PROGRAMMED_FEED = "programmed_feed"
+    ALLOWANCE = "reaming_allowance"
 
     @property
     def words(self) -> str:
@@ -162,6 +163,10 @@ class Limit:
     """Factor on the bound as a function of spindle speed."""
     safety_factor: float = 1.0
     """Load at the planned quantile of k_c over the nominal load."""
+    datum: str = ""
+    """What would bring the bound of a source in place of this stand-in; empty if it is one."""
+    stands_for: LimitName | None = None
+    """Limit that this one takes the place of for want of a source."""
 
     @property
     def words(self) -> str:

@@ -14,7 +14,7 @@ from functools import lru_cache
 from math import inf, sin, sqrt
 from typing import TYPE_CHECKING
 
-from optimiser.chip_load import least_feed
+from optimiser.chip_load import least_chip, least_feed
 from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind
 from optimiser.limits import force_factor, speed_range
@@ -87,6 +87,28 @@ class Stability:
     """Uncertainty band of an estimated stable depth, mm."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChatterRisk:
+    """Depth of cut beyond the optimistic end of the estimated stable depth."""
+
+    depth: float
+    """Depth of a pass, mm."""
+    stable: float
+    """Optimistic end of the depth that is stable at any speed, mm."""
+
+    @property
+    def words(self) -> str:
+        """Depth and stable depth in words."""
+        return f"{self.depth:.3g} mm, stable {self.stable:.2g}"
+
+
+def risk_of(found: Stability, depth: float) -> ChatterRisk | None:
+    """Risk of chatter at a depth in mm; None within the band, or without an estimate."""
+    if found.basis is not Basis.ESTIMATED or found.band is None or depth <= found.band[1]:
+        return None
+    return ChatterRisk(depth=depth, stable=found.band[1])
+
+
 def stability_limits(cut: Cut, at: CuttingConditions) -> tuple[Limit, ...]:
     """Limit on the depth of one pass from measured modes; empty without measured modes."""
     measured = measured_modes(cut, at.machine)
@@ -142,7 +164,8 @@ def estimate_texts(told: Iterable[tuple[Tool, Stability, float]]) -> Iterator[tu
         stiff, soft = n_um_from_n_mm(STIFFNESS_BAND[1]), n_um_from_n_mm(STIFFNESS_BAND[0])
         yield (
             tool_id,
-            f"chatter does not limit the depth of tool '{tool_id}': no modes are measured; "
+            f"{'risk of chatter: it' if risk_of(found, depth) else 'chatter'} does not limit "
+            f"the depth of tool '{tool_id}': no modes are measured; "
             f"estimated from {found.reason}, {found.least:.2g} mm would be stable at any speed "
             f"({low:.2g} to {high:.2g} mm for {soft:g} to {stiff:g} N/µm and "
             f"ζ {DAMPING_BAND[0]:g} to {DAMPING_BAND[1]:g}); {depth:.3g} mm are cut: "
@@ -210,8 +233,7 @@ def _cutting_stiffness(cut: Cut, at: CuttingConditions) -> tuple[float, float]:
         return factor * edge.k_tc, sine * ratio
     kienzle = at.material.kienzle
     chip = (least_feed(cut, at) or cut.programmed.feed) * _chip_ratio(cut)
-    if at.grade is not None:
-        chip = max(chip, at.grade.min_chip_thickness)
+    chip = max(chip, least_chip(cut, at))
     stiffness = chip_stiffness(chip, k_c11=kienzle.k_c11, m_c=kienzle.m_c)
     return factor * stiffness, sine * RADIAL_SHARE
 

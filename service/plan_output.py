@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, LimitLoad, Plan, tightest
 from optimiser.problem import LimitName
+from optimiser.required import UncheckedLimit
 from optimiser.stability import Basis
 from service.rendering.columns import Cell, Change, Column
 from service.rendering.records import dump, finding_record, record, records
@@ -54,6 +55,12 @@ def _energy(state: EvaluatedSetting) -> float:
     return state.energy
 
 
+def _chatter(advice: Advice) -> str | None:
+    """Depth beyond the estimated stable depth; None without such a risk."""
+    risk = advice.chatter_risk
+    return None if risk is None else risk.words
+
+
 def _active(advice: Advice) -> str:
     """Active limit of an advice, or its status if no feed was advised."""
     is_advised = advice.after is not None and advice.status is AdviceStatus.ADVISED
@@ -88,10 +95,15 @@ SHOWN: tuple[Column[Advice], ...] = (
     Column(heading="depth mm x passes", help="a_p", value=_change(_depth)),
 )  # fmt: skip
 ACTIVE: Column[Advice] = Column(heading="active limit", value=_active, is_words=True)
+RISK: Column[Advice] = Column(
+    heading="chatter risk", value=_chatter, is_words=True, is_optional=True,
+    help="depth cut, and the optimistic end of the estimated stable depth, mm",
+)  # fmt: skip
 
 TEXT = (
     *SHOWN,
     ACTIVE,
+    RISK,
     TIME,
 )
 """Columns of the plan table on a terminal."""
@@ -103,6 +115,7 @@ PAGE = (
         value=_change(lambda state: kw_from_watts(state.motor_power)),
     ),
     ACTIVE,
+    RISK,
     TIME,
 )  # fmt: skip
 """Columns of the plan table in the HTML report."""
@@ -150,6 +163,14 @@ LOAD: tuple[Column[LimitLoad], ...] = (
 """Columns of a limit; its margin is a share of the bound, after the safety factor."""
 
 
+UNCHECKED: tuple[Column[UncheckedLimit], ...] = (
+    Column(key="name", value=lambda limit: limit.name.value),
+    Column(key="why", value=lambda limit: limit.why),
+    Column(key="datum", value=lambda limit: limit.datum),
+)
+"""Columns of a required limit that could not be looked at."""
+
+
 def print_plan(
     plan: Plan,
     confirmation: "Confirmation | None" = None,
@@ -160,7 +181,7 @@ def print_plan(
     material = plan.material.material
     print_line(
         f"{plan.program}: mode {plan.mode.value}, machine {plan.machine.name} "
-        f"({plan.machine.title}), material {material.title}"
+        f"({plan.machine.title}), material {material.title}{_unchecked_words(plan)}"
     )
     total = f"{plan.time_before:.1f} -> {plan.time_after:.1f}"
     print_table(TEXT, plan.advices, foot={"workingstep": "total", "time s": total})
@@ -185,6 +206,16 @@ def print_plan(
 
         print_along_path(along)
     print_findings(plan.findings, told=told)
+
+
+def _unchecked_words(plan: Plan) -> str:
+    """State how many required limits could not be looked at; empty if none."""
+    if not plan.unchecked:
+        return ""
+    steps = len({advice.workingstep.ref for advice, _ in plan.unchecked})
+    limits = "limit is" if len(plan.unchecked) == 1 else "limits are"
+    where = "workingstep" if steps == 1 else "workingsteps"
+    return f"; {len(plan.unchecked)} required {limits} unchecked in {steps} {where}"
 
 
 def _safety(plan: Plan) -> str:
@@ -241,6 +272,8 @@ def _reason(advice: Advice) -> str:
         text += f"; the deepest passes would have taken {deepest:.1f} s"
     if advice.plunge_reason:
         text += f"; plunge feed: {advice.plunge_reason}"
+    if advice.unchecked:
+        text += "; unchecked: " + "; ".join(limit.words for limit in advice.unchecked)
     return text + _stability_words(advice, advice.after)
 
 
@@ -280,6 +313,7 @@ def plan_json(
         },
         "free_speed_saves_s": sum(advice.saving_of_free_speed for advice in plan.advices),
         "workingsteps": [_advice(advice) for advice in plan.advices],
+        "is_checked": not plan.unchecked,
         "total_time_s": {"before": plan.time_before, "after": plan.time_after},
         "refused": [
             {
@@ -344,6 +378,8 @@ def _advice(advice: Advice) -> dict[str, Any]:
         "sensitivity": _sensitivity(advice),
         "deepest_pass_first_time_s": advice.deepest_first_time,
         "stability": _stability(advice),
+        "chatter_risk": _chatter_risk(advice),
+        "unchecked": records(UNCHECKED, advice.unchecked),
         "plunge": _plunge(advice),
         "holding_load": _holding_load(advice),
         "prices": {name.value: price for name, price in advice.prices},
@@ -362,6 +398,14 @@ def _stability(advice: Advice) -> dict[str, Any] | None:
         "stable_at_any_speed_mm": found.least,
         "band_mm": found.band,
     }
+
+
+def _chatter_risk(advice: Advice) -> dict[str, float] | None:
+    """Return depth and estimated stable depth for JSON; None without a risk."""
+    risk = advice.chatter_risk
+    if risk is None:
+        return None
+    return {"depth_mm": risk.depth, "stable_mm": risk.stable}
 
 
 def _plunge(advice: Advice) -> dict[str, Any] | None:
@@ -419,6 +463,7 @@ def report_page(plan: Plan, along: "FeedsAlongPath | None" = None) -> str:
         "plan.html.jinja",
         plan=plan,
         columns=PAGE,
+        unchecked=_unchecked_words(plan).removeprefix("; "),
         change=f"{after / before - 1.0:+.0%}" if before else "",
         reasons=[
             (advice.status.value, f"{advice.workingstep.id}: {_reason(advice)}")

@@ -107,7 +107,7 @@ def _record(plan: Plan, advised: _Advised) -> AdviceRecord:
     return AdviceRecord(
         mode=plan.mode.value,
         id=advice.workingstep.operation.its_id,
-        description=advice.reason,
+        description=_description(advice),
         machine=plan.machine.name,
         material=plan.material.material.name,
         generator=GENERATOR,
@@ -140,6 +140,12 @@ def _record(plan: Plan, advised: _Advised) -> AdviceRecord:
         feed_per_tooth_bound=bounds.feed_per_tooth,
         axial_depth_bound=bounds.axial_depth,
     )
+
+
+def _description(advice: Advice) -> str:
+    """Return the reason of an advice, and the required limits that could not be looked at."""
+    unchecked = "; ".join(limit.words for limit in advice.unchecked)
+    return f"{advice.reason}; unchecked: {unchecked}" if unchecked else advice.reason
 
 
 def _bounds(advice: Advice) -> RecordLimits:

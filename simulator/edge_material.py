@@ -25,8 +25,11 @@ def edge_material(texts: Sequence[str]) -> CuttingMaterial | None:
 def correction_of(
     material: WorkMaterial, grade: ToolGrade | None, cutting_material: CuttingMaterial
 ) -> ForceCorrection:
-    """Correction factors K_γ and K_v of an edge in a material; 1 if a value is unknown."""
-    if grade is None:
+    """Correction factors K_γ and K_v of an edge in a material; 1 if a value is unknown.
+
+    A constant k_s, as of textbooks, is that of the whole example and has no correction.
+    """
+    if grade is None or (material.kienzle.m_c == 0.0 and not material.iso_group):
         return ForceCorrection()
     reference, rake = material.kienzle.rake_angle, grade.rake_angle
     return ForceCorrection(

@@ -4,11 +4,21 @@ A file has one ``[edge.<cutting material>]`` table for what the whole tool has i
 one ``[[grade]]`` row per cutting material and ISO group for its windows.
 """
 
+from dataclasses import replace
+from math import inf
 from pathlib import Path
 from typing import Annotated, Literal
 
 from simulator.material_file import Rake, SpeedWindow
-from simulator.spec import CuttingMaterial, DrillPoint, FeedWindow, ToolGrade, ToolKind
+from simulator.spec import (
+    Allowance,
+    CuttingMaterial,
+    DepthWindow,
+    DrillPoint,
+    FeedWindow,
+    ToolGrade,
+    ToolKind,
+)
 from simulator.toml_file import FileTable, KeyFault, quantity, read_toml, require_window
 from stepnc_model.units import rad_from_deg
 
@@ -30,6 +40,8 @@ ThrustShare = Annotated[float, quantity(0.2, 1.5)]
 ChiselRatio = Annotated[float, quantity(0, 0.4)]
 WidthRatio = Annotated[float, quantity(0.05, 1)]
 SlotFactor = Annotated[float, quantity(0.1, 1)]
+LargestDiameter = Annotated[float, quantity(0.1, 2000, "mm")]
+PilotRatio = Annotated[float, quantity(0.1, 1)]
 LandWidth = Annotated[float, quantity(0.1, 20, "mm")]
 
 
@@ -46,6 +58,37 @@ class FeedWindowTable(FileTable, frozen=True, kw_only=True):
 
     width_ratio: WidthRatio
     slot_factor: SlotFactor
+    source: str
+
+
+class DepthWindowTable(FileTable, frozen=True, kw_only=True):
+    """Engagement at which the depths hold, with a source of its own."""
+
+    width_ratio: WidthRatio
+    slot_ratio: DepthRatio
+    source: str
+
+
+class SizesTable(FileTable, frozen=True, kw_only=True):
+    """Diameters for which ratios of the diameter hold, with a source of its own."""
+
+    largest_diameter_mm: LargestDiameter
+    source: str
+
+
+class PilotTable(FileTable, frozen=True, kw_only=True):
+    """Pilot of a centre drill over its body, with a source of its own."""
+
+    ratio: PilotRatio
+    source: str
+
+
+class AllowanceRow(FileTable, frozen=True, kw_only=True):
+    """One ``[[allowance]]`` row: what a reamer up to a diameter takes off the diameter."""
+
+    up_to_mm: LargestDiameter
+    min_mm: GradeFeed
+    max_mm: GradeFeed
     source: str
 
 
@@ -68,6 +111,9 @@ class EdgeTable(FileTable, frozen=True, kw_only=True):
     point: PointTable | None = None
     feed_window: FeedWindowTable | None = None
     parallel_land: LandTable | None = None
+    depth_window: DepthWindowTable | None = None
+    sizes: SizesTable | None = None
+    pilot: PilotTable | None = None
 
 
 class EdgeTables(FileTable, frozen=True, kw_only=True):
@@ -114,6 +160,7 @@ class GradeFile(FileTable, frozen=True, kw_only=True):
     title: str
     edge: EdgeTables
     grade: tuple[GradeRow, ...] = ()
+    allowance: tuple[AllowanceRow, ...] = ()
 
     def __post_init__(self) -> None:
         for at, row in enumerate(self.grade, start=1):
@@ -133,6 +180,21 @@ def read_grades(path: Path, kind: ToolKind) -> tuple[ToolGrade, ...]:
     file = read_toml(path, GradeFile)
     edges = ((row, file.edge.of(row.cutting_material)) for row in file.grade)
     return tuple(_grade(row, edge, kind) for row, edge in edges if edge is not None)
+
+
+def read_tools(path: Path, kind: ToolKind) -> tuple[ToolGrade, ...]:
+    """Tools of a kind without windows, one of each cutting material; as :func:`read_grades`."""
+    edges = read_toml(path, GradeFile).edge
+    found = ((material, edges.of(material)) for material in CuttingMaterial)
+    return tuple(_bare(material, edge, kind) for material, edge in found if edge is not None)
+
+
+def _bare(material: CuttingMaterial, edge: EdgeTable, kind: ToolKind) -> ToolGrade:
+    """Tool without windows: what it has in common for all groups."""
+    row = GradeRow(cutting_material=material, iso_group=ANY_GROUP, source="no windows")
+    bare = _grade(row, edge, kind)
+    name = f"{material} {kind.replace('_', ' ')}"
+    return replace(bare, name=name, iso_group="", source=edge.source)
 
 
 def _grade(row: GradeRow, edge: EdgeTable, kind: ToolKind) -> ToolGrade:
@@ -164,4 +226,20 @@ def _grade(row: GradeRow, edge: EdgeTable, kind: ToolKind) -> ToolGrade:
         if feeds is None
         else FeedWindow(width_ratio=feeds.width_ratio, slot_factor=feeds.slot_factor),
         parallel_land=0.0 if edge.parallel_land is None else edge.parallel_land.width_mm,
+        depth_window=None
+        if edge.depth_window is None
+        else DepthWindow(
+            width_ratio=edge.depth_window.width_ratio, slot_ratio=edge.depth_window.slot_ratio
+        ),
+        largest_diameter=inf if edge.sizes is None else edge.sizes.largest_diameter_mm,
+        pilot_ratio=1.0 if edge.pilot is None else edge.pilot.ratio,
+    )
+
+
+def read_allowances(path: Path) -> tuple[Allowance, ...]:
+    """Allowances of reamers by diameter, the smallest first."""
+    rows = sorted(read_toml(path, GradeFile).allowance, key=lambda row: row.up_to_mm)
+    return tuple(
+        Allowance(up_to=row.up_to_mm, least=row.min_mm, greatest=row.max_mm, source=row.source)
+        for row in rows
     )

@@ -10,11 +10,12 @@ from functools import cache
 from pathlib import Path
 
 from simulator.errors import LibraryError, UnknownMachine, UnknownMaterial
-from simulator.grade_file import ANY_GROUP, read_grades
+from simulator.grade_file import ANY_GROUP, read_allowances, read_grades, read_tools
 from simulator.machine_file import read_machine
 from simulator.machine_xml import read_machine_xml
 from simulator.material_file import read_material
 from simulator.spec import (
+    Allowance,
     CuttingMaterial,
     CuttingWindow,
     Machine,
@@ -160,16 +161,22 @@ def find_grade(
     )
 
 
-def grade_for(
-    tool_kind: ToolKind, cutting_material: CuttingMaterial, material: WorkMaterial
-) -> ToolGrade | None:
-    """Grade of a kind of tool for a material; None if there is none."""
-    if not material.iso_group:
-        return None
-    try:
-        return find_grade(tool_kind, cutting_material, material.iso_group)
-    except LibraryError:
-        return None
+def bare_tool(tool_kind: ToolKind, cutting_material: CuttingMaterial) -> ToolGrade | None:
+    """Stiffness, strength and geometry of a kind of tool, without windows; None if unknown."""
+    tools = _tools(tool_kind)
+    return next((each for each in tools if each.cutting_material is cutting_material), None)
+
+
+@cache
+def reaming_allowances() -> tuple[Allowance, ...]:
+    """Allowances of reamers by diameter, the smallest first."""
+    return read_allowances(_grade_path(ToolKind.REAMER))
+
+
+@cache
+def _tools(kind: ToolKind) -> tuple[ToolGrade, ...]:
+    """Tools of one kind without windows, one of each cutting material."""
+    return read_tools(_grade_path(kind), kind)
 
 
 @cache

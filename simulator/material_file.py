@@ -53,13 +53,22 @@ FeedRatio = Annotated[float, quantity(1e-5, 0.1)]
 FeedPerTooth = Annotated[float, quantity(1e-4, 5, "mm")]
 Modulus = Annotated[float, quantity(1_000, 1_000_000, "N/mm²")]
 
-USUAL_SPREAD = {"P": 0.20, "M": 0.20, "K": 0.20, "N": 0.20, "S": 0.25, "H": 0.25}
-"""of k_c by ISO group where a file names none: as in the library, where its source stands"""
+USUAL_SPREAD = {"P": 0.20, "M": 0.20, "K": 0.20, "N": 0.20, "S": 0.25, "H": 0.25, "": 0.25}
+"""of k_c by ISO group where a file names none: as in the library, where its source stands; the
+widest without a group"""
 
-LEAST_MODULUS = {"P": 2.0e5, "M": 1.9e5, "K": 0.88e5, "N": 0.69e5, "S": 1.03e5, "H": 2.0e5}
+LEAST_MODULUS = {
+    "P": 2.0e5,
+    "M": 1.9e5,
+    "K": 0.88e5,
+    "N": 0.69e5,
+    "S": 1.03e5,
+    "H": 2.0e5,
+    "": 0.69e5,
+}
 """Young's modulus by ISO group where a file gives none, N/mm², of what bends most in it: carbon
 and stainless steel, aluminium and titanium (Machinery's Handbook, 29th ed., mechanical
-properties), grey iron GJL-200 (EN 1561, annex)"""
+properties), grey iron GJL-200 (EN 1561, annex); the least without a group"""
 
 
 class KienzleTable(FileTable, frozen=True, kw_only=True):
@@ -273,8 +282,8 @@ def read_material(path: Path) -> WorkMaterial:
         remarks=(*condition, file.confidence, *file.remarks, sides.remark),
         feed_force=sides.feed,
         back_force=sides.back,
-        spread=USUAL_SPREAD.get(group) if spread is None else spread,
-        youngs_modulus=LEAST_MODULUS.get(group) if modulus is None else modulus,
+        spread=USUAL_SPREAD[group] if spread is None else spread,
+        youngs_modulus=LEAST_MODULUS[group] if modulus is None else modulus,
     )
 
 

@@ -6,6 +6,7 @@ that the source gives no value; a limit without a value is not applied.
 
 from dataclasses import dataclass
 from enum import StrEnum
+from math import inf
 
 from simulator.work_holding import Holding
 
@@ -385,8 +386,34 @@ class FeedWindow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class DepthWindow:
+    """Engagement for which the depths of a milling cutter are valid."""
+
+    width_ratio: float
+    """Greatest a_e/D for which the depths are valid."""
+    slot_ratio: float
+    """Greatest axial depth over the diameter in a full slot."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Allowance:
+    """What reamers up to a diameter take off the diameter of a hole."""
+
+    up_to: float
+    """Greatest diameter of these reamers, mm."""
+    least: float
+    """Least allowance on the diameter, mm; with less the edges rub."""
+    greatest: float
+    """Greatest allowance on the diameter, mm."""
+    source: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ToolGrade:
-    """Feed windows and strength of a kind of tool for one cutting material and ISO group.
+    """Strength of a kind of tool of one cutting material, and its windows in an ISO group.
+
+    Stiffness, strength and geometry belong to the tool whatever it cuts; feeds, speeds and
+    depths belong to the group.
 
     Feeds are per tooth for milling, and per revolution for all other tools.
     """
@@ -428,6 +455,23 @@ class ToolGrade:
     """Engagement for which feeds are valid; ``None``: any engagement."""
     parallel_land: float = 0.0
     """Length b_s of the edge parallel to the face, mm; 0: the corner generates the surface."""
+    depth_window: DepthWindow | None = None
+    """Engagement for which depths are valid; ``None``: any engagement."""
+    largest_diameter: float = inf
+    """Diameter up to which ratios of the diameter hold, mm; beyond it they end."""
+    pilot_ratio: float = 1.0
+    """Diameter that cuts over the diameter of the body."""
+    borrowed: str = ""
+    """Why the windows are those of another group; empty: they are the tool's own."""
+
+    def size(self, diameter: float) -> float:
+        """Diameter in mm to which ratios of the diameter apply, for a diameter of the body."""
+        return min(self.pilot_ratio * diameter, self.largest_diameter)
+
+    @property
+    def has_feeds(self) -> bool:
+        """Whether a source gives a greatest feed."""
+        return self.max_feed is not None or self.max_feed_ratio is not None
 
 
 class Certainty(StrEnum):

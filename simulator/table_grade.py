@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-from simulator.library import grade_for
 from simulator.spec import ToolGrade, WorkMaterial
 from simulator.tool_table import TableTool
+from simulator.tool_windows import grade_for
 
 
 def grade_of_table_tool(tool: TableTool, material: WorkMaterial) -> ToolGrade | None:
@@ -38,6 +38,7 @@ def grade_of_table_tool(tool: TableTool, material: WorkMaterial) -> ToolGrade | 
             max_feed_ratio=None,
             min_feed=tool.min_feed,
             max_feed=tool.max_feed,
+            borrowed="" if tool.max_feed is not None else grade.borrowed,
         )
     if tool.min_cutting_speed is not None or tool.max_cutting_speed is not None:
         grade = replace(

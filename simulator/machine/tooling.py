@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import isinf
 
 from simulator.edge_material import correction_of, edge_material
-from simulator.library import find_window, grade_for
+from simulator.library import find_window
 from simulator.machine.cutting import CuttingEdge
 from simulator.machine.virtual import LoadedTool, Shape
 from simulator.physics.drilling import LIPS_ONLY
@@ -15,6 +15,7 @@ from simulator.removal.tool_shape import THREADS, shape_of, tool_kind
 from simulator.spec import CuttingMaterial, Taylor, ToolGrade, ToolKind, WorkMaterial
 from simulator.table_grade import grade_of_table_tool
 from simulator.tool_table import TableTool
+from simulator.tool_windows import grade_for
 from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program

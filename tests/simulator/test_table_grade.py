@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from simulator.library import grade_for, load_material
+from simulator.library import load_material
+from simulator.tool_windows import grade_for
 from simulator.removal.cutter import Cutter
 from simulator.spec import CuttingMaterial, ToolKind
 from simulator.table_grade import grade_of_table_tool
@@ -54,6 +55,11 @@ def test_a_greatest_feed_alone_leaves_no_least_one() -> None:
 
 
 @pytest.mark.parametrize("kind", [ToolKind.ENDMILL, ToolKind.DRILL])
-def test_a_material_without_a_group_has_no_grade(kind: ToolKind) -> None:
-    tool = replace(MILL, kind=kind, max_feed=0.07)
-    assert grade_of_table_tool(tool, replace(STEEL, iso_group="")) is None
+def test_what_the_vendor_says_is_not_borrowed_from_another_group(kind: ToolKind) -> None:
+    unknown = replace(STEEL, iso_group="")
+    of_library = grade_of_table_tool(replace(MILL, kind=kind), unknown)
+    of_vendor = grade_of_table_tool(replace(MILL, kind=kind, max_feed=0.07), unknown)
+    assert of_library is not None
+    assert of_vendor is not None
+    assert of_library.borrowed
+    assert (of_vendor.max_feed, of_vendor.borrowed) == (0.07, "")

@@ -100,9 +100,10 @@ def test_high_speed_steel_cuts_harder_than_carbide() -> None:
     assert hss > carbide
 
 
-def test_material_without_a_group_has_no_grade() -> None:
-    unknown = replace(STEEL, iso_group="")
-    assert table_tool(table(ToolKind.ENDMILL), unknown, factor=1.25).edge.factor == 1.25
+def test_a_constant_k_s_of_a_textbook_has_no_correction() -> None:
+    book = replace(STEEL, iso_group="", kienzle=replace(STEEL.kienzle, m_c=0.0))
+    tool = table(ToolKind.ENDMILL, CuttingMaterial.HSS)
+    assert table_tool(tool, book, factor=1.25).edge.factor == 1.25
 
 
 def test_an_end_mill_has_the_helix_of_its_grade_and_gives_way() -> None:
@@ -122,12 +123,14 @@ def test_a_table_may_say_the_helix() -> None:
     assert edge.flutes.helix_angle == rad_from_deg(45.0)
 
 
-def test_what_has_no_grade_has_straight_edges_and_does_not_bend() -> None:
-    """As the papers' materials: nothing says what their tools are made of."""
-    edge = table_tool(table(ToolKind.ENDMILL), replace(STEEL, iso_group="")).edge
-    assert edge.flutes is not None
-    assert edge.flutes.helix_angle == 0.0
-    assert edge.compliance == 0.0
+def test_the_edge_of_a_tool_does_not_depend_on_the_material() -> None:
+    """Helix and stiffness are the tool's, whatever group the material names."""
+    known, unknown = (
+        table_tool(table(ToolKind.ENDMILL), material).edge
+        for material in (STEEL, replace(STEEL, iso_group=""))
+    )
+    assert unknown.flutes == known.flutes
+    assert unknown.compliance == known.compliance > 0.0
 
 
 def test_face_mills_and_drills_do_not_bend() -> None:
