@@ -88,7 +88,8 @@ def greatest_feed(cut: Cut, at: CuttingConditions) -> float | None:
 def is_borrowed_feed(cut: Cut, at: CuttingConditions) -> bool:
     """Whether the greatest feed comes from a window of another group."""
     is_borrowed = at.grade is not None and at.grade.borrowed != ""
-    return is_borrowed and not _own_feeds(cut, at)
+    has_own = at.material.max_feed_per_tooth_ratio is not None and _is_solid_carbide(cut, at)
+    return is_borrowed and not has_own
 
 
 def borrowed_datum(at: CuttingConditions) -> str:

@@ -128,6 +128,11 @@ class Cut:
     """Radial width a_e of a milling cutter, or width of a grooving insert, mm."""
     depth_share: float = 1.0
     """Greatest real depth over the nominal depth of a pass; above 1 where stock was left."""
+    deepest_share: float = 1.0
+    """Depth of the deepest place of a turning path over the nominal depth of a pass.
+
+    A shoulder may be deeper than the pass that meets it.
+    """
     fill: float = 1.0
     """Section of the cut over the section of the full engagement arc."""
     chip_ratio: float | None = None

@@ -197,7 +197,8 @@ def _turned(cut: Cut, stations: Stations, at: Ints, kienzle: Kienzle, *, nominal
     if cut.kind is CutKind.GROOVING:
         return replace(cut, radial_width=min(cut.radial_width, deepest))
     share = _share(cut, deepest / nominal)
-    return replace(cut, depth_share=share, chip_ratio=float(ratio[row]))
+    most = _share(cut, float(stations.axial_depth[at].max()) / nominal)
+    return replace(cut, depth_share=share, deepest_share=most, chip_ratio=float(ratio[row]))
 
 
 def _milled(

@@ -55,6 +55,9 @@ Near the axis the edges hardly move; Fanar, general catalogue 2021, p. 329, uses
 the table feed on the way into the material.
 """
 
+DEEPER = 1.01
+"""Depth of the deepest place over that of a pass above which it is named."""
+
 LEAST_ALLOWANCE = 1e-6
 """Least allowance of a reamer that is distinguished from none, mm."""
 
@@ -378,7 +381,8 @@ def _depth_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
         is_of_tool = min(known) == of_tool.bound
         yield Limit(
             name=LimitName.AXIAL_DEPTH,
-            load=Monomial(coefficient=1.0, depth_exponent=1.0),
+            label="depth at the deepest place" if cut.deepest_share > DEEPER else "",
+            load=Monomial(coefficient=cut.deepest_share, depth_exponent=1.0),
             bound=min(known),
             unit="mm",
             origin=of_tool.origin if is_of_tool else "",
@@ -545,6 +549,18 @@ def why_too_fast(cut: Cut, at: CuttingConditions) -> str:
     speed = cut.programmed.speed
     passed = min(_passed(cut, at), key=_greatest_speed, default=None)
     return "" if passed is None else told(passed, passed.load.value(1.0, 1.0, speed), speed)
+
+
+def why_no_speed(cut: Cut, at: CuttingConditions) -> str:
+    """Text on a spindle that cannot turn as slowly as the tool demands; empty if it can."""
+    low, high = speed_range(cut, at)
+    least = at.machine.spindle.min_speed
+    if least is None or not low > high * (1.0 + WRITTEN) or low > least * (1.0 + WRITTEN):
+        return ""
+    limits = [each for each in speed_limits(cut, at) if each.sense is BoundSide.AT_MOST]
+    passed = min(limits, key=_greatest_speed)
+    words = told(passed, passed.load.value(1.0, 1.0, least), least)
+    return f"{words} at the least speed of the spindle, {rpm_from_rev_s(least):.4g} rpm"
 
 
 def why_thread_too_fast(

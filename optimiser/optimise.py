@@ -28,7 +28,13 @@ from optimiser.estimate_turning import mean_diameter
 from optimiser.formulate import OptimisationTask, problem_of, state_of
 from optimiser.front import front_of
 from optimiser.holding import holding_load
-from optimiser.limits import allowance_limits, is_bent, why_thread_too_fast, why_too_fast
+from optimiser.limits import (
+    allowance_limits,
+    is_bent,
+    why_no_speed,
+    why_thread_too_fast,
+    why_too_fast,
+)
 from optimiser.modes import Free, Mode
 from optimiser.passes import AdviceContext, best_of
 from optimiser.plunge_feed import plunge_fault, plunge_findings
@@ -38,7 +44,7 @@ from optimiser.required import unchecked_limits
 from optimiser.requirement import required_roughness
 from optimiser.roughness import LAND_SHARE, roughness_load
 from optimiser.source import CutSource, WiperCutSource, why_elsewhere
-from optimiser.stability import estimate_texts, stability_of
+from optimiser.stability import RISK, estimate_texts, stability_of
 from optimiser.tolerance import permitted_deflection
 from simulator.edge_material import edge_material
 from simulator.spec import CuttingMaterial, Machine, MachineKind, MaterialMatch
@@ -245,7 +251,11 @@ def _why_impossible(cut: Cut, at: CuttingConditions, tool: Tool) -> str:
         return ""
     if at.grade is None:
         return f"the library knows no such tool of {at.cutting_material} as '{tool.id}'"
-    return why_unsuited(at.cutting_material, at.material) or _why_not_reamed(cut, at)
+    return (
+        why_unsuited(at.cutting_material, at.material)
+        or why_no_speed(cut, at)
+        or _why_not_reamed(cut, at)
+    )
 
 
 def _why_not_reamed(cut: Cut, at: CuttingConditions) -> str:
@@ -330,8 +340,14 @@ def _estimates(program: Program, advices: Sequence[Advice]) -> list[Finding]:
     ]
     refs = {advice.tool.id: advice.workingstep.tool_ref for advice in advices}
     return [
-        program.finding(Severity.NOTE, text, refs[tool]) for tool, text in estimate_texts(told)
+        program.finding(_severity(text), text, refs[tool])
+        for tool, text in estimate_texts(told)
     ]
+
+
+def _severity(text: str) -> Severity:
+    """Severity of an estimate of the stable depth: a risk is more than a note."""
+    return Severity.WARNING if text.startswith(RISK) else Severity.NOTE
 
 
 def _lock(program: Program, step: ResolvedWorkingstep, conditions: Programmed) -> Finding:

@@ -50,6 +50,9 @@ SPEED_STEP = 1e-3
 LEAST_SPEED_SHARE = 0.1
 """Least speed of the lobes over the greatest, where machine and tool state no least one."""
 
+RISK = "risk of chatter"
+"""First words on a depth beyond the optimistic end of an estimate."""
+
 STIFFNESS_BAND = (5_000.0, 20_000.0)
 """Stiffness at the tip of usual end mills, N/mm: band of the estimate."""
 
@@ -164,7 +167,7 @@ def estimate_texts(told: Iterable[tuple[Tool, Stability, float]]) -> Iterator[tu
         stiff, soft = n_um_from_n_mm(STIFFNESS_BAND[1]), n_um_from_n_mm(STIFFNESS_BAND[0])
         yield (
             tool_id,
-            f"{'risk of chatter: it' if risk_of(found, depth) else 'chatter'} does not limit "
+            f"{f'{RISK}: it' if risk_of(found, depth) else 'chatter'} does not limit "
             f"the depth of tool '{tool_id}': no modes are measured; "
             f"estimated from {found.reason}, {found.least:.2g} mm would be stable at any speed "
             f"({low:.2g} to {high:.2g} mm for {soft:g} to {stiff:g} N/µm and "

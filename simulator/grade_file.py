@@ -191,7 +191,7 @@ def read_tools(path: Path, kind: ToolKind) -> tuple[ToolGrade, ...]:
 
 def _bare(material: CuttingMaterial, edge: EdgeTable, kind: ToolKind) -> ToolGrade:
     """Tool without windows: what it has in common for all groups."""
-    row = GradeRow(cutting_material=material, iso_group=ANY_GROUP, source="no windows")
+    row = GradeRow(cutting_material=material, iso_group="*", source="no windows")
     bare = _grade(row, edge, kind)
     name = f"{material} {kind.replace('_', ' ')}"
     return replace(bare, name=name, iso_group="", source=edge.source)

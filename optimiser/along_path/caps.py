@@ -113,6 +113,8 @@ class CutBounds:
     """Greatest feed per tooth on the way down into the material, mm; None: not limited."""
     least: float = 0.0
     """Feed that the user permits everywhere, mm/s, whatever the limits of the process say."""
+    keeps_programmed: bool = False
+    """Whether no feed in the material may rise, because no source says how far."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -7,7 +7,7 @@ the larger stock would give. The first part of each way into the material has a 
 Units: mm, mm/s, rev/s, rad.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -214,6 +214,10 @@ def _caps_of(stretch: PathStretch, stations: Stations, bounds: CutBounds) -> Sta
         raise ValueError(f"block {block}: the engagement at station {row} is not a number")
     segment = stations.segment
     direction = stretch.segments.direction(segment, stations.station)
-    return station_caps(
+    found = station_caps(
         stations, bounds, spindle=stretch.spindle[segment], descent=-direction[:, 2]
     )
+    if not bounds.keeps_programmed:
+        return found
+    given = np.where(stations.peak_section > 0.0, stretch.segments.speed[segment], np.inf)
+    return replace(found, caps=found.caps.least(capped(given, CapName.LOCKED)))

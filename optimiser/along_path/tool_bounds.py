@@ -4,10 +4,12 @@ What a STEP-NC program says of a workingstep is not known: roughness and toleran
 the user says that a tool finishes.
 """
 
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from math import isinf
 
 from optimiser.along_path.caps import CapName, CutBounds
+from optimiser.chip_load import catalogue_feed
 from optimiser.conditions import CuttingConditions, PermittedDeflection
 from optimiser.cut import Cut, CutKind, Texture
 from optimiser.optimise import DEFAULT_QUALITY
@@ -21,6 +23,8 @@ from simulator.removal.tool_shape import ENDS, THREADS
 from simulator.spec import Machine, ToolGrade, ToolKind, WorkMaterial
 from simulator.table_grade import grade_of_table_tool
 from simulator.tool_table import TableTool
+from simulator.tool_windows import why_unsuited
+from stepnc_model.errors import Finding, Severity
 from stepnc_model.tool import Tool
 
 TEXTURES = {
@@ -60,6 +64,8 @@ def bounds_of_tool(
     spread = material.spread
     is_margin = not machine.only_stated_limits and spread is not None
     grade = grade_of_table_tool(tool, material)
+    if machine.only_stated_limits and not material.iso_group:
+        grade = None
     cut = _cut(tool, grade, is_finishing=is_finishing)
     at = CuttingConditions(
         machine=machine,
@@ -79,7 +85,45 @@ def bounds_of_tool(
         at=at,
         fixed=() if surface is None else ((CapName.ROUGHNESS, surface),),
         plunge=permitted_plunge(cut, at),
+        keeps_programmed=is_unsourced(cut, at),
     )
+
+
+def is_unsourced(cut: Cut, at: CuttingConditions) -> bool:
+    """Whether no source gives a greatest feed, or the tool cannot cut the material at all."""
+    if at.machine.only_stated_limits:
+        return False
+    is_unsuited = why_unsuited(at.cutting_material, at.material) != ""
+    return is_unsuited or catalogue_feed(cut, at) is None
+
+
+def window_findings(
+    tools: Iterable[TableTool], machine: Machine, material: WorkMaterial
+) -> Iterator[Finding]:
+    """Findings on tools whose windows are not those of the material's group.
+
+    Parameters
+    ----------
+    tools : iterable of TableTool
+        Tools that cut.
+    machine : Machine
+    material : WorkMaterial
+    """
+    for tool in tools:
+        if tool.kind in THREADS or machine.only_stated_limits:
+            continue
+        grade = grade_of_table_tool(tool, material)
+        unsuited = why_unsuited(tool.cutting_material, material)
+        text = f"tool '{tool.id}' "
+        if unsuited:
+            text += f"keeps its feeds: {unsuited}"
+        elif grade is None or not (grade.has_feeds or material.max_feed_per_tooth):
+            text += "raises no feed: no source says how far; give max_feed_mm in its table"
+        elif grade.borrowed:
+            text += f"has {grade.borrowed}"
+        else:
+            continue
+        yield Finding(severity=Severity.ERROR if unsuited else Severity.WARNING, message=text)
 
 
 def _without_feeds(material: WorkMaterial) -> WorkMaterial:

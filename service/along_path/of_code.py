@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from optimiser.along_path.caps import CutBounds
-from optimiser.along_path.tool_bounds import bounds_of_tool
+from optimiser.along_path.tool_bounds import bounds_of_tool, window_findings
 from optimiser.modes import Mode
 from service.along_path.course import PathSource
 from service.along_path.run import FeedsAlongPath
@@ -152,6 +152,7 @@ def optimise_code(
             *library.findings,
             *called_tool_findings(program, library),
             *code.findings,
+            *_windows(code),
             *_idle(code, along),
             *_unchanged(rewritten),
             *along.findings,
@@ -221,6 +222,15 @@ def _bounds(code: CodePaths, request: AdviceRequest) -> dict[str, CutBounds]:
         if bounds is not None:
             found[part.name] = replace(bounds, least=least_feed(request))
     return found
+
+
+def _windows(code: CodePaths) -> Iterator[Finding]:
+    """Findings on tools without windows of their own in this material."""
+    if code.material is None:
+        return iter(())
+    numbers = dict.fromkeys(part.tool for part in code.parts if part.tool in code.tools)
+    tools = [code.tools[number] for number in numbers]
+    return window_findings(tools, code.machine, code.material.material)
 
 
 def _idle(code: CodePaths, along: FeedsAlongPath) -> Iterator[Finding]:

@@ -54,6 +54,21 @@ class StabilityView(View):
     band_mm: list[float] | None = Field(description="lower and upper value of an estimate")
 
 
+class ChatterRiskView(View):
+    """Depth beyond the optimistic end of an estimate of the stable depth."""
+
+    depth_mm: float
+    stable_mm: float
+
+
+class UncheckedView(View):
+    """Required limit that could not be looked at, or only by a stand-in."""
+
+    name: str
+    why: str
+    datum: str = Field(description="what would bring the limit")
+
+
 class HoldingLoadView(View):
     """Loads of a cut on the work-holding; their bounds are among the limits."""
 
@@ -85,6 +100,12 @@ class AdvisedView(View):
     time_s: BeforeAfterView
     stability: StabilityView | None = Field(
         default=None, description="null: chatter does not depend on the depth of this cut"
+    )
+    chatter_risk: ChatterRiskView | None = Field(
+        default=None, description="null: no depth beyond the estimate of the stable depth"
+    )
+    unchecked: list[UncheckedView] = Field(
+        default=[], description="required limits that could not be looked at"
     )
     plunge: PlungeView | None = Field(
         default=None, description="null: the cut has no separate plunge feed"
@@ -224,6 +245,9 @@ class AdviceView(View):
     machine: str
     material: str
     workingsteps: list[AdvisedView]
+    is_checked: bool = Field(
+        default=True, description="whether every required limit could be looked at"
+    )
     total_time_s: BeforeAfterView
     findings: list[FindingView]
     is_written: bool = Field(description="whether an optimised program was written")

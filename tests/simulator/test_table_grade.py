@@ -5,11 +5,11 @@ from dataclasses import replace
 import pytest
 
 from simulator.library import load_material
-from simulator.tool_windows import grade_for
 from simulator.removal.cutter import Cutter
 from simulator.spec import CuttingMaterial, ToolKind
 from simulator.table_grade import grade_of_table_tool
 from simulator.tool_table import TableTool
+from simulator.tool_windows import grade_for
 
 STEEL = load_material("c45")
 MILL = TableTool(

@@ -76,7 +76,9 @@ def test_feeds_and_depths_of_the_library_fall_in_the_order_of_the_groups(
     for kind in (ToolKind.ENDMILL, ToolKind.DRILL, ToolKind.FACEMILL, ToolKind.TURNING):
         grades = [grade_for(kind, edge, replace(C45, iso_group=group)) for group in GROUPS]
         known = [each for each in grades if each is not None and not each.borrowed]
-        feeds = [each.max_feed_ratio or each.max_feed or 0.0 for each in known if each.has_feeds]
+        feeds = [
+            each.max_feed_ratio or each.max_feed or 0.0 for each in known if each.has_feeds
+        ]
         assert feeds == sorted(feeds, reverse=True)
 
 
