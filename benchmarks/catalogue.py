@@ -22,11 +22,11 @@ from optimiser.conditions import CuttingConditions, tool_grade
 from optimiser.cut import Cut, CutKind
 from optimiser.errors import Infeasible
 from optimiser.formulate import OptimisationTask, problem_of, state_of
-from optimiser.limits import why_no_speed
 from optimiser.modes import Free, Mode
 from optimiser.problem import Setting
 from optimiser.required import unchecked_limits
 from optimiser.safety import safety_factor
+from optimiser.speed_limits import why_no_speed
 from simulator.library import DATA, load_machine, load_material, material_names
 from simulator.physics.engagement import unidirectional
 from simulator.spec import CuttingMaterial, ToolKind
@@ -148,7 +148,7 @@ def window_of(case: Case) -> Window:
         case.diameter * edge.get("pilot", {}).get("ratio", 1.0),
         edge.get("sizes", {}).get("largest_diameter_mm", inf),
     )
-    row = next(
+    row: dict[str, Any] = next(
         (
             row
             for row in tools["grade"]

@@ -15,10 +15,8 @@ from optimiser.limits import (
     drill_point,
     force_factor,
     force_load,
-    held_speed,
     limits_of,
     power_load,
-    speed_range,
     spindle_limits,
 )
 from optimiser.loads import scaled, thrust
@@ -28,6 +26,7 @@ from optimiser.problem import BoundSide, Cost, Limit, LimitName, Monomial, Probl
 from optimiser.roughness import roughness_load
 from optimiser.safety import USUAL_QUANTILE, require_quantile, safety_factor
 from optimiser.source import Source, along_paths
+from optimiser.speed_limits import held_speed, speed_range
 from optimiser.speed_stretch import segment_within, stretch_ends
 from optimiser.stability import stability_limits
 from simulator.library import find_window

@@ -28,27 +28,22 @@ from optimiser.estimate_turning import mean_diameter
 from optimiser.formulate import OptimisationTask, problem_of, state_of
 from optimiser.front import front_of
 from optimiser.holding import holding_load
-from optimiser.limits import (
-    allowance_limits,
-    is_bent,
-    why_no_speed,
-    why_thread_too_fast,
-    why_too_fast,
-)
+from optimiser.impossible import why_impossible, why_thread_impossible
+from optimiser.limits import is_bent
 from optimiser.modes import Free, Mode
 from optimiser.passes import AdviceContext, best_of
 from optimiser.plunge_feed import plunge_fault, plunge_findings
-from optimiser.problem import BoundSide, Problem
+from optimiser.problem import Problem
 from optimiser.reasons import passed_limits, plunge_reason, reason_of
 from optimiser.required import unchecked_limits
 from optimiser.requirement import required_roughness
 from optimiser.roughness import LAND_SHARE, roughness_load
 from optimiser.source import CutSource, WiperCutSource, why_elsewhere
+from optimiser.speed_limits import why_thread_too_fast, why_too_fast
 from optimiser.stability import RISK, estimate_texts, stability_of
 from optimiser.tolerance import permitted_deflection
 from simulator.edge_material import edge_material
 from simulator.spec import CuttingMaterial, Machine, MachineKind, MaterialMatch
-from simulator.tool_windows import why_unsuited
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError
 from stepnc_model.program import Program, ResolvedWorkingstep
@@ -207,7 +202,7 @@ def advise(
         findings.append(program.finding(Severity.WARNING, idle, step.operation_ref))
         state = _in_air(before) if cut.is_air else before
         return replace(untouched, reason=idle, before=state, after=state), findings
-    impossible = _why_impossible(cut, at, tool)
+    impossible = why_impossible(cut, at, tool)
     if impossible:
         status = AdviceStatus.INFEASIBLE
         return replace(untouched, status=status, reason=impossible, after=None), findings
@@ -242,36 +237,12 @@ def advise(
     return advice, findings + passed_limits(program, advice)
 
 
-def _why_impossible(cut: Cut, at: CuttingConditions, tool: Tool) -> str:
-    """Reason why this tool cannot cut this material; empty if it can, or if nothing is known.
-
-    A machine with only stated limits knows nothing beyond its source.
-    """
-    if at.machine.only_stated_limits:
-        return ""
-    if at.grade is None:
-        return f"the library knows no such tool of {at.cutting_material} as '{tool.id}'"
-    return (
-        why_unsuited(at.cutting_material, at.material)
-        or why_no_speed(cut, at)
-        or _why_not_reamed(cut, at)
-    )
-
-
-def _why_not_reamed(cut: Cut, at: CuttingConditions) -> str:
-    """Allowance that a reamer cannot take off; empty if it can, or if it is too small."""
-    for limit in allowance_limits(cut, at):
-        if limit.sense is BoundSide.AT_MOST and not limit.holds(1.0, 1.0, 1.0):
-            return f"{exact.told(limit, limit.load.value(1.0, 1.0, 1.0), 1.0)} {limit.origin}"
-    return ""
-
-
 def _thread(
     program: Program, untouched: Advice, machine: Machine, material: MaterialMatch
 ) -> tuple[Advice, list[Finding]]:
     """Advice for a thread, whose feed is its pitch: only its speed can be checked."""
     step, tool = untouched.workingstep, untouched.tool
-    unsuited = _why_thread_impossible(tool, machine, material)
+    unsuited = why_thread_impossible(tool, machine, material.material)
     if unsuited:
         return replace(untouched, status=AdviceStatus.INFEASIBLE, reason=unsuited), []
     too_fast = why_thread_too_fast(
@@ -283,14 +254,6 @@ def _thread(
     )
     kept = _kept(untouched, "the feed is bound to the pitch of the thread", too_fast)
     return kept, _too_fast(program, kept)
-
-
-def _why_thread_impossible(tool: Tool, machine: Machine, material: MaterialMatch) -> str:
-    """Reason why a threading tool cannot cut this material; empty if it can."""
-    if machine.only_stated_limits:
-        return ""
-    edge = edge_material(tool.edge_material) or CuttingMaterial.CARBIDE
-    return why_unsuited(edge, material.material)
 
 
 def _bounds(

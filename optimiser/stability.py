@@ -17,9 +17,10 @@ from typing import TYPE_CHECKING
 from optimiser.chip_load import least_chip, least_feed
 from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind
-from optimiser.limits import force_factor, speed_range
+from optimiser.limits import force_factor
 from optimiser.measured_modes import MeasuredModes, measured_modes, what_is_measured
 from optimiser.problem import Limit, LimitName, Monomial, SpeedCurve
+from optimiser.speed_limits import speed_range
 from simulator.physics.cutting import chip_stiffness
 from simulator.physics.engagement import mean_chip_ratio
 from simulator.physics.milling import RADIAL_SHARE

@@ -11,11 +11,11 @@ from typing import Annotated, Literal
 
 from simulator.material_file import Rake, SpeedWindow
 from simulator.spec import (
-    Allowance,
     CuttingMaterial,
     DepthWindow,
     DrillPoint,
     FeedWindow,
+    ReamingAllowance,
     ToolGrade,
     ToolKind,
 )
@@ -236,10 +236,12 @@ def _grade(row: GradeRow, edge: EdgeTable, kind: ToolKind) -> ToolGrade:
     )
 
 
-def read_allowances(path: Path) -> tuple[Allowance, ...]:
+def read_allowances(path: Path) -> tuple[ReamingAllowance, ...]:
     """Allowances of reamers by diameter, the smallest first."""
     rows = sorted(read_toml(path, GradeFile).allowance, key=lambda row: row.up_to_mm)
     return tuple(
-        Allowance(up_to=row.up_to_mm, least=row.min_mm, greatest=row.max_mm, source=row.source)
+        ReamingAllowance(
+            up_to=row.up_to_mm, least=row.min_mm, greatest=row.max_mm, source=row.source
+        )
         for row in rows
     )

@@ -15,10 +15,10 @@ from simulator.machine_file import read_machine
 from simulator.machine_xml import read_machine_xml
 from simulator.material_file import read_material
 from simulator.spec import (
-    Allowance,
     CuttingMaterial,
     CuttingWindow,
     Machine,
+    ReamingAllowance,
     ToolConstruction,
     ToolGrade,
     ToolKind,
@@ -168,7 +168,7 @@ def bare_tool(tool_kind: ToolKind, cutting_material: CuttingMaterial) -> ToolGra
 
 
 @cache
-def reaming_allowances() -> tuple[Allowance, ...]:
+def reaming_allowances() -> tuple[ReamingAllowance, ...]:
     """Allowances of reamers by diameter, the smallest first."""
     return read_allowances(_grade_path(ToolKind.REAMER))
 

@@ -396,7 +396,7 @@ class DepthWindow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Allowance:
+class ReamingAllowance:
     """What reamers up to a diameter take off the diameter of a hole."""
 
     up_to: float

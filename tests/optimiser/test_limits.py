@@ -11,16 +11,15 @@ from optimiser.chip_load import FINISH_NOSE_FEED, ROUGH_NOSE_FEED
 from optimiser.conditions import GREATEST_DEFLECTION, PermittedDeflection
 from optimiser.cut import Texture
 from optimiser.limits import (
-    cutting_speed_window,
     force_factor,
     force_load,
     limits_of,
     power_load,
     segment_at,
-    speed_range,
     spindle_limits,
 )
 from optimiser.problem import BoundSide, Limit, LimitName
+from optimiser.speed_limits import cutting_speed_window, speed_range
 from simulator.physics.engagement import bilateral, full_immersion, unidirectional
 from simulator.physics.strength import STICK_OUT
 from simulator.spec import ToolKind
