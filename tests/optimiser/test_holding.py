@@ -39,7 +39,7 @@ from simulator.work_holding import (
 )
 from stepnc_model.errors import Severity
 from tests.optimiser.cuts import CARBIDE, CUT, DRILLED, TURNED, conditions, named
-from tests.optimiser.plans import ALL_FREE, advice_of, after, edited
+from tests.optimiser.plans import ALL_FREE, DEEP_INSERT, advice_of, after, edited
 
 CHUCK = Chuck(
     clamping_force=60_000.0,
@@ -72,7 +72,7 @@ def shaft(
 ) -> Plan:
     functions = "#330=TURNING_MACHINE_FUNCTIONS(.T.,.FLOOD.,$,(),.T.,$,$,(),"
     return optimise_program(
-        edited("shaft", (f"{functions}.F.,", f"{functions}{tail_stock},")),
+        edited("shaft", DEEP_INSERT, (f"{functions}.F.,", f"{functions}{tail_stock},")),
         machine=replace(load_machine("lathe22"), holdings=holdings),
         material=match_material(["42CrMo4"]),
         task=task,

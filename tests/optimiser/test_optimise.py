@@ -21,6 +21,7 @@ from stepnc_model.toolpath.path import length
 from stepnc_model.units import mm_min_from_speed
 from tests.optimiser.plans import (
     ALL_FREE,
+    DEEP_INSERT,
     PARTS,
     advice_of,
     after,
@@ -107,8 +108,8 @@ def test_feed_synchronised_with_the_spindle_is_untouched() -> None:
     assert "pitch" in advice.reason
 
 
-def test_roughness_of_the_file_is_kept(shaft: Plan) -> None:
-    advice = advice_of(shaft, "FINISH CONTOUR")
+def test_roughness_of_the_file_is_kept() -> None:
+    advice = advice_of(measured("shaft", OptimisationTask(), DEEP_INSERT), "FINISH CONTOUR")
     assert after(advice).roughness == pytest.approx(1.6e-3)
     assert advice.active is LimitName.ROUGHNESS
 

@@ -8,12 +8,12 @@ import pytest
 
 from optimiser.advice import AdviceStatus, Plan
 from optimiser.cut import Cut
-from optimiser.formulate import OptimisationTask
+from optimiser.formulate import OptimisationTask, problem_of, state_of
 from optimiser.hardest import Bending, with_hardest
 from optimiser.limits import allowance_limits, limits_of
 from optimiser.modes import Free
 from optimiser.optimise import optimise_program
-from optimiser.problem import BoundSide, LimitName
+from optimiser.problem import BoundSide, Limit, LimitName
 from optimiser.required import REQUIRED, unchecked_limits
 from optimiser.source import from_features
 from simulator.library import load_machine, load_material
@@ -190,9 +190,9 @@ def resized(diameter: float) -> Cut:
     )
 
 
-def named_label(limits: tuple[object, ...], words: str) -> float:
-    (found,) = (each for each in limits if words in each.words)  # type: ignore[attr-defined]
-    return float(found.bound)  # type: ignore[attr-defined]
+def named_label(limits: tuple[Limit, ...], words: str) -> float:
+    (found,) = (each for each in limits if words in each.words)
+    return found.bound
 
 
 @every_case(
@@ -219,9 +219,7 @@ def test_a_reamer_without_a_known_hole_lists_its_allowance_as_unchecked() -> Non
     assert found.name is LimitName.ALLOWANCE
 
 
-def limits_with_power(cut: Cut) -> tuple[object, ...]:
-    from optimiser.formulate import problem_of, state_of  # noqa: PLC0415
-
+def limits_with_power(cut: Cut) -> tuple[Limit, ...]:
     at = conditions(cut.tool_kind)
     problem = problem_of(cut, at, OptimisationTask(free=frozenset(Free)))
     return tuple(load.limit for load in state_of(cut, problem, at, cut.programmed).loads)
