@@ -1,0 +1,90 @@
+"""Bounds of tools of a table, and what is told of tools without windows of their own."""
+
+from dataclasses import replace
+from math import inf
+
+import numpy as np
+
+from optimiser.along_path.caps import CutBounds
+from optimiser.along_path.stretch import met_caps
+from optimiser.along_path.tool_bounds import bounds_of_tool, window_findings
+from simulator.library import load_machine, load_material
+from simulator.removal.cutter import Cutter
+from simulator.spec import CuttingMaterial, ToolKind, WorkMaterial
+from simulator.tool_table import TableTool
+from stepnc_model.errors import Severity
+from tests.every_case import every_case
+from tests.optimiser.along_path.stretches import BOUNDS, half_cut, straight, stretch_of
+
+C45 = load_material("c45")
+HARD = load_material("hardened_55hrc")
+HSS, CERAMIC = CuttingMaterial.HSS, CuttingMaterial.CERAMIC
+MILL = TableTool(
+    number=1,
+    id="mill",
+    kind=ToolKind.ENDMILL,
+    cutting_material=CuttingMaterial.CARBIDE,
+    teeth=4,
+    shape=Cutter(diameter=12.0, teeth=4, edge_length=inf),
+)
+
+
+def bounds(tool: TableTool, material: WorkMaterial, machine: str = "vmc15") -> CutBounds:
+    found = bounds_of_tool(
+        tool,
+        load_machine(machine),
+        material,
+        quantile=0.9,
+        is_finishing=False,
+        roughness=None,
+    )
+    assert found is not None
+    return found
+
+
+@every_case(
+    ("tool", "material", "keeps"),
+    [
+        (MILL, C45, False),
+        (MILL, replace(C45, iso_group=""), False),
+        (replace(MILL, cutting_material=HSS), HARD, True),
+        (replace(MILL, kind=ToolKind.FACEMILL, cutting_material=CERAMIC), C45, True),
+        (replace(MILL, cutting_material=CERAMIC), C45, True),
+    ],
+)
+def test_a_tool_without_windows_raises_no_feed(
+    tool: TableTool, material: WorkMaterial, *, keeps: bool
+) -> None:
+    assert bounds(tool, material).keeps_programmed is keeps
+
+
+def test_the_stiffness_of_a_mill_counts_without_a_group() -> None:
+    assert bounds(MILL, replace(C45, iso_group="")).at.grade is not None
+
+
+def test_a_kept_feed_is_that_of_each_block_where_there_is_material() -> None:
+    met = half_cut([5.0, 10.0], [True, False])
+    path = replace(stretch_of(straight([10.0], speed=2.0)), met=met, bounds=BOUNDS)
+    free = met_caps(path).feed
+    kept = met_caps(replace(path, bounds=replace(BOUNDS, keeps_programmed=True))).feed
+    assert free[0] > 2.0
+    assert kept[0] == 2.0
+    assert np.isinf(kept[1])
+
+
+@every_case(
+    ("tool", "material", "severity", "words"),
+    [
+        (replace(MILL, cutting_material=HSS), HARD, Severity.ERROR, "high-speed steel"),
+        (replace(MILL, cutting_material=CERAMIC), C45, Severity.WARNING, "max_feed_mm"),
+        (MILL, replace(C45, iso_group=""), Severity.WARNING, "ISO group S"),
+    ],
+)
+def test_windows_that_are_not_the_tool_s_own_are_told(
+    tool: TableTool, material: WorkMaterial, severity: Severity, words: str
+) -> None:
+    machine = load_machine("vmc15")
+    (found,) = window_findings([tool], machine, material)
+    assert found.severity is severity
+    assert words in found.message
+    assert list(window_findings([MILL], machine, C45)) == []
