@@ -92,7 +92,7 @@ test-slow: $(TESTS_READY)
 	$(BIN)/python -m pytest -n auto -m slow --durations=20 --durations-min=1
 
 SEED := $(or $(SEED),$(shell date +%s))
-SHARE ?= 0.3
+SHARE ?= 0.15
 
 # No test may depend on its order, its worker or its folder: a share of the quick tests, others
 # each time, in one of all orders, and a clone of what is committed that nobody else may enter
