@@ -59,9 +59,9 @@ INSTALL = $$(command -v uv >/dev/null 2>&1 && echo "uv pip install --quiet --pyt
 
 demo: $(READY)
 	@mkdir -p $(DEMO)
+	$(BIN)/stepnc check examples/parts/bracket.stpnc
 	$(BIN)/optimise examples/parts/paper002.stpnc --mode TC --machine vmc15 --material c45 \
 		-o $(DEMO)/paper002.optimised.stpnc
-	$(BIN)/stepnc check examples/parts/bracket.stpnc
 	$(BIN)/optimise examples/parts/bracket.stpnc --mode TC --machine vmc15 \
 		-o $(DEMO)/bracket.optimised.stpnc --report $(DEMO)/bracket.html --nc linuxcnc
 	$(BIN)/stepnc simulate $(DEMO)/bracket.optimised.stpnc --machine vmc15 \
@@ -92,7 +92,7 @@ test-slow: $(TESTS_READY)
 	$(BIN)/python -m pytest -n auto -m slow --durations=20 --durations-min=1
 
 SEED := $(or $(SEED),$(shell date +%s))
-SHARE ?= 0.3
+SHARE ?= 0.15
 
 # No test may depend on its order, its worker or its folder: a share of the quick tests, others
 # each time, in one of all orders, and a clone of what is committed that nobody else may enter

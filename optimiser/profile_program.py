@@ -233,21 +233,32 @@ def acceleration_limits(
 
 
 def run(program: cp.Problem, solver: str) -> None:
-    """Solve a program.
+    """Solve a program; where the solver fails, a linear one is given to HiGHS.
+
+    An interior-point solver may make too little progress on one processor and not on another,
+    as sums are rounded differently.
 
     Raises
     ------
     SolverFailed
-        If the solver finds nothing.
+        If no solver finds anything.
     """
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Solution may be inaccurate")
         try:
             program.solve(solver=solver)
         except cp.error.SolverError:
-            raise SolverFailed("solver_error", program="feed profile") from None
+            _solve_by_simplex(program)
     if program.status not in {cp.OPTIMAL, cp.OPTIMAL_INACCURATE, cp.USER_LIMIT}:
         raise SolverFailed(program.status, program="feed profile")
+
+
+def _solve_by_simplex(program: cp.Problem) -> None:
+    """Solve a linear program by HiGHS, which SciPy brings."""
+    try:
+        program.solve(solver=cp.SCIPY)
+    except cp.error.SolverError:
+        raise SolverFailed("solver_error", program="feed profile") from None
 
 
 def second_differences(lengths: Floats) -> sparse.csc_array:

@@ -1,7 +1,7 @@
 """What all tests share: CI draws the same examples each time, a run ends with its skips.
 
 ``-m "not slow"`` runs the quick tests, ``--shuffle SEED`` whatever is run in one of all orders,
-``--share 0.3`` three in ten of them.
+``--share 0.15`` fifteen of a hundred of them.
 """
 
 import os
@@ -99,6 +99,12 @@ def pytest_collection_modifyitems(
         kept = round(config.getoption("share") * len(items))
         config.hook.pytest_deselected(items=items[kept:])
         del items[kept:]
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """Half as many workers again as cores: tests wait for processes a third of their time."""
+    return (3 * (os.cpu_count() or 1) + 1) // 2
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -23,7 +23,7 @@ from simulator.agent.requests import RequestRefused, StreamQuery
 from simulator.motion.segments import Ints
 
 CACHED = 64
-"""parts of streams that are kept for other clients which ask for the same"""
+"""bodies of documents that are kept for other clients which ask for the same"""
 
 MOST_ASSET_SIGNS = 1 << 26
 """characters of all assets together; the oldest go first"""
@@ -75,7 +75,7 @@ class Agent:
             changed=timestamp(now),
             has_quirk=self.has_quirk,
         )
-        self._parts: OrderedDict[object, tuple[bytes, int]] = OrderedDict()
+        self._bodies: OrderedDict[object, tuple[bytes, int]] = OrderedDict()
         self._arrival = asyncio.Event()
         for at, device in enumerate(self.model.devices):
             if device.is_agent:
@@ -136,28 +136,43 @@ class Agent:
 
     def current(self, query: StreamQuery) -> bytes:
         """Document of what holds, or held at a sequence number."""
-        state = self.buffer.state if query.at is None else self.buffer.state_at(query.at)
-        return self.writer.current(self.buffer, state, query.chosen)
+        buffer = self.buffer
+        # Within a buffer a past state does not change, but the present one with each arrival.
+        key = ("current", query.chosen, buffer.next if query.at is None else query.at)
+        kept = self._kept(key)
+        if kept is None:
+            state = buffer.state if query.at is None else buffer.state_at(query.at)
+            kept = self._keep(key, self.writer.held(state, query.chosen), buffer.next)
+        return self.writer.streams(buffer, kept[0], buffer.next)
 
     def sample(self, query: StreamQuery) -> tuple[bytes, int]:
         """Document of observations, and the sequence number that follows."""
         buffer = self.buffer
         key = (query.chosen, query.start, query.end, query.count, buffer.next)
-        kept = self._parts.get(key)
-        if kept is not None:
-            self._parts.move_to_end(key)
-            return kept
-        sequences, following = self._found(query)
-        items, _ = buffer.take(sequences)
-        entries = (
-            (item, buffer.rendered(sequence, self._rendered))
-            for item, sequence in zip(items.tolist(), sequences.tolist(), strict=True)
-        )
-        found = self.writer.streams(buffer, entries, following), following
-        self._parts[key] = found
-        if len(self._parts) > CACHED:
-            self._parts.popitem(last=False)
-        return found
+        kept = self._kept(key)
+        if kept is None:
+            sequences, following = self._found(query)
+            items, _ = buffer.take(sequences)
+            body = self.writer.observations(
+                (item, buffer.rendered(sequence, self._rendered))
+                for item, sequence in zip(items.tolist(), sequences.tolist(), strict=True)
+            )
+            kept = self._keep(key, body, following)
+        return self.writer.streams(buffer, *kept), kept[1]
+
+    def _kept(self, key: object) -> tuple[bytes, int] | None:
+        """Body and following sequence number that another client asked for."""
+        if key not in self._bodies:
+            return None
+        self._bodies.move_to_end(key)
+        return self._bodies[key]
+
+    def _keep(self, key: object, body: bytes, following: int) -> tuple[bytes, int]:
+        """Keep a body for others; the one that was not asked for longest goes."""
+        self._bodies[key] = body, following
+        if len(self._bodies) > CACHED:
+            self._bodies.popitem(last=False)
+        return body, following
 
     async def wait(self, after: int, seconds: float) -> bool:
         """Wait for an observation that a client has not seen; False: there was none in time."""

@@ -117,8 +117,14 @@ class DocumentWriter:
     _starts: list[tuple[str, str]] = field(init=False)
     _groups: list[tuple[int, int]] = field(init=False)
     _stamp: tuple[int, str] = field(init=False, default=(-1, ""))
+    _devices: tuple[str, ...] = field(init=False)
 
     def __post_init__(self) -> None:
+        self._devices = tuple(
+            etree.tostring(each, encoding="unicode")
+            for each in self.model.root
+            if isinstance(each.tag, str)
+        )
         self._starts = []
         for item in self.model.items:
             rest = "".join(
@@ -138,39 +144,28 @@ class DocumentWriter:
 
     def devices(self, device: int | None, *, assets: int, size: int) -> bytes:
         """Device models, of one device or all."""
-        parts = [
-            etree.tostring(element, encoding="unicode")
-            for at, element in enumerate(
-                each for each in self.model.root if isinstance(each.tag, str)
-            )
-            if device is None or at == device
-        ]
+        parts = self._devices if device is None else self._devices[device : device + 1]
         header = self._header(bufferSize=size, **self._asset_words(assets))
         return self._document("Devices", header, f"<Devices>{''.join(parts)}</Devices>")
 
-    def current(
-        self, buffer: ObservationBuffer, state: State, chosen: frozenset[int] | None
-    ) -> bytes:
-        """What holds, of the chosen data items or all."""
-        entries = [
+    def held(self, state: State, chosen: frozenset[int] | None) -> bytes:
+        """Body of what holds, of the chosen data items or all."""
+        return self.observations(
             (item, self.observation(item, entry.time, entry.sequence, entry.value))
             for item, held in enumerate(state)
             if chosen is None or item in chosen
             for entry in held
-        ]
-        return self.streams(buffer, entries, buffer.next)
+        )
 
-    def streams(
-        self, buffer: ObservationBuffer, entries: Iterable[tuple[int, bytes]], following: int
-    ) -> bytes:
-        """Observations by component and category.
+    def streams(self, buffer: ObservationBuffer, body: bytes, following: int) -> bytes:
+        """Document of observations.
 
         Parameters
         ----------
         buffer : ObservationBuffer
             Gives first and last sequence of the header.
-        entries : iterable of (int, bytes)
-            Number of the data item, and its observation.
+        body : bytes
+            From :meth:`observations` or :meth:`held`.
         following : int
             ``nextSequence``.
         """
@@ -181,6 +176,16 @@ class DocumentWriter:
             lastSequence=buffer.last,
             **self._changed(),
         )
+        return self._document("Streams", header, body)
+
+    def observations(self, entries: Iterable[tuple[int, bytes]]) -> bytes:
+        """Body with observations by component and category.
+
+        Parameters
+        ----------
+        entries : iterable of (int, bytes)
+            Number of the data item, and its observation.
+        """
         groups: dict[tuple[int, int], list[bytes]] = {}
         for item, text in entries:
             groups.setdefault(self._groups[item], []).append(text)
@@ -208,7 +213,7 @@ class DocumentWriter:
         if component >= 0:
             parts.append(b"</ComponentStream></DeviceStream>")
         parts.append(b"</Streams>")
-        return self._document("Streams", header, b"".join(parts))
+        return b"".join(parts)
 
     def assets(self, texts: Sequence[str], *, count: int) -> bytes:
         """Assets that are already XML."""

@@ -97,7 +97,7 @@ def test_tooth_that_breaks_while_the_cutter_is_learnt_is_found(
         assert after <= 3
 
 
-@settings(max_examples=25)
+@settings(max_examples=12)
 @given(
     seed=st.integers(0, 2**32 - 1),
     teeth=st.integers(2, 8),

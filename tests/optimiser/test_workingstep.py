@@ -149,7 +149,7 @@ def test_optimum_along_a_helix_equals_brute_force_over_all_passes(
 ) -> None:
     """Loads that are curves of the depth: no grid of passes, feed and speed beats it."""
     compared, bent, late = 0, 0, 0
-    for seed in range(150):
+    for seed in range(60):
         problem = problem_of(seed, free_speed=free_speed, helix=True)
         least = brute_force(problem, mode)
         solution = solved(problem, mode)
@@ -164,9 +164,9 @@ def test_optimum_along_a_helix_equals_brute_force_over_all_passes(
         assert cost <= least * (1.0 + 1e-8), f"seed {seed}"
         # The grid of speeds is made finer about its best number of passes only.
         assert cost >= least * (1.0 - (1e-3 if free_speed else 1e-8)), f"seed {seed}"
-    assert compared >= 120
-    assert bent >= 40
-    assert late >= 5
+    assert compared >= 48
+    assert bent >= 16
+    assert late >= 2
 
 
 @pytest.mark.parametrize("mode", [Mode.TC, Mode.EC])

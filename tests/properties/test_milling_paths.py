@@ -292,7 +292,7 @@ def check_rapids(path: ToolPath) -> None:
 
 
 @given(step=workingsteps())
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=60, deadline=None)
 def test_paths_reach_all_and_gouge_nothing(step: Workingstep) -> None:
     case, radius, allowance = step.case, step.radius, step.allowance
     near = case.kept.buffer(radius + allowance, quad_segs=128)

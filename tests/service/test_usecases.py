@@ -86,18 +86,18 @@ def test_a_named_output_may_replace_an_older_result(paper: Path) -> None:
     assert output.read_bytes().startswith(b"ISO-10303-21;")
 
 
-def test_a_dry_run_writes_nothing(bracket: Path) -> None:
-    before = bracket.read_bytes()
+def test_a_dry_run_writes_nothing(paper: Path) -> None:
+    before = paper.read_bytes()
     for request in (
-        asked_advice(file=bracket, dry_run=True),
-        asked_advice(file=bracket, dry_run=True, in_place=True),
-        asked_advice(file=bracket, dry_run=True, output=bracket.with_name("missing") / "x"),
+        asked_advice(file=paper, dry_run=True),
+        asked_advice(file=paper, dry_run=True, in_place=True),
+        asked_advice(file=paper, dry_run=True, output=paper.with_name("missing") / "x"),
     ):
         outcome = usecases.optimise(*request)
         assert outcome.written is None
         assert outcome.plan.advices
-    assert bracket.read_bytes() == before
-    assert names(bracket.parent) == ["bracket.stpnc"]
+    assert paper.read_bytes() == before
+    assert names(paper.parent) == ["paper002.stpnc"]
 
 
 def test_same_program_same_result(bracket: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from simulator.errors import LibraryError
@@ -148,9 +148,11 @@ KEYS = st.sampled_from([*Root.__struct_fields__, *Row.__struct_fields__, "shape"
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(),
     lambda inner: st.lists(inner) | st.dictionaries(st.text() | KEYS, inner),
+    max_leaves=10,
 )
 
 
+@settings(max_examples=40)
 @given(st.dictionaries(KEYS, JSON))
 def test_any_content_is_read_or_refused_with_its_key(content: dict[str, Any]) -> None:
     with suppress(LibraryError):

@@ -22,6 +22,6 @@ def test_a_circle_is_told_by_its_first_and_last_instance(
 
 
 def test_a_long_chain_is_no_recursion() -> None:
-    edges = {n: (n + 1,) for n in range(100_000)}
+    edges = {n: (n + 1,) for n in range(10_000)}
     assert list(circles(edges)) == []
-    assert list(circles({**edges, 100_000: (0,)})) == [(0, 100_000)]
+    assert list(circles({**edges, 10_000: (0,)})) == [(0, 10_000)]

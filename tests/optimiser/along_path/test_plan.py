@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from optimiser.along_path.pieces import PieceRules
@@ -58,6 +58,7 @@ def test_a_block_that_runs_twice_has_the_feed_of_the_slower_run() -> None:
     assert [block for block, _ in block_feeds(plan)] == [0]
 
 
+@settings(max_examples=30)
 @given(st.lists(st.floats(5.0, 60.0), min_size=3, max_size=8), st.integers(1, 3))
 def test_no_more_feeds_than_asked_for(lengths: list[float], levels: int) -> None:
     planner = FeedPlanner(replace(TASK, levels=levels))

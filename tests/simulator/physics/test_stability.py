@@ -115,7 +115,7 @@ def test_each_depth_is_on_the_border_that_the_characteristic_equation_draws() ->
             assert abs(np.linalg.det(np.eye(2) - open_loop)) < 1e-6
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(
     factor=st.floats(0.2, 5.0),
     width=st.floats(0.11, 1.0),
