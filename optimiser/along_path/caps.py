@@ -56,6 +56,8 @@ class CapName(StrEnum):
     AIR = "air_feed"
     LOCKED = "locked"
     LEAST = "least_feed"
+    RISE = "greatest_rise"
+    STRAIGHT = "straight_plunge"
 
     @property
     def words(self) -> str:

@@ -11,6 +11,7 @@ from pathlib import Path
 from optimiser.along_path.caps import CutBounds
 from optimiser.along_path.tool_bounds import bounds_of_tool
 from optimiser.modes import Mode
+from service.along_path.caution import CLEARANCE, Caution, rise_left
 from service.along_path.course import PathSource
 from service.along_path.run import FeedsAlongPath
 from service.along_path.task import least_feed, task_of
@@ -44,6 +45,9 @@ from stepnc_model.nc.program import NcProgram, read_program
 from stepnc_model.nc.unroll import unrolled
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.units import mm_from_um
+
+LEAST_COST = 0.05
+"""Time from which the cost of the greatest rise is told, s."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,12 +132,14 @@ def optimise_code(
     task = replace(
         task_of(request, machine), keeps_traces=files.report is not None, keeps_idle=True
     )
+    rise = rise_left(program.text.data, request.greatest_rise)
     written = written_code(
         CodeSource(
             program=program,
             paths_of=paths_of,
-            source_of=partial(_source, request),
+            source_of=partial(_source, request, rise=rise),
             mark=request.is_marked,
+            rise=request.greatest_rise,
         ),
         task,
         tell=tell,
@@ -153,6 +159,8 @@ def optimise_code(
             *called_tool_findings(program, library),
             *code.findings,
             *_idle(code, along),
+            *written.doubts,
+            *_cost_of_rise(along, request.greatest_rise, rise),
             *_unchanged(rewritten),
             *along.findings,
             *along.above_limits,
@@ -175,10 +183,16 @@ def _tools(request: AdviceRequest, files: CodeFiles) -> ToolLibrary:
     return read_tools(files.tools, unit=files.tools_unit)
 
 
-def _source(request: AdviceRequest, code: CodePaths) -> PathSource:
+def _source(request: AdviceRequest, code: CodePaths, *, rise: float) -> PathSource:
     """Paths of NC code with the bounds of their tools."""
     bounds = _bounds(code, request)
     return PathSource(
+        caution=Caution(
+            fresh=code.uncut,
+            rise=rise,
+            allows_plunge=request.allow_plunge,
+            clearance=max(CLEARANCE, request.stock_margin_mm),
+        ),
         prepare=code.prepared,
         bounds=lambda part: bounds.get(part.name),
         numbered=lambda run: CodeBlocks(run.blocks, code),
@@ -236,6 +250,29 @@ def _idle(code: CodePaths, along: FeedsAlongPath) -> Iterator[Finding]:
         yield Finding(
             severity=Severity.WARNING, message="no feed of this program may be chosen"
         )
+
+
+def _cost_of_rise(along: FeedsAlongPath, most: float, rise: float) -> Iterator[Finding]:
+    """Findings on the time that the greatest rise costs, and on code that rose before."""
+    costs = [
+        f"{step.name} {step.plan.rise_cost:.1f} s"
+        for step in along.steps
+        if step.plan is not None
+        and step.name not in along.idle
+        and step.plan.rise_cost > LEAST_COST
+    ]
+    if costs:
+        text = (
+            f"feeds rise to at most {rise:g} times the programmed ones (--greatest-rise), "
+            f"which costs {', '.join(costs)}"
+        )
+        yield Finding(severity=Severity.NOTE, message=text)
+    if rise < most:
+        text = (
+            f"the feeds of this code rose before, as a comment says: they rise to at most "
+            f"{rise:g} times what it has; for more, advise the code that it was made from"
+        )
+        yield Finding(severity=Severity.NOTE, message=text)
 
 
 def _unchanged(rewritten: RewrittenCode) -> Iterator[Finding]:

@@ -216,6 +216,7 @@ def planned(
         bounds=source.bounds,
         log=source.numbered(given),
         watch=before.add,
+        caution=source.caution,
     ):
         planner.add(stretch)
     return _path_plan(planner, before, _idle(before) if task.keeps_idle else frozenset())

@@ -23,7 +23,7 @@ from simulator.motion.segments import Bools, Floats, Ints
 from simulator.removal.cutter import Cutter, Insert
 from simulator.spec import Machine, MachineKind, MaterialMatch
 from simulator.tool_table import TableTool
-from stepnc_model.errors import Finding, Severity
+from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.nc.compensation import tool_moves
 from stepnc_model.nc.moves import (
     REASONS,
@@ -208,7 +208,7 @@ class CodePaths:
             lines = np.unique(text.lines[moves.block[rows]])
             yield Finding(
                 severity=Severity.WARNING,
-                message=f"{_spans(lines)}: the tool goes beside the compensated contour by its "
+                message=f"{spans(lines)}: the tool goes beside the compensated contour by its "
                 "radius in the tool table; is this the radius in the control?",
                 line=int(lines[0]),
             )
@@ -245,6 +245,19 @@ class CodePaths:
             done=lambda: blocks.share(len(moves)),
             read=lambda: blocks.count,
         )
+
+    def uncut(self, margin: float) -> StockMap:
+        """Stock as given, larger by a margin, mm.
+
+        Raises
+        ------
+        StepNcError
+            When the stock is invalid or not known.
+        """
+        raw = self._raw()
+        if raw is None:
+            raise StepNcError("the stock is not known: name it with --stock")
+        return self._map(raw, margin)
 
     def _raw(self) -> GivenStock | None:
         """Raw part; None if it is not known."""
@@ -349,7 +362,7 @@ class CodePaths:
             lines = np.unique(text.lines[moves.block[rows]])
             yield Finding(
                 severity=Severity.WARNING,
-                message=message.format(_spans(lines), reason),
+                message=message.format(spans(lines), reason),
                 line=int(lines[0]),
             )
 
@@ -418,7 +431,7 @@ def _is_outside(shape: object) -> bool:
     return isinstance(shape, Insert) and not shape.is_inside
 
 
-def _spans(lines: Ints) -> str:
+def spans(lines: Ints) -> str:
     """Numbers of lines in words, consecutive ones as a range."""
     ends = np.flatnonzero(np.diff(lines) > 1)
     firsts, lasts = np.append(lines[0], lines[ends + 1]), np.append(lines[ends], lines[-1])
