@@ -17,7 +17,7 @@ from itertools import pairwise
 import numpy as np
 
 from optimiser.along_path.caps import NAMES, NUMBER, CapName
-from optimiser.along_path.carried import excess
+from optimiser.along_path.carried import BrokenBound, excess, most_broken
 from optimiser.along_path.free import FASTEST_ALONE, FreeProfile, FreeTask, free_profile
 from optimiser.along_path.pieces import (
     FeedPieces,
@@ -121,6 +121,7 @@ class FeedPlanner:
         self._locked: list[float] = []
         """Greatest feed of each run that may not be chosen, mm/s."""
         self._rise_cost: dict[str, float] = {}
+        self._broken: dict[str, BrokenBound] = {}
         self._kept: set[int] = set()
         """Blocks that keep their feeds."""
 
@@ -128,6 +129,11 @@ class FeedPlanner:
     def excess(self) -> Mapping[str, float]:
         """Greatest programmed feed over what the process permits, by part of the program."""
         return self._excess
+
+    @property
+    def broken(self) -> Mapping[str, BrokenBound]:
+        """Programmed feeds farthest above what the process permits, by part of the program."""
+        return {name: worst for name, worst in self._broken.items() if worst.ratio > PERMITTED}
 
     def add(self, stretch: PathStretch) -> None:
         """Plan the feeds of a stretch.
@@ -152,6 +158,9 @@ class FeedPlanner:
         self._excess[name] = max(most, self._excess.get(name, 0.0))
         given = self._given_windows.get(name, 0.0)
         self._given_windows[name] = given + commands.given_window
+        worst, known = most_broken(stretch, machine), self._broken.get(name)
+        if worst is not None and (known is None or worst.ratio > known.ratio):
+            self._broken[name] = worst
         cost = self._cost_of_rise(stretch, places, pieces)
         self._rise_cost[name] = self._rise_cost.get(name, 0.0) + cost
         if stretch.is_kept is not None:

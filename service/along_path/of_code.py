@@ -46,6 +46,8 @@ from stepnc_model.nc.unroll import unrolled
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.units import mm_from_um
 
+NOTHING_WRITTEN = "nothing was written: no feed of this program could be chosen"
+
 LEAST_COST = 0.05
 """Time from which the cost of the greatest rise is told, s."""
 
@@ -86,6 +88,10 @@ class CodeAdvice:
     findings: tuple[Finding, ...]
     written: Path | None
     """File of the rewritten code; None when nothing was written."""
+    faults: tuple[Finding, ...] = ()
+    """Rapids through material, overloads, and bounds that the written code breaks."""
+    is_advised: bool = True
+    """Whether any feed could be chosen."""
 
 
 def optimise_code(
@@ -145,6 +151,8 @@ def optimise_code(
         tell=tell,
     )
     along, rewritten = written.along, written.rewritten
+    faults = tuple(dict.fromkeys((*along.faults(machine), *written.faults)))
+    is_advised = _is_advised(along)
     found = CodeAdvice(
         program=name,
         machine=machine,
@@ -162,16 +170,26 @@ def optimise_code(
             *written.doubts,
             *_cost_of_rise(along, request.greatest_rise, rise),
             *_unchanged(rewritten),
-            *along.findings,
+            *(each for each in along.findings if each not in faults),
             *along.above_limits,
             *written.findings,
+            *faults,
         ),
-        written=None if files.dry_run else output,
+        written=output if is_advised and not files.dry_run else None,
+        faults=faults,
+        is_advised=is_advised,
     )
-    if not files.dry_run:
+    if found.written is not None:
         write_atomically(output, rewritten.data)
         tell(f"written: {output}")
+    elif not is_advised:
+        tell(NOTHING_WRITTEN)
     return found
+
+
+def _is_advised(along: FeedsAlongPath) -> bool:
+    """Whether any feed of a program could be chosen, also where it stays as it is."""
+    return any(step.plan is not None and step.name not in along.idle for step in along.steps)
 
 
 def _tools(request: AdviceRequest, files: CodeFiles) -> ToolLibrary:

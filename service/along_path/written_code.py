@@ -21,7 +21,6 @@ from service.along_path.run import (
     AlongPathTask,
     FeedsAlongPath,
     PathPlan,
-    along_path,
     planned,
     run_of,
 )
@@ -76,6 +75,8 @@ class WrittenCode:
     """Findings on what was written."""
     doubts: tuple[Finding, ...] = ()
     """Moves of the program that cast doubt on its stock."""
+    faults: tuple[Finding, ...] = ()
+    """Feeds above what the process permits that could not be lowered."""
 
 
 def written_code(
@@ -97,12 +98,18 @@ def written_code(
     """
     code = source.paths_of(source.program)
     paths = source.source_of(code)
-    along = along_path(paths, task, tell=tell)
+    ticker = Ticker(tell)
+    plans = [planned(paths, task, ticker=ticker)]
+    along = run_of(plans[0], paths, task, ticker=ticker)
     doubts = () if paths.caution is None else tuple(paths.caution.findings())
     rewritten = _rewritten(source, code, along.feeds)
     if rewritten.data == source.program.text.data:
-        return WrittenCode(along=_left_alone(along), rewritten=rewritten, doubts=doubts)
-    ticker = Ticker(tell)
+        return WrittenCode(
+            along=_left_alone(along),
+            rewritten=rewritten,
+            doubts=doubts,
+            faults=_broken(plans[0]),
+        )
     feeds, plans, is_settled = along.feeds, list[PathPlan](), False
     while not is_settled and len(plans) < MOST_PLANS:
         written = source.source_of(_paths_of_written(source, rewritten))
@@ -125,7 +132,21 @@ def written_code(
         rewritten=rewritten,
         findings=() if is_settled else (NOT_SETTLED,),
         doubts=doubts,
+        faults=_broken(plans[-1], rewritten.lines),
     )
+
+
+def _broken(plan: PathPlan, lines: WrittenLines | None = None) -> tuple[Finding, ...]:
+    """Faults of the parts of a program whose feeds are above what the process permits."""
+    found = []
+    for name, worst in plan.planner.broken.items():
+        text = (
+            f"{name}: its feed is {worst.ratio:.3g} times what {worst.name.words} permits, and "
+            "could not be lowered"
+        )
+        line = worst.block if lines is None else lines.origin(worst.block).line
+        found.append(Finding(severity=Severity.ERROR, message=text, line=line))
+    return tuple(found)
 
 
 def composed(feeds: BlockFeeds, more: BlockFeeds, lines: WrittenLines) -> BlockFeeds:

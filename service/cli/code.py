@@ -2,7 +2,7 @@
 
 import argparse
 
-from service.cli.options import OK
+from service.cli.options import LIMIT_EXCEEDED, NOTHING_ADVISED, OK
 
 
 def optimise_code(options: argparse.Namespace) -> int:
@@ -35,4 +35,6 @@ def optimise_code(options: argparse.Namespace) -> int:
         write_out(code_advice_json(found))
     else:
         print_code_advice(found)
-    return OK
+    if found.faults:
+        return LIMIT_EXCEEDED
+    return OK if found.is_advised else NOTHING_ADVISED

@@ -103,7 +103,7 @@ def _advise_code(
     _keep_curves(task, found.along)
     task.keep({
         **json.loads(code_advice_json(found)),
-        "is_written": True,
+        "is_written": found.written is not None,
         "nc_control": found.control,
     })
 
