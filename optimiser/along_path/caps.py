@@ -58,6 +58,7 @@ class CapName(StrEnum):
     LEAST = "least_feed"
     RISE = "greatest_rise"
     STRAIGHT = "straight_plunge"
+    NO_STOCK = "no_stock_met"
 
     @property
     def words(self) -> str:

@@ -73,7 +73,7 @@ def plunge_feeds(stretch: PathStretch, base: Floats, *, is_allowed: bool) -> Flo
         depth = _depths(stretch, is_down)
         share = np.minimum(1.0, DEPTH_RATIO * bounds.cut.diameter / np.maximum(depth, 1e-9))
         catalogue = bounds.plunge * bounds.cut.tool.teeth * stretch.spindle
-        feeds = np.maximum(feeds, share * catalogue)
+        feeds = np.maximum(feeds, np.maximum(share * catalogue, bounds.least))
     return np.where(is_down, feeds, np.inf)
 
 

@@ -92,7 +92,10 @@ def written_caps(stretch: PathStretch) -> Caps:
     for feed, name in ((stretch.rise, CapName.RISE), (stretch.plunge, CapName.STRAIGHT)):
         if feed is not None:
             found = found.least(capped(np.where(stretch.is_free, feed, np.inf), name))
-    return found
+    if stretch.is_kept is None:
+        return found
+    kept = np.where(stretch.is_kept & stretch.is_free, stretch.segments.speed, np.inf)
+    return capped(kept, CapName.NO_STOCK).least(found)
 
 
 def commands_of(stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds) -> Commands:
@@ -155,7 +158,7 @@ OWN = [
 ]  # fmt: skip
 """Numbers of the limits of machine and control, whose places are exact."""
 
-WRITTEN = [NUMBER[CapName.RISE], NUMBER[CapName.STRAIGHT]]
+WRITTEN = [NUMBER[name] for name in (CapName.RISE, CapName.STRAIGHT, CapName.NO_STOCK)]
 """Numbers of the limits on what may be written."""
 
 

@@ -14,6 +14,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from optimiser.along_path.cautious import (
+    is_straight_down,
     is_straight_up,
     plunge_feeds,
     programmed_rates,
@@ -101,7 +102,6 @@ class Caution:
         plunge = plunge_feeds(stretch, base, is_allowed=self.allows_plunge) if is_mill else None
         return replace(
             stretch,
-            is_free=stretch.is_free & ~is_kept,
             is_kept=is_kept,
             rise=risen(stretch, base, self.rise),
             plunge=plunge,
@@ -130,6 +130,8 @@ class Caution:
         is_asked &= ~np.isin(segments.block, segments.block[met > 0.0])
         if is_mill:
             is_asked &= ~is_straight_up(stretch)
+            # A straight plunge keeps its feed anyway.
+            is_asked &= ~is_straight_down(stretch) | self.allows_plunge
         rows = np.flatnonzero(is_asked & (segments.block != BRIDGE))
         if len(rows) and not is_drill:
             near = self._meeting(segments, rows, shape, self.clearance)

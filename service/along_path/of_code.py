@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from optimiser.along_path.caps import CutBounds
+from optimiser.along_path.caps import CapName, CutBounds
 from optimiser.along_path.tool_bounds import bounds_of_tool
 from optimiser.modes import Mode
 from service.along_path.caution import CLEARANCE, Caution, rise_left
@@ -143,7 +143,7 @@ def optimise_code(
         CodeSource(
             program=program,
             paths_of=paths_of,
-            source_of=partial(_source, request, rise=rise),
+            source_of=partial(source_of, request, rise=rise),
             mark=request.is_marked,
             rise=request.greatest_rise,
         ),
@@ -189,7 +189,12 @@ def optimise_code(
 
 def _is_advised(along: FeedsAlongPath) -> bool:
     """Whether any feed of a program could be chosen, also where it stays as it is."""
-    return any(step.plan is not None and step.name not in along.idle for step in along.steps)
+    return any(
+        step.plan is not None
+        and step.name not in along.idle
+        and any(name is not CapName.NO_STOCK for name in step.plan.shares)
+        for step in along.steps
+    )
 
 
 def _tools(request: AdviceRequest, files: CodeFiles) -> ToolLibrary:
@@ -201,7 +206,7 @@ def _tools(request: AdviceRequest, files: CodeFiles) -> ToolLibrary:
     return read_tools(files.tools, unit=files.tools_unit)
 
 
-def _source(request: AdviceRequest, code: CodePaths, *, rise: float) -> PathSource:
+def source_of(request: AdviceRequest, code: CodePaths, *, rise: float) -> PathSource:
     """Paths of NC code with the bounds of their tools."""
     bounds = _bounds(code, request)
     return PathSource(
