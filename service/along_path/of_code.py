@@ -30,9 +30,11 @@ from service.files import (
     write_atomically,
 )
 from service.numbers import tool_numbers_in
+from service.program_kind import ProgramKind
 from service.reading import Tell, silent
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
+from service.requests.serves import require_served
 from service.simulation.called_tools import called_tool_findings, with_called_tools
 from service.simulation.code_paths import CodeBlocks, CodePaths
 from simulator.library import load_machine
@@ -105,6 +107,7 @@ def optimise_code(
         When a file, a name or a number is invalid, or the machine cannot run the program.
     """
     require_bounds(request)
+    require_served(request, ProgramKind.NC_CODE)
     output = _output(files)
     name = files.name or files.file.name
     library = _tools(request, files)
