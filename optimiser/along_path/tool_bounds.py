@@ -4,10 +4,11 @@ What a STEP-NC program says of a workingstep is not known: roughness and toleran
 the user says that a tool finishes.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import isinf
 
 from optimiser.along_path.caps import CapName, CutBounds
+from optimiser.bar_grip import BarGrip
 from optimiser.conditions import CuttingConditions, PermittedDeflection
 from optimiser.cut import Cut, CutKind, Texture
 from optimiser.optimise import DEFAULT_QUALITY
@@ -21,6 +22,7 @@ from simulator.removal.tool_shape import ENDS, THREADS
 from simulator.spec import Machine, ToolGrade, ToolKind, WorkMaterial
 from simulator.table_grade import grade_of_table_tool
 from simulator.tool_table import TableTool
+from simulator.work_holding import Holding
 from stepnc_model.tool import Tool
 
 TEXTURES = {
@@ -32,7 +34,23 @@ TEXTURES = {
 """Surfaces that a finishing tool may leave; all of them must keep the roughness."""
 
 
-def bounds_of_tool(
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnownOfJob:
+    """What is known of a job beyond the tool table."""
+
+    force_factor: float = 1.0
+    """Accepted correction of k_c for the tool."""
+    safety_factor: float | None = None
+    """k_c at the planned quantile over its accepted correction; None: by the material."""
+    holding: Holding | None = None
+    grip: BarGrip | None = None
+    """Where a chuck grips the bar."""
+
+
+NOTHING_KNOWN = KnownOfJob()
+
+
+def bounds_of_tool(  # noqa: PLR0913 (a tool, its machine and material, and what is asked of it)
     tool: TableTool,
     machine: Machine,
     material: WorkMaterial,
@@ -40,6 +58,7 @@ def bounds_of_tool(
     quantile: float,
     is_finishing: bool,
     roughness: float | None,
+    job: KnownOfJob = NOTHING_KNOWN,
 ) -> CutBounds | None:
     """Bounds of a tool in a material; None for threading, whose feed is its pitch.
 
@@ -54,11 +73,14 @@ def bounds_of_tool(
         Whether the tool leaves final surfaces.
     roughness : float or None, mm
         Roughness Ra of final surfaces; None: general machining.
+    job : KnownOfJob
+        Accepted correction of the tool, and the work-holding.
     """
     if tool.kind in THREADS:
         return None
     spread = material.spread
     is_margin = not machine.only_stated_limits and spread is not None
+    customary = safety_factor(spread, quantile) if is_margin and spread else 1.0
     grade = grade_of_table_tool(tool, material)
     cut = _cut(tool, grade, is_finishing=is_finishing)
     at = CuttingConditions(
@@ -71,7 +93,10 @@ def bounds_of_tool(
         if is_finishing
         else PermittedDeflection(),
         centre_cutting=tool.centre_cutting,
-        safety_factor=safety_factor(spread, quantile) if is_margin and spread else 1.0,
+        force_factor=job.force_factor,
+        safety_factor=customary if job.safety_factor is None else job.safety_factor,
+        holding=None if machine.only_stated_limits else job.holding,
+        grip=job.grip,
     )
     surface = _surface_feed(cut, at)
     return CutBounds(
@@ -79,6 +104,7 @@ def bounds_of_tool(
         at=at,
         fixed=() if surface is None else ((CapName.ROUGHNESS, surface),),
         plunge=permitted_plunge(cut, at),
+        is_held_along=at.holding is not None,
     )
 
 

@@ -12,6 +12,7 @@ from optimiser.along_path.caps import CapName, CutBounds
 from optimiser.along_path.tool_bounds import bounds_of_tool
 from optimiser.modes import Mode
 from service.along_path.caution import CLEARANCE, Caution, rise_left
+from service.along_path.code_job import CodeJob, job_of
 from service.along_path.course import PathSource
 from service.along_path.run import FeedsAlongPath
 from service.along_path.task import least_feed, task_of
@@ -21,6 +22,7 @@ from service.chosen import (
     DEFAULT_MILL,
     load_material_named,
     require_axes,
+    with_holding,
 )
 from service.files import (
     beside,
@@ -29,6 +31,7 @@ from service.files import (
     require_places,
     write_atomically,
 )
+from service.knowledge.place import named_place, require_apart
 from service.numbers import tool_numbers_in
 from service.program_kind import ProgramKind
 from service.reading import Tell, silent
@@ -47,6 +50,8 @@ from stepnc_model.nc.program import NcProgram, read_program
 from stepnc_model.nc.unroll import unrolled
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.units import mm_from_um
+
+NO_JOB = CodeJob()
 
 NOTHING_WRITTEN = "nothing was written: no feed of this program could be chosen"
 
@@ -71,6 +76,10 @@ class CodeFiles:
     report: Path | None = None
     feeds: Path | None = None
     """CSV table of the feeds along the paths, to be written."""
+    holding: Path | None = None
+    """Work-holding file that replaces the work-holding of the machine file."""
+    knowledge: str = ""
+    """Knowledge base with accepted corrections; empty: the one named by the environment."""
     most_repeats: int | None = None
     """Blocks and moves that may be executed beyond those of the file; None: as usual."""
 
@@ -124,6 +133,8 @@ def optimise_code(
     is_lathe = program.machine is MachineType.LATHE
     machine = load_machine(request.machine or (DEFAULT_LATHE if is_lathe else DEFAULT_MILL))
     require_axes(machine)
+    machine = with_holding(machine, files.holding)
+    require_apart(named_place(files.knowledge), output, files.report, files.feeds)
     material = load_material_named(request.material)
     tell(f"material: {material.reason}")
 
@@ -138,6 +149,7 @@ def optimise_code(
         )
 
     code = paths_of(program)
+    job = job_of(code, request, knowledge=files.knowledge)
     task = replace(
         task_of(request, machine), keeps_traces=files.report is not None, keeps_idle=True
     )
@@ -146,7 +158,7 @@ def optimise_code(
         CodeSource(
             program=program,
             paths_of=paths_of,
-            source_of=partial(source_of, request, rise=rise),
+            source_of=partial(source_of, request, rise=rise, job=job),
             mark=request.is_marked,
             rise=request.greatest_rise,
         ),
@@ -154,7 +166,7 @@ def optimise_code(
         tell=tell,
     )
     along, rewritten = written.along, written.rewritten
-    faults = tuple(dict.fromkeys((*along.faults(machine), *written.faults)))
+    faults = tuple(dict.fromkeys((*along.faults(machine), *written.faults, *job.faults)))
     is_advised = _is_advised(along)
     found = CodeAdvice(
         program=name,
@@ -169,6 +181,7 @@ def optimise_code(
             *library.findings,
             *called_tool_findings(program, library),
             *code.findings,
+            *job.findings,
             *_idle(code, along),
             *written.doubts,
             *_cost_of_rise(along, request.greatest_rise, rise),
@@ -209,9 +222,11 @@ def _tools(request: AdviceRequest, files: CodeFiles) -> ToolLibrary:
     return read_tools(files.tools, unit=files.tools_unit)
 
 
-def source_of(request: AdviceRequest, code: CodePaths, *, rise: float) -> PathSource:
+def source_of(
+    request: AdviceRequest, code: CodePaths, *, rise: float, job: CodeJob = NO_JOB
+) -> PathSource:
     """Paths of NC code with the bounds of their tools."""
-    bounds = _bounds(code, request)
+    bounds = _bounds(code, request, job)
     return PathSource(
         caution=Caution(
             fresh=code.uncut,
@@ -240,7 +255,7 @@ def _output(files: CodeFiles) -> Path:
     return output
 
 
-def _bounds(code: CodePaths, request: AdviceRequest) -> dict[str, CutBounds]:
+def _bounds(code: CodePaths, request: AdviceRequest, job: CodeJob) -> dict[str, CutBounds]:
     """Bounds of the parts of a program by their names; parts that stay have none."""
     kept = tool_numbers_in(request.keep)
     finishing = tool_numbers_in(request.finish)
@@ -257,6 +272,7 @@ def _bounds(code: CodePaths, request: AdviceRequest) -> dict[str, CutBounds]:
             quantile=request.safety,
             is_finishing=is_finishing,
             roughness=roughness,
+            job=job.of_tool(code.tools[part.tool].id),
         )
         if bounds is not None:
             found[part.name] = replace(bounds, least=least_feed(request))

@@ -43,6 +43,8 @@ def optimise_code(options: argparse.Namespace) -> int:
         report=options.report,
         feeds=options.feeds_csv,
         most_repeats=options.most_repeats,
+        holding=options.holding,
+        knowledge=options.kb,
     )
     found = optimise(from_options(AdviceRequest, options), files, tell=tell)
     write_views(found, files, tell=tell)

@@ -93,6 +93,7 @@ def _advise_code(
         output=task.folder / NC_CODE,
         report=task.folder / REPORT,
         feeds=task.folder / FEEDS,
+        knowledge=task.data_folder.knowledge,
     )
     found = optimise_code(request, places, tell=task.tell)
     findings = (
