@@ -186,7 +186,7 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         metavar="CSV",
         help="write the feeds along the paths as a table",
     )
-    add("--dry-run", action="store_true", help="write no STEP-NC file")
+    add("--dry-run", action="store_true", help="write no optimised program")
     add(
         "--report",
         type=output_path,

@@ -25,7 +25,8 @@ VICE = (
     '[[holding]]\nkind = "vice"\nholding_force_kn = {force}\nfriction = 0.2\nsource = "test"\n'
 )
 CHUCK = (
-    '[[holding]]\nkind = "chuck"\nclamping_force_kn = {force}\nfriction = 0.2\nsource = "test"\n'
+    '[[holding]]\nkind = "chuck"\nclamping_force_kn = {force}\nfriction = 0.2\n'
+    'source = "test"\n'
     "jaw_face_z_mm = -45\ngrip_length_mm = 15\n"
 )
 
