@@ -22,7 +22,8 @@ from optimiser.along_path.cautious import (
 )
 from optimiser.along_path.stretch import PathStretch
 from optimiser.greatest_rise import USUAL_RISE
-from service.simulation.code_paths import BRIDGE, spans
+from service.simulation.code_paths import BRIDGE
+from service.simulation.line_spans import spans
 from simulator.machine.virtual import Shape, VirtualMachine
 from simulator.motion.segments import Bools, Floats, Ints, Segments
 from simulator.removal.cutter import Cutter

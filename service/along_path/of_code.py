@@ -303,7 +303,7 @@ def _cost_of_rise(along: FeedsAlongPath, most: float, rise: float) -> Iterator[F
         and step.name not in along.idle
         and step.plan.rise_cost > LEAST_COST
     ]
-    if costs:
+    if costs and rise == most:
         text = (
             f"feeds rise to at most {rise:g} times the programmed ones (--greatest-rise), "
             f"which costs {', '.join(costs)}"

@@ -149,8 +149,8 @@ class AdviceRequest(ProgramRequest):
         bool,
         About(
             "let tools that do not cut over centre plunge straight into solid material; "
-            "without it: exit 5; of NC code: let straight plunges be faster than programmed, by "
-            "their depth",
+            "without it: exit 5; of NC code: let straight plunges be faster than programmed, "
+            "by their depth",
             flag="--allow-plunge",
         ),
     ] = False

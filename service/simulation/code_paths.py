@@ -15,6 +15,7 @@ import numpy as np
 
 from service.raw_stock import GivenStock, larger_stock_map, raw_stock_of, stock_map
 from service.requests.stock import RawPart
+from service.simulation.line_spans import spans
 from service.simulation.setup import CountedIterator, PreparedRun
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import table_tool
@@ -66,9 +67,6 @@ NOT_PLACED = (
 
 CLEARANCE = 5.0
 """Distance from the stock at which the tool goes around moves that are left out, mm."""
-
-MOST_SPANS = 6
-"""Greatest number of ranges of lines that a message lists."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -429,19 +427,6 @@ def _is_uncertain(moves: NcMoves) -> Bools:
 def _is_outside(shape: object) -> bool:
     """Whether a tool comes to the stock from outside, across the axis."""
     return isinstance(shape, Insert) and not shape.is_inside
-
-
-def spans(lines: Ints) -> str:
-    """Numbers of lines in words, consecutive ones as a range."""
-    ends = np.flatnonzero(np.diff(lines) > 1)
-    firsts, lasts = np.append(lines[0], lines[ends + 1]), np.append(lines[ends], lines[-1])
-    spans = [
-        f"{first}" if first == last else f"{first}–{last}"
-        for first, last in zip(firsts.tolist(), lasts.tolist(), strict=True)
-    ]
-    more = f" and {len(spans) - MOST_SPANS} more ranges" if len(spans) > MOST_SPANS else ""
-    word = "line" if len(lines) == 1 else "lines"
-    return f"{word} {', '.join(spans[:MOST_SPANS])}{more}"
 
 
 class _Detour:
