@@ -21,12 +21,14 @@ from service.files import (
 )
 from service.knowledge.corrected import factors_for, finding_of, with_corrections
 from service.knowledge.place import named_place, require_apart
+from service.program_kind import ProgramKind
 from service.progress import Progress
 from service.reading import Tell, read_given, read_program, selected, silent
 from service.records import changes_of, lost_plunge_feeds
 from service.refusals import Writable, advisable, apart_from
 from service.requests.advice import AdviceRequest
-from service.requests.fields import require_bounds
+from service.requests.fields import fields_of, require_bounds
+from service.requests.serves import require_served
 from simulator.spec import Certainty, Machine, MaterialMatch
 from stepnc_model import writeback
 from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
@@ -47,6 +49,12 @@ if TYPE_CHECKING:
     from simulator.tool_table import TableTool
     from stepnc_model.entities.executables import Setup
     from stepnc_model.part21.values import Ref
+
+OF_PATHS = frozenset({
+    "motion", "is_jerk_limited", "stock_margin_mm", "corner_tolerance_mm", "max_feed_mm_min",
+    "least_feed_mm_min",
+})  # fmt: skip
+"""Fields of requests that have no effect without feeds along the paths."""
 
 NOTHING_WRITTEN = "nothing was written: no workingstep was advised"
 
@@ -307,6 +315,7 @@ def _write_views(
 def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
     """Refuse numbers out of bounds, and options that have no effect."""
     require_bounds(request)
+    require_served(request, ProgramKind.STEP_NC)
     if request.is_along_path:
         return
     if request.levels is not None or files.feeds is not None:
@@ -315,6 +324,9 @@ def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
         raise StepNcError("--smooth needs --along-path")
     if request.writes_toolpaths:
         raise StepNcError("--write-toolpaths needs --along-path")
+    for each in fields_of(type(request)):
+        if each.name in OF_PATHS and getattr(request, each.name) != each.default:
+            raise StepNcError(f"{each.about.flag} needs --along-path")
 
 
 def _require_run(

@@ -37,7 +37,7 @@ from simulator.motion.fir import FixedTimeFilter
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import ControlModel, axis_limits
 from simulator.spec import Machine, MaterialMatch
-from stepnc_model.errors import Finding, SchemaError, StepNcError, WriteError
+from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError, WriteError
 from stepnc_model.program import Program
 from stepnc_model.units import mm_from_um
 
@@ -76,6 +76,8 @@ class Simulation:
     findings: tuple[Finding, ...]
     told: tuple[Finding, ...] = ()
     """Those of the findings that were told while it ran."""
+    collisions: tuple[Finding, ...] = ()
+    """Those of the findings that tell of rapids through material."""
     samples: int = 0
     """Number of samples written."""
     tools: Mapping[int, LoadedTool] = field(default_factory=dict)
@@ -143,6 +145,7 @@ def simulate(
             *untouched(prepared, virtual, run),
         ),
         told=prepared.remarks,
+        collisions=tuple(each for each in virtual.findings if each.severity is Severity.ERROR),
         tools=virtual.setup.tools or {},
         samples=0 if run.file is None else run.file.rows,
         trace=None if run.trace is None else run.trace.trace(),
