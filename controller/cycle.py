@@ -7,6 +7,7 @@ by the weight they are the real ones.
 from dataclasses import dataclass
 
 from controller.guard import AllowedOverride
+from controller.monitor import NOT_OVER, OverTime
 from controller.orders import LoopEvent
 from controller.signal import Revolution
 from simulator.reading import Reading
@@ -30,6 +31,10 @@ class LoopCycle:
     """ln(measured / expected force); None when not comparable."""
     weight: float = 1.0
     """Weight: equivalent force over real force."""
+    over: OverTime = NOT_OVER
+    """How long the force has been above its set point."""
+    is_astray: bool = False
+    """Whether the axes do not follow the override."""
     events: tuple[LoopEvent, ...]
 
     @property

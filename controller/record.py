@@ -8,6 +8,7 @@ from math import inf, isfinite
 
 from controller.cycle import LoopCycle
 from controller.estimate import RatioEstimate, counted
+from controller.monitor import NOT_OVER, OverTime
 from controller.signal import Revolution
 
 
@@ -31,6 +32,8 @@ class RunRecord:
     """Integral of the force above the bound, N·s."""
     over_time: float = 0.0
     """Time with a force above the bound by more than a twentieth, s."""
+    longest_over: OverTime = NOT_OVER
+    """Longest time without a break in which the mean force was above the bound."""
     overrides: float = 0.0
     """Integral of the override with chips: program time that was cut, s."""
     least: float = inf
@@ -120,6 +123,8 @@ class Recorder:
         if record.share > record.most:
             record.most, record.set_point = record.share, bound
             record.peak = record.share * min(bound, FREE)
+        if cycle.over.seconds >= record.longest_over.seconds:
+            record.longest_over = cycle.over
         if cycle.ratio is not None:
             record.ratio = counted(record.ratio, cycle.ratio)
         if isfinite(bound):

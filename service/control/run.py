@@ -48,7 +48,11 @@ from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import Finding, StepNcError
 from stepnc_model.program import Program
 
-CHIP_FORCES = {SensorChoice.DYNAMOMETER: 10.0, SensorChoice.POWER: 60.0}
+CHIP_FORCES = {
+    SensorChoice.DYNAMOMETER: 10.0,
+    SensorChoice.COMPONENTS: 10.0,
+    SensorChoice.POWER: 60.0,
+}
 """Force above which a sensor counts as cutting, in N: several times its noise."""
 
 
@@ -185,7 +189,10 @@ def prepare(
     course = planned_course(prepared, virtual, tell)
     require_teeth(found.hidden, course)
     bench = replace(
-        found.bench, efficiency=virtual.machine.spindle.efficiency, seed=request.seed
+        found.bench,
+        efficiency=virtual.machine.spindle.efficiency,
+        has_normal=request.sensor is SensorChoice.COMPONENTS,
+        seed=request.seed,
     )
     machine = (
         ControlledMachine(course, found.hidden, bench)

@@ -39,6 +39,8 @@ class SensorChoice(StrEnum):
     """Quantity that the control loop measures."""
 
     DYNAMOMETER = "dynamometer"
+    COMPONENTS = "components"
+    """Dynamometer that shows the force normal to the edges too."""
     POWER = "power"
 
 
@@ -231,7 +233,11 @@ class ControlRequest(RunRequest):
     ] = 120.0
     sensor: Annotated[
         SensorChoice,
-        About("sensor of the loop: dynamometer, or drive power", flag="--sensor"),
+        About(
+            "sensor of the loop: dynamometer, components (a dynamometer that shows the force "
+            "normal to the edges too, from which wear is seen best), or drive power",
+            flag="--sensor",
+        ),
     ] = SensorChoice.DYNAMOMETER
     has_corrections: Annotated[bool, About("apply accepted corrections of k_c")] = True
     is_recorded: Annotated[bool, About("record the outcomes in the knowledge base")] = True
