@@ -143,7 +143,17 @@ class Loop:
         )
         self._port.set(self.state.override)
         cycle = self._cycle(reading, weight)
-        return replace(cycle, revolution=revolution, expected=expected, ratio=ratio)
+        life, sharp = self.state.monitor.life, ratio
+        if life is not None and ratio is not None:
+            sharp = life.sharp(ratio, self.state.monitor.land_share)
+        return replace(
+            cycle,
+            revolution=revolution,
+            expected=expected,
+            ratio=ratio,
+            life=life,
+            sharp_ratio=sharp,
+        )
 
     def _cycle(self, reading: Reading, weight: float) -> LoopCycle:
         """Result of a cycle in which no revolution ends."""

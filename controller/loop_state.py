@@ -162,7 +162,7 @@ def begun(state: LoopState, reading: Reading, steps: Sequence[LoopStep]) -> Loop
         law=None,
         expected=0.0,
         shares=overload.fresh(reading.teeth),
-        monitor=state.monitor.begun(step.tool),
+        monitor=state.monitor.begun(step.tool, hardness=step.taught),
     )
     if state.phase not in {Phase.HELD, Phase.STOPPED}:
         state = _opened(state)

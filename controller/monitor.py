@@ -16,13 +16,7 @@ from controller.orders import EventKind, LoopEvent
 from controller.preview import Expected
 from controller.signal import Revolution
 from controller.threshold import AlarmLevel, ThresholdWatch, reason, watched
-from controller.tool_life import (
-    Ratios,
-    ToolLife,
-    compared_anew,
-    lived,
-    new_tool,
-)
+from controller.tool_life import Ratios, ToolLife, compared_anew, lived, new_tool, taught
 from simulator.physics.tool_life import LIFE_CRITERION
 
 STEADY = 0.02
@@ -139,10 +133,19 @@ class Monitor(NamedTuple):
             )
         return "a harder or deeper cut"
 
-    def begun(self, tool: str) -> "Monitor":
-        """Enter a new workingstep, whose force errors may differ from those of the last one."""
+    def begun(self, tool: str, *, hardness: float | None = None) -> "Monitor":
+        """Enter a new workingstep, whose force errors may differ from those of the last one.
+
+        Parameters
+        ----------
+        tool : str
+        hardness : float, optional
+            Factor on k_c that the sharp tool has taught in this cut; None: none was taught.
+        """
         life = self.lives.get(tool)
         begun = new_tool() if life is None else compared_anew(life)
+        if hardness is not None:
+            begun = taught(begun, hardness)
         return self._replace(
             tool=tool,
             lives={**self.lives, tool: begun},

@@ -49,8 +49,11 @@ A catalogue's k_c differs by a fifth to a third between sources; 0.003 mm/s ends
 OTHER_CUT = 0.1
 """Standard deviation of K between cuts of one tool in the same work: errors of the plan."""
 
-TAUGHT = 0.05
-"""Standard deviation of K where a sharp tool has taught it in the same cut."""
+TAUGHT = 0.1
+"""Standard deviations of K, and of VB in mm, where a sharp tool has taught K in the same cut.
+
+Another batch is harder by a tenth, and the tool may be worn.
+"""
 
 DRIFT = 1e-4
 """Standard deviation by which the wear rate changes in 1 s, mm/s^1.5."""
@@ -178,6 +181,17 @@ class ToolLife:
             found.append("the force normal to the edge")
         return ", ".join(found[:-1]) + " and " * (len(found) > 1) + found[-1]
 
+    @property
+    def is_wear_sure(self) -> bool:
+        """Whether there is wear beyond three standard deviations of its estimate."""
+        return self.flank_wear > 3.0 * sqrt(float(self.belief.covariance[2, 2]))
+
+    def sharp(self, log_ratio: float, land_share: float) -> float:
+        """Return ln(measured / expected) without the force of the land, if there surely is one."""
+        if not self.is_wear_sure:
+            return log_ratio
+        return log(max(exp(log_ratio) - land_share * self.flank_wear, _LEAST))
+
     def share(self, land_share: float) -> float:
         """Share of the wear land in the force where 1 mm of it adds so much to the ratio."""
         land = land_share * self.flank_wear
@@ -204,8 +218,7 @@ def taught(life: ToolLife, hardness: float) -> ToolLife:
     covariance = life.belief.covariance.copy()
     covariance[0, :] = covariance[:, 0] = 0.0
     covariance[0, 0] = (TAUGHT * hardness) ** 2
-    # The tool may be another one, or worn meanwhile.
-    covariance[2, 2] = max(covariance[2, 2], LIFE_CRITERION**2)
+    covariance[2, 2] = max(covariance[2, 2], TAUGHT**2)
     mean = life.belief.mean.copy()
     mean[0] = hardness
     return replace(life, belief=_Belief(mean=mean, covariance=covariance))
