@@ -175,14 +175,16 @@ class Pieces:
     The force changes within a tooth period: a part of one says nothing on the load of a tooth.
     """
 
-    __slots__ = ("_readings",)
+    __slots__ = ("_last", "_readings")
 
     def __init__(self) -> None:
         self._readings: list[Reading] = []
+        self._last: Reading | None = None
 
     def add(self, reading: Reading) -> Reading | None:
         """Add a reading; return the reading of a tooth period or more, None before."""
-        if not reading.can_override or tooth_periods(reading) >= 1.0 - NOT_A_TOOTH:
+        last, self._last = self._last, reading
+        if not reading.can_override or _is_whole(last, reading):
             self._readings.clear()
             return reading
         if self._readings and not follows(self._readings[-1], reading):
@@ -193,6 +195,15 @@ class Pieces:
         whole = _joined(self._readings)
         self._readings.clear()
         return whole
+
+
+def _is_whole(last: Reading | None, reading: Reading) -> bool:
+    """Whether a reading is a tooth period or more, or what the end of a feed left of one."""
+    periods = tooth_periods(reading)
+    if periods >= 1.0 - EXACT:
+        return True
+    is_rest = last is not None and last.can_override and _off(last) <= EXACT
+    return is_rest and periods >= 1.0 - NOT_A_TOOTH
 
 
 def tooth_periods(reading: Reading) -> float:

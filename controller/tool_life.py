@@ -187,7 +187,7 @@ class ToolLife:
         return self.flank_wear > 3.0 * sqrt(float(self.belief.covariance[2, 2]))
 
     def sharp(self, log_ratio: float, land_share: float) -> float:
-        """Return ln(measured / expected) without the force of the land, if there surely is one."""
+        """Return ln(measured / expected) less the force of the land, if there surely is one."""
         if not self.is_wear_sure:
             return log_ratio
         return log(max(exp(log_ratio) - land_share * self.flank_wear, _LEAST))

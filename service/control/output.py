@@ -8,6 +8,8 @@ from typing import Any
 
 from controller.record import EXCESS_RATIO, RunRecord
 from service.buckets import BucketedRun
+from service.control.cuts import COLUMNS as CUT_COLUMNS
+from service.control.cuts import cuts, loads_words
 from service.control.facts import (
     ControlRow,
     disturbed,
@@ -136,6 +138,8 @@ def print_control(run: ControlRun) -> None:
         f"{EXCESS_RATIO:g} times the bound; excess: impulse above the bound, including noise"
     )
     print_line(f"events: {event_counts(run)}")
+    if words := loads_words(run):
+        print_line(f"load in per cent of the reference load: {words}")
     print_line(f"disturbed: {disturbed_words(run)}; seed {run.seed}")
     for text in exceeded(run, found):
         print_line(f"limit exceeded: {text}", RED)
@@ -181,6 +185,7 @@ def control_json(run: ControlRun) -> str:
             {"time_s": event.time, "kind": event.kind.value, "text": event.text}
             for event in run.events
         ],
+        "cuts": records(CUT_COLUMNS, cuts(run)),
         "limits_exceeded": list(exceeded(run, found)),
         "left_out": list(run.faults),
         "findings": [finding_record(finding) for finding in run.findings],
@@ -250,5 +255,6 @@ def control_page(run: ControlRun, trace: BucketedRun) -> str:
         ],
         left_out=len(run.events) - len(events),
         counts=event_counts(run),
+        loads=loads_words(run),
         disturbed=disturbed_words(run),
     )

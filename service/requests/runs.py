@@ -196,7 +196,8 @@ class ControlRequest(RunRequest):
     law: Annotated[
         LawName,
         About(
-            "control law: log-pi, pi, fuzzy, self-tuning, mrac, mpc, or none (programmed feed)",
+            "control law: log-pi, pi, fuzzy, self-tuning, mrac, mpc, or none (monitors only: "
+            "the programmed feed)",
             flag="--law",
         ),
     ] = LawName.LOG_PI
