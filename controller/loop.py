@@ -132,7 +132,7 @@ class Loop:
             # A force near zero gives no information on k_c.
             known = expected if expected > weight * state.settings.chips else 0.0
             ratio = log_ratio(revolution, known, expected_before=state.expected)
-            state = resolved(state._replace(expected=known), whole, revolution)
+            state = resolved(state._replace(expected=known), reading, revolution)
         self.state = answered(
             state,
             whole,
