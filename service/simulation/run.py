@@ -60,6 +60,12 @@ class RunFiles:
     """File for the stock that the run leaves, which a later run can take."""
     recorded: Path | None = None
     """Recorded run of the program that ``control`` evaluates instead of running it."""
+    loads: Path | None = None
+    """File of reference loads, which ``control`` reads and adds to."""
+    is_teaching: bool = False
+    """Whether the run teaches loads that the file has already."""
+    cut_log: Path | None = None
+    """File for the log of the cuts of ``control``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
