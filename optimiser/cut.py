@@ -83,6 +83,20 @@ class ReachedLoads:
     """Share of the greatest force normal to the wall."""
 
 
+@dataclass(frozen=True, slots=True)
+class RefusedPasses:
+    """Number of passes that is no candidate for a workingstep."""
+
+    passes: int
+    why: str
+    """The stock that would differ, or what is missing, as the end of a sentence."""
+
+    @property
+    def words(self) -> str:
+        """The reason with the number: 'in 2 passes up to 0.8 mm more would be left'."""
+        return f"in {self.passes} {'pass' if self.passes == 1 else 'passes'} {self.why}"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurnedBar:
     """Shape of the bar after a turning path, and where it was cut, along z of the setup."""
@@ -189,6 +203,8 @@ class Cut:
     """Straight plunge into solid material at the feed of the cut, modelled as drilling."""
     way_in: PlungeEngagement | None = None
     """Ways down that may have a plunge feed; None when none of them meets material."""
+    refused_passes: tuple[RefusedPasses, ...] = ()
+    """Numbers of passes that were tried and are no candidates."""
 
     @property
     def bare(self) -> "Cut":

@@ -82,7 +82,7 @@ def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimu
         except Infeasible as conflict:
             if problem.passes[0] == problem.passes[1]:
                 raise
-            last = conflict
+            last = _both(last, conflict)
         if told and passes > max(MANY, given):
             break
         try:
@@ -99,8 +99,22 @@ def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimu
     if best is None:
         raise last or exact.conflict(problem)
     # The next workingstep finds the stock as this path leaves it.
-    asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)
-    return best
+    cut = asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)
+    return replace(best, cut=cut)
+
+
+def _both(conflict: Infeasible | None, other: Infeasible) -> Infeasible:
+    """The later of two conflicts; a limit and the stock that keeps passes from changing."""
+    if conflict is None or other.limits:
+        return other
+    return Infeasible(f"{conflict}; {other}", limits=conflict.limits)
+
+
+def _require_candidate(cut: Cut, passes: int) -> None:
+    """Refuse a number of passes that leaves other stock than the program does."""
+    for refused in cut.refused_passes:
+        if refused.passes == passes:
+            raise Infeasible(refused.words, limits=())
 
 
 def _cost(told: PassCountOptimum, task: OptimisationTask) -> float:
@@ -113,6 +127,7 @@ def _told(cut: Cut, problem: Problem, passes: int, asked: AdviceContext) -> Pass
     given, step, task = cut.programmed, asked.step, asked.task
     depth = given.depth if passes == given.passes else problem.depth_at(passes)
     cut = asked.cuts.at(step, cut, replace(given, passes=passes, depth=depth))
+    _require_candidate(cut, passes)
     optimum = _with_passes(problem_of(cut, asked.at, task), passes, task)
     setting = optimum.solution.setting
     plunging = _with_plunge(cut, setting, asked)

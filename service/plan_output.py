@@ -236,6 +236,8 @@ def _reason(advice: Advice) -> str:
         and advice.cut.is_finishing
     ):
         text += f"; leaves Ra {advice.after.roughness * 1e3:.3g} µm"
+    if advice.cut is not None:
+        text += "".join(f"; {each.words}" for each in advice.cut.refused_passes[:1])
     deepest = advice.deepest_first_time
     if deepest is not None and deepest > advice.after.time * 1.001:
         text += f"; the deepest passes would have taken {deepest:.1f} s"
@@ -343,6 +345,10 @@ def _advice(advice: Advice) -> dict[str, Any]:
         },
         "sensitivity": _sensitivity(advice),
         "deepest_pass_first_time_s": advice.deepest_first_time,
+        "refused_passes": [
+            {"passes": each.passes, "reason": each.why}
+            for each in (advice.cut.refused_passes if advice.cut else ())
+        ],
         "stability": _stability(advice),
         "plunge": _plunge(advice),
         "holding_load": _holding_load(advice),
