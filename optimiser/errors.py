@@ -8,7 +8,7 @@ class OptimisationError(StepNcError):
 
 
 class Infeasible(OptimisationError):
-    """Two limits contradict each other, or a limit and the stock to be left: nothing is feasible.
+    """Limits contradict each other, or the stock to be left: no setting is feasible.
 
     Parameters
     ----------

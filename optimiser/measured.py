@@ -44,7 +44,7 @@ from optimiser.plunge import (
     way_in_of,
 )
 from optimiser.problem import Setting
-from optimiser.reached import MachineRun, with_power, with_reached
+from optimiser.reached import MachineRun, plunge_reached, thickened, with_reached
 from optimiser.side_by_side import Result, one_by_one, side_by_side
 from optimiser.stock_left import difference_left
 from simulator.motion.segments import Bools
@@ -121,9 +121,6 @@ class MeasuredCuts:
     program : Program
     machine : Machine
     material : WorkMaterial
-    is_run : bool
-        Whether a simulated run is compared with the plan; the cuts then include the loads that
-        the axes actually reach.
     body_map : BodyMaps, optional
         Maker of maps of raw parts that are bodies; without it, their box or bar counts.
     """
@@ -134,14 +131,12 @@ class MeasuredCuts:
         machine: Machine,
         material: WorkMaterial,
         *,
-        is_run: bool = False,
         body_map: BodyMaps | None = None,
     ) -> None:
         self.program = program
         self.machine = machine
         self.material = material
         self.kienzle = material.kienzle
-        self._with_loads = with_reached if is_run else with_power
         self.control, self.limits = usual_motion(machine)
         self.stocks = ClampedStocks(program, machine, body_map)
         self._left_out: dict[int, str] = {}
@@ -372,7 +367,7 @@ class MeasuredCuts:
         depth: float,
     ) -> Cut:
         """Add volume, diameter and ways down to the cut of a path."""
-        cut = replace(cut, volume=met.volume)
+        cut = replace(cut, volume=met.volume, resolution=met.cell)
         if cut.kind.is_turned and not cut.is_air:
             first = next(iter(self._seen.values()), None)
             widest = self._widest(met, run) if first is None else first.cut.diameter
@@ -440,8 +435,9 @@ class MeasuredCuts:
                 spindle=given.speed * pace.speed,
             )
             along = seen.along.on(run, seen.run) if cut.kind.is_turned else seen.along
-            cut = self._with_loads(cut, along, seen.bent, ride, exponent=self.kienzle.m_c)
-            cut = self._with_ramp_reached(cut, seen, ride)
+            cut = with_reached(cut, along, seen.bent, ride, exponent=self.kienzle.m_c)
+            cut = thickened(cut) if cut.kind is CutKind.MILLING else cut
+            cut = self._with_ways_reached(cut, seen, ride)
         return replace(
             cut,
             length=length / seen.passes,
@@ -452,14 +448,17 @@ class MeasuredCuts:
             air_length=seen.air * length / seen.passes,
         )
 
-    def _with_ramp_reached(self, cut: Cut, seen: TriedPath, ride: MachineRun) -> Cut:
-        """Add to the ramp the loads that the axes actually reach on it."""
+    def _with_ways_reached(self, cut: Cut, seen: TriedPath, ride: MachineRun) -> Cut:
+        """Add to the ways down of a mill the loads that the axes reach on them."""
+        m_c, slope, met = self.kienzle.m_c, seen.slope, seen.meeting.met
+        if cut.kind is not CutKind.MILLING or met is None:
+            return cut
+        cut = replace(cut, plunge_reached=plunge_reached(cut, met, ride, exponent=m_c))
         ramp = None if cut.way_in is None else cut.way_in.ramp
-        slope = seen.slope
         if slope is None or cut.way_in is None or ramp is None:
             return cut
         down = replace(ride, feed=float(ride.run.segments.speed[plunges(ride.run)][0]))
-        ramp = self._with_loads(ramp, slope.met, slope.bent, down, exponent=self.kienzle.m_c)
+        ramp = thickened(with_reached(ramp, slope.met, slope.bent, down, exponent=m_c))
         return replace(cut, way_in=replace(cut.way_in, ramp=ramp))
 
     def _warning(self, step: ResolvedWorkingstep, text: str) -> Finding:

@@ -211,8 +211,27 @@ def _print_confirmation(confirmation: "Confirmation") -> None:
         ),
     ]
     print_table(columns, confirmation.steps)
+    print_line(_nearest(confirmation))
     for text in confirmation.passed:
-        print_line(f"bound exceeded: {text}", RED)
+        print_line(f"not as planned: {text}", RED)
+
+
+def _nearest(confirmation: "Confirmation") -> str:
+    """State the bound that the run comes nearest to, and whether the same stock is left."""
+    nearest = confirmation.nearest
+    text = "no bound to compare with"
+    if nearest is not None:
+        step, figure = nearest
+        text = (
+            f"at the {100.0 * confirmation.quantile:g} % quantile of k_c nearest to a bound: "
+            f"{step}, {figure.heading} {figure.greatest:.4g} of {figure.bound:.4g}"
+        )
+    unknown = confirmation.unknown_stock
+    if unknown:
+        return f"{text}; the stock left is not compared: {', '.join(unknown)}"
+    if any(step.left is not None and step.left.is_seen for step in confirmation.steps):
+        return text
+    return f"{text}; every workingstep leaves the stock that the program as given leaves"
 
 
 def _figure_at(place: int, step: "ConfirmedStep") -> str:
@@ -309,12 +328,16 @@ def _confirmation(confirmation: "Confirmation") -> dict[str, Any]:
                         "found": figure.found,
                         "ratio": figure.ratio,
                         "bound": figure.bound if isfinite(figure.bound) else None,
+                        "found_at_quantile": figure.at_quantile,
                     }
                     for figure in step.figures
                 },
+                "stock_left": step.left
+                and {"volume_mm3": step.left.volume, "deviation_mm": step.left.deviation},
             }
             for step in confirmation.steps
         ],
+        "quantile": confirmation.quantile,
         "passed": list(confirmation.passed),
     }
 

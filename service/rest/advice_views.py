@@ -101,6 +101,18 @@ class FigureView(View):
     found: float
     ratio: float | None = Field(description="found over predicted")
     bound: float | None = Field(description="bound that the value must keep")
+    found_at_quantile: float | None = Field(
+        description="value found with the k_c at the quantile of the plan; null: the same"
+    )
+
+
+class StockLeftView(View):
+    """Stock that a workingstep leaves, compared with that of the program as given."""
+
+    volume_mm3: float = Field(description="volume left in addition; negative: less is left")
+    deviation_mm: float = Field(
+        description="greatest distance beyond the resolution of the map; 0: none"
+    )
 
 
 class ConfirmedView(View):
@@ -113,13 +125,19 @@ class ConfirmedView(View):
     deflection_um: FigureView
     cutting_power_w: FigureView
     drive_power_w: FigureView
+    torque_nm: FigureView
+    volume_cm3: FigureView
+    stock_left: StockLeftView | None = Field(description="null: the stock is not known")
 
 
 class ConfirmationView(View):
     """Comparison of a plan with its simulated run."""
 
     workingsteps: list[ConfirmedView]
-    passed: list[str] = Field(description="a sentence for each bound that the run exceeded")
+    quantile: float = Field(description="quantile of k_c at which the bounds are compared")
+    passed: list[str] = Field(
+        description="a sentence for each bound that the run exceeded and for stock that differs"
+    )
 
 
 class MoveCountView(View):

@@ -447,16 +447,14 @@ class _Collector:
         return speeds
 
     def _close(self, wait: float, *, is_awaited: bool = False) -> None:
-        """Close a leg with the moves collected so far, and whether a feed waits for its ramp."""
+        """Close a leg with the moves so far, and state whether a feed waits for its ramp."""
         segments, spindle = self._timed()
         if self.is_clockwise is None and any(row.found is not None for row in self.rows):
             self.is_clockwise = self._turns_clockwise()
         first = self.legs[-1].last if self.legs else 0
         ramp, is_fed = None, bool(self.rows) and self.rows[-1].found is not None
         if self.target is not None:
-            ramp = SpindleRamp(
-                speed=self.target, acceleration=self.ramp, is_awaited=is_awaited
-            )
+            ramp = SpindleRamp(speed=self.target, acceleration=self.ramp, is_awaited=is_awaited)
         ends_at = float(spindle[-1]) if is_fed else None
         last = first + len(segments)
         self.legs.append(Leg(first=first, last=last, wait=wait, ramp=ramp, spindle=ends_at))
