@@ -73,7 +73,7 @@ def best_plunge(
 
 
 def _balanced_feed(one: PlungeOptimum, other: PlungeOptimum) -> float | None:
-    """Feed of the passes at which slowing them a little saves as much on the ramp as it costs.
+    """Feed of the passes at which slowing them saves as much on the ramp as it costs.
 
     With the excess ``A·f + B·p`` of a pass at the feed f after a ramp at the feed p, bounded by
     1, the time ``L/f + R/p`` is least where ``p/f = √(R·A/(L·B))``; two plunge feeds at the same

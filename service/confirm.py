@@ -132,7 +132,7 @@ def _figures(
         key="volume_cm3",
         heading="volume cm³",
         promised=CM3 * (cut.volume or 0.0) if cut is not None else 0.0,
-        found=CM3 * total.volume,
+        found=CM3 * totals.volume,
     )
 
 

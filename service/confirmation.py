@@ -68,8 +68,8 @@ class Confirmation:
             for figure in step.figures:
                 if figure.is_passed:
                     yield (
-                        f"{step.id}: {figure.heading} {figure.greatest:.4g}{self._where(figure)}"
-                        f" exceeds its bound of {figure.bound:.4g}"
+                        f"{step.id}: {figure.heading} {figure.greatest:.4g}"
+                        f"{self._where(figure)} exceeds its bound of {figure.bound:.4g}"
                     )
 
     def _where(self, figure: Figure) -> str:

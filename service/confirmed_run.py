@@ -5,7 +5,8 @@ at the quantile of the plan, for neither motion nor removal depend on k_c. Of th
 given only the stock is followed: after each workingstep, what both have left is compared.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import chain
 
@@ -19,10 +20,11 @@ from simulator.machine.acts import ProgramAct, WorkingstepTo
 from simulator.machine.interpreter import interpret
 from simulator.machine.samples import Episode
 from simulator.machine.totals import Total, added
-from simulator.machine.virtual import StockMap, VirtualMachine
+from simulator.machine.virtual import StockMap
 from simulator.removal.difference import StockDifference, bar_difference, height_difference
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import BarRadii, TurningStock
+from simulator.removal.stations import stretch_lengths
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.program import Program
 
@@ -44,6 +46,8 @@ class ConfirmedTotals:
     id: str
     nominal: Total
     quantile: Total
+    volume: float = 0.0
+    """Volume that its path removes from the stock, mm³."""
     left: StockDifference | None = None
     """Stock left, compared with that of the program as given; None where it is unknown."""
 
@@ -83,12 +87,18 @@ def confirmed_totals(
             left.append(_difference(stock, beside.stock, within))
 
     acts = _watched(interpret(prepared.blocks, machine), compare)
-    totals = _totals(virtual, virtual.run(acts), machine, scales)
+    totals = _LoadTotals(machine, scales)
+    for episode in virtual.run(acts):
+        totals.add(episode)
     return tuple(
-        ConfirmedTotals(id=name, nominal=one, quantile=other, left=difference)
-        for name, (one, other), difference in zip(
-            virtual.workingsteps, totals[1:], left, strict=True
+        ConfirmedTotals(
+            id=name,
+            nominal=totals.nominal[at],
+            quantile=totals.quantile[at],
+            volume=totals.volume[at],
+            left=left[at],
         )
+        for at, name in enumerate(virtual.workingsteps)
     )
 
 
@@ -101,27 +111,29 @@ def _watched(acts: Iterator[ProgramAct], at_end: Callable[[], None]) -> Iterator
     at_end()
 
 
-def _totals(
-    virtual: VirtualMachine,
-    episodes: Iterator[Episode],
-    machine: Machine,
-    scales: dict[int, ForceScale],
-) -> Sequence[tuple[Total, Total]]:
-    """Nominal totals and those at the quantile; the first are for the time before all."""
-    totals = [(Total(), Total())]
-    for episode in episodes:
+class _LoadTotals:
+    """Totals by workingstep, counted from 0, with two values of k_c (mutable state)."""
+
+    def __init__(self, machine: Machine, scales: dict[int, ForceScale]) -> None:
+        self.nominal: defaultdict[int, Total] = defaultdict(Total)
+        self.quantile: defaultdict[int, Total] = defaultdict(Total)
+        self.volume: defaultdict[int, float] = defaultdict(float)
+        self._machine = machine
+        self._scales = scales
+
+    def add(self, episode: Episode) -> None:
+        """Add an episode of the run."""
         require_sense(episode)
-        at = episode.state.workingstep
-        totals += [(Total(), Total()) for _ in range(len(totals), at + 1)]
-        scale = scales.get(at - 1, ForceScale())
-        nominal, quantile = totals[at]
-        nominal = added(nominal, _scaled(episode, scale.nominal), machine)
-        if scale.quantile != scale.nominal:
-            quantile = added(quantile, _scaled(episode, scale.quantile), machine)
-        else:
-            quantile = nominal
-        totals[at] = nominal, quantile
-    return totals + [(Total(), Total())] * (len(virtual.workingsteps) + 1 - len(totals))
+        at = episode.state.workingstep - 1
+        scale = self._scales.get(at, ForceScale())
+        for totals, factor in (
+            (self.nominal, scale.nominal),
+            (self.quantile, scale.quantile),
+        ):
+            totals[at] = added(totals[at], _scaled(episode, factor), self._machine)
+        if episode.course is not None:
+            stations = episode.course.stations
+            self.volume[at] += float((stations.section * stretch_lengths(stations)).sum())
 
 
 def _scaled(episode: Episode, factor: float) -> Episode:

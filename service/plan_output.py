@@ -9,7 +9,9 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, LimitLoad, Plan, tightest
+from optimiser.modes import Mode
 from optimiser.problem import LimitName
+from optimiser.roughness import IDEAL
 from optimiser.stability import Basis
 from service.rendering.columns import Cell, Change, Column
 from service.rendering.records import dump, finding_record, record, records
@@ -110,7 +112,7 @@ PAGE = (
 FRONT: "tuple[Column[ParetoPoint], ...]" = (
     Column(key="time_s", heading="time s", form=".2f", value=lambda point: point.state.time),
     Column(
-        key="roughness_ra_um", heading="Ra µm", form=".3g",
+        key="roughness_ra_um", heading="ideal Ra µm", form=".3g",
         value=lambda point: um_from_mm(point.state.roughness or 0.0) or None,
     ),
     Column(
@@ -159,7 +161,7 @@ def print_plan(
     """Print the advice for a program: a row per workingstep, then totals and findings."""
     material = plan.material.material
     print_line(
-        f"{plan.program}: mode {plan.mode.value}, machine {plan.machine.name} "
+        f"{plan.program}: mode {mode_words(plan.mode)}, machine {plan.machine.name} "
         f"({plan.machine.title}), material {material.title}"
     )
     total = f"{plan.time_before:.1f} -> {plan.time_after:.1f}"
@@ -176,7 +178,7 @@ def print_plan(
         print_line(f"  {advice.workingstep.id}: {_reason(advice)}")
     for advice in plan.advices:
         if advice.front:
-            print_line(f"front of {advice.workingstep.id}:")
+            print_line(f"front of {advice.workingstep.id} (Ra is {IDEAL}):")
             print_table(FRONT, advice.front)
     if confirmation is not None:
         _print_confirmation(confirmation)
@@ -185,6 +187,11 @@ def print_plan(
 
         print_along_path(along)
     print_findings(plan.findings, told=told)
+
+
+def mode_words(mode: Mode) -> str:
+    """Name of a mode; of QC with what its roughness is."""
+    return f"{mode.value} (Ra is {IDEAL})" if mode is Mode.QC else mode.value
 
 
 def _safety(plan: Plan) -> str:
@@ -254,7 +261,7 @@ def _reason(advice: Advice) -> str:
         and advice.cut is not None
         and advice.cut.is_finishing
     ):
-        text += f"; leaves Ra {advice.after.roughness * 1e3:.3g} µm"
+        text += f"; leaves Ra {advice.after.roughness * 1e3:.3g} µm ({IDEAL})"
     if advice.cut is not None:
         text += "".join(f"; {each.words}" for each in advice.cut.refused_passes[:1])
     deepest = advice.deepest_first_time
@@ -361,6 +368,7 @@ def _advice(advice: Advice) -> dict[str, Any]:
         "motor_power_kw": kw_from_watts(shown.motor_power) if shown else None,
         "cutting_force_n": shown.cutting_force if shown else None,
         "roughness_ra_um": um_from_mm(shown.roughness) if shown and shown.roughness else None,
+        "roughness_basis": IDEAL if shown and shown.roughness else None,
         "energy_j": shown.energy if shown else None,
         "time_s": {
             "before": before.time if before else None,
@@ -447,6 +455,7 @@ def report_page(plan: Plan, along: "FeedsAlongPath | None" = None) -> str:
     return rendered(
         "plan.html.jinja",
         plan=plan,
+        mode=mode_words(plan.mode),
         columns=PAGE,
         change=f"{after / before - 1.0:+.0%}" if before else "",
         reasons=[

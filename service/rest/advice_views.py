@@ -63,6 +63,13 @@ class HoldingLoadView(View):
     lift_n: float = Field(description="largest axial force that lifts the workpiece")
 
 
+class RefusedPassesView(View):
+    """Number of passes that is no candidate for a workingstep."""
+
+    passes: int
+    reason: str
+
+
 class AdvisedView(View):
     """Advised feed of one workingstep, with the reasons."""
 
@@ -81,6 +88,12 @@ class AdvisedView(View):
     motor_power_kw: float | None
     cutting_force_n: float | None
     roughness_ra_um: float | None
+    roughness_basis: str | None = Field(
+        default=None, description="what the roughness is: ideal, not measured"
+    )
+    refused_passes: list[RefusedPassesView] = Field(
+        default=[], description="numbers of passes that would leave other stock than programmed"
+    )
     energy_j: float | None
     time_s: BeforeAfterView
     stability: StabilityView | None = Field(

@@ -172,7 +172,11 @@ def test_a_turned_cut_learns_where_its_power_is_greatest() -> None:
     how = ride(path, spindle=(SPINDLE, SPINDLE / 1.5))
     deep = met(TURNED, (50, 2.0), (50, 2.2), segment=(0, 1), diameter=(40.0, 60.0))
     found = reached(TURNED, deep, how)
-    assert found.power_speed == pytest.approx(1.0 / 1.5)
+    slow, fast = found.power_places
+    assert (slow.power, slow.speed) == pytest.approx((1.0, 1.0 / 1.5))
+    assert (fast.power, fast.speed) == pytest.approx((2.0 / 2.2, 1.0))
+    # The deeper cut at 60 mm takes the greatest torque, whatever its speed.
+    assert found.torque_diameter == pytest.approx(60.0)
     # The force times this diameter, at the spindle speed of the cut.
     assert found.power_diameter == pytest.approx(60.0 / 1.5)
     assert found.reached == ReachedLoads()

@@ -11,7 +11,16 @@ from simulator.motion.control import ExactStop, control_model
 from simulator.motion.fir import FixedTimeFilter
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.passing import reached_velocities
-from simulator.motion.segments import AxisLimits, Segments, arc, chained, lines
+from simulator.motion.segments import (
+    AxisLimits,
+    ControlModel,
+    Floats,
+    Ints,
+    Segments,
+    arc,
+    chained,
+    lines,
+)
 from simulator.motion.tool_path import Leg, ToolPathRun
 
 AXES = AxisLimits(
@@ -41,9 +50,21 @@ def straight(*x: float, speed: float = 20.0) -> Segments:
     return path
 
 
+def reached_speeds(
+    of: ToolPathRun,
+    control: ControlModel,
+    limits: AxisLimits,
+    *,
+    segment: Ints,
+    station: Floats,
+) -> Floats:
+    found = reached_velocities(of, control, limits, segment=segment, station=station)
+    return np.linalg.norm(found, axis=1)
+
+
 def speeds(of: ToolPathRun, *places: tuple[int, float]) -> list[float]:
     rows, stations = zip(*places, strict=True)
-    found = reached_velocities(
+    found = reached_speeds(
         of, ExactStop(), AXES, segment=np.array(rows), station=np.array(stations, dtype=float)
     )
     return [float(each) for each in found]
@@ -77,7 +98,7 @@ def test_legs_without_rows_and_rows_without_places_are_passed_over() -> None:
 
 def test_no_place_has_no_speed() -> None:
     none = np.zeros(0)
-    found = reached_velocities(
+    found = reached_speeds(
         run(straight(0, 10), 1), ExactStop(), AXES, segment=none.astype(np.int64), station=none
     )
     assert found.shape == (0,)
@@ -90,7 +111,7 @@ def test_axes_are_slower_than_the_feed_on_a_small_arc() -> None:
     )
     circle = run(arc([1, 0, 0], [0, 0, 0], 40.0, speed=50.0), 1)
     stations = np.linspace(5.0, 35.0, 30)
-    found = reached_velocities(
+    found = reached_speeds(
         circle, ExactStop(), limits, segment=np.zeros(30, np.int64), station=stations
     )
     assert (found <= sqrt(100.0 * 1.0) * (1.0 + 1e-9)).all()
@@ -100,7 +121,7 @@ def test_axes_are_slower_than_the_feed_on_a_small_arc() -> None:
 def test_a_filter_has_reached_half_the_feed_when_the_path_begins() -> None:
     """Half a window after the start, both averages hold as much rest as feed."""
     path = run(lines([(0, 0, 0), (100, 0, 0)], speed=30.0), 1)
-    found = reached_velocities(
+    found = reached_speeds(
         path,
         FixedTimeFilter(first=0.4, second=0.1),
         AXES,
@@ -128,7 +149,7 @@ def test_no_axis_is_faster_than_the_feeds(
     ])
     segment = np.repeat([0, 1], len(at))
     station = np.array(at * 2) * path.length[segment]
-    found = reached_velocities(
+    found = reached_speeds(
         run(path, 2), control_model(control, AXES), AXES, segment=segment, station=station
     )
     assert (found >= 0.0).all()
