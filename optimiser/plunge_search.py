@@ -76,8 +76,8 @@ def _balanced_feed(one: PlungeOptimum, other: PlungeOptimum) -> float | None:
     """Feed of the passes at which slowing them saves as much on the ramp as it costs.
 
     With the excess ``A·f + B·p`` of a pass at the feed f after a ramp at the feed p, bounded by
-    1, the time ``L/f + R/p`` is least where ``p/f = √(R·A/(L·B))``; two plunge feeds at the same
-    f give A, B and the length R of the ramp.
+    1, the time ``L/f + R/p`` is least where ``p/f = √(R·A/(L·B))``. Two plunge feeds at one f
+    give A, B and the length R of the ramp.
     """
     feed, turns = one.setting.feed, one.cut.tool.teeth * one.setting.speed
     fast, slow = one.setting.plunge_feed or 0.0, other.setting.plunge_feed or 0.0

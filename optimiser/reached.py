@@ -11,6 +11,7 @@ import numpy as np
 
 from optimiser.cut import CriticalPlace, Cut, CutKind, PowerPlace, ReachedLoads
 from optimiser.hardest import KINDS, LEAST_RATIO, Bending, PathContacts
+from optimiser.problem import ROUNDING
 from simulator.motion.passing import reached_velocities
 from simulator.motion.segments import AxisLimits, Bools, ControlModel, Floats, Ints
 from simulator.motion.tool_path import ToolPathRun
@@ -129,11 +130,10 @@ def thickened(cut: Cut) -> Cut:
     control that rounds a change of the feed speeds up before the change.
     """
     found = cut.reached
-    over = ReachedLoads(
-        force=max(found.force, found.power, 1.0),
-        power=max(found.force, found.power, 1.0),
-        wall=max(found.wall, 1.0),
-    )
+    force, wall = max(found.force, found.power), found.wall
+    if max(force, wall) <= 1.0 + ROUNDING:
+        return cut
+    over = ReachedLoads(force=max(force, 1.0), power=max(force, 1.0), wall=max(wall, 1.0))
     return replace(
         cut,
         fill=cut.fill * over.force,

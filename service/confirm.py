@@ -10,7 +10,7 @@ Figures are compared with the nominal k_c, bounds with that at the quantile of t
 from collections.abc import Iterable, Iterator
 from math import inf, pi
 
-from optimiser.advice import Advice, EvaluatedSetting, LimitLoad, Plan
+from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, LimitLoad, Plan
 from optimiser.cut import Cut, CutKind, PowerPlace, ReachedLoads
 from optimiser.problem import BoundSide, LimitName
 from service.confirmation import Confirmation, ConfirmedStep, Figure
@@ -53,7 +53,14 @@ def confirm(
         if state is None or total.id != advice.workingstep.id:
             continue
         figures = tuple(_figures(advice, state, total, plan.machine))
-        steps.append(ConfirmedStep(id=total.id, figures=figures, left=total.left))
+        steps.append(
+            ConfirmedStep(
+                id=total.id,
+                figures=figures,
+                left=total.left,
+                is_advised=advice.status is AdviceStatus.ADVISED,
+            )
+        )
     return Confirmation(steps=tuple(steps), quantile=plan.safety)
 
 

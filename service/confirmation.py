@@ -48,6 +48,8 @@ class ConfirmedStep:
     figures: tuple[Figure, ...]
     left: StockDifference | None = None
     """Stock that is left, compared with that of the program as given; None: not known."""
+    is_advised: bool = True
+    """Whether the workingstep runs as advised, and not as programmed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

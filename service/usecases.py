@@ -11,6 +11,7 @@ from optimiser.formulate import OptimisationTask
 from optimiser.optimise import optimise_program
 from optimiser.source import along_paths
 from service.chosen import machine_for, material_for, require_axes, with_holding
+from service.divided_depth import depth_notes
 from service.files import (
     beside,
     is_same,
@@ -134,9 +135,12 @@ def optimise(
         selected=lambda step: int(step.ref) in wanted,
         progress=Progress(tell, total=len(chosen)),
     )
-    plan = replace(plan, refused=(*possible.refused, *plan.refused))
     told = _remarks(program, tell)
-    plan = _with_file_findings(plan, (*findings, *notes, *told), match)
+    notes = (*notes, *depth_notes(program, plan, whole.given))
+    plan = replace(
+        _with_file_findings(plan, (*findings, *notes, *told), match),
+        refused=(*possible.refused, *plan.refused),
+    )
     writable = apart_from(program, changes_of(plan), plan.refused)
     changes = writable.changes
     unwritten = _unwritten(program, plan, writable, profile, tell)

@@ -53,6 +53,7 @@ SLOW = (
     "service/test_bad_paths.py",
     "service/test_bad_simulations.py",
     "service/test_every_missing_instance.py",
+    "service/test_promised.py",
     "service/trial/test_run.py",
     "service/verification/test_run.py",
     "simulator/factory/test_calendar.py",

@@ -182,8 +182,11 @@ def test_a_turned_cut_learns_where_its_power_is_greatest() -> None:
     assert found.reached == ReachedLoads()
 
 
+DOWN = lines([(0, 0, 0), (0, 0, -100)], speed=FEED)
+
+
 def test_a_drill_at_its_feed_has_the_chip_of_its_feed() -> None:
-    found = reached(DRILLED, met(DRILLED, (50, 70)), ride())
+    found = reached(DRILLED, met(DRILLED, (50, 70)), ride(DOWN))
     assert found.thickest == pytest.approx(1.0)
     assert found.power_diameter == pytest.approx(DRILLED.force_diameter)
     assert loads(found) == pytest.approx((1.0, 1.0, 1.0))
@@ -192,7 +195,7 @@ def test_a_drill_at_its_feed_has_the_chip_of_its_feed() -> None:
 @given(slow=st.floats(0.3, 0.95))
 def test_a_slower_spindle_alone_thickens_the_chip_of_a_drill(slow: float) -> None:
     """At the same feed ``1/slow`` times the chip: what limits hold against is all reached."""
-    found = reached(DRILLED, met(DRILLED, (50, 70)), ride(spindle=(slow * SPINDLE,)))
+    found = reached(DRILLED, met(DRILLED, (50, 70)), ride(DOWN, spindle=(slow * SPINDLE,)))
     assert found.kind is CutKind.DRILLING
     assert found.thickest == pytest.approx(1.0 / slow)
     assert found.power_diameter == pytest.approx(slow * DRILLED.force_diameter)
