@@ -16,6 +16,7 @@ from pathlib import Path
 from optimiser.modes import Free, Mode
 from service.confirmation import Confirmation, Figure
 from service.requests.advice import AdviceRequest
+from service.requests.given import Units
 from service.usecases import AdviceFiles, optimise
 from stepnc_model.errors import StepNcError
 
@@ -68,7 +69,7 @@ def cases() -> Iterator[Case]:
     # The file draws no raw part.
     block = AdviceRequest(machine="vmc15", material="C45", stock="0,0,-30,100,120,5")
     yield Case(file=CORPUS / "ex1.stp", request=block)
-    flanks = AdviceRequest(machine="vmc15", units="rpm-mmtooth")
+    flanks = AdviceRequest(machine="vmc15", units=Units("rpm-mmtooth"))
     yield Case(file=CORPUS / "RanhuraPerfilVee.p21", request=flanks)
 
 

@@ -115,7 +115,7 @@ def _figures(
     yield Figure(
         key="torque_nm",
         heading="torque N·m",
-        promised=nm_from_nmm(_torque(cut, state, efficiency * drive)),
+        promised=nm_from_nmm(_torque(cut, state, reached, efficiency * drive)),
         found=nm_from_nmm(total.torque.value),
         at_quantile=None if worse is None else nm_from_nmm(worse.torque.value),
         bound=nm_from_nmm(_bound(state, LimitName.SPINDLE_TORQUE)),
@@ -149,12 +149,17 @@ def _on_ramp(cut: Cut | None) -> ReachedLoads:
     return ReachedLoads() if way_in is None or way_in.ramp is None else way_in.ramp.reached
 
 
-def _torque(cut: Cut | None, state: EvaluatedSetting, cutting_power: float) -> float:
+def _torque(
+    cut: Cut | None, state: EvaluatedSetting, reached: ReachedLoads, cutting_power: float
+) -> float:
     """Greatest torque at the spindle, N·mm."""
     if cut is None or state.setting.speed <= 0.0:
         return 0.0
     if cut.torque_diameter is not None:
         return 0.5 * state.cutting_force * cut.torque_diameter
+    if cut.kind is CutKind.DRILLING:
+        # Where only the spindle slows, the power falls and the torque does not.
+        return 0.5 * reached.force * state.cutting_force * cut.force_diameter
     return 1e3 * cutting_power / (2.0 * pi * state.setting.speed)
 
 

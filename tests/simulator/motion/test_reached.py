@@ -59,7 +59,8 @@ def reached_speeds(
     station: Floats,
 ) -> Floats:
     found = reached_velocities(of, control, limits, segment=segment, station=station)
-    return np.linalg.norm(found, axis=1)
+    speeds: Floats = np.linalg.norm(found, axis=1)
+    return speeds
 
 
 def speeds(of: ToolPathRun, *places: tuple[int, float]) -> list[float]:
