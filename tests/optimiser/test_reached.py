@@ -13,8 +13,9 @@ from optimiser.cut import Cut, CutKind, ReachedLoads
 from optimiser.hardest import KINDS, Bending, PathContacts
 from optimiser.reached import MachineRun, with_reached
 from simulator.motion.control import ExactStop
+from simulator.motion.legs import Leg
 from simulator.motion.segments import AxisLimits, Segments, lines
-from simulator.motion.tool_path import Leg, ToolPathRun
+from simulator.motion.tool_path import ToolPathRun
 from simulator.removal.stations import Stations, stretch_lengths
 from tests.optimiser.cuts import CUT, DRILLED, TURNED
 

@@ -8,6 +8,8 @@ from benchmarks.promised import Case, cases, confirmed, is_compared, off, summar
 from service.confirmation import Confirmation
 
 LOADS, TIME = 0.05, 0.01
+AT_SHOULDERS = 0.12
+"""Share of a torque that a plan may promise too much."""
 
 SAMPLE = (
     "bracket vmc15 c45",
@@ -40,6 +42,11 @@ def test_every_figure_is_found_as_promised(name: str) -> None:
     for step in confirmation.steps:
         for figure in filter(is_compared, step.figures):
             tolerance = TIME if figure.key == "time_s" else LOADS
+            if figure.key == "torque_nm" and "shaft" in name:
+                # The axis brakes in the last tenth of a millimetre before a shoulder, where the
+                # depth is greatest; a plan does not count on that.
+                assert figure.found <= figure.promised * (1.0 + LOADS), (step.id, figure)
+                tolerance = AT_SHOULDERS
             assert off(figure) <= tolerance, (step.id, figure)
 
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from simulator.motion.control import ExactStop, control_model
 from simulator.motion.fir import FixedTimeFilter
+from simulator.motion.legs import Leg
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.passing import reached_velocities
 from simulator.motion.segments import (
@@ -21,7 +22,7 @@ from simulator.motion.segments import (
     chained,
     lines,
 )
-from simulator.motion.tool_path import Leg, ToolPathRun
+from simulator.motion.tool_path import ToolPathRun
 
 AXES = AxisLimits(
     acceleration=np.full(3, 100.0), rapid=np.full(3, 500.0), feed=np.full(3, 500.0)
