@@ -11,6 +11,7 @@ from optimiser.formulate import OptimisationTask
 from optimiser.optimise import optimise_program
 from optimiser.source import along_paths
 from service.chosen import machine_for, material_for, require_axes, with_holding
+from service.divided_depth import depth_notes
 from service.files import (
     beside,
     is_same,
@@ -142,9 +143,12 @@ def optimise(
         selected=lambda step: int(step.ref) in wanted,
         progress=Progress(tell, total=len(chosen)),
     )
-    plan = replace(plan, refused=(*possible.refused, *plan.refused))
     told = _remarks(program, tell)
-    plan = _with_file_findings(plan, (*findings, *notes, *told), match)
+    notes = (*notes, *depth_notes(program, plan, whole.given))
+    plan = replace(
+        _with_file_findings(plan, (*findings, *notes, *told), match),
+        refused=(*possible.refused, *plan.refused),
+    )
     writable = apart_from(program, changes_of(plan), plan.refused)
     changes = writable.changes
     unwritten = _unwritten(program, plan, writable, profile, tell)
@@ -201,7 +205,7 @@ def _confirmed(
         return None
     from service.confirm import confirm  # noqa: PLC0415 (numba takes a second)
 
-    return confirm(plan, _read_again(program, data), tell=tell)
+    return confirm(plan, program, _read_again(program, data), tell=tell)
 
 
 def _along(
@@ -388,7 +392,7 @@ def _task(request: AdviceRequest, tools: "tuple[TableTool, ...]") -> Optimisatio
         safety=request.safety,
         centre_cutting={**request.centre_cutting, **_centre_cutting(tools)},
         allow_plunge=request.allow_plunge,
-        source=partial(along_paths, is_run=request.is_confirmed, body_map=_body_map),
+        source=partial(along_paths, body_map=_body_map),
         keep_going=request.keep_going,
         ignores_records=request.ignore_record,
     )

@@ -74,6 +74,8 @@ THROUGH = {
         "service/learning/figures.py",
         "service/learning/output.py",
     ),
+    "service/test_confirm.py": ("service/confirmed_run.py",),
+    "service/test_same_stock.py": ("optimiser/stock_left.py", "service/divided_depth.py"),
     "service/factory/test_factory.py": (
         "service/cli/factory.py",
         "service/factory/output.py",
