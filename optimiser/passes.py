@@ -1,11 +1,22 @@
 """Search for the best number of passes, each evaluated along its own tool path.
 
 The closed form assumes that all passes are alike, but a path with other passes enters and
-leaves elsewhere and meets the stock differently. So each proposal of the closed form is tried
-along its path and solved again.
+leaves elsewhere and meets the stock differently. So each number of passes whose lower bound
+(:mod:`optimiser.pass_bounds`) is below the best so far is tried along its path.
+
+1. The programmed number is tried, and the least number that the depth limits allow. Until one
+   is feasible, the closed form proposes others from the last path.
+2. The other numbers follow in the order of their bounds from the deepest path. One whose bound
+   is not below the best so far is passed over; if it is, its path is made and timed, and only
+   if the bound is still below the best is the path tried in the stock.
+3. A search ends after :data:`MOST_LEVELS` levels of paths. Numbers that might have been better
+   are told.
+
+The order does not depend on the programmed number, so that a search that begins with the result
+of another ends with it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import inf
 
 from optimiser import workingstep as exact
@@ -13,14 +24,13 @@ from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut
 from optimiser.errors import Infeasible
 from optimiser.formulate import OptimisationTask, problem_of
+from optimiser.least_cost import least_cost
 from optimiser.modes import Free
+from optimiser.pass_bounds import PassCountBounds, bounds_of
 from optimiser.plunge_feed import with_plunge_feed
 from optimiser.problem import LimitName, Problem, Setting
 from optimiser.source import CutSource
 from stepnc_model.program import ResolvedWorkingstep
-
-ROUNDS = 4
-"""Greatest number of paths tried for the depth of one workingstep."""
 
 UNTIL_FEASIBLE = 10
 """Greatest number of paths tried while none keeps its limits.
@@ -28,11 +38,14 @@ UNTIL_FEASIBLE = 10
 Stock that was left above can make passes deeper than planned.
 """
 
-MANY = 100
-"""Number of passes above which the first feasible path is accepted.
+MOST_LEVELS = 150
+"""Greatest number of levels in the paths of one search, the first paths not counted.
 
-A larger programmed number raises it. A path of hundreds of levels takes seconds to evaluate.
+A path of a hundred levels takes seconds to evaluate.
 """
+
+WORTH = 1e-4
+"""Relative saving below which the programmed number of passes is kept."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,60 +73,164 @@ class PassCountOptimum:
     cut: Cut
     problem: Problem
     optimum: Optimum
+    untried: tuple[int, ...] = ()
+    """Numbers of passes that might be better, but whose paths were not tried."""
+
+
+@dataclass(slots=True, kw_only=True)
+class _Search:
+    """Search for the best number of passes of a workingstep (mutable state)."""
+
+    cut: Cut
+    asked: AdviceContext
+    found: dict[int, PassCountOptimum] = field(default_factory=dict)
+    """Best setting for each feasible number of passes that was tried."""
+    bounds: dict[int, PassCountBounds] = field(default_factory=dict)
+    """Bounds from each path that was tried, also from infeasible ones."""
+    conflict: Infeasible | None = None
+    """Why the last infeasible number of passes was infeasible."""
+
+    @property
+    def least(self) -> float:
+        """Least cost so far that is worth a change, s or J; infinite without one."""
+        return min((self.cost(each) for each in self.found.values()), default=inf)
+
+    def cost(self, each: PassCountOptimum) -> float:
+        """Cost of a number of passes along its own path, s or J."""
+        cost = exact.cost_function(each.problem, self.asked.task.mode)
+        return cost(each.optimum.solution.setting)
+
+    def try_passes(self, problem: Problem, passes: int) -> Problem:
+        """Try a number of passes along its path, and return the problem of that path."""
+        asked = self.asked
+        cut = _along_path(self.cut, problem, passes, asked)
+        problem = problem_of(cut, asked.at, asked.task)
+        self.bounds[passes] = bounds_of(cut, asked.at, asked.task, passes=passes)
+        try:
+            self.found[passes] = _best_in(cut, problem, passes, asked)
+        except Infeasible as conflict:
+            if problem.passes[0] == problem.passes[1]:
+                raise
+            self.conflict = conflict
+            return problem
+        return self.found[passes].problem
+
+    def is_hopeless(self, problem: Problem, passes: int) -> bool:
+        """Whether bounds tell that a number of passes is no better than the best so far."""
+        if any(each.at_least(passes) >= self.worthwhile for each in self.bounds.values()):
+            return True
+        depth, asked = problem.depth_at(passes), self.asked
+
+        def timed(cut: Cut, setting: Setting) -> Cut:
+            return asked.cuts.timed(asked.step, cut, replace(setting, depth=depth))
+
+        return any(
+            each.along(passes, timed) >= self.worthwhile for each in self.bounds.values()
+        )
+
+    @property
+    def worthwhile(self) -> float:
+        """Cost below which another number of passes is worth a change, s or J."""
+        return self.least * (1.0 - WORTH)
 
 
 def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimum:
     """Find the best number of passes, each evaluated along its own path.
 
-    The last optimum proposes the next number to try, until it proposes a number that was tried,
-    or that by its own estimate is no better than the best so far; that path is not made. The
-    programmed number is tried first, so that advice that was adopted is given again.
+    Raises
+    ------
+    Infeasible
+        When no number of passes that was tried keeps all limits.
     """
-    told: dict[int, PassCountOptimum] = {}
-    tried: set[int] = set()
+    search = _Search(cut=cut, asked=asked)
     given = problem.programmed.passes
-    passes = given
-    last: Infeasible | None = None
-    while passes not in tried and len(tried) < (ROUNDS if told else UNTIL_FEASIBLE):
-        tried.add(passes)
-        try:
-            told[passes] = _told(cut, problem, passes, asked)
-            problem = told[passes].problem
-        except Infeasible as conflict:
-            if problem.passes[0] == problem.passes[1]:
-                raise
-            last = conflict
-        if told and passes > max(MANY, given):
-            break
-        try:
-            proposal = _optimum(problem, asked.task).solution.setting
-        except Infeasible:
-            if not told:
-                raise
-            break
-        least = min((_cost(each, asked.task) for each in told.values()), default=inf)
-        if exact.cost_function(problem, asked.task.mode)(proposal) >= least:
-            break
-        passes = proposal.passes
-    best = min(told.values(), key=lambda each: _cost(each, asked.task), default=None)
-    if best is None:
-        raise last or exact.conflict(problem)
+    last = search.try_passes(problem, given)
+    untried: list[int] = []
+    if problem.passes[0] != problem.passes[1]:
+        deepest = problem.deepest()
+        if deepest not in search.bounds and deepest <= problem.passes[1]:
+            last = search.try_passes(problem, deepest)
+        _until_feasible(search, last)
+        untried = _try_in_order(search, problem, deepest)
+    if not search.found:
+        raise search.conflict or exact.conflict(last)
+    best = min(search.found.values(), key=search.cost)
+    if given in search.found and search.cost(search.found[given]) <= search.cost(best) / (
+        1.0 - WORTH
+    ):
+        best = search.found[given]
     # The next workingstep finds the stock as this path leaves it.
     asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)
-    return best
+    return replace(_with_deepest(best, search), untried=tuple(untried))
 
 
-def _cost(told: PassCountOptimum, task: OptimisationTask) -> float:
-    """Cost in seconds or joules of a number of passes along its own path."""
-    return exact.cost_function(told.problem, task.mode)(told.optimum.solution.setting)
+def _until_feasible(search: _Search, problem: Problem) -> None:
+    """Try what the closed form proposes for the last path, until a path is feasible."""
+    while not search.found and len(search.bounds) < UNTIL_FEASIBLE:
+        try:
+            passes = _optimum(problem, search.asked.task).solution.setting.passes
+        except Infeasible:
+            return
+        if passes in search.bounds:
+            return
+        problem = search.try_passes(problem, passes)
 
 
-def _told(cut: Cut, problem: Problem, passes: int, asked: AdviceContext) -> PassCountOptimum:
-    """Best setting for a number of passes: first the limits, then the time at that feed."""
-    given, step, task = cut.programmed, asked.step, asked.task
+def _try_in_order(search: _Search, problem: Problem, deepest: int) -> list[int]:
+    """Try numbers of passes in the order of their bounds; return what was left out.
+
+    Numbers that were tried before count as tried in their turn, so that the numbers within
+    reach are the same whatever the programmed number is.
+    """
+    levels, untried = 0, []
+    for passes in _in_order(search, problem, deepest):
+        is_within_reach = levels + passes <= MOST_LEVELS
+        levels += passes
+        if passes in search.bounds:
+            continue
+        if is_within_reach:
+            if not search.is_hopeless(problem, passes):
+                search.try_passes(problem, passes)
+        elif not any(
+            each.at_least(passes) >= search.worthwhile for each in search.bounds.values()
+        ):
+            untried.append(passes)
+    return sorted(untried)
+
+
+def _in_order(search: _Search, problem: Problem, deepest: int) -> list[int]:
+    """Numbers of passes that may be best, by their bounds from the deepest path."""
+    if deepest not in search.bounds:
+        return []
+    bounds = search.bounds[deepest]
+    or_more = least_cost(bounds.shortest, search.asked.task.mode)
+    least = {}
+    for passes in range(deepest, problem.passes[1] + 1):
+        if or_more(passes) > search.least:
+            break
+        least[passes] = bounds.at_least(passes)
+    return sorted((each for each in least if least[each] < inf), key=lambda each: least[each])
+
+
+def _with_deepest(best: PassCountOptimum, search: _Search) -> PassCountOptimum:
+    """Optimum with the time of the fewest feasible passes that were tried."""
+    fewest = search.found[min(search.found)].optimum.solution.time
+    solution = best.optimum.solution
+    solution = replace(solution, deepest_first_time=max(solution.time, fewest))
+    return replace(best, optimum=replace(best.optimum, solution=solution))
+
+
+def _along_path(cut: Cut, problem: Problem, passes: int, asked: AdviceContext) -> Cut:
+    """Cut along the path in a number of passes, at the programmed feed."""
+    given = cut.programmed
     depth = given.depth if passes == given.passes else problem.depth_at(passes)
-    cut = asked.cuts.at(step, cut, replace(given, passes=passes, depth=depth))
-    optimum = _with_passes(problem_of(cut, asked.at, task), passes, task)
+    return asked.cuts.at(asked.step, cut, replace(given, passes=passes, depth=depth))
+
+
+def _best_in(cut: Cut, problem: Problem, passes: int, asked: AdviceContext) -> PassCountOptimum:
+    """Best setting for a number of passes: first the limits, then the time at that feed."""
+    step, task = asked.step, asked.task
+    optimum = _with_passes(problem, passes, task)
     setting = optimum.solution.setting
     plunging = _with_plunge(cut, setting, asked)
     cut = asked.cuts.at(step, cut, plunging)
