@@ -11,9 +11,7 @@ Paths with other depths of passes are tried too: those of the program as
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from copy import copy
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from optimiser.clamped import (
     BodyMaps,
@@ -35,6 +33,7 @@ from optimiser.hardest import (
     weighted_volume,
     with_hardest,
 )
+from optimiser.other_depth import with_depth
 from optimiser.plunge import (
     PlungeCuts,
     along_passes,
@@ -62,10 +61,7 @@ from simulator.removal.lathe import BarRadii, TurningStock
 from simulator.removal.stations import StationKind
 from simulator.removal.trial import PathTrial, do_overlap, is_remembered_alike, renumbered
 from simulator.spec import Machine, MachineKind, WorkMaterial
-from stepnc_model.binding import Model
-from stepnc_model.entities.entity import Entity
-from stepnc_model.errors import Finding, PathError, PostError, SchemaError, Severity
-from stepnc_model.part21.values import Ref
+from stepnc_model.errors import Finding, PostError, SchemaError, Severity
 from stepnc_model.post.blocks import MachineType as PostMachine
 from stepnc_model.post.modal_state import ModalState, conditions
 from stepnc_model.program import Program, ResolvedWorkingstep
@@ -112,41 +108,6 @@ class SearchTrace:
     """Trials of all paths that were tried."""
     left_out: dict[int, str] = field(default_factory=dict)
     """Features whose path could not be made, with the id of the workingstep."""
-
-
-def with_depth(
-    program: Program, step: ResolvedWorkingstep, depth: float
-) -> tuple[Program, ResolvedWorkingstep]:
-    """Copy of a program and a workingstep with a different depth of its passes.
-
-    Raises
-    ------
-    PathError
-        When the file does not let the depth be chosen.
-    """
-    operation: Any = step.operation
-    if hasattr(operation, "axial_cutting_depth") and not operation.its_toolpath:
-        other = replace(operation, axial_cutting_depth=depth)
-        return program, replace(step, operation=other)
-    strategy: Ref[Entity] | None = getattr(operation, "its_machining_strategy", None)
-    entity: Any = None if strategy is None else program.get(strategy)
-    if strategy is None or not hasattr(entity, "cutting_depth") or operation.its_toolpath:
-        raise PathError("the file sets no depth of its passes", entity=str(step.ref))
-    changed = copy(program)
-    changed.model = _Changed(program.model, strategy, replace(entity, cutting_depth=(depth,)))
-    return changed, step
-
-
-class _Changed(Model):
-    """Entities of a program with one entity replaced."""
-
-    def __init__(self, model: Model, ref: Ref[Entity], entity: Entity) -> None:
-        super().__init__(model.file)
-        self._model, self._number, self._entity = model, int(ref), entity
-
-    def entity(self, id: int, /) -> Entity | None:
-        """Return the entity of an instance number."""
-        return self._entity if id == self._number else self._model.entity(id)
 
 
 class MeasuredCuts:

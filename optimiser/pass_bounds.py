@@ -17,8 +17,8 @@ Limits of the feed alone, as of tool and feed drives, hold in any number of pass
 s, J.
 """
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from math import inf
 
 from optimiser import workingstep as exact
@@ -40,6 +40,15 @@ of shallower passes by less than 1 % (``python -m benchmarks.least_time``).
 ALIKE = 0.9
 """Least ratio of the lengths of one pass at which levels count as alike."""
 
+SAME_VOLUME = 0.98
+"""Least ratio of the volumes that two paths remove at which their levels count as alike."""
+
+HALF = 0.5
+"""Ratio of the lengths of one pass that no path falls below, where levels are not alike.
+
+Where walls lean, a tool does not fit into the lowest levels, so that passes are left out.
+"""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PassCountBounds:
@@ -52,27 +61,37 @@ class PassCountBounds:
     at: CuttingConditions
     problem: Problem
     """Problem of the path without the stock that was left above its hardest places."""
+    settings: dict[tuple[int, bool], Setting | None] = field(default_factory=dict)
+    """Best settings of relaxed problems, by number of passes and whether levels are alike."""
 
-    @property
-    def shortest(self) -> Problem:
-        """Problem with levels that are a little shorter, and nothing beside the cut."""
+    def shortest(self, *, is_alike: bool) -> Problem:
+        """Problem with shorter levels than those tried, and nothing beside the cut."""
         cost = self.problem.cost
-        short = replace(cost, length=ALIKE * cost.length, link_time=0.0)
-        return replace(self.problem, cost=short)
+        length = (ALIKE if is_alike else HALF) * cost.length
+        return replace(self.problem, cost=replace(cost, length=length, link_time=0.0))
 
-    def at_least(self, passes: int) -> float:
+    def at_least(self, passes: int, *, is_alike: bool) -> float:
         """Least cost in a number of passes, s or J; infinite where none is feasible.
 
-        The path is not made: its levels count as a little shorter than those that were tried,
-        and what it does beside the cut as nothing.
+        The path is not made: its levels count as shorter than those that were tried, and what
+        it does beside the cut as nothing.
         """
-        relaxed = self._relaxed(passes, is_alike=True)
-        setting = _best(relaxed, self.task.mode)
+        setting = self._best(passes, is_alike=is_alike)
         if setting is None:
             return inf
-        return self._cost(self.shortest.cost, setting)
+        return self._cost(self.shortest(is_alike=is_alike).cost, setting)
 
-    def along(self, passes: int, timed: Callable[[Cut, Setting], Cut]) -> float:
+    def estimate(self, passes: int) -> float:
+        """Cost in a number of passes that are like those that were tried, s or J.
+
+        It is no bound; it is infinite where none is feasible.
+        """
+        setting = self._best(passes, is_alike=True)
+        return inf if setting is None else self._cost(self.problem.cost, setting)
+
+    def along(
+        self, passes: int, timed: Callable[[Cut, Setting], Cut], *, is_alike: bool
+    ) -> float:
         """Least cost along the path in a number of passes, s or J, without its contacts.
 
         Parameters
@@ -80,18 +99,28 @@ class PassCountBounds:
         passes : int
         timed : callable
             Returns a cut with length and time of that path at a setting.
+        is_alike : bool
+            Whether the levels of all paths that were tried are alike.
         """
-        least = inf
-        for is_alike in (True, False):
-            relaxed = self._relaxed(passes, is_alike=is_alike)
-            setting = _best(relaxed, self.task.mode)
-            if setting is None:
-                return inf
-            cut = timed(self.cut, self._with_plunge(setting))
-            least = self._cost(problem_of(cut, self.at, self.task).cost, setting)
-            if ALIKE * self.cut.length <= cut.length <= self.cut.length / ALIKE:
-                break
-        return least
+        setting = self._best(passes, is_alike=is_alike)
+        if setting is None:
+            return inf
+        cut = timed(self.cut, self._with_plunge(setting))
+        if is_alike and not are_alike((cut, self.cut)):
+            return self.along(passes, timed, is_alike=False)
+        task = replace(self.task, tool_change=0.0)
+        return self._cost(problem_of(cut, self.at, task).cost, setting)
+
+    def _best(self, passes: int, *, is_alike: bool) -> Setting | None:
+        """Best setting under relaxed limits; None where even these have none."""
+        key = passes, is_alike
+        if key not in self.settings:
+            try:
+                relaxed = self._relaxed(passes, is_alike=is_alike)
+                self.settings[key] = exact.solve(relaxed, self.task.mode).setting
+            except Infeasible:
+                self.settings[key] = None
+        return self.settings[key]
 
     def _relaxed(self, passes: int, *, is_alike: bool) -> Problem:
         """Problem whose limits other numbers of passes cannot do without."""
@@ -110,7 +139,6 @@ class PassCountBounds:
             stretches=tuple(map(relaxed, problem.stretches)),
             passes=(passes, passes),
             programmed=given,
-            cost=replace(problem.cost, tool_change=0.0, wear_rate=None),
         )
 
     def _with_plunge(self, setting: Setting) -> Setting:
@@ -142,8 +170,18 @@ def bounds_of(
     bare = replace(
         cut, depth_share=1.0, shank=_without_rest(cut.shank), wall=_without_rest(cut.wall)
     )
-    problem = problem_of(bare, at, task)
+    # Worn tools only add to the cost.
+    problem = problem_of(bare, at, replace(task, tool_change=0.0))
     return PassCountBounds(passes=passes, cut=cut, at=at, task=task, problem=problem)
+
+
+def are_alike(cuts: Sequence[Cut]) -> bool:
+    """Whether the levels of paths are alike: in length, and in the volume of them all."""
+    lengths = [cut.length for cut in cuts]
+    volumes = [cut.volume for cut in cuts if cut.volume is not None]
+    return ALIKE * max(lengths) <= min(lengths) and (
+        not volumes or SAME_VOLUME * max(volumes) <= min(volumes)
+    )
 
 
 def _without_rest(place: CriticalPlace | None) -> CriticalPlace | None:
@@ -175,11 +213,3 @@ def _relaxed_limits(
             looser = replace(limit, bound=limit.bound * SLACK)
             is_deeper = depth is not None and limit.load.feed_exponent > 0.0
             yield looser.at_depth(depth) if is_deeper and depth is not None else looser
-
-
-def _best(relaxed: Problem, mode: Mode) -> Setting | None:
-    """Best setting of a relaxed problem; None where it has none."""
-    try:
-        return exact.solve(relaxed, mode).setting
-    except Infeasible:
-        return None

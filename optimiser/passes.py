@@ -6,9 +6,9 @@ leaves elsewhere and meets the stock differently. So each number of passes whose
 
 1. The programmed number is tried, and the least number that the depth limits allow. Until one
    is feasible, the closed form proposes others from the last path.
-2. The other numbers follow in the order of their bounds from the deepest path. One whose bound
-   is not below the best so far is passed over; if it is, its path is made and timed, and only
-   if the bound is still below the best is the path tried in the stock.
+2. The other numbers follow, in the order of what the deepest path says of their cost. One
+   whose bound is not below the best so far is passed over; if it is, its path is made and
+   timed, and only if the bound is still below the best is the path tried in the stock.
 3. A search ends after :data:`MOST_LEVELS` levels of paths. Numbers that might have been better
    are told.
 
@@ -16,6 +16,7 @@ The order does not depend on the programmed number, so that a search that begins
 of another ends with it.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 
@@ -23,12 +24,13 @@ from optimiser import workingstep as exact
 from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut
 from optimiser.errors import Infeasible
-from optimiser.formulate import OptimisationTask, problem_of
+from optimiser.formulate import LEAST_DEPTH, OptimisationTask, problem_of
 from optimiser.least_cost import least_cost
 from optimiser.modes import Free
-from optimiser.pass_bounds import PassCountBounds, bounds_of
+from optimiser.pass_bounds import PassCountBounds, are_alike, bounds_of
 from optimiser.plunge_feed import with_plunge_feed
 from optimiser.problem import LimitName, Problem, Setting
+from optimiser.remedy_words import remedy_for
 from optimiser.source import CutSource
 from stepnc_model.program import ResolvedWorkingstep
 
@@ -44,8 +46,11 @@ MOST_LEVELS = 150
 A path of a hundred levels takes seconds to evaluate.
 """
 
-WORTH = 1e-4
+WORTH = 0.004
 """Relative saving below which the programmed number of passes is kept."""
+
+TIE = 1e-4
+"""Relative difference of costs that no further path is tried for."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,7 +97,7 @@ class _Search:
 
     @property
     def least(self) -> float:
-        """Least cost so far that is worth a change, s or J; infinite without one."""
+        """Least cost so far, s or J; infinite without a feasible number of passes."""
         return min((self.cost(each) for each in self.found.values()), default=inf)
 
     def cost(self, each: PassCountOptimum) -> float:
@@ -115,9 +120,22 @@ class _Search:
             return problem
         return self.found[passes].problem
 
+    @property
+    def is_alike(self) -> bool:
+        """Whether the levels of all paths that were tried are alike."""
+        return are_alike([each.cut for each in self.bounds.values()])
+
+    def is_bounded(self, passes: int) -> bool:
+        """Whether bounds without a path tell that a number of passes is not worth a change."""
+        is_alike = self.is_alike
+        return any(
+            each.at_least(passes, is_alike=is_alike) >= self.worthwhile
+            for each in self.bounds.values()
+        )
+
     def is_hopeless(self, problem: Problem, passes: int) -> bool:
-        """Whether bounds tell that a number of passes is no better than the best so far."""
-        if any(each.at_least(passes) >= self.worthwhile for each in self.bounds.values()):
+        """Whether bounds, also along its path, tell that a number of passes is no better."""
+        if self.is_bounded(passes):
             return True
         depth, asked = problem.depth_at(passes), self.asked
 
@@ -125,13 +143,14 @@ class _Search:
             return asked.cuts.timed(asked.step, cut, replace(setting, depth=depth))
 
         return any(
-            each.along(passes, timed) >= self.worthwhile for each in self.bounds.values()
+            each.along(passes, timed, is_alike=self.is_alike) >= self.worthwhile
+            for each in self.bounds.values()
         )
 
     @property
     def worthwhile(self) -> float:
-        """Cost below which another number of passes is worth a change, s or J."""
-        return self.least * (1.0 - WORTH)
+        """Bound below which another number of passes is tried, s or J."""
+        return self.least * (1.0 - TIE)
 
 
 def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimum:
@@ -150,66 +169,87 @@ def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimu
         deepest = problem.deepest()
         if deepest not in search.bounds and deepest <= problem.passes[1]:
             last = search.try_passes(problem, deepest)
-        _until_feasible(search, last)
+        last = _until_feasible(search, last)
         untried = _try_in_order(search, problem, deepest)
     if not search.found:
-        raise search.conflict or exact.conflict(last)
+        raise _infeasible_as_tooled(search, last)
     best = min(search.found.values(), key=search.cost)
-    if given in search.found and search.cost(search.found[given]) <= search.cost(best) / (
-        1.0 - WORTH
-    ):
-        best = search.found[given]
+    kept = search.found.get(given, best)
+    if (1.0 - WORTH) * search.cost(kept) <= search.cost(best):
+        best = kept
     # The next workingstep finds the stock as this path leaves it.
     asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)
     return replace(_with_deepest(best, search), untried=tuple(untried))
 
 
-def _until_feasible(search: _Search, problem: Problem) -> None:
-    """Try what the closed form proposes for the last path, until a path is feasible."""
+def _until_feasible(search: _Search, problem: Problem) -> Problem:
+    """Try what the closed form proposes for the last path, until a path is feasible.
+
+    Returns the problem of the last path.
+    """
     while not search.found and len(search.bounds) < UNTIL_FEASIBLE:
         try:
             passes = _optimum(problem, search.asked.task).solution.setting.passes
         except Infeasible:
-            return
+            return problem
         if passes in search.bounds:
-            return
+            return problem
         problem = search.try_passes(problem, passes)
+    return problem
+
+
+def _infeasible_as_tooled(search: _Search, problem: Problem) -> Infeasible:
+    """Error that names the limits that conflict in any number of passes, and what helps."""
+    conflict = search.conflict or exact.conflict(problem)
+    try:
+        _optimum(problem, search.asked.task)
+    except Infeasible as thinnest:
+        # It tells of the thinnest passes, where the feed may be greatest.
+        conflict = thinnest
+    caps = conflict.limits[:1]
+    return Infeasible(
+        f"infeasible as tooled: {conflict}; passes thinner than {LEAST_DEPTH:g} mm are not "
+        f"planned{remedy_for(caps)}",
+        limits=conflict.limits,
+    )
 
 
 def _try_in_order(search: _Search, problem: Problem, deepest: int) -> list[int]:
-    """Try numbers of passes in the order of their bounds; return what was left out.
+    """Try numbers of passes, the most promising first; return what was left out.
 
     Numbers that were tried before count as tried in their turn, so that the numbers within
-    reach are the same whatever the programmed number is.
+    reach are the same whatever the programmed number is. A path may show that levels are not
+    alike, so that bounds are lower: then numbers that were passed over have another turn.
     """
-    levels, untried = 0, []
-    for passes in _in_order(search, problem, deepest):
-        is_within_reach = levels + passes <= MOST_LEVELS
-        levels += passes
-        if passes in search.bounds:
-            continue
-        if is_within_reach:
-            if not search.is_hopeless(problem, passes):
+    is_alike = None
+    untried: list[int] = []
+    while is_alike is not search.is_alike:
+        is_alike, levels, untried = search.is_alike, 0, []
+        for passes in _in_order(search, problem, deepest):
+            levels += passes
+            if passes in search.bounds:
+                continue
+            if levels > MOST_LEVELS:
+                untried += [] if search.is_bounded(passes) else [passes]
+            elif not search.is_hopeless(problem, passes):
                 search.try_passes(problem, passes)
-        elif not any(
-            each.at_least(passes) >= search.worthwhile for each in search.bounds.values()
-        ):
-            untried.append(passes)
     return sorted(untried)
 
 
 def _in_order(search: _Search, problem: Problem, deepest: int) -> list[int]:
-    """Numbers of passes that may be best, by their bounds from the deepest path."""
+    """Numbers of passes that may be best, by what the deepest path says of their cost."""
     if deepest not in search.bounds:
         return []
-    bounds = search.bounds[deepest]
-    or_more = least_cost(bounds.shortest, search.asked.task.mode)
-    least = {}
+    bounds, is_alike = search.bounds[deepest], search.is_alike
+    or_more = least_cost(bounds.shortest(is_alike=is_alike), search.asked.task.mode)
+    likely = {}
     for passes in range(deepest, problem.passes[1] + 1):
-        if or_more(passes) > search.least:
+        if or_more(passes) > search.worthwhile:
             break
-        least[passes] = bounds.at_least(passes)
-    return sorted((each for each in least if least[each] < inf), key=lambda each: least[each])
+        likely[passes] = bounds.estimate(passes)
+    return sorted(
+        (each for each in likely if likely[each] < inf), key=lambda each: likely[each]
+    )
 
 
 def _with_deepest(best: PassCountOptimum, search: _Search) -> PassCountOptimum:
@@ -251,10 +291,9 @@ def _with_plunge(cut: Cut, setting: Setting, asked: AdviceContext) -> Setting:
 
 def _with_passes(problem: Problem, passes: int, task: OptimisationTask) -> Optimum:
     """Optimum for a given number of passes."""
-    free = _optimum(problem, task)
     given = problem.programmed
-    if free.solution.setting.passes == passes:
-        return free
+    if problem.passes[0] == problem.passes[1]:
+        return _optimum(problem, task)
     if passes != given.passes:
         given = replace(given, passes=passes, depth=problem.depth_at(passes))
     why = f"the tool path has {passes} passes"
@@ -273,3 +312,15 @@ def _optimum(problem: Problem, task: OptimisationTask) -> Optimum:
         solution=exact.settled(problem, general.snapped(problem, found)),
         prices=tuple((name, price) for name, price in found.prices.items()),
     )
+
+
+def untried_words(untried: Sequence[int], passes: int) -> list[str]:
+    """Warning that names numbers of passes that might be better and were not tried."""
+    if not untried:
+        return []
+    first, last = untried[0], untried[-1]
+    told = f"from {first} to {last}" if len(untried) > 1 else f"{first}"
+    return [
+        f"{told} passes were not tried and might be better than {passes}: the search ends "
+        f"after {MOST_LEVELS} levels of tool paths"
+    ]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, LimitLoad, Plan, tightest
 from optimiser.problem import LimitName
+from optimiser.remedies import slower_than_programmed
 from optimiser.stability import Basis
 from service.rendering.columns import Cell, Change, Column
 from service.rendering.records import dump, finding_record, record, records
@@ -158,6 +159,8 @@ def print_plan(
 ) -> None:
     """Print the advice for a program: a row per workingstep, then totals and findings."""
     material = plan.material.material
+    for text in slower_than_programmed(plan):
+        print_line(text, RED)
     print_line(
         f"{plan.program}: mode {plan.mode.value}, machine {plan.machine.name} "
         f"({plan.machine.title}), material {material.title}"
@@ -281,6 +284,7 @@ def plan_json(
         "free_speed_saves_s": sum(advice.saving_of_free_speed for advice in plan.advices),
         "workingsteps": [_advice(advice) for advice in plan.advices],
         "total_time_s": {"before": plan.time_before, "after": plan.time_after},
+        "slower_than_programmed": list(slower_than_programmed(plan)),
         "refused": [
             {
                 "id": each.id,
