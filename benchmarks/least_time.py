@@ -19,7 +19,7 @@ from optimiser.formulate import OptimisationTask, problem_of
 from optimiser.modes import Mode
 from optimiser.passes import AdviceContext, PassCountOptimum, best_of
 from optimiser.plunge_feed import with_plunge_feed
-from optimiser.problem import Limit, Problem, Setting
+from optimiser.problem import ROUNDING, Limit, Problem, Setting
 from optimiser.workingstep import limits_at
 from simulator.library import load_machine
 from simulator.matching import match_material
@@ -216,12 +216,21 @@ def _fastest(
     """Greatest feed of the grid that keeps every limit; None if none does."""
     feed, best = programmed / FEED_SPAN, None
     # A curve of the depth takes time; the depth is the same for all feeds.
-    limits = [limit if limit.load.curve is None else limit.at_depth(depth) for limit in limits]
+    limits = [
+        limit if limit.load.curve is None else limit.at_depth(depth)
+        for limit in limits
+        if _is_kept(limit)
+    ]
     while feed <= programmed * FEED_SPAN:
         if all(limit.holds(feed, depth, speed) for limit in limits):
             best = feed
         feed *= FEED_STEP
     return best
+
+
+def _is_kept(limit: Limit) -> bool:
+    """Whether feed or depth can keep a limit; the speed is not free."""
+    return limit.load.feed_exponent > 0.0 or limit.is_of_depth
 
 
 def _cost(time: float, energy: float, mode: Mode) -> float:
@@ -232,7 +241,9 @@ def _programmed(advice: Advice, mode: Mode) -> Iterator[Rival]:
     """The program as given, if it keeps the bounds."""
     before = advice.before
     if before is not None and all(
-        load.margin >= -1e-9 for load in before.loads + before.plunge_loads
+        load.margin >= -ROUNDING
+        for load in before.loads + before.plunge_loads
+        if _is_kept(load.limit)
     ):
         yield Rival(name="the program", cost=_cost(before.time, before.energy, mode))
 
