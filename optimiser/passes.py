@@ -29,7 +29,7 @@ from optimiser.least_cost import least_cost
 from optimiser.modes import Free
 from optimiser.pass_bounds import PassCountBounds, are_alike, bounds_of
 from optimiser.plunge_feed import with_plunge_feed
-from optimiser.problem import LimitName, Problem, Setting
+from optimiser.problem import SCALES_WITH_FORCE, LimitName, Problem, Setting
 from optimiser.remedy_words import remedy_for
 from optimiser.source import CutSource
 from stepnc_model.program import ResolvedWorkingstep
@@ -51,6 +51,10 @@ WORTH = 0.004
 
 TIE = 1e-4
 """Relative difference of costs that no further path is tried for."""
+
+
+THIN = 1.25
+"""Ratio of depths below which planned passes count as thin as they may be."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -177,6 +181,8 @@ def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimu
     kept = search.found.get(given, best)
     if (1.0 - WORTH) * search.cost(kept) <= search.cost(best):
         best = kept
+    if best is not kept or given not in search.found:
+        _require_sensible(best, given)
     # The next workingstep finds the stock as this path leaves it.
     asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)
     return replace(_with_deepest(best, search), untried=tuple(untried))
@@ -249,6 +255,21 @@ def _in_order(search: _Search, problem: Problem, deepest: int) -> list[int]:
         likely[passes] = bounds.estimate(passes)
     return sorted(
         (each for each in likely if likely[each] < inf), key=lambda each: likely[each]
+    )
+
+
+def _require_sensible(best: PassCountOptimum, given: int) -> None:
+    """Refuse passes that are as thin as they may be while a force still sets the feed."""
+    solution = best.optimum.solution
+    setting = solution.setting
+    is_thinnest = setting.passes > given and setting.depth < THIN * LEAST_DEPTH
+    if not is_thinnest or solution.active not in SCALES_WITH_FORCE:
+        return
+    raise Infeasible(
+        f"infeasible as tooled: {solution.holding.words} still sets the feed in "
+        f"{setting.passes} passes of {setting.depth:.3g} mm, which would take "
+        f"{solution.time:.4g} s{remedy_for((solution.active,))}",
+        limits=(solution.active,),
     )
 
 

@@ -175,14 +175,14 @@ def test_few_paths_are_tried() -> None:
 
 
 def test_numbers_beyond_the_levels_of_a_search_are_told() -> None:
-    """A hundred passes and more promise the least; two such paths are too many."""
-    at, cut = thin_chips(2e4), replace(CUT, rest_time=20.0)
+    """Nearly a hundred passes promise the least; two such paths are too many."""
+    at, cut = thin_chips(2e4), replace(CUT, rest_time=60.0)
     step: ResolvedWorkingstep = None  # type: ignore[assignment]
     asked = AdviceContext(step=step, at=at, task=OptimisationTask(), cuts=Ways({}))
     told = best_of(cut, problem_of(cut, at, asked.task), asked)
     passes = told.optimum.solution.setting.passes
-    assert passes == 120
-    assert 119 in told.untried
+    assert 80 < passes < 96
+    assert {passes - 1, passes + 1} <= set(told.untried)
     assert passes not in told.untried
     (words,) = untried_words(told.untried, passes)
     assert "passes were not tried" in words
