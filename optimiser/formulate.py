@@ -33,8 +33,12 @@ from simulator.library import find_window
 from simulator.physics.tool_life import tool_life
 from simulator.spec import Machine, WorkMaterial
 
-LEAST_DEPTH = 0.05
-"""Least depth of a planned pass, mm."""
+LEAST_DEPTH = 0.1
+"""Least depth of a planned pass, mm, unless the program has thinner ones.
+
+ISO 2768-m lets a surface lie 0.1 mm off where the program has it: a thinner pass may meet
+nothing, or twice its depth.
+"""
 
 LEAST_SPEED_RATIO = 0.1
 """Least spindle speed over the greatest, when neither machine nor tool states one."""

@@ -148,6 +148,8 @@ class MeasuredCuts:
         """Tried paths of the workingstep, by the number of passes."""
         self._refused: dict[int, str] = {}
         """Why numbers of passes of the workingstep are no candidates."""
+        self._paths: dict[int, ToolPath] = {}
+        """Paths of the workingstep in other numbers of passes."""
         self._trace = SearchTrace()
         self._numbers: dict[StockPlace, dict[int, int]] = {}
         """New numbers of the first moves of repeated workingsteps, by their old numbers."""
@@ -163,7 +165,7 @@ class MeasuredCuts:
         SchemaError
             When the workingstep lacks what a cut needs.
         """
-        self._seen, self._refused = {}, {}
+        self._seen, self._refused, self._paths = {}, {}, {}
         self._trace = SearchTrace(place=self.stocks.place(step))
         cut, findings = estimated_cut(self.program, step, self.machine, self.material)
         self._estimate, self._found = cut, self.stocks.before(step)
@@ -205,6 +207,32 @@ class MeasuredCuts:
             programmed=replace(timed.programmed, passes=passes, depth=depth),
             refused_passes=tuple(RefusedPasses(*each) for each in self._refused.items()),
         )
+
+    def timed(self, step: ResolvedWorkingstep, cut: Cut, setting: Setting) -> Cut:
+        """Return the cut with length and time of another setting's path, not its contacts.
+
+        Where that path cannot be made, all passes are assumed alike.
+        """
+        if not self._seen:
+            return cut
+        try:
+            path = self._other_path(step, setting)
+            run = self._run(path, SpeedRatios(technology=step.technology_ref))
+        except (SchemaError, PostError):
+            return cut
+        seen = TriedPath(
+            path=path,
+            run=run,
+            cut=cut,
+            passes=setting.passes,
+            weighted=0.0,
+            air=0.0,
+            meeting=TrialContacts(why="the path is not tried in the stock"),
+            along=None,
+            bent=None,
+            slope=None,
+        )
+        return self._timed(step, seen, setting)
 
     def leave_out(self, step: ResolvedWorkingstep) -> None:
         """Cut the stock with a workingstep that is not optimised but will run."""
@@ -282,6 +310,13 @@ class MeasuredCuts:
         require_ready(self.program, step, self._left_out)
         return workingstep_path(self.program, step)
 
+    def _other_path(self, step: ResolvedWorkingstep, setting: Setting) -> ToolPath:
+        """Tool path of a workingstep in another number of passes; each is made once."""
+        if setting.passes not in self._paths:
+            other = with_depth(self.program, step, setting.depth)
+            self._paths[setting.passes] = workingstep_path(*other)
+        return self._paths[setting.passes]
+
     def _run(self, path: ToolPath, pace: SpeedRatios) -> ToolPathRun:
         """Run of a tool path by the axes; each feed is looked up once."""
         is_lathe = path.is_turning or self.machine.kind is MachineKind.LATHE
@@ -345,7 +380,7 @@ class MeasuredCuts:
         passes, depth = setting.passes, setting.depth
         nominal = replace(estimate.programmed, depth=depth, passes=passes)
         try:
-            path = workingstep_path(*with_depth(self.program, step, depth))
+            path = self._other_path(step, setting)
             cut = replace(estimate, programmed=nominal)
             seen = self._see(step, path, cut, passes=passes)
         except (SchemaError, PostError) as error:

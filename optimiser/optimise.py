@@ -31,7 +31,7 @@ from optimiser.holding import holding_load
 from optimiser.impossible import why_impossible, why_thread_impossible
 from optimiser.limits import is_bent
 from optimiser.modes import Free, Mode
-from optimiser.passes import AdviceContext, best_of
+from optimiser.passes import AdviceContext, best_of, untried_words
 from optimiser.plunge_feed import plunge_fault, plunge_findings
 from optimiser.problem import Problem
 from optimiser.reasons import passed_limits, plunge_reason, reason_of
@@ -177,12 +177,10 @@ def advise(
         cuts.leave_out(step)
         return replace(untouched, status=AdviceStatus.INFEASIBLE, reason=elsewhere), []
     cut, findings = cuts.cut(step)
-    bounds, found = _bounds(program, step, task)
-    findings += found
+    bounds, noted = _bounds(program, step, task)
     at, found = _conditions(program, step, cut, machine=machine, material=material, task=task)
-    at = replace(at, bounds=bounds)
-    at, held = with_holding(at, program, step)
-    findings += found + held
+    at, held = with_holding(replace(at, bounds=bounds), program, step)
+    findings += noted + found + held
     problem = problem_of(cut, at, task)
     before = state_of(cut, problem, at, problem.programmed)
     if not isfinite(before.time) or not isfinite(before.energy):
@@ -214,7 +212,8 @@ def advise(
     else:
         try:
             asked = AdviceContext(step=step, at=at, task=task, cuts=cuts)
-            advice = _solved(untouched, cut, problem, asked)
+            advice, found = _solved(program, untouched, cut, problem, asked)
+            findings += found
         except Infeasible as conflict:
             reason = str(conflict)
             advice = replace(
@@ -338,8 +337,10 @@ def _in_air(state: EvaluatedSetting) -> EvaluatedSetting:
     return replace(state, motor_power=0.0, cutting_force=0.0, roughness=None, loads=())
 
 
-def _solved(untouched: Advice, cut: Cut, problem: Problem, asked: AdviceContext) -> Advice:
-    """Advice from the best setting of a workingstep."""
+def _solved(
+    program: Program, untouched: Advice, cut: Cut, problem: Problem, asked: AdviceContext
+) -> tuple[Advice, list[Finding]]:
+    """Advice from the best setting of a workingstep, with warnings."""
     at, task = asked.at, asked.task
     told = best_of(cut, problem, asked)
     solution = told.optimum.solution
@@ -349,7 +350,7 @@ def _solved(untouched: Advice, cut: Cut, problem: Problem, asked: AdviceContext)
         free_speed = _saving_of_free_speed(told.cut, at, task, solution)
         saving = exact.saving_of_one_more(told.problem, task.mode, solution)
         cost_of_safety = exact.cost_of_safety(told.problem, task.mode, solution)
-    return replace(
+    advice = replace(
         untouched,
         cut=told.cut,
         stability=stability_of(told.cut, at),
@@ -366,6 +367,9 @@ def _solved(untouched: Advice, cut: Cut, problem: Problem, asked: AdviceContext)
         prices=told.optimum.prices,
         front=front_of(told.problem, told.cut, at) if task.front else (),
     )
+    ref = untouched.workingstep.operation_ref
+    warnings = untried_words(told.untried, solution.setting.passes)
+    return advice, [program.finding(Severity.WARNING, text, ref) for text in warnings]
 
 
 def _saving_of_free_speed(

@@ -1,11 +1,23 @@
 """Search for the best number of passes, each evaluated along its own tool path.
 
 The closed form assumes that all passes are alike, but a path with other passes enters and
-leaves elsewhere and meets the stock differently. So each proposal of the closed form is tried
-along its path and solved again.
+leaves elsewhere and meets the stock differently. So each number of passes whose lower bound
+(:mod:`optimiser.pass_bounds`) is below the best so far is tried along its path.
+
+1. The programmed number is tried, and the least number that the depth limits allow. Until one
+   is feasible, the closed form proposes others from the last path.
+2. The other numbers follow, in the order of what the deepest path says of their cost. One
+   whose bound is not below the best so far is passed over; if it is, its path is made and
+   timed, and only if the bound is still below the best is the path tried in the stock.
+3. A search ends after :data:`MOST_LEVELS` levels of paths. Numbers that might have been better
+   are told.
+
+The order does not depend on the programmed number, so that a search that begins with the result
+of another ends with it.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from math import inf
 
@@ -13,15 +25,15 @@ from optimiser import workingstep as exact
 from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut
 from optimiser.errors import Infeasible
-from optimiser.formulate import OptimisationTask, problem_of
+from optimiser.formulate import LEAST_DEPTH, OptimisationTask, problem_of
+from optimiser.least_cost import least_cost
 from optimiser.modes import Free
+from optimiser.pass_bounds import PassCountBounds, are_alike, bounds_of
 from optimiser.plunge_search import CLOSE, PlungeOptimum, at_foot, best_plunge
-from optimiser.problem import Limit, LimitName, Problem, Setting
+from optimiser.problem import SCALES_WITH_FORCE, Limit, LimitName, Problem, Setting
+from optimiser.remedy_words import remedy_for
 from optimiser.source import CutSource
 from stepnc_model.program import ResolvedWorkingstep
-
-ROUNDS = 4
-"""Greatest number of paths tried for the depth of one workingstep."""
 
 UNTIL_FEASIBLE = 10
 """Greatest number of paths tried while none keeps its limits.
@@ -29,11 +41,21 @@ UNTIL_FEASIBLE = 10
 Stock that was left above can make passes deeper than planned.
 """
 
-MANY = 100
-"""Number of passes above which the first feasible path is accepted.
+MOST_LEVELS = 150
+"""Greatest number of levels in the paths of one search, the first paths not counted.
 
-A larger programmed number raises it. A path of hundreds of levels takes seconds to evaluate.
+A path of a hundred levels takes seconds to evaluate.
 """
+
+WORTH = 0.004
+"""Relative saving below which the programmed number of passes is kept."""
+
+TIE = 1e-4
+"""Relative difference of costs that no further path is tried for."""
+
+
+THIN = 1.25
+"""Ratio of depths below which planned passes count as thin as they may be."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,47 +83,110 @@ class PassCountOptimum:
     cut: Cut
     problem: Problem
     optimum: Optimum
+    untried: tuple[int, ...] = ()
+    """Numbers of passes that might be better, but whose paths were not tried."""
+
+
+@dataclass(slots=True, kw_only=True)
+class _Search:
+    """Search for the best number of passes of a workingstep (mutable state)."""
+
+    cut: Cut
+    asked: AdviceContext
+    found: dict[int, PassCountOptimum] = field(default_factory=dict)
+    """Best setting for each feasible number of passes that was tried."""
+    bounds: dict[int, PassCountBounds] = field(default_factory=dict)
+    """Bounds from each path that was tried, also from infeasible ones."""
+    conflict: Infeasible | None = None
+    """Why the last infeasible number of passes was infeasible."""
+
+    @property
+    def least(self) -> float:
+        """Least cost so far, s or J; infinite without a feasible number of passes."""
+        return min((self.cost(each) for each in self.found.values()), default=inf)
+
+    def cost(self, each: PassCountOptimum) -> float:
+        """Cost of a number of passes along its own path, s or J."""
+        cost = exact.cost_function(each.problem, self.asked.task.mode)
+        return cost(each.optimum.solution.setting)
+
+    def try_passes(self, problem: Problem, passes: int) -> Problem:
+        """Try a number of passes along its path, and return the problem of that path."""
+        asked = self.asked
+        cut = _along_path(self.cut, problem, passes, asked)
+        problem = problem_of(cut, asked.at, asked.task)
+        self.bounds[passes] = bounds_of(cut, asked.at, asked.task, passes=passes)
+        try:
+            self.found[passes] = _best_in(cut, problem, passes, asked)
+        except Infeasible as conflict:
+            if problem.passes[0] == problem.passes[1]:
+                raise
+            self.conflict = _both(self.conflict, conflict)
+            return problem
+        return self.found[passes].problem
+
+    @property
+    def is_alike(self) -> bool:
+        """Whether the levels of all paths that were tried are alike."""
+        return are_alike([each.cut for each in self.bounds.values()])
+
+    def is_bounded(self, passes: int) -> bool:
+        """Whether bounds without a path tell that a number of passes is not worth a change."""
+        is_alike = self.is_alike
+        return any(
+            each.at_least(passes, is_alike=is_alike) >= self.worthwhile
+            for each in self.bounds.values()
+        )
+
+    def is_hopeless(self, problem: Problem, passes: int) -> bool:
+        """Whether bounds, also along its path, tell that a number of passes is no better."""
+        if self.is_bounded(passes):
+            return True
+        depth, asked = problem.depth_at(passes), self.asked
+
+        def timed(cut: Cut, setting: Setting) -> Cut:
+            return asked.cuts.timed(asked.step, cut, replace(setting, depth=depth))
+
+        return any(
+            each.along(passes, timed, is_alike=self.is_alike) >= self.worthwhile
+            for each in self.bounds.values()
+        )
+
+    @property
+    def worthwhile(self) -> float:
+        """Bound below which another number of passes is tried, s or J."""
+        return self.least * (1.0 - TIE)
 
 
 def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimum:
     """Find the best number of passes, each evaluated along its own path.
 
-    The last optimum proposes the next number to try, until it proposes a number that was tried,
-    or that by its own estimate is no better than the best so far; that path is not made. The
-    programmed number is tried first, so that advice that was adopted is given again.
+    Raises
+    ------
+    Infeasible
+        When no number of passes that was tried keeps all limits.
     """
-    told: dict[int, PassCountOptimum] = {}
-    tried: set[int] = set()
+    search = _Search(cut=cut, asked=asked)
     given = problem.programmed.passes
-    passes = given
-    last: Infeasible | None = None
-    while passes not in tried and len(tried) < (ROUNDS if told else UNTIL_FEASIBLE):
-        tried.add(passes)
-        try:
-            told[passes] = _told(cut, problem, passes, asked)
-            problem = told[passes].problem
-        except Infeasible as conflict:
-            if problem.passes[0] == problem.passes[1]:
-                raise
-            last = _both(last, conflict)
-        if told and passes > max(MANY, given):
-            break
-        try:
-            proposal = _optimum(problem, asked.task).solution.setting
-        except Infeasible:
-            if not told:
-                raise
-            break
-        least = min((_cost(each, asked.task) for each in told.values()), default=inf)
-        if exact.cost_function(problem, asked.task.mode)(proposal) >= least:
-            break
-        passes = proposal.passes
-    best = min(told.values(), key=lambda each: _cost(each, asked.task), default=None)
-    if best is None:
-        raise last or exact.conflict(problem)
+    last = search.try_passes(problem, given)
+    untried: list[int] = []
+    if problem.passes[0] != problem.passes[1]:
+        deepest = problem.deepest()
+        if deepest not in search.bounds and deepest <= problem.passes[1]:
+            last = search.try_passes(problem, deepest)
+        last = _until_feasible(search, last)
+        untried = _try_in_order(search, problem, deepest)
+    if not search.found:
+        raise _infeasible_as_tooled(search, last)
+    best = min(search.found.values(), key=search.cost)
+    kept = search.found.get(given, best)
+    if (1.0 - WORTH) * search.cost(kept) <= search.cost(best):
+        best = kept
+    if best is not kept or given not in search.found:
+        _require_sensible(best, given)
     # The next workingstep finds the stock as this path leaves it.
     cut = asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)
-    return replace(best, cut=cut)
+    return replace(_with_deepest(best, search), cut=cut, untried=tuple(untried))
 
 
 def _both(conflict: Infeasible | None, other: Infeasible) -> Infeasible:
@@ -118,16 +203,109 @@ def _require_candidate(cut: Cut, passes: int) -> None:
             raise Infeasible(refused.words, limits=())
 
 
-def _cost(told: PassCountOptimum, task: OptimisationTask) -> float:
-    """Cost in seconds or joules of a number of passes along its own path."""
-    return exact.cost_function(told.problem, task.mode)(told.optimum.solution.setting)
+def _until_feasible(search: _Search, problem: Problem) -> Problem:
+    """Try what the closed form proposes for the last path, until a path is feasible.
+
+    Returns the problem of the last path.
+    """
+    while not search.found and len(search.bounds) < UNTIL_FEASIBLE:
+        try:
+            passes = _optimum(problem, search.asked.task).solution.setting.passes
+        except Infeasible:
+            return problem
+        if passes in search.bounds:
+            return problem
+        problem = search.try_passes(problem, passes)
+    return problem
 
 
-def _told(cut: Cut, problem: Problem, passes: int, asked: AdviceContext) -> PassCountOptimum:
-    """Best setting for a number of passes: first the limits, then the time at that feed."""
-    given, step, task = cut.programmed, asked.step, asked.task
+def _infeasible_as_tooled(search: _Search, problem: Problem) -> Infeasible:
+    """Error that names the limits that conflict in any number of passes, and what helps."""
+    conflict = search.conflict or exact.conflict(problem)
+    try:
+        _optimum(problem, search.asked.task)
+    except Infeasible as thinnest:
+        # It tells of the thinnest passes, where the feed may be greatest.
+        conflict = thinnest
+    caps = conflict.limits[:1]
+    return Infeasible(
+        f"infeasible as tooled: {conflict}; passes thinner than {LEAST_DEPTH:g} mm are not "
+        f"planned{remedy_for(caps)}",
+        limits=conflict.limits,
+    )
+
+
+def _try_in_order(search: _Search, problem: Problem, deepest: int) -> list[int]:
+    """Try numbers of passes, the most promising first; return what was left out.
+
+    Numbers that were tried before count as tried in their turn, so that the numbers within
+    reach are the same whatever the programmed number is. A path may show that levels are not
+    alike, so that bounds are lower: then numbers that were passed over have another turn.
+    """
+    is_alike = None
+    untried: list[int] = []
+    while is_alike is not search.is_alike:
+        is_alike, levels, untried = search.is_alike, 0, []
+        for passes in _in_order(search, problem, deepest):
+            levels += passes
+            if passes in search.bounds:
+                continue
+            if levels > MOST_LEVELS:
+                untried += [] if search.is_bounded(passes) else [passes]
+            elif not search.is_hopeless(problem, passes):
+                search.try_passes(problem, passes)
+    return sorted(untried)
+
+
+def _in_order(search: _Search, problem: Problem, deepest: int) -> list[int]:
+    """Numbers of passes that may be best, by what the deepest path says of their cost."""
+    if deepest not in search.bounds:
+        return []
+    bounds, is_alike = search.bounds[deepest], search.is_alike
+    or_more = least_cost(bounds.shortest(is_alike=is_alike), search.asked.task.mode)
+    likely = {}
+    for passes in range(deepest, problem.passes[1] + 1):
+        if or_more(passes) > search.worthwhile:
+            break
+        likely[passes] = bounds.estimate(passes)
+    return sorted(
+        (each for each in likely if likely[each] < inf), key=lambda each: likely[each]
+    )
+
+
+def _require_sensible(best: PassCountOptimum, given: int) -> None:
+    """Refuse passes that are as thin as they may be while a force still sets the feed."""
+    solution = best.optimum.solution
+    setting = solution.setting
+    is_thinnest = setting.passes > given and setting.depth < THIN * LEAST_DEPTH
+    if not is_thinnest or solution.active not in SCALES_WITH_FORCE:
+        return
+    raise Infeasible(
+        f"infeasible as tooled: {solution.holding.words} still sets the feed in "
+        f"{setting.passes} passes of {setting.depth:.3g} mm, which would take "
+        f"{solution.time:.4g} s{remedy_for((solution.active,))}",
+        limits=(solution.active,),
+    )
+
+
+def _with_deepest(best: PassCountOptimum, search: _Search) -> PassCountOptimum:
+    """Optimum with the time of the fewest feasible passes that were tried."""
+    fewest = search.found[min(search.found)].optimum.solution.time
+    solution = best.optimum.solution
+    solution = replace(solution, deepest_first_time=max(solution.time, fewest))
+    return replace(best, optimum=replace(best.optimum, solution=solution))
+
+
+def _along_path(cut: Cut, problem: Problem, passes: int, asked: AdviceContext) -> Cut:
+    """Cut along the path in a number of passes, at the programmed feed."""
+    given = cut.programmed
     depth = given.depth if passes == given.passes else problem.depth_at(passes)
-    cut = asked.cuts.at(step, cut, replace(given, passes=passes, depth=depth))
+    return asked.cuts.at(asked.step, cut, replace(given, passes=passes, depth=depth))
+
+
+def _best_in(cut: Cut, problem: Problem, passes: int, asked: AdviceContext) -> PassCountOptimum:
+    """Best setting for a number of passes: first the limits, then the time at that feed."""
+    task = asked.task
     _require_candidate(cut, passes)
     found = _with_plunge(cut, passes, asked)
     optimum, cut, plunging = found.optimum, found.cut, found.setting
@@ -198,10 +376,9 @@ def _held(problem: Problem, limit: Limit | None) -> Problem:
 
 def _with_passes(problem: Problem, passes: int, task: OptimisationTask) -> Optimum:
     """Optimum for a given number of passes."""
-    free = _optimum(problem, task)
     given = problem.programmed
-    if free.solution.setting.passes == passes:
-        return free
+    if problem.passes[0] == problem.passes[1]:
+        return _optimum(problem, task)
     if passes != given.passes:
         given = replace(given, passes=passes, depth=problem.depth_at(passes))
     why = f"the tool path has {passes} passes"
@@ -220,3 +397,15 @@ def _optimum(problem: Problem, task: OptimisationTask) -> Optimum:
         solution=exact.settled(problem, general.snapped(problem, found)),
         prices=tuple((name, price) for name, price in found.prices.items()),
     )
+
+
+def untried_words(untried: Sequence[int], passes: int) -> list[str]:
+    """Warning that names numbers of passes that might be better and were not tried."""
+    if not untried:
+        return []
+    first, last = untried[0], untried[-1]
+    told = f"from {first} to {last}" if len(untried) > 1 else f"{first}"
+    return [
+        f"{told} passes were not tried and might be better than {passes}: the search ends "
+        f"after {MOST_LEVELS} levels of tool paths"
+    ]

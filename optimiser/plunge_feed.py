@@ -36,7 +36,14 @@ from optimiser.limits import (
     straight_down,
     tool_limits,
 )
-from optimiser.problem import BoundSide, Limit, LimitName, Monomial, Setting
+from optimiser.problem import (
+    SCALES_WITH_FORCE,
+    BoundSide,
+    Limit,
+    LimitName,
+    Monomial,
+    Setting,
+)
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program, ResolvedWorkingstep
 
@@ -69,6 +76,16 @@ def with_plunge_feed(cut: Cut, at: CuttingConditions, setting: Setting) -> Setti
     if not limits:
         return setting
     best = holding(limits, setting).feed_at_bound(setting.depth, setting.speed)
+    return replace(setting, plunge_feed=best)
+
+
+def unloaded_plunge_feed(cut: Cut, at: CuttingConditions, setting: Setting) -> Setting:
+    """Add a plunge feed to a setting that only limits of the feed itself bound."""
+    limits = plunge_limits(cut, at, setting.speed)
+    free = tuple(each for each in limits if each.name not in SCALES_WITH_FORCE)
+    if not free:
+        return setting
+    best = holding(free, setting).feed_at_bound(setting.depth, setting.speed)
     return replace(setting, plunge_feed=best)
 
 

@@ -39,6 +39,10 @@ class CutSource(Protocol):
         """Return the cut with its length and time at another setting."""
         ...
 
+    def timed(self, step: ResolvedWorkingstep, cut: Cut, setting: Setting) -> Cut:
+        """Return the cut with length and time of another setting's path, not its contacts."""
+        ...
+
     def leave_out(self, step: ResolvedWorkingstep) -> None:
         """Pass over a workingstep that is not optimised but will run."""
         ...
@@ -78,6 +82,10 @@ class WiperCutSource:
     def at(self, step: ResolvedWorkingstep, cut: Cut, setting: Setting) -> Cut:
         """Return the cut with its length and time at another setting."""
         return self._with_wiper(self._cuts.at(step, cut, setting))
+
+    def timed(self, step: ResolvedWorkingstep, cut: Cut, setting: Setting) -> Cut:
+        """Return the cut with length and time of another setting's path, not its contacts."""
+        return self._with_wiper(self._cuts.timed(step, cut, setting))
 
     def _with_wiper(self, cut: Cut) -> Cut:
         if cut.kind is not CutKind.TURNING or cut.tool.id not in self._wipers:

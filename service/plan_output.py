@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, LimitLoad, Plan, tightest
 from optimiser.modes import Mode
 from optimiser.problem import LimitName
+from optimiser.remedies import slower_than_programmed
 from optimiser.required import UncheckedLimit
 from optimiser.roughness import IDEAL
 from optimiser.stability import Basis
@@ -181,6 +182,8 @@ def print_plan(
 ) -> None:
     """Print the advice for a program: a row per workingstep, then totals and findings."""
     material = plan.material.material
+    for text in slower_than_programmed(plan):
+        print_line(text, RED)
     print_line(
         f"{plan.program}: mode {mode_words(plan.mode)}, machine {plan.machine.name} "
         f"({plan.machine.title}), material {material.title}{_unchecked_words(plan)}"
@@ -343,6 +346,7 @@ def plan_json(
         "workingsteps": [_advice(advice) for advice in plan.advices],
         "is_checked": not plan.unchecked,
         "total_time_s": {"before": plan.time_before, "after": plan.time_after},
+        "slower_than_programmed": list(slower_than_programmed(plan)),
         "refused": [
             {
                 "id": each.id,

@@ -172,7 +172,9 @@ def extra(inset: Inset, cutter: EndMillShape, *, bottom: float, top: float) -> f
     for at, own in enumerate(sums):
         # Fillet, corner and top may each make a peak; the greatest may lie between samples.
         low, high = max(at - 1, 0), min(at + 1, last)
-        if own >= sums[low] and own >= sums[high]:
+        # Where a side runs along a wall the sum is level, and there is nothing to look for.
+        is_level = own == sums[low] == sums[high]
+        if own >= sums[low] and own >= sums[high] and not is_level:
             most = max(most, _greatest(sum_at, heights[low], heights[high]))
     return max(0.0, most - cutter.radius)
 
