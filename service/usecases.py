@@ -29,7 +29,7 @@ from service.records import changes_of, lost_plunge_feeds
 from service.refusals import Writable, advisable, apart_from
 from service.requests.advice import AdviceRequest
 from service.requests.fields import fields_of, require_bounds
-from service.requests.serves import require_served
+from service.requests.serves import OF_PATHS, given_values, require_served
 from simulator.spec import Certainty, Machine, MaterialMatch
 from stepnc_model import writeback
 from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
@@ -50,12 +50,6 @@ if TYPE_CHECKING:
     from simulator.tool_table import TableTool
     from stepnc_model.entities.executables import Setup
     from stepnc_model.part21.values import Ref
-
-OF_PATHS = frozenset({
-    "motion", "is_jerk_limited", "stock_margin_mm", "corner_tolerance_mm", "max_feed_mm_min",
-    "least_feed_mm_min",
-})  # fmt: skip
-"""Fields of requests that have no effect without feeds along the paths."""
 
 NOTHING_WRITTEN = "nothing was written: no workingstep was advised"
 
@@ -328,9 +322,10 @@ def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
         raise StepNcError("--smooth needs --along-path")
     if request.writes_toolpaths:
         raise StepNcError("--write-toolpaths needs --along-path")
-    for each in fields_of(type(request)):
-        if each.name in OF_PATHS and getattr(request, each.name) != each.default:
-            raise StepNcError(f"{each.about.flag} needs --along-path")
+    flags = {each.name: each.about.flag for each in fields_of(type(request))}
+    for name in given_values(request):
+        if name in OF_PATHS:
+            raise StepNcError(f"{flags[name]} needs --along-path")
 
 
 def _require_run(

@@ -76,6 +76,13 @@ SERVES: Mapping[str, Serves] = {
 """Options that serve one kind of program alone, by the names of their fields."""
 
 
+OF_PATHS = (
+    "levels", "smooth_share", "writes_toolpaths", "motion", "is_jerk_limited",
+    "stock_margin_mm", "corner_tolerance_mm", "max_feed_mm_min", "least_feed_mm_min",
+)  # fmt: skip
+"""Fields that have no effect for a STEP-NC program without feeds along its paths."""
+
+
 def require_served(request: Request, kind: ProgramKind) -> None:
     """Refuse values of a request that a kind of program cannot use.
 
@@ -84,13 +91,17 @@ def require_served(request: Request, kind: ProgramKind) -> None:
     StepNcError
         With the name of the first such value, and the reason.
     """
-    given = {
+    flags = {each.name: each.about.flag for each in fields_of(type(request))}
+    require_options_served(given_values(request), kind, flags=flags)
+
+
+def given_values(request: Request) -> dict[str, object]:
+    """Values of a request that are not the default ones, by the names of their fields."""
+    return {
         each.name: getattr(request, each.name)
         for each in fields_of(type(request))
         if getattr(request, each.name) != each.default
     }
-    flags = {each.name: each.about.flag for each in fields_of(type(request))}
-    require_options_served(given, kind, flags=flags)
 
 
 def require_options_served(

@@ -16,7 +16,7 @@ from service.numbers import tool_numbers_in
 from service.program_kind import ProgramKind, kind_of
 from service.requests.fields import dumped, loaded
 from service.requests.given import ISO, Name, ProgramRequest, Units
-from service.requests.serves import require_served
+from service.requests.serves import OF_PATHS, given_values, require_options_served
 from service.requests.stored_advice import StoredAdviceRequest
 from service.rest.advice_views import CodeContentsView
 from service.rest.asking import answered
@@ -58,9 +58,6 @@ ROUTES = APIRouter(prefix="/v1/programs", tags=["programs"])
 
 OF_CODE = ("tools_id", "stock", "material")
 """Fields that advice on NC code needs."""
-
-OF_PATHS = ("levels", "smooth_share", "writes_toolpaths")
-"""Fields that need feeds along the paths."""
 
 EXAMPLES = FilePath(__file__).parents[2] / "examples" / "parts"
 """Folder of the sample programs; an installed wheel has none."""
@@ -211,10 +208,11 @@ def advisable(data_folder: DataFolder, asked: JobRequest) -> None:
         files.require_file(data_folder, words["tools_id"], FileKind.TOOLS)
     require_stock(data_folder, words)
     kind = programs.get(data_folder, asked.program).kind
-    require_served(loaded(StoredAdviceRequest, words), kind)
+    named = given_values(loaded(StoredAdviceRequest, words))
+    require_options_served(named, kind, flags={})
     if kind is ProgramKind.STEP_NC:
         for name in OF_PATHS:
-            if words[name] and not words["is_along_path"]:
+            if name in named and not words["is_along_path"]:
                 raise StepNcError(f"{name} has no effect without is_along_path")
         runnable(data_folder, asked)
         return

@@ -185,9 +185,19 @@ def test_advice_without_feeds_along_the_path_has_none(client: httpx.Client, done
     for path in ("feeds", "curves"):
         found = is_problem(client.get(f"/v1/advice/{done.advice}/{path}"), 404, "not-found")
         assert "is_along_path" in found["detail"]
-    for name, value in (("levels", 3), ("smooth_share", 0.1)):
+    of_paths = (("levels", 3), ("smooth_share", 0.1), ("max_feed_mm_min", 900.0))
+    for name, value in of_paths:
         answer = client.post(f"/v1/programs/{done.program}/advice", json={name: value})
         words = f"{name} has no effect without is_along_path"
+        assert words in is_problem(answer, 422)["detail"]
+
+
+def test_fields_of_nc_code_are_refused_with_a_step_nc_program(
+    client: httpx.Client, done: Done
+) -> None:
+    for name, value in (("greatest_rise", 2.0), ("keep", ["T1"])):
+        answer = client.post(f"/v1/programs/{done.program}/advice", json={name: value})
+        words = f"{name} cannot be used with a STEP-NC program: "
         assert words in is_problem(answer, 422)["detail"]
 
 
