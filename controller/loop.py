@@ -27,7 +27,7 @@ from controller.order_effects import obeyed
 from controller.orders import Order
 from controller.ports import Override, Sensor
 from controller.preview import Preview
-from controller.signal import Collector, Pieces, tooth_periods
+from controller.signal import Collector, ToothJoiner, tooth_periods
 from controller.source import Source
 from controller.supervision import resolved, supervised
 from simulator.reading import Reading
@@ -71,7 +71,7 @@ class Loop:
         self.state = initial(settings, equivalent(preview, steps, settings))
         self._sensor, self._port, self._source = sensor, override, source
         self._law_for, self._steps, self._plain = cache(law), steps, preview
-        self._collector, self._pieces = Collector(), Pieces()
+        self._collector, self._pieces = Collector(), ToothJoiner()
         self._orders: list[Order] = []
 
     def order(self, order: Order) -> None:

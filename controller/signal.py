@@ -169,7 +169,7 @@ class Collector:
         self._is_by_teeth = True
 
 
-class Pieces:
+class ToothJoiner:
     """Puts readings that are shorter than a tooth period together (mutable state).
 
     The force changes within a tooth period: a part of one says nothing on the load of a tooth.

@@ -33,7 +33,7 @@ ACTIONS = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Cut:
+class LoggedCut:
     """One cut of a run, with its reference load and what was done in it."""
 
     row: ControlRow
@@ -70,7 +70,7 @@ class Cut:
         return PER_CENT * (self.record.time / planned - 1.0) if planned else None
 
 
-COLUMNS: tuple[Column[Cut], ...] = (
+COLUMNS: tuple[Column[LoggedCut], ...] = (
     Column(key="workingstep", value=lambda cut: cut.row.name),
     Column(key="tool", value=lambda cut: cut.tool),
     Column(key="begin_s", value=lambda cut: cut.row.begin),
@@ -103,7 +103,7 @@ COLUMNS: tuple[Column[Cut], ...] = (
 """LTIME, CTIME, TDIFF, PMAX, PREF, FMIN and OVLD of adaptive feed control, and the wear."""
 
 
-def cuts(run: ControlRun) -> tuple[Cut, ...]:
+def cuts(run: ControlRun) -> tuple[LoggedCut, ...]:
     """Return the cuts of a run, in order."""
     found = rows(run)
     begins = [*(row.begin for row in found[1:]), run.time + 1.0]
@@ -111,11 +111,11 @@ def cuts(run: ControlRun) -> tuple[Cut, ...]:
     return tuple(_cut(run, row, end) for row, end in pairs if row.record.revolutions)
 
 
-def _cut(run: ControlRun, row: ControlRow, end: float) -> Cut:
+def _cut(run: ControlRun, row: ControlRow, end: float) -> LoggedCut:
     advice = next((each for each, record in run.steps if record is row.record), None)
     machine, material = run.machine.name, run.material.material.name
     key = None if advice is None else key_of(machine, material, advice)
-    return Cut(
+    return LoggedCut(
         row=row,
         key=key,
         reference=None if key is None else run.loads.get(key),

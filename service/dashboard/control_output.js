@@ -1,4 +1,4 @@
-// The output pane: feeds, override, force and its set point, lamp of the power limit.
+// The output pane: feeds, override, force and its set point, lamp of the limits.
 
 import { announce, byId, el, figure, fixed, number } from "/dashboard/app.js";
 import { switchField } from "/dashboard/control_fields.js";

@@ -339,7 +339,7 @@ class ControlledMachine:
         exponent = float(course.exponent[now.cell])
         chips: Floats = factor * course.force[rows] * overrides**exponent
         # The force on the wear land is independent of the chip.
-        land: Floats = self._flank_wear * course.land_force[rows]
+        land: Floats = self._flank_wear * course.land_force[rows].astype(np.float64)
         depth = now.factors[HiddenQuantity.DEPTH]
         chips *= depth
         return chips, depth * land

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from controller.ports import Reading
-from controller.signal import Collector, Pieces, Revolution
+from controller.signal import Collector, Revolution, ToothJoiner
 from tests.controller.shown import SPINDLE_SPEED, turn
 
 
@@ -233,7 +233,7 @@ def test_readings_of_any_period_are_averaged_over_a_turn_at_least(periods: float
 
 
 def test_pieces_of_a_tooth_period_become_one() -> None:
-    pieces = Pieces()
+    pieces = ToothJoiner()
     halves = cut(FOUR[0], 0.4 * FOUR[0].period, 6)
     joined = [pieces.add(each) for each in halves]
     assert [each is None for each in joined] == [True, True, False] * 2
