@@ -7,8 +7,8 @@ k_c. Of all pairs a plan at the quantile q passes 1 - q, if plan and run agree.
 """
 
 import argparse
-from math import log
 from functools import partial
+from math import log
 from pathlib import Path
 
 import numpy as np
