@@ -7,6 +7,7 @@ k_c. Of all pairs a plan at the quantile q passes 1 - q, if plan and run agree.
 """
 
 import argparse
+from functools import partial
 from math import log
 from pathlib import Path
 
@@ -66,7 +67,7 @@ def _plan_and_run(safety: float) -> tuple[Plan, Confirmation]:
         program,
         machine=load_machine("vmc15"),
         material=match_material(["C45"]),
-        task=OptimisationTask(safety=safety, source=along_paths),
+        task=OptimisationTask(safety=safety, source=partial(along_paths, is_run=True)),
     )
     data = writeback.write(program, changes_of(plan), FileProfile.OPTIMISATION)
     advised = Program(Part21File.from_bytes(data, name="bracket"), name="bracket")

@@ -44,7 +44,13 @@ from optimiser.plunge import (
     way_in_of,
 )
 from optimiser.problem import Setting
-from optimiser.reached import MachineRun, plunge_reached, thickened, with_reached
+from optimiser.reached import (
+    MachineRun,
+    plunge_reached,
+    thickened,
+    with_power,
+    with_reached,
+)
 from optimiser.side_by_side import Result, one_by_one, side_by_side
 from optimiser.stock_left import difference_left
 from simulator.motion.segments import Bools
@@ -121,6 +127,9 @@ class MeasuredCuts:
     program : Program
     machine : Machine
     material : WorkMaterial
+    is_run : bool
+        Whether a simulated run is compared with the plan; the cuts then include all loads that
+        the axes actually reach, and not only those above what the feed says.
     body_map : BodyMaps, optional
         Maker of maps of raw parts that are bodies; without it, their box or bar counts.
     """
@@ -131,9 +140,11 @@ class MeasuredCuts:
         machine: Machine,
         material: WorkMaterial,
         *,
+        is_run: bool = False,
         body_map: BodyMaps | None = None,
     ) -> None:
         self.program = program
+        self.is_run = is_run
         self.machine = machine
         self.material = material
         self.kienzle = material.kienzle
@@ -470,8 +481,11 @@ class MeasuredCuts:
                 spindle=given.speed * pace.speed,
             )
             along = seen.along.on(run, seen.run) if cut.kind.is_turned else seen.along
-            cut = with_reached(cut, along, seen.bent, ride, exponent=self.kienzle.m_c)
-            cut = thickened(cut) if cut.kind is CutKind.MILLING else cut
+            # Only where another feed borders on a pass may a place be faster than its feed.
+            is_mixed = cut.kind is CutKind.MILLING and bool(plunges(run).any())
+            loads = with_reached if self.is_run or is_mixed else with_power
+            cut = loads(cut, along, seen.bent, ride, exponent=self.kienzle.m_c)
+            cut = thickened(cut) if is_mixed else cut
             cut = self._with_ways_reached(cut, seen, ride)
         return replace(
             cut,
@@ -488,7 +502,9 @@ class MeasuredCuts:
         m_c, slope, met = self.kienzle.m_c, seen.slope, seen.meeting.met
         if cut.kind is not CutKind.MILLING or met is None:
             return cut
-        cut = replace(cut, plunge_reached=plunge_reached(cut, met, ride, exponent=m_c))
+        if self.is_run:
+            share = plunge_reached(cut, met, ride, exponent=m_c)
+            cut = replace(cut, plunge_reached=share)
         ramp = None if cut.way_in is None else cut.way_in.ramp
         if slope is None or cut.way_in is None or ramp is None:
             return cut

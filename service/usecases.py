@@ -387,7 +387,7 @@ def _task(request: AdviceRequest, tools: "tuple[TableTool, ...]") -> Optimisatio
         safety=request.safety,
         centre_cutting={**request.centre_cutting, **_centre_cutting(tools)},
         allow_plunge=request.allow_plunge,
-        source=partial(along_paths, body_map=_body_map),
+        source=partial(along_paths, is_run=request.is_confirmed, body_map=_body_map),
         keep_going=request.keep_going,
         ignores_records=request.ignore_record,
     )

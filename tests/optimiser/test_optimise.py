@@ -45,7 +45,8 @@ def test_paper_002_runs_at_290_mm_min_at_its_motor_power(paper: Plan) -> None:
     fed = sum(length(at, move) for at, move in path.segments() if move.feed is not None)
     assert state.time == pytest.approx(fed / 290.0 * 60.0)
     assert advice.active is LimitName.MOTOR_POWER
-    assert advice.reason == "motor power 0.29 kW reaches its bound of 0.29 kW"
+    told = "motor power 0.29 kW reaches its bound of 0.29 kW, the power of the machine"
+    assert advice.reason == told
 
 
 @pytest.mark.parametrize("plan", [measured, plan_of])

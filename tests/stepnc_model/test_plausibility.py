@@ -112,13 +112,13 @@ class TestNumbers:
     @pytest.mark.parametrize(
         ("hand", "spindle", "severities"),
         [
-            (RIGHT, "20.", [Severity.NOTE]),
+            (RIGHT, "20.", [Severity.WARNING]),
             (RIGHT, "-20.", []),
             (LEFT, "20.", []),
-            ("$", "20.", [Severity.NOTE]),
+            ("$", "20.", [Severity.WARNING]),
         ],
     )
-    def test_a_right_hand_tool_that_turns_left_is_noted(
+    def test_a_right_hand_tool_that_turns_left_is_a_warning(
         self, hand: str, spindle: str, severities: list[Severity]
     ) -> None:
         program = program_of(f"0.004,.TCP.,$,{spindle},$,.F.,.F.,.F.", hand=hand)
