@@ -27,8 +27,9 @@ from service.requests.advice import AdviceRequest
 from service.simulation.code_paths import CodeBlocks, CodePaths
 from service.usecases import AdviceFiles, OptimiseResult, optimise
 from simulator.edge_material import edge_material
-from simulator.removal.tool_shape import THREADS, shape_of, tool_kind
+from simulator.removal.tool_shape import THREADS, shape_of
 from simulator.spec import CuttingMaterial
+from simulator.tool_kind import tool_kind
 from simulator.tool_table import TableTool
 from stepnc_model.nc.program import read_program as read_code
 from stepnc_model.post.dialect import Dialect

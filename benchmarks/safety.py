@@ -7,7 +7,6 @@ k_c. Of all pairs a plan at the quantile q passes 1 - q, if plan and run agree.
 """
 
 import argparse
-from functools import partial
 from math import log
 from pathlib import Path
 
@@ -67,11 +66,11 @@ def _plan_and_run(safety: float) -> tuple[Plan, Confirmation]:
         program,
         machine=load_machine("vmc15"),
         material=match_material(["C45"]),
-        task=OptimisationTask(safety=safety, source=partial(along_paths, is_run=True)),
+        task=OptimisationTask(safety=safety, source=along_paths),
     )
     data = writeback.write(program, changes_of(plan), FileProfile.OPTIMISATION)
     advised = Program(Part21File.from_bytes(data, name="bracket"), name="bracket")
-    return plan, confirm(plan, advised)
+    return plan, confirm(plan, program, advised)
 
 
 def _shares(plan: Plan, confirmation: Confirmation | None) -> np.ndarray:

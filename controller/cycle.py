@@ -7,8 +7,10 @@ by the weight they are the real ones.
 from dataclasses import dataclass
 
 from controller.guard import AllowedOverride
+from controller.monitor import NOT_OVER, OverTime
 from controller.orders import LoopEvent
 from controller.signal import Revolution
+from controller.tool_life import ToolLife
 from simulator.reading import Reading
 
 
@@ -30,6 +32,14 @@ class LoopCycle:
     """ln(measured / expected force); None when not comparable."""
     weight: float = 1.0
     """Weight: equivalent force over real force."""
+    over: OverTime = NOT_OVER
+    """How long the force has been above its set point."""
+    life: ToolLife | None = None
+    """Wear of the tool, once forces were compared; None: nothing is known."""
+    sharp_ratio: float | None = None
+    """The ratio without the force of the wear land; None when not comparable."""
+    is_astray: bool = False
+    """Whether the axes do not follow the override."""
     events: tuple[LoopEvent, ...]
 
     @property

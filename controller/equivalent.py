@@ -45,5 +45,7 @@ def equivalent(plain: Preview, steps: Sequence[LoopStep], settings: LoopSettings
 
 
 def weighed(reading: Reading, weight: float) -> Reading:
-    """Convert the force of a reading to the equivalent force."""
-    return reading if weight == 1.0 else replace(reading, force=reading.force * weight)
+    """Convert the forces of a reading to equivalent forces."""
+    if weight == 1.0:
+        return reading
+    return replace(reading, force=reading.force * weight, normal=reading.normal * weight)

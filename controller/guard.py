@@ -13,8 +13,9 @@ law requests, provided that
   power of a main drive does not meet this: it is delayed.
 
 The threshold is the breakage force over the sudden ratio, or 1.5 times the set point where that
-is less. The override is kept so low that the force measured now would stay below it, and the
-feed is held within one tooth period when a tooth exceeds it. Against the set point, a tooth
+is less. The override is kept so low that the force measured now would stay below it, but not
+below the least chip, where the edge would rub and not cut; and the feed is held within one
+tooth period when a tooth exceeds it. Against the set point, a tooth
 counts with its excess over its usual share (:mod:`controller.overload`), against the breakage
 force with its full force. Where the program inhibits the override there is no guarantee. Units:
 s, N.
@@ -45,7 +46,10 @@ A law that keeps the set point must not reach the threshold through noise.
 """
 
 LEAST_RESUMED = 0.02
-"""Least override after a feed hold, so that a false force reading does not stall the feed."""
+"""Least override after a feed hold, so that a false force reading does not stall the feed.
+
+The least chip of a workingstep is mostly more.
+"""
 
 NOTICED = 1e-3
 """Share of the threshold below which a force does not limit the override."""
@@ -114,6 +118,8 @@ class WorkingstepBounds:
     ceiling: float
     exponent: float
     """Exponent p of force over feed."""
+    least: float = 0.0
+    """Override of the least chip: the feed is held rather than lowered further."""
     settled: float = 0.0
     """Greatest set point that the force had time to follow, N.
 
@@ -196,7 +202,7 @@ def allowed(
     ):
         if override > bound:
             override, holding = bound, name
-    return AllowedOverride(override=max(override, 0.0), holding=holding)
+    return AllowedOverride(override=max(override, keep.least, 0.0), holding=holding)
 
 
 def in_air(keep: WorkingstepBounds, *, last: float) -> AllowedOverride:
@@ -207,7 +213,8 @@ def in_air(keep: WorkingstepBounds, *, last: float) -> AllowedOverride:
 def after_hold(keep: WorkingstepBounds, *, override: float, force: float) -> float:
     """Override at which to resume after a force, N, has held the feed."""
     share = (RESUMED * keep.set_point / force) ** (1.0 / keep.exponent)
-    return float(min(max(override * share, LEAST_RESUMED), keep.ceiling, 1.0))
+    least = max(LEAST_RESUMED, keep.least)
+    return float(min(max(override * share, least), keep.ceiling, 1.0))
 
 
 def taught(

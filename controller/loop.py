@@ -6,6 +6,7 @@ machine behind them may be virtual. Mutable state. Units: mm, s, N, W, rev/s.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from math import nan
 
@@ -14,12 +15,21 @@ from controller.cycle import LoopCycle
 from controller.equivalent import equivalent, weighed
 from controller.estimate import log_ratio
 from controller.loop_settings import LoopSettings, LoopStep
-from controller.loop_state import LEAST_WAY, LawFor, answered, begun, initial, obeyed
+from controller.loop_state import (
+    LEAST_WAY,
+    LawFor,
+    answered,
+    awaited,
+    begun,
+    initial,
+)
+from controller.order_effects import obeyed
 from controller.orders import Order
 from controller.ports import Override, Sensor
 from controller.preview import Preview
-from controller.signal import Collector
+from controller.signal import Collector, Pieces, tooth_periods
 from controller.source import Source
+from controller.supervision import resolved, supervised
 from simulator.reading import Reading
 
 IMPLAUSIBLE = 5.0
@@ -61,7 +71,7 @@ class Loop:
         self.state = initial(settings, equivalent(preview, steps, settings))
         self._sensor, self._port, self._source = sensor, override, source
         self._law_for, self._steps, self._plain = cache(law), steps, preview
-        self._collector = Collector()
+        self._collector, self._pieces = Collector(), Pieces()
         self._orders: list[Order] = []
 
     def order(self, order: Order) -> None:
@@ -94,18 +104,26 @@ class Loop:
         while self._orders:
             order = self._orders.pop(0)
             state = obeyed(state, order, plain=self._plain, steps=self._steps)
+        state = supervised(state, raw)
         # Program time that one revolution takes at the present override.
-        way = raw.period * raw.teeth * max(raw.override, LEAST_WAY)
+        way = _turn(raw) * max(raw.override, LEAST_WAY)
         preview, least = state.preview, -IMPLAUSIBLE * state.settings.chips
         weight = preview.weight_between(raw.progress - way, raw.progress)
         is_air = preview.is_air(raw.progress, revolution=way)
         conditioned = self._source.conditioned(raw, state.step.diameter, is_air=is_air)
         reading = weighed(conditioned, weight)
         # A repeated reading carries no new information.
-        revolution = self._collector.add(reading) if is_new else None
+        whole = self._pieces.add(reading) if is_new else reading
+        if whole is None:
+            # A part of a tooth period is no load of a tooth.
+            self.state = awaited(state, reading, self._law_for)
+            self._port.set(self.state.override)
+            return self._cycle(reading, weight)
+        is_tooth = whole is reading
+        revolution = self._collector.add(whole, is_tooth=is_tooth) if is_new else None
         if revolution is not None and revolution.force < least:
             revolution = None
-        force = overload.mean(reading.force) if is_new else nan
+        force = overload.mean(whole.force) if is_new else nan
         expected, ratio = 0.0, None
         if revolution is not None:
             # Force by the catalogue's k_c at the override that was run.
@@ -114,23 +132,49 @@ class Loop:
             # A force near zero gives no information on k_c.
             known = expected if expected > weight * state.settings.chips else 0.0
             ratio = log_ratio(revolution, known, expected_before=state.expected)
-            state = state._replace(expected=known)
+            state = resolved(state._replace(expected=known), reading, revolution)
         self.state = answered(
             state,
-            reading,
+            whole,
             revolution,
             ratio=ratio,
             force=nan if force < least else force,
             law_for=self._law_for,
         )
         self._port.set(self.state.override)
-        return LoopCycle(
-            reading=reading,
-            allowed=self.state.allowed,
-            set_point=self.state.keep.set_point,
+        cycle = self._cycle(reading, weight)
+        life, sharp = self.state.monitor.life, ratio
+        if life is not None and ratio is not None:
+            sharp = life.sharp(ratio, self.state.monitor.land_share)
+        return replace(
+            cycle,
             revolution=revolution,
             expected=expected,
             ratio=ratio,
-            weight=weight,
-            events=self.state.events,
+            life=life,
+            sharp_ratio=sharp,
         )
+
+    def _cycle(self, reading: Reading, weight: float) -> LoopCycle:
+        """Result of a cycle in which no revolution ends."""
+        state = self.state
+        return LoopCycle(
+            reading=reading,
+            allowed=state.allowed,
+            set_point=state.keep.set_point,
+            revolution=None,
+            expected=0.0,
+            ratio=None,
+            weight=weight,
+            over=state.monitor.over,
+            is_astray=state.following.is_astray,
+            events=state.events,
+        )
+
+
+def _turn(reading: Reading) -> float:
+    """Duration of a revolution, or of a reading if that is longer, s."""
+    periods = tooth_periods(reading)
+    if periods <= 0.0 or reading.teeth * abs(periods - 1.0) < 1.0:
+        return reading.period * reading.teeth
+    return max(reading.period, 1.0 / reading.spindle_speed)

@@ -64,6 +64,8 @@ class LoopStep:
     """Exponent p of force over feed."""
     tool: str = ""
     """Id of the tool in this workingstep."""
+    taught: float | None = None
+    """Factor on k_c that the sharp tool has taught in this cut; None: none was taught."""
     diameter: float = 0.0
     """Diameter at which the cutting speed drives the force, mm; 0: not known."""
 

@@ -17,8 +17,9 @@ The phase determines the override::
 - FOLLOWING: the law's request, as far as the guard allows it; in air the last one, up to 1.
 - HELD: 0, until each tooth is below the set point or the axes stand.
 - BLIND: at most the safe override, until a revolution has a valid force.
-- OFF and INHIBITED: 1. The switch and the lock of a workingstep take effect from the next
-  complete revolution or the next workingstep, and before BLIND; a hold continues to its end.
+- OFF and INHIBITED: 1; the force is only watched. The switch and the lock of a workingstep take
+  effect from the next complete revolution or the next workingstep, and before BLIND; a hold
+  continues to its end.
 - STOPPED: 0, permanently.
 
 All functions are pure: a state and a reading give the next state. States are tuples and not
@@ -26,16 +27,14 @@ dataclasses, as one is made several times in a tooth period. Units: mm, s, N, re
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from enum import Enum
-from math import inf, isfinite, isnan
+from dataclasses import replace
+from math import ceil, inf, isfinite, isnan, nan
 from typing import Any, NamedTuple
 
 from controller import overload
-from controller.equivalent import equivalent
+from controller.following import Following
 from controller.guard import (
     AllowedOverride,
-    OverrideReason,
     WorkingstepBounds,
     after_hold,
     allowed,
@@ -44,11 +43,12 @@ from controller.guard import (
 )
 from controller.law import ControlLaw, Plant, Situation
 from controller.loop_settings import AROUND, LoopSettings, LoopStep
-from controller.monitor import Monitor
-from controller.orders import CriterionTo, EventKind, LoopEvent, MotorPowerTo, Order
+from controller.monitor import ABOVE, Monitor
+from controller.orders import EventKind, LoopEvent
+from controller.phase import FeedHold, Phase
 from controller.preview import Preview
 from controller.set_point import approached, bounded, introduction
-from controller.signal import Revolution
+from controller.signal import Revolution, tooth_periods
 from simulator.reading import Reading
 
 STANDING = 0.02
@@ -60,6 +60,9 @@ FORGIVING = 1.0 / 100.0
 BELOW = 500
 """Consecutive revolutions with an override below the band after which the program stops."""
 
+WORN_PATIENCE = 10.0
+"""Time above the set point at the least feed after which a worn tool stops the program, s."""
+
 REVOLUTIONS = 2.0
 """Revolutions without a force allowed besides the timeout; the first is mostly incomplete."""
 
@@ -68,29 +71,6 @@ LEAST_WAY = 0.1
 
 LawFor = Callable[[Plant], ControlLaw[Any]]
 """Function that returns a control law tuned for a process."""
-
-
-class Phase(Enum):
-    """Phase of the loop, which determines the override; its value is the reported reason."""
-
-    FOLLOWING = OverrideReason.NOTHING
-    HELD = OverrideReason.OVERLOAD
-    BLIND = OverrideReason.SILENCE
-    INHIBITED = OverrideReason.INHIBITED
-    OFF = OverrideReason.OFF
-    STOPPED = OverrideReason.STOPPED
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FeedHold:
-    """Overload that caused a feed hold, while the phase is HELD."""
-
-    override: float
-    """Override that the axes ran when the force was greatest."""
-    force: float
-    """Greatest force since the hold began, N."""
-    calm: int = 0
-    """Consecutive tooth periods below the set point; with runout, one is not enough."""
 
 
 class LoopState(NamedTuple):
@@ -131,6 +111,10 @@ class LoopState(NamedTuple):
     """Greatest load of a tooth since the last decision, N."""
     expected: float = 0.0
     """Expected force of the last revolution, N; 0: there was no cut."""
+    following: Following = Following()
+    """How the axes follow the override."""
+    by_teeth: bool = True
+    """Whether readings are tooth periods."""
     shares: overload.UsualShares = overload.fresh(1)
     monitor: Monitor = Monitor()
     events: tuple[LoopEvent, ...] = ()
@@ -151,7 +135,7 @@ class LoopState(NamedTuple):
         """Override to use when the force is unknown: the present one, at most the safe one."""
         if self.step.reference.inhibition or not self.settings.is_on:
             return self.override
-        return min(self.override, self.settings.band.safe)
+        return min(self.override, max(self.settings.band.safe, self.keep.least))
 
     def is_blind(self, spindle_speed: float) -> bool:
         """Whether there has been no force for too long; a standing spindle does not count."""
@@ -178,15 +162,15 @@ def begun(state: LoopState, reading: Reading, steps: Sequence[LoopStep]) -> Loop
         law=None,
         expected=0.0,
         shares=overload.fresh(reading.teeth),
-        monitor=state.monitor.begun(step.tool),
+        monitor=state.monitor.begun(step.tool, hardness=step.taught),
     )
     if state.phase not in {Phase.HELD, Phase.STOPPED}:
         state = _opened(state)
     if step.reference.workingstep:
-        state = _told(state, EventKind.WORKINGSTEP, introduction(settings, step.reference))
+        state = told(state, EventKind.WORKINGSTEP, introduction(settings, step.reference))
         if step.reference.inhibition:
             text = f"feed left as it is: {step.reference.inhibition}"
-            state = _told(state, EventKind.INHIBITED, text)
+            state = told(state, EventKind.INHIBITED, text)
     return state
 
 
@@ -200,35 +184,6 @@ def _opened(state: LoopState) -> LoopState:
     if state.phase is Phase.BLIND:
         return _into(state, Phase.BLIND, min(air.override, state.settings.band.safe))
     return _into(state, Phase.FOLLOWING, air.override)
-
-
-def obeyed(
-    state: LoopState, order: Order, *, plain: Preview, steps: Sequence[LoopStep]
-) -> LoopState:
-    """Apply an order of the operator, which the next decision follows.
-
-    Parameters
-    ----------
-    state : LoopState
-    order : Order
-    plain : Preview
-        Preview of real forces.
-    steps : sequence of LoopStep
-    """
-    settings, preview = state.settings, state.preview
-    match order:
-        case CriterionTo(criterion=criterion):
-            settings = replace(settings, criterion=criterion)
-            text = f"mode {criterion.value}"
-        case MotorPowerTo(factor=factor):
-            settings = replace(settings, power_factor=factor)
-            preview = equivalent(plain, steps, settings)
-            text = f"motor power {100.0 * factor:.4g} %"
-        case _:
-            settings = replace(settings, is_on=order.is_on)
-            text = "ON" if order.is_on else "OFF: the programmed feed runs"
-    state = state._replace(settings=settings, preview=preview, law=None)
-    return _told(_bounded(state, cap=state.keep.cap), EventKind.ORDER, text)
 
 
 def answered(
@@ -279,6 +234,22 @@ def answered(
     return decided._replace(override_before=state.override, greatest=0.0)
 
 
+def awaited(state: LoopState, reading: Reading, law_for: LawFor) -> LoopState:
+    """Wait for the rest of a tooth period, but not for too long.
+
+    Parameters
+    ----------
+    state : LoopState
+    reading : Reading
+        Part of a tooth period, which has no load of a tooth.
+    law_for : callable
+    """
+    state = _listened(state, reading, None, nan)
+    if state.phase in {Phase.HELD, Phase.STOPPED} or not state.is_blind(reading.spindle_speed):
+        return state
+    return _decided(state, None, None, is_blind=True, law_for=law_for)
+
+
 def _out_of_cut(state: LoopState) -> LoopState:
     """Leave the cut: the memory of the law does not apply to the next one."""
     if not state.has_chips:
@@ -303,6 +274,10 @@ def _loaded(state: LoopState, reading: Reading, force: float) -> tuple[LoopState
     shares = state.shares
     if len(shares.usual) != reading.teeth:
         shares = overload.fresh(reading.teeth)
+    if not state.by_teeth:
+        # Means of other periods do not show runout.
+        load = state.keep.load(state.settings.band, level=force, force=force)
+        return state._replace(shares=shares, greatest=max(state.greatest, load)), load
     # Noise in air and the entry into the work do not show runout.
     see = overload.seen if state.has_chips else overload.noted
     shares = see(shares, reading.tooth, force)
@@ -317,9 +292,11 @@ def _held(state: LoopState, reading: Reading, load: float) -> LoopState:
     text = f"tooth force {load:.4g} N exceeds {bound:.4g} N: feed held"
     hold, holds = FeedHold(override=reading.override, force=load), state.holds + 1
     held = _into(state._replace(hold=hold, holds=holds, law=None), Phase.HELD, 0.0)
-    held = _told(held, EventKind.HOLD, text)
+    held = told(held, EventKind.HOLD, text)
     if holds > state.settings.band.holds:
-        return _stopped(held, f"held {holds:.0f} times in quick succession")
+        return _stopped(
+            held, f"held {holds:.0f} times in quick succession: {state.monitor.cause}"
+        )
     return held
 
 
@@ -327,19 +304,23 @@ def _waited(state: LoopState, hold: FeedHold, reading: Reading, load: float) -> 
     """Keep holding the feed, or resume below the override that led to the hold."""
     if load > hold.force:
         hold = replace(hold, override=reading.override, force=load)
-    calm = hold.calm + 1 if load < state.keep.set_point else 0
+    periods = max(round(tooth_periods(reading)), 1)
+    calm = hold.calm + periods if load < state.keep.set_point else 0
     if reading.override > STANDING and calm < reading.teeth:
         return state._replace(hold=replace(hold, calm=calm))
     band, keep = state.settings.band, state.keep
     override = after_hold(keep, override=hold.override, force=hold.force)
+    if state.monitor.is_worn:
+        # A worn edge takes its force at any feed: a lower one only rubs.
+        override = max(override, keep.floor)
     cap = min(taught(band, keep, override=hold.override, force=hold.force), keep.cap)
-    resumed = _bounded(state, cap=cap)._replace(
+    resumed = with_bounds(state, cap=cap)._replace(
         phase=Phase.FOLLOWING,
-        allowed=AllowedOverride(override=override, holding=OverrideReason.OVERLOAD),
+        allowed=AllowedOverride(override=override, holding=Phase.HELD.value),
         hold=None,
         greatest=0.0,
     )
-    return _told(resumed, EventKind.RESUME, f"override {100.0 * override:.4g} %")
+    return told(resumed, EventKind.RESUME, f"override {100.0 * override:.4g} %")
 
 
 def _decided(
@@ -351,11 +332,11 @@ def _decided(
     law_for: LawFor,
 ) -> LoopState:
     """Decide after a revolution, or after too long a time without a valid force."""
-    if not state.settings.is_on:
-        return _into(state, Phase.OFF, 1.0)
     had_chips = state.has_chips
     if revolution is not None and revolution.is_covered:
         state = _watched(state, revolution, ratio)
+    if not state.settings.is_on:
+        return _into(state, Phase.OFF, 1.0)
     if state.is_stopped:
         return state
     if state.step.reference.inhibition:
@@ -384,11 +365,17 @@ def _watched(state: LoopState, revolution: Revolution, ratio: float | None) -> L
         # If the ratio is known, the expected force is known too.
         land = 0.0 if ratio is None else preview.mean_land(begin, end) / state.expected
         monitor = monitor.seen(
-            revolution, state.keep, ratio=ratio, land_share=land, expected=teeth
+            revolution,
+            state.keep,
+            ratio=ratio,
+            land_share=land,
+            normal=nan if ratio is None else revolution.normal / state.expected,
+            expected=teeth,
         )
     events = (*state.events, *monitor.events)
     state = state._replace(monitor=monitor, has_chips=True, events=events)
-    return _stopped(state, "a tooth is broken") if monitor.breakage.is_broken else state
+    is_broken = monitor.breakage.is_broken and state.settings.is_on
+    return _stopped(state, "a tooth is broken") if is_broken else state
 
 
 def _blinded(state: LoopState) -> LoopState:
@@ -396,7 +383,7 @@ def _blinded(state: LoopState) -> LoopState:
     if state.phase is not Phase.BLIND:
         safe = 100.0 * state.settings.band.safe
         text = f"no force for {state.without_force:.2g} s: override limited to {safe:.4g} %"
-        state = _told(state, EventKind.SILENCE, text)
+        state = told(state, EventKind.SILENCE, text)
     return _into(state._replace(law=None), Phase.BLIND, state.safe)
 
 
@@ -435,11 +422,15 @@ def _followed(
         actual=revolution.override,
         force=max(state.greatest, revolution.force),
     )
+    monitor, is_least = state.monitor, got.override <= ABOVE * keep.floor
+    if monitor.is_worn and monitor.over.seconds > WORN_PATIENCE and is_least:
+        least = f"{monitor.share:.3g} times the set point even at the least feed"
+        return _stopped(state, f"the force is {least}: {monitor.cause}")
     below = state.below + 1 if got.override < keep.floor else 0
     if below > BELOW:
         percent = 100.0 * keep.floor
         text = f"the force is too high even at {percent:.3g} % of the programmed feed"
-        return _stopped(state, text)
+        return _stopped(state, f"{text}: {state.monitor.cause}")
     return state._replace(law=law, below=below, phase=Phase.FOLLOWING, allowed=got)
 
 
@@ -448,7 +439,8 @@ def _tuned(
 ) -> tuple[ControlLaw[Any], Any]:
     """Tune the law for the cut that begins, and return it with its initial state."""
     # Rounded, so that equal cuts reuse a cached law.
-    lag = round(max(state.settings.servo_lag * revolution.spindle_speed, 0.1), 1)
+    lag = state.settings.servo_lag * revolution.spindle_speed / _turns(revolution)
+    lag = round(max(lag, 0.1), 1)
     exponent = state.keep.exponent
     law = law_for(Plant(exponent=round(exponent, 2) or exponent, lag=lag))
     return law, law.begin(max(state.override, LEAST_WAY))
@@ -456,7 +448,8 @@ def _tuned(
 
 def _situation(state: LoopState, revolution: Revolution) -> Situation:
     """Input for the control law from the state and a revolution."""
-    keep, preview, look_ahead = state.keep, state.preview, state.settings.look_ahead
+    keep, preview = state.keep, state.preview
+    look_ahead = ceil(state.settings.look_ahead / _turns(revolution))
     way = revolution.period * max(revolution.override, LEAST_WAY)
     begin, end = revolution.progress_before, revolution.progress
     return Situation(
@@ -471,7 +464,12 @@ def _situation(state: LoopState, revolution: Revolution) -> Situation:
     )
 
 
-def _bounded(state: LoopState, *, cap: float) -> LoopState:
+def _turns(revolution: Revolution) -> float:
+    """Turns between two decisions of the law."""
+    return 1.0 if revolution.by_teeth else max(revolution.turns, 1.0)
+
+
+def with_bounds(state: LoopState, *, cap: float) -> LoopState:
     """Update the bounds from the settings."""
     keep = bounded(
         state.settings,
@@ -485,7 +483,7 @@ def _bounded(state: LoopState, *, cap: float) -> LoopState:
 
 def _stopped(state: LoopState, why: str) -> LoopState:
     """Stop the program permanently, with the reason."""
-    return _told(_into(state, Phase.STOPPED, 0.0), EventKind.STOP, why)
+    return told(_into(state, Phase.STOPPED, 0.0), EventKind.STOP, why)
 
 
 def _into(state: LoopState, phase: Phase, override: float) -> LoopState:
@@ -494,6 +492,7 @@ def _into(state: LoopState, phase: Phase, override: float) -> LoopState:
     return state._replace(phase=phase, allowed=allowed_)
 
 
-def _told(state: LoopState, kind: EventKind, text: str) -> LoopState:
+def told(state: LoopState, kind: EventKind, text: str) -> LoopState:
+    """Add an event."""
     event = LoopEvent(time=state.time, kind=kind, text=text)
     return state._replace(events=(*state.events, event))

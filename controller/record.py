@@ -4,11 +4,13 @@ Mutable state. Units: mm, s, N.
 """
 
 from dataclasses import dataclass, field
-from math import inf, isfinite
+from math import inf, isfinite, isnan
 
 from controller.cycle import LoopCycle
 from controller.estimate import RatioEstimate, counted
+from controller.monitor import NOT_OVER, OverTime
 from controller.signal import Revolution
+from controller.tool_life import ToolLife
 
 
 @dataclass(kw_only=True)
@@ -31,6 +33,8 @@ class RunRecord:
     """Integral of the force above the bound, N·s."""
     over_time: float = 0.0
     """Time with a force above the bound by more than a twentieth, s."""
+    longest_over: OverTime = NOT_OVER
+    """Longest time without a break in which the mean force was above the bound."""
     overrides: float = 0.0
     """Integral of the override with chips: program time that was cut, s."""
     least: float = inf
@@ -44,6 +48,14 @@ class RunRecord:
     """Bound of the revolution with the greatest share, N."""
     revolutions: int = 0
     """Number of revolutions with chips."""
+    life: ToolLife | None = None
+    """Wear of the tool at the end; None: nothing is known."""
+    power: float = 0.0
+    """Greatest mean power of the main drive in a revolution with chips, W."""
+    work: float = 0.0
+    """Work of the main drive with chips, W·s."""
+    astray: float = 0.0
+    """Time in which the axes did not run the commanded override, s."""
     lost: int = 0
     """Number of revolutions without a valid force."""
     ratio: RatioEstimate = field(default_factory=RatioEstimate)
@@ -57,6 +69,11 @@ class RunRecord:
     def force(self) -> float:
         """Mean force with chips, N; 0 without chips."""
         return self.impulse / self.cutting_time if self.cutting_time else 0.0
+
+    @property
+    def mean_power(self) -> float:
+        """Mean power of the main drive with chips, W; 0 without chips."""
+        return self.work / self.cutting_time if self.cutting_time else 0.0
 
     @property
     def override(self) -> float:
@@ -95,6 +112,7 @@ class Recorder:
         if record is None:
             record = self.records[number] = RunRecord(workingstep=number)
         record.time += cycle.reading.period
+        record.astray += cycle.is_astray * cycle.reading.period
         if cycle.revolution is not None:
             self._add(record, cycle, cycle.revolution)
 
@@ -106,7 +124,7 @@ class Recorder:
             return
         force, bound = revolution.force / cycle.weight, cycle.bound
         period, override = revolution.period, revolution.override
-        record.revolutions += 1
+        record.revolutions += max(round(revolution.turns), 1)
         record.cutting_time += period
         record.way += revolution.feed * period
         record.overrides += override * period
@@ -120,8 +138,14 @@ class Recorder:
         if record.share > record.most:
             record.most, record.set_point = record.share, bound
             record.peak = record.share * min(bound, FREE)
-        if cycle.ratio is not None:
-            record.ratio = counted(record.ratio, cycle.ratio)
+        if cycle.over.seconds >= record.longest_over.seconds:
+            record.longest_over = cycle.over
+        record.life = cycle.life or record.life
+        if not isnan(revolution.power):
+            record.power = max(record.power, revolution.power)
+            record.work += revolution.power * period
+        if cycle.sharp_ratio is not None:
+            record.ratio = counted(record.ratio, cycle.sharp_ratio)
         if isfinite(bound):
             record.excess += max(force - bound, 0.0) * period
             record.over_time += period * (force > EXCESS_RATIO * bound)

@@ -75,7 +75,9 @@ class Reference:
     bounds: tuple[ForceBound, ...] = ()
     """Force bounds, the least first; empty if nothing limits the force."""
     floor: float = 0.0
-    """Override below which the edge rubs."""
+    """Override of the least feed per tooth: that of the catalogue, or of the least chip."""
+    least: float = 0.0
+    """Override of the least chip, below which the edge rubs."""
     ceiling: float = inf
     """Override that chip load, feed mechanism and roughness allow."""
     breakage: float = inf
@@ -84,10 +86,11 @@ class Reference:
     """Reason why the feed is locked; empty if the loop may change it."""
 
     def __post_init__(self) -> None:
-        if not (self.ceiling > 0.0 and self.breakage > 0.0 and self.floor >= 0.0):
+        floors = min(self.floor, self.least)
+        if not (self.ceiling > 0.0 and self.breakage > 0.0 and floors >= 0.0):
             raise ValueError(
                 f"workingstep '{self.workingstep}': ceiling {self.ceiling:g} and breakage "
-                f"force {self.breakage:g} N must be positive, floor {self.floor:g} not negative"
+                f"force {self.breakage:g} N must be positive, floor {floors:g} not negative"
             )
 
     def bound(self, *, power_factor: float = 1.0) -> ForceBound | None:
@@ -160,6 +163,7 @@ def reference_of(advice: Advice) -> Reference:
     bounds = sorted(_force_bounds(advice.cut, state), key=lambda bound: bound.force)
     rubbing = max(_overrides(state, BoundSide.AT_LEAST), default=0.0)
     ceiling = _ceiling(state, rubbing)
+    least = min(rubbing, ceiling, 1.0)
     strengths = [
         RUPTURE_RATIO * each.force for each in bounds if each.name is LimitName.SHANK_STRENGTH
     ]
@@ -167,7 +171,8 @@ def reference_of(advice: Advice) -> Reference:
     return Reference(
         workingstep=name,
         bounds=tuple(bounds),
-        floor=min(rubbing, ceiling, 1.0),
+        floor=min(max(least, _catalogue_floor(state)), ceiling),
+        least=least,
         ceiling=ceiling,
         breakage=min(strengths, default=breakage),
         inhibition=inhibition,
@@ -183,6 +188,21 @@ def _ceiling(state: EvaluatedSetting, rubbing: float) -> float:
     ceiling = min(_overrides(state, BoundSide.AT_MOST), default=inf)
     ceiling = ceiling if ceiling > rubbing else max(rubbing, 1.0)
     return min(ceiling, max(1.0, min(_plunge_overrides(state), default=inf)))
+
+
+def _catalogue_floor(state: EvaluatedSetting) -> float:
+    """Override of the catalogue's least feed; 0 without one, or if the program is below it.
+
+    A program that feeds less than the catalogue has decided against it: what counts then is
+    the least chip.
+    """
+    floors = [
+        _override(load, state)
+        for load in state.loads
+        if load.limit.name is LimitName.FEED_PER_TOOTH
+        and load.limit.sense is BoundSide.AT_LEAST
+    ]
+    return max((each for each in floors if each <= 1.0), default=0.0)
 
 
 def _plunge_overrides(state: EvaluatedSetting) -> Iterator[float]:

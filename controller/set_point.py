@@ -58,6 +58,7 @@ def bounded(
         floor=min(max(band.floor, reference.floor), ceiling),
         ceiling=ceiling,
         exponent=step.exponent,
+        least=min(reference.least, ceiling),
         settled=settled,
         cap=cap,
     )

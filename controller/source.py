@@ -4,8 +4,10 @@ Mutable state: the zero of the instrument. Units: mm, N, W.
 """
 
 from dataclasses import replace
-from math import nan
+from math import isnan, nan
 from typing import Protocol
+
+import numpy as np
 
 from controller.conditioning import (
     IdlePower,
@@ -49,7 +51,7 @@ class Dynamometer:
 
     def __init__(self, chips: float) -> None:
         self._chips = chips
-        self._tare = Tare()
+        self._tare, self._normal = Tare(), Tare()
 
     def conditioned(
         self, reading: Reading, _diameter: float, *, is_air: bool = False
@@ -57,7 +59,13 @@ class Dynamometer:
         """Return the reading less the dynamometer's zero; see :class:`Source`."""
         less = without_offset(reading, self._tare)
         is_still = is_air and not (self._tare.is_known and _mean(less) > self._chips)
-        self._tare = tared(self._tare, reading, has_chips=False if is_still else None)
+        has_chips = False if is_still else None
+        self._tare = tared(self._tare, reading, has_chips=has_chips)
+        if isnan(reading.normal):
+            return less if reading.can_override else reading
+        normal = replace(reading, force=np.array([reading.normal]))
+        less = replace(less, normal=reading.normal - self._normal.offset)
+        self._normal = tared(self._normal, normal, has_chips=has_chips)
         return less if reading.can_override else reading
 
 
@@ -80,6 +88,7 @@ class DrivePower:
         self, reading: Reading, diameter: float, *, is_air: bool = False
     ) -> Reading:
         """Return the reading with the force from power; none if the diameter is not known."""
+        reading = replace(reading, normal=nan)
         told = replace(reading, force=reading.force[:0])
         if diameter > 0.0:
             told = force_from_power(

@@ -1,33 +1,71 @@
-"""Flank wear and sudden changes of the work, estimated from the force ratio.
+"""Flank wear and sudden changes of the work, estimated from measured over expected force.
 
-Wear raises the force slowly, harder work at once. A slowly moving mean follows the ratio of
-measured to expected force, and two cumulative sums detect changes that are too quick for it.
-Wear is the increase of that mean since the tool was new, divided by the increase per millimetre
-of wear: the wear land takes a force of its own beside that of the chip, so that this is larger
-for thin chips (:mod:`simulator.physics.flank`). After a sudden change the reference is learnt
-anew, and the wear continues from its previous value. Units: mm of flank wear, dimensionless
-ratios.
+``F/F_exp = K + s·VB``: hardness multiplies the force of the chip by K, a wear land adds a force
+of its own that does not depend on the feed (:mod:`simulator.physics.flank`), and s, what 1 mm
+of it adds to the ratio, is therefore greater for thinner chips. Wear is told from hardness by
 
-A change of less than ``WearMonitorSettings.allowance`` is not detected and counts as wear: 4 %
-of force are 0.02 mm where a chip of 0.1 mm is cut in steel. Wear that is quicker than the
-allowance over the memory (0.04 in 200 revolutions) is taken for a change. So is an error of the
-expected force that lasts some revolutions: noise may be large, but it must not keep the same
-sign for long.
+- the slow trend: K stays as it is between sudden changes, and VB grows at a rate;
+- the part of the force that does not fall with the feed: s changes with feed and engagement;
+- the force normal to the edge, if a sensor shows it: wear raises it 3.8 times as much as the
+  cutting force, hardness raises both alike.
+
+A Kalman filter [3]_ holds K, the sharp ratio of the normal force, VB and its rate; two
+cumulative sums [1]_ of what it does not explain detect sudden changes. At such a change the
+filter goes back to where the change began, and K is free again while VB is not: unless the
+normal force says otherwise. Units: mm of flank wear, s, dimensionless ratios.
+
+A change of the work of less than ``WearMonitorSettings.allowance`` is not detected, and counts
+as wear if it stays.
 
 References
 ----------
 .. [1] E. S. Page, "Continuous inspection schemes", Biometrika 41 (1954), 100-115: CUSUM.
 .. [2] ISO 8688-2, "Tool life testing in milling": 0.3 mm of flank wear ends a tool's life.
+.. [3] Y. Bar-Shalom, X. R. Li, T. Kirubarajan, "Estimation with applications to tracking and
+   navigation", Wiley, 2001: linear Kalman filter, nearly constant velocity.
 """
 
 from dataclasses import dataclass, replace
-from math import exp, log, sqrt
+from math import exp, hypot, inf, isnan, log, nan, sqrt
 
+import numpy as np
+
+from controller.ports import Floats
 from simulator.physics.domain import require_not_negative, require_positive
+from simulator.physics.flank import CUTTING, NORMAL
+from simulator.physics.milling import RADIAL_SHARE
 from simulator.physics.tool_life import LIFE_CRITERION
 
 _DECISION = 10.0  # standard deviations
-_LEAST_SHARP = 0.05  # least share of the chip in the force, however worn the tool was at first
+_LEAST = 0.02  # least K that is believed
+
+FRESH = np.array([0.3, 0.5 * RADIAL_SHARE, 0.005, 0.003])
+"""Standard deviations of K, sharp normal ratio, VB in mm and its rate in mm/s at first.
+
+A catalogue's k_c differs by a fifth to a third between sources; 0.003 mm/s ends a life in
+100 s.
+"""
+
+OTHER_CUT = 0.1
+"""Standard deviation of K between cuts of one tool in the same work: errors of the plan."""
+
+TAUGHT = 0.1
+"""Standard deviations of K, and of VB in mm, where a sharp tool has taught K in the same cut.
+
+Another batch is harder by a tenth, and the tool may be worn.
+"""
+
+DRIFT = 1e-4
+"""Standard deviation by which the wear rate changes in 1 s, mm/s^1.5."""
+
+CORRELATED = 10.0
+"""Revolutions in which errors of the expected force are alike and do not average out."""
+
+COEFFICIENT = 80.0 / CUTTING
+"""Relative standard deviation of the force of a wear land."""
+
+SPREAD = 1.3
+"""Ratio of the greatest to the least s from which the feed-independent part is told."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,9 +79,9 @@ class WearMonitorSettings:
     """
 
     memory: int = 200
-    """Number of revolutions after which a revolution is weighted 1/e."""
+    """Number of revolutions over which the noise is learnt."""
     learning: int = 50
-    """Number of revolutions that form the reference mean for wear."""
+    """Number of revolutions before changes are looked for."""
     allowance: float = 0.04
     """Deviation of the ratio that does not add to the sums; at least one standard deviation."""
     decision: float = 0.4
@@ -60,137 +98,263 @@ class WearMonitorSettings:
 USUAL = WearMonitorSettings()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Ratios:
+    """Measured over expected force of one revolution, and what explains it."""
+
+    log_ratio: float
+    """ln(measured / expected) of :func:`controller.estimate.log_ratio`."""
+    land_share: float
+    """Increase s of the ratio by 1 mm of flank wear, 1/mm; 0: not known."""
+    period: float = 0.02
+    """Time since the last revolution that was compared, in the cut, s."""
+    normal: float = nan
+    """Measured normal force over expected cutting force; NaN: not measured."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Belief:
+    """Mean (4,) and covariance (4, 4) of K, sharp normal ratio, VB and its rate."""
+
+    mean: Floats
+    covariance: Floats
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CumulativeSum:
     """One-sided cumulative sum (CUSUM), [1]_."""
 
     total: float = 0.0
     revolutions: int = 0
     """Number of revolutions since the sum was 0."""
+    before: _Belief | None = None
+    """What was believed when the sum was 0."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ToolLife:
     """Estimated wear of a tool; create a new one with :func:`new_tool`."""
 
-    log_ratio: float = 0.0
-    """Slowly moving mean of ln(measured / expected)."""
-    log_sharp: float = 0.0
-    """Estimate of that mean for a sharp tool."""
-    land_share: float = 0.0
-    """Slowly moving mean of the increase of the ratio per mm of flank wear, 1/mm; 0: not
-    known."""
+    belief: _Belief
     log_variance: float = 0.0
-    """Variance of single revolutions about the mean."""
-    begun: float = 0.0
-    """Flank wear when the comparison began, mm."""
+    """Variance of ln(ratio) of single revolutions about what is explained."""
     readings: int = 0
     """Number of revolutions since the comparison began."""
     above: CumulativeSum = CumulativeSum()
     below: CumulativeSum = CumulativeSum()
     changes: tuple[float, ...] = ()
     """Sudden changes of ln(ratio) so far, as first detected."""
+    shares: tuple[float, float] = (inf, 0.0)
+    """Least and greatest s of the tool so far, 1/mm."""
+    has_normal: bool = False
+    """Whether the normal force was measured."""
 
     @property
-    def ratio(self) -> float:
-        """Slowly moving ratio of measured to expected force; 1 before any measurement."""
-        return exp(self.log_ratio)
+    def hardness(self) -> float:
+        """Factor K of the chip's force on the catalogue's k_c, without wear."""
+        return float(self.belief.mean[0])
 
     @property
     def flank_wear(self) -> float:
-        """Flank wear VB, mm: increase of the ratio over its increase per millimetre."""
-        if self.readings == 0 or self.land_share <= 0.0:
-            return self.begun
-        return max(0.0, (exp(self.log_ratio) - exp(self.log_sharp)) / self.land_share)
+        """Flank wear VB, mm."""
+        return max(0.0, float(self.belief.mean[2]))
+
+    @property
+    def uncertainty(self) -> float:
+        """Standard deviation of the flank wear, with that of the land's coefficient, mm."""
+        return hypot(sqrt(float(self.belief.covariance[2, 2])), COEFFICIENT * self.flank_wear)
 
     @property
     def is_worn_out(self) -> bool:
-        """Whether the flank wear has reached the end of tool life, [2]_."""
-        return self.flank_wear >= LIFE_CRITERION
+        """Whether the flank wear has surely reached the end of tool life, [2]_."""
+        noise = sqrt(float(self.belief.covariance[2, 2]))
+        return self.flank_wear >= LIFE_CRITERION and noise < 0.25 * LIFE_CRITERION
+
+    @property
+    def basis(self) -> str:
+        """What the estimate of the wear rests on, in words."""
+        least, greatest = self.shares
+        found = ["the slow rise of the force"]
+        if greatest > SPREAD * least:
+            found.append("the part of it that does not fall with the feed")
+        if self.has_normal:
+            found.append("the force normal to the edge")
+        return ", ".join(found[:-1]) + " and " * (len(found) > 1) + found[-1]
+
+    @property
+    def is_wear_sure(self) -> bool:
+        """Whether there is wear beyond three standard deviations of its estimate."""
+        return self.flank_wear > 3.0 * sqrt(float(self.belief.covariance[2, 2]))
+
+    def sharp(self, log_ratio: float, land_share: float) -> float:
+        """Return ln(measured / expected) less the force of the land, if there surely is one."""
+        if not self.is_wear_sure:
+            return log_ratio
+        return log(max(exp(log_ratio) - land_share * self.flank_wear, _LEAST))
+
+    def share(self, land_share: float) -> float:
+        """Share of the wear land in the force where 1 mm of it adds so much to the ratio."""
+        land = land_share * self.flank_wear
+        return land / (land + max(self.hardness, _LEAST))
 
 
 def new_tool(flank: float = 0.0) -> ToolLife:
     """Create the state of a tool without measurements, with its initial flank wear in mm."""
     require_not_negative(flank, "flank wear", "mm")
-    return ToolLife(begun=flank)
+    mean = np.array([1.0, RADIAL_SHARE, flank, 0.0])
+    return ToolLife(belief=_Belief(mean=mean, covariance=np.diag(FRESH**2)))
 
 
 def compared_anew(life: ToolLife) -> ToolLife:
-    """Restart the comparison for other work: the wear stays, the ratio is learnt anew.
-
-    For known changes, such as another material or a cut for which the error of the expected
-    force differs.
-    """
-    return ToolLife(
-        log_ratio=life.log_ratio,
-        log_sharp=life.log_sharp,
-        land_share=life.land_share,
-        begun=life.flank_wear,
-        changes=life.changes,
-    )
+    """Go on with another cut of the same tool, where the plan may err by another amount."""
+    if not life.readings:
+        return life
+    return _restarted(life, _freed(life.belief, OTHER_CUT), life.changes)
 
 
-def lived(
-    life: ToolLife, ratio: float, *, land_share: float, by: WearMonitorSettings = USUAL
-) -> ToolLife:
+def taught(life: ToolLife, hardness: float) -> ToolLife:
+    """Take over the factor K that the tool had in this cut when it was sharp."""
+    require_positive(hardness, "factor of the reference load", "")
+    covariance = life.belief.covariance.copy()
+    covariance[0, :] = covariance[:, 0] = 0.0
+    covariance[0, 0] = (TAUGHT * hardness) ** 2
+    covariance[2, 2] = max(covariance[2, 2], TAUGHT**2)
+    mean = life.belief.mean.copy()
+    mean[0] = hardness
+    return replace(life, belief=_Belief(mean=mean, covariance=covariance))
+
+
+def lived(life: ToolLife, at: Ratios, *, by: WearMonitorSettings = USUAL) -> ToolLife:
     """Update the wear estimate of the tool with one more revolution.
 
     Parameters
     ----------
     life : ToolLife
-    ratio : float
-        ln(measured / expected) of :func:`controller.estimate.log_ratio`.
-    land_share : float, 1/mm
-        Increase of the ratio by 1 mm of flank wear; 0: not known, and no wear is estimated.
+    at : Ratios
     by : WearMonitorSettings
     """
     readings = life.readings + 1
-    away = ratio - life.log_ratio if life.readings else 0.0
+    predicted = _predicted(life.belief, at.period)
+    explained = max(_explained(predicted, at), _LEAST)
+    away = at.log_ratio - log(explained) if life.readings else 0.0
     part = max(1.0 / readings, 1.0 / by.memory)
-    mean = life.log_ratio + part * away if life.readings else ratio
     moved = replace(
         life,
-        log_ratio=mean,
         log_variance=(1.0 - part) * (life.log_variance + part * away * away),
-        land_share=life.land_share + part * (land_share - life.land_share),
         readings=readings,
+        has_normal=life.has_normal or not isnan(at.normal),
     )
+    if at.land_share > 0.0:
+        least, greatest = life.shares
+        moved = replace(moved, shares=(min(least, at.land_share), max(greatest, at.land_share)))
+    deviation = max(sqrt(moved.log_variance), 0.25 * by.allowance)
+    moved = replace(moved, belief=_updated(predicted, at, deviation=deviation))
     if readings <= by.learning:
-        return replace(moved, log_sharp=_sharp(moved))
-    deviation = sqrt(life.log_variance)
+        return moved
     allowance = max(by.allowance, deviation)
     decision = max(by.decision, _DECISION * deviation)
-    above = _summed(life.above, away - allowance)
-    below = _summed(life.below, -away - allowance)
+    above = _summed(life.above, away - allowance, life.belief)
+    below = _summed(life.below, -away - allowance, life.belief)
     moved = replace(moved, above=above, below=below)
     if above.total > decision:
-        return _changed(moved, above.total / above.revolutions + allowance, above, by)
+        return _changed(moved, above.total / above.revolutions + allowance, above, at)
     if below.total > decision:
-        return _changed(moved, -below.total / below.revolutions - allowance, below, by)
+        return _changed(moved, -below.total / below.revolutions - allowance, below, at)
     return moved
 
 
-def _sharp(life: ToolLife) -> float:
-    """Logarithm of the ratio without the wear present when the comparison began."""
-    share = life.land_share * life.begun * exp(-life.log_ratio)
-    return life.log_ratio + log(max(1.0 - share, _LEAST_SHARP))
+def _explained(belief: _Belief, at: Ratios) -> float:
+    """Ratio that is expected of K and VB."""
+    return float(belief.mean[0] + at.land_share * belief.mean[2])
 
 
-def _summed(drift: CumulativeSum, step: float) -> CumulativeSum:
+def _predicted(belief: _Belief, period: float) -> _Belief:
+    """Belief some seconds of cutting later: VB grows at its rate, the rate wanders."""
+    step = np.eye(4)
+    step[2, 3] = period
+    covariance = step @ belief.covariance @ step.T
+    covariance[3, 3] += DRIFT**2 * period
+    return _Belief(mean=step @ belief.mean, covariance=covariance)
+
+
+def _updated(belief: _Belief, at: Ratios, *, deviation: float) -> _Belief:
+    """Belief after a revolution; a ratio without known land changes K alone."""
+    ratio = exp(at.log_ratio)
+    error = CORRELATED * (deviation * ratio) ** 2
+    row = np.array([1.0, 0.0, at.land_share, 0.0])
+    belief = _measured(belief, row, ratio, error)
+    if not isnan(at.normal):
+        row = np.array([0.0, 1.0, at.land_share * NORMAL / CUTTING, 0.0])
+        error = CORRELATED * (deviation * max(abs(at.normal), _LEAST)) ** 2
+        belief = _measured(belief, row, at.normal, error)
+    # Wear does not heal.
+    return _not_negative(_not_negative(belief, 3), 2)
+
+
+def _not_negative(belief: _Belief, at: int) -> _Belief:
+    """Belief with a quantity at 0 if it is below, the others as they are likely then."""
+    value, covariance = float(belief.mean[at]), belief.covariance
+    if value >= 0.0:
+        return belief
+    mean = belief.mean - covariance[:, at] * (value / float(covariance[at, at]))
+    return _Belief(mean=mean, covariance=covariance)
+
+
+def _measured(belief: _Belief, row: Floats, value: float, error: float) -> _Belief:
+    """One linear measurement with the variance of its error."""
+    towards = belief.covariance @ row
+    spread = float(row @ towards) + error
+    mean = belief.mean + towards * ((value - float(row @ belief.mean)) / spread)
+    covariance = belief.covariance - np.outer(towards, towards) / spread
+    return _Belief(mean=mean, covariance=0.5 * (covariance + covariance.T))
+
+
+def _freed(belief: _Belief, deviation: float, *, wear: float = 0.0) -> _Belief:
+    """Belief in which K may differ, and the sharp normal ratio in proportion to it."""
+    along = np.array([belief.mean[0], belief.mean[1], 0.0, 0.0]) * deviation
+    covariance = belief.covariance + np.outer(along, along)
+    covariance[2, 2] += wear**2
+    return _Belief(mean=belief.mean, covariance=covariance)
+
+
+def _summed(drift: CumulativeSum, step: float, before: _Belief) -> CumulativeSum:
     """Add one step to a cumulative sum, which never falls below 0."""
     total = drift.total + step
-    return (
-        CumulativeSum(total=total, revolutions=drift.revolutions + 1)
-        if total > 0.0
-        else CumulativeSum()
+    if total <= 0.0:
+        return CumulativeSum()
+    return CumulativeSum(
+        total=total, revolutions=drift.revolutions + 1, before=drift.before or before
     )
 
 
-def _changed(
-    life: ToolLife, change: float, drift: CumulativeSum, by: WearMonitorSettings
-) -> ToolLife:
-    """Restart after a sudden change of the force by e^change; the wear stays as before it."""
-    # The mean has partly followed the change before it was detected.
-    followed = change * drift.revolutions / by.memory
-    before = replace(life, log_ratio=life.log_ratio - followed, changes=(*life.changes, change))
-    return compared_anew(before)
+def _changed(life: ToolLife, change: float, drift: CumulativeSum, at: Ratios) -> ToolLife:
+    """Go back to where a sudden change by e^change began, and let K differ from then on.
+
+    Where the normal force is measured, the wear may differ as well: an edge may have chipped.
+    """
+    before = drift.before or life.belief
+    wear = 0.0 if isnan(at.normal) else LIFE_CRITERION
+    # The change of the chip's force is greater than that of the whole, which holds wear too.
+    freed = _freed(
+        before, 2.0 * max(abs(exp(change) - 1.0), 0.1) * _whole(before, at), wear=wear
+    )
+    belief = _updated(freed, at, deviation=sqrt(life.log_variance / CORRELATED))
+    return _restarted(life, belief, (*life.changes, change))
+
+
+def _whole(belief: _Belief, at: Ratios) -> float:
+    """Whole force over the force of the chip."""
+    return max(_explained(belief, at), _LEAST) / max(float(belief.mean[0]), _LEAST)
+
+
+def _restarted(life: ToolLife, belief: _Belief, changes: tuple[float, ...]) -> ToolLife:
+    """Life whose comparison begins anew."""
+    return replace(
+        life,
+        belief=belief,
+        readings=0,
+        log_variance=0.0,
+        above=CumulativeSum(),
+        below=CumulativeSum(),
+        changes=changes,
+    )

@@ -72,8 +72,12 @@ class EvaluatedSetting:
     """Loads of the limits at the plunge feed, on ways down that have a feed of their own."""
     ramp_force: float = 0.0
     """Cutting force of a mill on a ramp at the plunge feed, revolution mean, N; 0: no ramp."""
+    pass_power: float = 0.0
+    """Motor power along the passes, W."""
+    ramp_power: float = 0.0
+    """Motor power of a mill on a ramp at the plunge feed, W; 0: no ramp."""
     plunge_power: float = 0.0
-    """Motor power at the plunge feed, W; 0 when there is no plunge feed."""
+    """Motor power of a mill that plunges straight down, W; 0: no such plunge."""
 
     @property
     def plunge_feed(self) -> float | None:

@@ -99,6 +99,39 @@ def grip_of(program: Program, step: ResolvedWorkingstep, chuck: Chuck | None) ->
     )
 
 
+def grip_of_bar(chuck: Chuck, bar: Stock) -> BarGrip:
+    """Return where a chuck grips a bar of which only the raw part is known.
+
+    Raises
+    ------
+    LibraryError
+        When neither the chuck's table nor the bar states where it grips.
+    """
+    face = chuck.jaw_face
+    length = face - bar.low[2] if face is not None else None
+    length = length if chuck.grip_length is None else chuck.grip_length
+    diameter = 2.0 * bar.radius if bar.radius is not None else None
+    diameter = diameter if chuck.grip_diameter is None else chuck.grip_diameter
+    found = {"jaw_face_z_mm": face, "grip_length_mm": length, "grip_diameter_mm": diameter}
+    missing = next(
+        (
+            key
+            for key, value in found.items()
+            if value is None or (key != "jaw_face_z_mm" and value <= 0.0)
+        ),
+        "",
+    )
+    if missing or face is None or length is None or diameter is None:
+        text = "missing; NC code and its stock do not state it"
+        raise LibraryError(text, path="", key=f"holding.{missing}")
+    return BarGrip(
+        size=GripSize(diameter=diameter, length=length),
+        face=face,
+        front=bar.high[2],
+        has_tailstock=bool(chuck.has_tailstock),
+    )
+
+
 def _missing(program: Program, key: str) -> LibraryError:
     """Error for a chuck table whose grip cannot be completed from the program."""
     text = f"missing; the bar and clamping positions of {program.name} do not state it"

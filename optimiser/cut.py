@@ -83,6 +83,30 @@ class ReachedLoads:
     """Share of the greatest force normal to the wall."""
 
 
+@dataclass(frozen=True, slots=True)
+class RefusedPasses:
+    """Number of passes that is no candidate for a workingstep."""
+
+    passes: int
+    why: str
+    """The stock that would differ, or what is missing, as the end of a sentence."""
+
+    @property
+    def words(self) -> str:
+        """The reason with the number: 'in 2 passes up to 0.8 mm more would be left'."""
+        return f"in {self.passes} {'pass' if self.passes == 1 else 'passes'} {self.why}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PowerPlace:
+    """Place of a path by its cutting power and spindle speed."""
+
+    power: float = 1.0
+    """Cutting power over the greatest along the path."""
+    speed: float = 1.0
+    """Spindle speed over that of the cut."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurnedBar:
     """Shape of the bar after a turning path, and where it was cut, along z of the setup."""
@@ -153,11 +177,18 @@ class Cut:
     The spindle may follow the tip while the force acts in the middle of the cut. None: the
     diameter on which the force acts.
     """
-    power_speed: float = 1.0
-    """Spindle speed at the place of greatest power over the spindle speed of the cut."""
+    torque_diameter: float | None = None
+    """Diameter at which the force of a turning cut takes the greatest torque, mm; None: the
+    diameter on which the force acts."""
+    resolution: float = 0.0
+    """Cell size of the stock map along which the cut is known, mm; 0 without a map."""
+    power_places: tuple[PowerPlace, ...] = (PowerPlace(),)
+    """Places of a path whose spindle follows the tip where the drive may draw most."""
     thickest: float = 1.0
     """Thickest chip of a drill over the nominal chip; above 1 where only the spindle slows."""
     reached: ReachedLoads = ReachedLoads()
+    plunge_reached: float = 1.0
+    """Share of the loads of straight plunges of a mill that the axes reach."""
     load_share: float = 1.0
     """Mean load over the length at cutting feed, air included, relative to the greatest
     load."""
@@ -194,6 +225,8 @@ class Cut:
     """Straight plunge into solid material at the feed of the cut, modelled as drilling."""
     way_in: PlungeEngagement | None = None
     """Ways down that may have a plunge feed; None when none of them meets material."""
+    refused_passes: tuple[RefusedPasses, ...] = ()
+    """Numbers of passes that were tried and are no candidates."""
 
     @property
     def bare(self) -> "Cut":

@@ -8,14 +8,14 @@ class OptimisationError(StepNcError):
 
 
 class Infeasible(OptimisationError):
-    """Two limits contradict each other, so no setting is feasible.
+    """Limits contradict each other, or the stock to be left: no setting is feasible.
 
     Parameters
     ----------
     message : str
         The limits that conflict, with their numbers and units.
     limits : tuple of str
-        Names of the limits that conflict.
+        Names of the limits that conflict; none where the stock would differ.
     station : int, optional
         Index of the station of a path where they do.
     """

@@ -16,6 +16,7 @@ from optimiser.region import FeatureRegion, pattern_count, points_of, region_of
 from simulator.physics.engagement import Engagement, bilateral, full_immersion, unidirectional
 from simulator.physics.travel import centred_approach, drill_point_length, one_sided_approach
 from simulator.spec import ToolKind
+from simulator.tool_kind import tool_kind
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.features import (
     CircularPattern,
@@ -76,9 +77,6 @@ def _moves_length(program: Program, ref: Ref[Entity]) -> float:
 DEFAULT_SIDE_ALLOWANCE = 0.5
 """Depth taken off a wall by finishing when no roughing operation states its allowance, mm."""
 
-LEAST_FACEMILL = 25.0
-"""Least diameter of a face mill, mm; files call smaller end mills FACEMILL too."""
-
 LEAST_DEPTH = 1e-3
 """Least programmed depth of a pass that is accepted as intended, mm."""
 
@@ -132,7 +130,7 @@ def milling_cut(
         )
     region = region_of(program, step.features[0])
     sweep, findings = _sweep(program, step, region, tool)
-    is_facemill = tool.keyword == "FACEMILL" and tool.diameter >= LEAST_FACEMILL
+    is_facemill = tool_kind(tool) is ToolKind.FACEMILL
     kind = ToolKind.FACEMILL if is_facemill else ToolKind.ENDMILL
     texture, corner = _texture(sweep, tool, kind)
     is_finish = isinstance(step.operation, FINISHING)

@@ -194,6 +194,7 @@ def state_of(
     passes, ways_in = list(_passes(cut, setting)), list(_ways_in(cut, setting))
     parts = passes + ways_in
     along = [part for part in parts if part.cut.kind is CutKind.DRILLING]
+    plunges = along if cut.kind is CutKind.MILLING else []
     roughness = [
         load.value(*point)
         for each in (cut, cut.floor)
@@ -207,7 +208,9 @@ def state_of(
         motor_power=_greatest(power_load, parts, at, setting.speed),
         cutting_force=_greatest(force_load, _across(cut, passes), at, setting.speed),
         ramp_force=_greatest(force_load, _across(cut, ways_in), at, setting.speed),
-        plunge_power=_greatest(power_load, ways_in, at, setting.speed),
+        pass_power=_greatest(power_load, _across(cut, passes), at, setting.speed),
+        ramp_power=_greatest(power_load, _across(cut, ways_in), at, setting.speed),
+        plunge_power=_greatest(power_load, plunges, at, setting.speed),
         thrust=_greatest(_thrust_load, along, at, setting.speed),
         roughness=max(roughness, default=None),
         loads=_loads(exact.limits_at(problem, setting.speed), point),

@@ -176,9 +176,15 @@ def _share(cut: Cut, share: float) -> float:
     """Real depth over the nominal one; at least 1 where the depth may be chosen.
 
     A pass may have met less material only because no more was left; a pass of a different
-    depth would not.
+    depth would not. The levels of a mill are equal, whatever depth was requested: 13 mm in
+    passes of 2 mm are seven of 1.857 mm.
     """
-    return max(1.0, share) if cut.is_depth_free else share
+    if not cut.is_depth_free:
+        return share
+    given = cut.programmed
+    is_equal = cut.kind is CutKind.MILLING
+    least = cut.total_depth / (given.passes * given.depth) if is_equal else 1.0
+    return max(min(least, 1.0), share)
 
 
 def _drilled(cut: Cut, stations: Stations, at: Ints) -> Cut:

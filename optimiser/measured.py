@@ -11,9 +11,7 @@ Paths with other depths of passes are tried too: those of the program as
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from copy import copy
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from optimiser.clamped import (
     BodyMaps,
@@ -24,7 +22,7 @@ from optimiser.clamped import (
     TrialContacts,
     met_by,
 )
-from optimiser.cut import Cut, CutKind
+from optimiser.cut import Cut, CutKind, RefusedPasses
 from optimiser.estimated import GUESSES, estimated_cut
 from optimiser.hardest import (
     Bending,
@@ -35,6 +33,7 @@ from optimiser.hardest import (
     weighted_volume,
     with_hardest,
 )
+from optimiser.other_depth import with_depth
 from optimiser.plunge import (
     PlungeCuts,
     along_passes,
@@ -45,8 +44,9 @@ from optimiser.plunge import (
     way_in_of,
 )
 from optimiser.problem import Setting
-from optimiser.reached import MachineRun, with_power, with_reached
+from optimiser.reached import MachineRun, plunge_reached, thickened, with_reached
 from optimiser.side_by_side import Result, one_by_one, side_by_side
+from optimiser.stock_left import difference_left
 from simulator.motion.segments import Bools
 from simulator.motion.tool_path import (
     SpeedRatios,
@@ -62,10 +62,7 @@ from simulator.removal.lathe import BarRadii, TurningStock
 from simulator.removal.stations import StationKind
 from simulator.removal.trial import PathTrial, do_overlap, is_remembered_alike, renumbered
 from simulator.spec import Machine, MachineKind, WorkMaterial
-from stepnc_model.binding import Model
-from stepnc_model.entities.entity import Entity
-from stepnc_model.errors import Finding, PathError, PostError, SchemaError, Severity
-from stepnc_model.part21.values import Ref
+from stepnc_model.errors import Finding, PostError, SchemaError, Severity
 from stepnc_model.post.blocks import MachineType as PostMachine
 from stepnc_model.post.modal_state import ModalState, conditions
 from stepnc_model.program import Program, ResolvedWorkingstep
@@ -114,41 +111,6 @@ class SearchTrace:
     """Features whose path could not be made, with the id of the workingstep."""
 
 
-def with_depth(
-    program: Program, step: ResolvedWorkingstep, depth: float
-) -> tuple[Program, ResolvedWorkingstep]:
-    """Copy of a program and a workingstep with a different depth of its passes.
-
-    Raises
-    ------
-    PathError
-        When the file does not let the depth be chosen.
-    """
-    operation: Any = step.operation
-    if hasattr(operation, "axial_cutting_depth") and not operation.its_toolpath:
-        other = replace(operation, axial_cutting_depth=depth)
-        return program, replace(step, operation=other)
-    strategy: Ref[Entity] | None = getattr(operation, "its_machining_strategy", None)
-    entity: Any = None if strategy is None else program.get(strategy)
-    if strategy is None or not hasattr(entity, "cutting_depth") or operation.its_toolpath:
-        raise PathError("the file sets no depth of its passes", entity=str(step.ref))
-    changed = copy(program)
-    changed.model = _Changed(program.model, strategy, replace(entity, cutting_depth=(depth,)))
-    return changed, step
-
-
-class _Changed(Model):
-    """Entities of a program with one entity replaced."""
-
-    def __init__(self, model: Model, ref: Ref[Entity], entity: Entity) -> None:
-        super().__init__(model.file)
-        self._model, self._number, self._entity = model, int(ref), entity
-
-    def entity(self, id: int, /) -> Entity | None:
-        """Return the entity of an instance number."""
-        return self._entity if id == self._number else self._model.entity(id)
-
-
 class MeasuredCuts:
     """Source of cuts along real paths (mutable state: the remaining stock of each setup).
 
@@ -159,9 +121,6 @@ class MeasuredCuts:
     program : Program
     machine : Machine
     material : WorkMaterial
-    is_run : bool
-        Whether a simulated run is compared with the plan; the cuts then include the loads that
-        the axes actually reach.
     body_map : BodyMaps, optional
         Maker of maps of raw parts that are bodies; without it, their box or bar counts.
     """
@@ -172,14 +131,12 @@ class MeasuredCuts:
         machine: Machine,
         material: WorkMaterial,
         *,
-        is_run: bool = False,
         body_map: BodyMaps | None = None,
     ) -> None:
         self.program = program
         self.machine = machine
         self.material = material
         self.kienzle = material.kienzle
-        self._with_loads = with_reached if is_run else with_power
         self.control, self.limits = usual_motion(machine)
         self.stocks = ClampedStocks(program, machine, body_map)
         self._left_out: dict[int, str] = {}
@@ -189,6 +146,8 @@ class MeasuredCuts:
         """Stock map that the workingstep finds."""
         self._seen: dict[int, TriedPath] = {}
         """Tried paths of the workingstep, by the number of passes."""
+        self._refused: dict[int, str] = {}
+        """Why numbers of passes of the workingstep are no candidates."""
         self._trace = SearchTrace()
         self._numbers: dict[StockPlace, dict[int, int]] = {}
         """New numbers of the first moves of repeated workingsteps, by their old numbers."""
@@ -204,7 +163,7 @@ class MeasuredCuts:
         SchemaError
             When the workingstep lacks what a cut needs.
         """
-        self._seen = {}
+        self._seen, self._refused = {}, {}
         self._trace = SearchTrace(place=self.stocks.place(step))
         cut, findings = estimated_cut(self.program, step, self.machine, self.material)
         self._estimate, self._found = cut, self.stocks.before(step)
@@ -229,25 +188,23 @@ class MeasuredCuts:
     def at(self, step: ResolvedWorkingstep, cut: Cut, setting: Setting) -> Cut:
         """Return the cut as the path of another setting makes it.
 
-        Where a path with a different number of passes cannot be made, all passes are assumed
-        alike.
+        It names the numbers of passes tried so far that leave other stock than the programmed
+        number, or of which no path can be made.
         """
         given, estimate = cut.programmed, self._estimate
         if not self._seen or estimate is None:
             return cut
         if setting.passes not in self._seen:
-            other = replace(estimate.programmed, depth=setting.depth, passes=setting.passes)
-            try:
-                path = workingstep_path(*with_depth(self.program, step, setting.depth))
-                nominal = replace(estimate, programmed=other)
-                self._see(step, path, nominal, passes=setting.passes)
-            except (SchemaError, PostError):
-                self._seen[setting.passes] = self._seen[given.passes]
+            self._see_other(step, estimate, setting, self._seen[given.passes])
         seen = self._seen[setting.passes]
         self._leave(step, seen.meeting)
         timed = self._timed(step, seen, setting)
         passes, depth = estimate.programmed.passes, estimate.programmed.depth
-        return replace(timed, programmed=replace(timed.programmed, passes=passes, depth=depth))
+        return replace(
+            timed,
+            programmed=replace(timed.programmed, passes=passes, depth=depth),
+            refused_passes=tuple(RefusedPasses(*each) for each in self._refused.items()),
+        )
 
     def leave_out(self, step: ResolvedWorkingstep) -> None:
         """Cut the stock with a workingstep that is not optimised but will run."""
@@ -354,9 +311,7 @@ class MeasuredCuts:
         met = meeting.met
         weighted, air, along, bent, slope = 0.0, 0.0, None, None, None
         if met is not None:
-            # The levels of a mill are of equal depth, whatever depth was requested.
-            is_equal = cut.kind is CutKind.MILLING and cut.is_depth_free
-            depth = cut.total_depth / passes if is_equal else cut.programmed.depth
+            depth = cut.programmed.depth
             along, slope = along_passes(run, met), down_ramps(cut, run, met, self.kienzle)
             bent = bending(cut, along.stations, self.kienzle)
             cut = self._engaged(step, cut, met, run, slope=slope, depth=depth)
@@ -383,6 +338,24 @@ class MeasuredCuts:
         self._leave(step, meeting)
         return seen
 
+    def _see_other(
+        self, step: ResolvedWorkingstep, estimate: Cut, setting: Setting, usual: TriedPath
+    ) -> None:
+        """Try a path in another number of passes; refuse it if it leaves other stock."""
+        passes, depth = setting.passes, setting.depth
+        nominal = replace(estimate.programmed, depth=depth, passes=passes)
+        try:
+            path = workingstep_path(*with_depth(self.program, step, depth))
+            cut = replace(estimate, programmed=nominal)
+            seen = self._see(step, path, cut, passes=passes)
+        except (SchemaError, PostError) as error:
+            self._seen[passes] = usual
+            self._refused[passes] = f"no tool path can be made: {error}"
+            return
+        left = difference_left(self._found, seen.meeting, usual.meeting)
+        if left is not None and left.is_seen:
+            self._refused[passes] = f"{left.words} would be left than as programmed"
+
     def _engaged(
         self,
         step: ResolvedWorkingstep,
@@ -394,7 +367,7 @@ class MeasuredCuts:
         depth: float,
     ) -> Cut:
         """Add volume, diameter and ways down to the cut of a path."""
-        cut = replace(cut, volume=met.volume)
+        cut = replace(cut, volume=met.volume, resolution=met.cell)
         if cut.kind.is_turned and not cut.is_air:
             first = next(iter(self._seen.values()), None)
             widest = self._widest(met, run) if first is None else first.cut.diameter
@@ -462,8 +435,9 @@ class MeasuredCuts:
                 spindle=given.speed * pace.speed,
             )
             along = seen.along.on(run, seen.run) if cut.kind.is_turned else seen.along
-            cut = self._with_loads(cut, along, seen.bent, ride, exponent=self.kienzle.m_c)
-            cut = self._with_ramp_reached(cut, seen, ride)
+            cut = with_reached(cut, along, seen.bent, ride, exponent=self.kienzle.m_c)
+            cut = thickened(cut) if cut.kind is CutKind.MILLING else cut
+            cut = self._with_ways_reached(cut, seen, ride)
         return replace(
             cut,
             length=length / seen.passes,
@@ -474,14 +448,17 @@ class MeasuredCuts:
             air_length=seen.air * length / seen.passes,
         )
 
-    def _with_ramp_reached(self, cut: Cut, seen: TriedPath, ride: MachineRun) -> Cut:
-        """Add to the ramp the loads that the axes actually reach on it."""
+    def _with_ways_reached(self, cut: Cut, seen: TriedPath, ride: MachineRun) -> Cut:
+        """Add to the ways down of a mill the loads that the axes reach on them."""
+        m_c, slope, met = self.kienzle.m_c, seen.slope, seen.meeting.met
+        if cut.kind is not CutKind.MILLING or met is None:
+            return cut
+        cut = replace(cut, plunge_reached=plunge_reached(cut, met, ride, exponent=m_c))
         ramp = None if cut.way_in is None else cut.way_in.ramp
-        slope = seen.slope
         if slope is None or cut.way_in is None or ramp is None:
             return cut
         down = replace(ride, feed=float(ride.run.segments.speed[plunges(ride.run)][0]))
-        ramp = self._with_loads(ramp, slope.met, slope.bent, down, exponent=self.kienzle.m_c)
+        ramp = thickened(with_reached(ramp, slope.met, slope.bent, down, exponent=m_c))
         return replace(cut, way_in=replace(cut.way_in, ramp=ramp))
 
     def _warning(self, step: ResolvedWorkingstep, text: str) -> Finding:

@@ -6,6 +6,7 @@ along its path and solved again.
 """
 
 from dataclasses import dataclass, replace
+from functools import partial
 from math import inf
 
 from optimiser import workingstep as exact
@@ -14,8 +15,8 @@ from optimiser.cut import Cut
 from optimiser.errors import Infeasible
 from optimiser.formulate import OptimisationTask, problem_of
 from optimiser.modes import Free
-from optimiser.plunge_feed import with_plunge_feed
-from optimiser.problem import LimitName, Problem, Setting
+from optimiser.plunge_search import CLOSE, PlungeOptimum, at_foot, best_plunge
+from optimiser.problem import Limit, LimitName, Problem, Setting
 from optimiser.source import CutSource
 from stepnc_model.program import ResolvedWorkingstep
 
@@ -82,7 +83,7 @@ def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimu
         except Infeasible as conflict:
             if problem.passes[0] == problem.passes[1]:
                 raise
-            last = conflict
+            last = _both(last, conflict)
         if told and passes > max(MANY, given):
             break
         try:
@@ -99,8 +100,22 @@ def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimu
     if best is None:
         raise last or exact.conflict(problem)
     # The next workingstep finds the stock as this path leaves it.
-    asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)
-    return best
+    cut = asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)
+    return replace(best, cut=cut)
+
+
+def _both(conflict: Infeasible | None, other: Infeasible) -> Infeasible:
+    """The later of two conflicts; a limit and the stock that keeps passes from changing."""
+    if conflict is None or other.limits:
+        return other
+    return Infeasible(f"{conflict}; {other}", limits=conflict.limits)
+
+
+def _require_candidate(cut: Cut, passes: int) -> None:
+    """Refuse a number of passes that leaves other stock than the program does."""
+    for refused in cut.refused_passes:
+        if refused.passes == passes:
+            raise Infeasible(refused.words, limits=())
 
 
 def _cost(told: PassCountOptimum, task: OptimisationTask) -> float:
@@ -113,11 +128,11 @@ def _told(cut: Cut, problem: Problem, passes: int, asked: AdviceContext) -> Pass
     given, step, task = cut.programmed, asked.step, asked.task
     depth = given.depth if passes == given.passes else problem.depth_at(passes)
     cut = asked.cuts.at(step, cut, replace(given, passes=passes, depth=depth))
-    optimum = _with_passes(problem_of(cut, asked.at, task), passes, task)
+    _require_candidate(cut, passes)
+    found = _with_plunge(cut, passes, asked)
+    optimum, cut, plunging = found.optimum, found.cut, found.setting
     setting = optimum.solution.setting
-    plunging = _with_plunge(cut, setting, asked)
-    cut = asked.cuts.at(step, cut, plunging)
-    problem = problem_of(cut, asked.at, task)
+    problem = _held(problem_of(cut, asked.at, task), found.held)
     again = optimum if task.tool_change else _with_passes(problem, passes, task)
     if task.tool_change or again.solution.setting != setting:
         again = replace(optimum, solution=exact.settled(problem, setting))
@@ -125,11 +140,60 @@ def _told(cut: Cut, problem: Problem, passes: int, asked: AdviceContext) -> Pass
     return PassCountOptimum(cut=cut, problem=problem, optimum=again)
 
 
-def _with_plunge(cut: Cut, setting: Setting, asked: AdviceContext) -> Setting:
-    """Setting with the best plunge feed, where feeds are free."""
-    if Free.FEED not in asked.task.free:
-        return replace(setting, plunge_feed=cut.programmed.plunge_feed)
-    return with_plunge_feed(cut, asked.at, setting)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Plunging:
+    """Optimum of the passes with its plunge feed, and the cut along its path."""
+
+    optimum: Optimum
+    cut: Cut
+    setting: Setting
+    held: Limit | None = None
+    """Limit on the feed of the pass that the end of a ramp sets; None where it sets none."""
+
+
+def _with_plunge(cut: Cut, passes: int, asked: AdviceContext) -> _Plunging:
+    """Optimum for a number of passes with the best plunge feed, where feeds are free."""
+    task = asked.task
+    if Free.FEED not in task.free:
+        optimum = _with_passes(problem_of(cut, asked.at, task), passes, task)
+        setting = replace(optimum.solution.setting, plunge_feed=cut.programmed.plunge_feed)
+        cut = asked.cuts.at(asked.step, cut, setting)
+        return _Plunging(optimum=optimum, cut=cut, setting=setting)
+    plunging, found = _plunging(cut, passes, asked)
+    for _ in range(UNTIL_FEASIBLE):
+        if found.excess <= 1.0 + CLOSE or found.limit is None:
+            break
+        held = at_foot(found.limit, plunging.setting.feed / found.excess)
+        plunging, found = _plunging(cut, passes, asked, held)
+    if found.balanced_feed is None or found.limit is None:
+        return plunging
+    held = at_foot(found.limit, found.balanced_feed)
+    slower, of_slower = _plunging(cut, passes, asked, held)
+    is_less = _time(slower, asked) < _time(plunging, asked)
+    return slower if is_less and of_slower.excess <= 1.0 + CLOSE else plunging
+
+
+def _plunging(
+    cut: Cut, passes: int, asked: AdviceContext, held: Limit | None = None
+) -> tuple[_Plunging, PlungeOptimum]:
+    """Optimum of the passes below a limit, with the best plunge feed before it."""
+    at, task = asked.at, asked.task
+    optimum = _with_passes(_held(problem_of(cut, at, task), held), passes, task)
+    timed = partial(asked.cuts.at, asked.step)
+    found = best_plunge(cut, at, optimum.solution.setting, timed)
+    plunging = _Plunging(optimum=optimum, cut=found.cut, setting=found.setting, held=held)
+    return plunging, found
+
+
+def _time(plunging: _Plunging, asked: AdviceContext) -> float:
+    """Time or energy of a setting along its own path."""
+    problem = problem_of(plunging.cut, asked.at, asked.task)
+    return exact.cost_function(problem, asked.task.mode)(plunging.setting)
+
+
+def _held(problem: Problem, limit: Limit | None) -> Problem:
+    """Problem with one more limit, if there is one."""
+    return problem if limit is None else replace(problem, limits=(*problem.limits, limit))
 
 
 def _with_passes(problem: Problem, passes: int, task: OptimisationTask) -> Optimum:

@@ -139,6 +139,10 @@ def _met(slower: float, faster: float, before: float, after: float, load: float)
     return slower + (faster - slower) * (load - before) / (after - before)
 
 
+USUAL_DIGITS, MOST_DIGITS = 4, 10
+"""Significant digits in which a number is told, and at most, where two would look alike."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limit:
     """Limit of a cut: a load at most (or at least) ``b·n^δ``, b > 0."""
@@ -182,10 +186,10 @@ class Limit:
         """Bound without the safety factor at one spindle speed, canonical unit."""
         return self.safety_factor * self.bound_at(speed)
 
-    def told(self, load: float) -> str:
+    def told(self, load: float, digits: int = USUAL_DIGITS) -> str:
         """Text of a nominal load with its unit and safety factor."""
         words = f" ({self.safety_words})" if self.safety_words else ""
-        return f"{load * self.scale:.4g} {self.unit}{words}"
+        return f"{load * self.scale:.{digits}g} {self.unit}{words}"
 
     @property
     def safety_words(self) -> str:
@@ -194,9 +198,9 @@ class Limit:
             return ""
         return f"× {self.safety_factor:.4g} for the spread of k_c"
 
-    def told_bound(self, speed: float) -> str:
+    def told_bound(self, speed: float, digits: int = USUAL_DIGITS) -> str:
         """Text of the bound of a limit, with its unit."""
-        return f"{self.full_bound_at(speed) * self.scale:.4g} {self.unit}"
+        return f"{self.full_bound_at(speed) * self.scale:.{digits}g} {self.unit}"
 
     def with_safety(self, factor: float) -> "Limit":
         """Copy with a safety factor, if the load scales with k_c."""

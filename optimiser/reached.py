@@ -9,15 +9,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from optimiser.cut import Cut, CutKind, ReachedLoads
+from optimiser.cut import CriticalPlace, Cut, CutKind, PowerPlace, ReachedLoads
 from optimiser.hardest import KINDS, LEAST_RATIO, Bending, PathContacts
-from simulator.motion.passing import reached_speeds
+from optimiser.problem import ROUNDING
+from simulator.motion.passing import reached_velocities
 from simulator.motion.segments import AxisLimits, Bools, ControlModel, Floats, Ints
 from simulator.motion.tool_path import ToolPathRun
-from simulator.removal.stations import Stations
+from simulator.removal.stations import StationKind, Stations
 
 INSIDE = np.array([1e-6, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - 1e-6])
 """Relative places in a stretch, the first and the last just inside its ends."""
+
+FASTER = 1.01
+"""Ratio of two spindle speeds from which the idling power of the drive is told apart."""
+
+NOT_BENT = Bending(at=np.empty(0, dtype=np.int64), shank=np.empty(0), wall=np.empty(0))
+"""Bending forces of a tool that bends nowhere."""
 
 HARD = 0.5
 """Share of the greatest force; if a place above it keeps more, no easier place is harder."""
@@ -75,12 +82,25 @@ def with_power(
             thickest=ratio ** (1.0 / (1.0 - exponent)),
             power_diameter=_power_diameter(loads, ride) / ratio,
         )
-    at = met.stations.segment[loads.rows[loads.programmed[1].argmax()]]
+    speeds = ride.run.spindle[met.stations.segment[loads.rows]] / ride.spindle
     return replace(
         cut,
         power_diameter=_power_diameter(loads, ride),
-        power_speed=float(ride.run.spindle[at]) / ride.spindle,
+        power_places=_power_places(loads.programmed[1], speeds),
+        torque_diameter=float((loads.programmed[1] / speeds).max())
+        / (float(loads.nominal[0]) * ride.spindle),
     )
+
+
+def _power_places(power: Floats, speed: Floats) -> tuple[PowerPlace, ...]:
+    """Places than which no other has more power at a spindle that is faster by a per cent."""
+    found: list[PowerPlace] = []
+    most = float(power.max())
+    for row in np.lexsort((-speed, -power)):
+        if not found or speed[row] > FASTER * found[-1].speed:
+            place = PowerPlace(power=float(power[row]) / most, speed=float(speed[row]))
+            found.append(place)
+    return tuple(found)
 
 
 def with_reached(
@@ -101,6 +121,47 @@ def with_reached(
         found = _shares(met, ride, loads, np.ones(len(loads.rows), dtype=np.bool_), exponent)
     force, power, wall = found.tolist()
     return replace(cut, reached=ReachedLoads(force=force, power=power, wall=wall))
+
+
+def thickened(cut: Cut) -> Cut:
+    """Let the limits of a milling cut count the places that are faster than their feed.
+
+    No limit relies on axes that are slower, but every limit must bear those that are faster: a
+    control that rounds a change of the feed speeds up before the change.
+    """
+    found = cut.reached
+    force, wall = max(found.force, found.power), found.wall
+    if max(force, wall) <= 1.0 + ROUNDING:
+        return cut
+    over = ReachedLoads(force=max(force, 1.0), power=max(force, 1.0), wall=max(wall, 1.0))
+    return replace(
+        cut,
+        fill=cut.fill * over.force,
+        shank=_filled_more(cut.shank, over.force),
+        wall=_filled_more(cut.wall, over.wall),
+        reached=ReachedLoads(
+            force=found.force / over.force,
+            power=found.power / over.power,
+            wall=found.wall / over.wall,
+        ),
+    )
+
+
+def _filled_more(place: CriticalPlace | None, factor: float) -> CriticalPlace | None:
+    return None if place is None else replace(place, fill=place.fill * factor)
+
+
+def plunge_reached(cut: Cut, met: PathContacts, ride: MachineRun, *, exponent: float) -> float:
+    """Share of the loads of straight plunges of a mill that the axes reach.
+
+    The axes may not reach the feed in a short plunge, or brake at its end where it meets most.
+    """
+    loads = _loads(cut.as_drill, met, NOT_BENT, ride, exponent)
+    if loads is None:
+        return 1.0
+    loads = replace(loads, nominal=loads.programmed.max(axis=1))
+    every = np.ones(len(loads.rows), dtype=np.bool_)
+    return float(_shares(met, ride, loads, every, exponent)[0])
 
 
 def _loads(
@@ -157,16 +218,20 @@ def _shares(
 
 
 def _speeds(met: PathContacts, ride: MachineRun, rows: Ints) -> Floats:
-    """Speeds reached at the places in K stretches, (K, P), mm/s."""
+    """Speeds reached at the places in K stretches, (K, P), mm/s; of a plunge along the axis."""
     places = met.stations.station[rows, None] - met.length[rows, None] * (1.0 - INSIDE)
-    speeds = reached_speeds(
+    velocities = reached_velocities(
         ride.run,
         ride.control,
         ride.limits,
         segment=np.repeat(met.stations.segment[rows], len(INSIDE)),
         station=places.ravel(),
     )
-    return speeds.reshape(places.shape)
+    is_drilling = (met.stations.kind[rows] == StationKind.DRILLING)[:, None]
+    along = np.linalg.norm(velocities, axis=1).reshape(places.shape)
+    down = np.abs(velocities[:, 2]).reshape(places.shape)
+    speeds: Floats = np.where(is_drilling, down, along)
+    return speeds
 
 
 def _filled(stations: Stations, rows: Ints) -> Floats:

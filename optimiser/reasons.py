@@ -9,6 +9,23 @@ from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program
 from stepnc_model.units import rpm_from_rev_s
 
+SOURCES = {
+    LimitName.FEED_PER_TOOTH: "the catalogue value for tool and material",
+    LimitName.CUTTING_FORCE: "the greatest force that the machine states",
+    LimitName.FEED_MECHANISM: "the greatest feed of the machine",
+    LimitName.TOOL_DEFLECTION: "the customary maximum for any end mill",
+    LimitName.SHANK_STRENGTH: "the bending strength of the cutting material",
+    LimitName.MOTOR_POWER: "the power of the machine",
+    LimitName.SPINDLE_TORQUE: "the torque of the machine",
+    LimitName.ROUGHNESS: "as required",
+    LimitName.STABILITY: "by the measured modes",
+    LimitName.CHUCK_TORQUE: "by the [[holding]] table",
+    LimitName.TILTING_MOMENT: "by the [[holding]] table",
+    LimitName.HOLDING_FORCE: "by the [[holding]] table",
+    LimitName.PROGRAMMED_FEED: "as programmed: no source gives more",
+}
+"""Where a bound comes from whose limit does not say it."""
+
 
 def reason_of(state: EvaluatedSetting, limit: Limit) -> str:
     """Sentence naming the limit that sets the feed."""
@@ -19,10 +36,10 @@ def reason_of(state: EvaluatedSetting, limit: Limit) -> str:
 def _reached(load: LimitLoad, speed: float) -> str:
     """Sentence on a load that reaches its bound."""
     limit = load.limit
-    origin = f", {limit.origin}" if limit.origin else ""
+    origin = limit.origin or SOURCES.get(limit.name, "")
     return (
         f"{limit.words} {limit.told(load.value)} reaches its bound of "
-        f"{limit.told_bound(speed)}{origin}"
+        f"{limit.told_bound(speed)}{f', {origin}' if origin else ''}"
     )
 
 

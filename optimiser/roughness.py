@@ -41,13 +41,22 @@ def surface_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
         yield roughness_limit(replace(cut, parallel_land=0.0), at.roughness)
 
 
+IDEAL = "ideal, not measured"
+"""What every planned Ra is: the trace of feed and corner, which no measurement calibrates."""
+
+
 def roughness_limit(cut: Cut, roughness: float) -> Limit:
     """Limit on roughness Ra, mm; ValueError if the surface does not depend on the feed."""
     load = roughness_load(cut)
     if load is None:
         raise ValueError("the roughness of this surface does not follow from the feed")
     return Limit(
-        name=LimitName.ROUGHNESS, load=load, bound=roughness, unit="µm", scale=UM_PER_MM
+        name=LimitName.ROUGHNESS,
+        load=load,
+        bound=roughness,
+        unit="µm",
+        scale=UM_PER_MM,
+        label=f"roughness Ra ({IDEAL})",
     )
 
 

@@ -90,17 +90,15 @@ def along_paths(
     machine: Machine,
     material: WorkMaterial,
     *,
-    is_run: bool = False,
     body_map: "BodyMaps | None" = None,
 ) -> CutSource:
     """Source of cuts along the real tool paths in the remaining stock, timed by the machine.
 
-    With ``is_run``, the cuts include the loads that the axes actually reach; with ``body_map``,
-    raw parts that are bodies have their own shape.
+    With ``body_map``, raw parts that are bodies have their own shape.
     """
     from optimiser.measured import MeasuredCuts  # noqa: PLC0415 (numpy)
 
-    return MeasuredCuts(program, machine, material, is_run=is_run, body_map=body_map)
+    return MeasuredCuts(program, machine, material, body_map=body_map)
 
 
 def from_features(program: Program, machine: Machine, material: WorkMaterial) -> CutSource:

@@ -26,7 +26,16 @@ from math import exp, inf, log
 from optimiser.errors import Infeasible, OptimisationError
 from optimiser.least_cost import least_cost
 from optimiser.modes import Mode
-from optimiser.problem import ROUNDING, BoundSide, Limit, LimitName, Problem, Setting
+from optimiser.problem import (
+    MOST_DIGITS,
+    ROUNDING,
+    USUAL_DIGITS,
+    BoundSide,
+    Limit,
+    LimitName,
+    Problem,
+    Setting,
+)
 from stepnc_model.units import rpm_from_rev_s
 
 
@@ -272,7 +281,15 @@ def told(limit: Limit, load: float, speed: float) -> str:
             f"at {rpm_from_rev_s(speed):.0f} rpm, not {limit.told(load)}"
         )
     verb = "exceeds" if limit.sense is BoundSide.AT_MOST else "is below"
-    return f"{limit.words} {limit.told(load)} {verb} {limit.told_bound(speed)}"
+    digits = next(
+        (
+            digits
+            for digits in range(USUAL_DIGITS, MOST_DIGITS)
+            if limit.told(load, digits) != limit.told_bound(speed, digits)
+        ),
+        MOST_DIGITS,
+    )
+    return f"{limit.words} {limit.told(load, digits)} {verb} {limit.told_bound(speed, digits)}"
 
 
 def widened(problem: Problem, name: LimitName, *, by_factor: float) -> Problem:

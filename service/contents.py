@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from service.files import read_bytes
-from service.paths.remarks import program_remarks
+from service.paths.remarks import all_findings, program_remarks
 from service.paths.toolpaths import Paths, paths_of
 from service.reading import (
     Tell,
@@ -19,9 +19,7 @@ from service.uses import Use, UseName, uses_of
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError
 from stepnc_model.given import completed
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.plausibility import implausible, unit_findings
 from stepnc_model.program import Program
-from stepnc_model.tolerance import tolerance_findings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,7 +99,7 @@ def check(
         schemas=file.schemas,
         instances=len(file),
         program=program,
-        findings=(*_all_findings(program), *found),
+        findings=(*all_findings(program), *found),
         uses=uses_of(program, made),
         remarks=found,
     )
@@ -113,11 +111,3 @@ def _paths(program: Program) -> Paths | StepNcError:
         return paths_of(program)
     except StepNcError as error:
         return error
-
-
-def _all_findings(program: Program) -> tuple[Finding, ...]:
-    """Return all findings of a program; tolerances only if its references are valid."""
-    findings = program.findings()
-    is_sound = not any(finding.severity is Severity.ERROR for finding in findings)
-    numbers = implausible(program) + unit_findings(program)
-    return findings + numbers + (tolerance_findings(program) if is_sound else ())

@@ -6,6 +6,7 @@ import plotly.graph_objects as go
 
 from optimiser.advice import Advice, EvaluatedSetting, Plan, tightest
 from optimiser.problem import BoundSide, LimitName
+from optimiser.roughness import IDEAL
 from service.panels import BLUE, CLEAR, FAINT, GREY, LEGEND, RED
 from stepnc_model.units import kw_from_watts, mm_min_from_speed, um_from_mm
 
@@ -96,13 +97,13 @@ def _fronts(plan: Plan) -> go.Figure:
                 x=[state.time for state in states],
                 y=[um_from_mm(state.roughness or 0.0) for state in states],
                 customdata=[state.energy / 1e3 for state in states],
-                hovertemplate="%{x:.1f} s, Ra %{y:.2f} µm, %{customdata:.1f} kJ",
+                hovertemplate="%{x:.1f} s, ideal Ra %{y:.2f} µm, %{customdata:.1f} kJ",
                 mode="lines+markers",
                 name=advice.workingstep.id,
             )
     _laid_out(figure, "Pareto fronts of time and roughness", "s", 10)
     figure.update_xaxes(type="log")
-    return figure.update_yaxes(type="log", title="Ra µm", autorange=True)
+    return figure.update_yaxes(type="log", title=f"Ra µm ({IDEAL})", autorange=True)
 
 
 def _names(shown: Sequence[Advice]) -> list[str]:

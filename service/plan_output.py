@@ -9,8 +9,10 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, LimitLoad, Plan, tightest
+from optimiser.modes import Mode
 from optimiser.problem import LimitName
 from optimiser.required import UncheckedLimit
+from optimiser.roughness import IDEAL
 from optimiser.stability import Basis
 from service.rendering.columns import Cell, Change, Column
 from service.rendering.records import dump, finding_record, record, records
@@ -123,7 +125,7 @@ PAGE = (
 FRONT: "tuple[Column[ParetoPoint], ...]" = (
     Column(key="time_s", heading="time s", form=".2f", value=lambda point: point.state.time),
     Column(
-        key="roughness_ra_um", heading="Ra µm", form=".3g",
+        key="roughness_ra_um", heading="ideal Ra µm", form=".3g",
         value=lambda point: um_from_mm(point.state.roughness or 0.0) or None,
     ),
     Column(
@@ -180,7 +182,7 @@ def print_plan(
     """Print the advice for a program: a row per workingstep, then totals and findings."""
     material = plan.material.material
     print_line(
-        f"{plan.program}: mode {plan.mode.value}, machine {plan.machine.name} "
+        f"{plan.program}: mode {mode_words(plan.mode)}, machine {plan.machine.name} "
         f"({plan.machine.title}), material {material.title}{_unchecked_words(plan)}"
     )
     total = f"{plan.time_before:.1f} -> {plan.time_after:.1f}"
@@ -197,7 +199,7 @@ def print_plan(
         print_line(f"  {advice.workingstep.id}: {_reason(advice)}")
     for advice in plan.advices:
         if advice.front:
-            print_line(f"front of {advice.workingstep.id}:")
+            print_line(f"front of {advice.workingstep.id} (Ra is {IDEAL}):")
             print_table(FRONT, advice.front)
     if confirmation is not None:
         _print_confirmation(confirmation)
@@ -216,6 +218,11 @@ def _unchecked_words(plan: Plan) -> str:
     limits = "limit is" if len(plan.unchecked) == 1 else "limits are"
     where = "workingstep" if steps == 1 else "workingsteps"
     return f"; {len(plan.unchecked)} required {limits} unchecked in {steps} {where}"
+
+
+def mode_words(mode: Mode) -> str:
+    """Name of a mode; of QC with what its roughness is."""
+    return f"{mode.value} (Ra is {IDEAL})" if mode is Mode.QC else mode.value
 
 
 def _safety(plan: Plan) -> str:
@@ -242,8 +249,27 @@ def _print_confirmation(confirmation: "Confirmation") -> None:
         ),
     ]
     print_table(columns, confirmation.steps)
+    print_line(_nearest(confirmation))
     for text in confirmation.passed:
-        print_line(f"bound exceeded: {text}", RED)
+        print_line(f"not as planned: {text}", RED)
+
+
+def _nearest(confirmation: "Confirmation") -> str:
+    """State the bound that the run comes nearest to, and whether the same stock is left."""
+    nearest = confirmation.nearest
+    text = "no bound to compare with"
+    if nearest is not None:
+        step, figure = nearest
+        text = (
+            f"at the {100.0 * confirmation.quantile:g} % quantile of k_c nearest to a bound: "
+            f"{step}, {figure.heading} {figure.greatest:.4g} of {figure.bound:.4g}"
+        )
+    unknown = confirmation.unknown_stock
+    if unknown:
+        return f"{text}; the stock left is not compared: {', '.join(unknown)}"
+    if any(step.left is not None and step.left.is_seen for step in confirmation.steps):
+        return text
+    return f"{text}; every workingstep leaves the stock that the program as given leaves"
 
 
 def _figure_at(place: int, step: "ConfirmedStep") -> str:
@@ -266,7 +292,9 @@ def _reason(advice: Advice) -> str:
         and advice.cut is not None
         and advice.cut.is_finishing
     ):
-        text += f"; leaves Ra {advice.after.roughness * 1e3:.3g} µm"
+        text += f"; leaves Ra {advice.after.roughness * 1e3:.3g} µm ({IDEAL})"
+    if advice.cut is not None:
+        text += "".join(f"; {each.words}" for each in advice.cut.refused_passes[:1])
     deepest = advice.deepest_first_time
     if deepest is not None and deepest > advice.after.time * 1.001:
         text += f"; the deepest passes would have taken {deepest:.1f} s"
@@ -341,12 +369,16 @@ def _confirmation(confirmation: "Confirmation") -> dict[str, Any]:
                         "found": figure.found,
                         "ratio": figure.ratio,
                         "bound": figure.bound if isfinite(figure.bound) else None,
+                        "found_at_quantile": figure.at_quantile,
                     }
                     for figure in step.figures
                 },
+                "stock_left": step.left
+                and {"volume_mm3": step.left.volume, "deviation_mm": step.left.deviation},
             }
             for step in confirmation.steps
         ],
+        "quantile": confirmation.quantile,
         "passed": list(confirmation.passed),
     }
 
@@ -370,6 +402,7 @@ def _advice(advice: Advice) -> dict[str, Any]:
         "motor_power_kw": kw_from_watts(shown.motor_power) if shown else None,
         "cutting_force_n": shown.cutting_force if shown else None,
         "roughness_ra_um": um_from_mm(shown.roughness) if shown and shown.roughness else None,
+        "roughness_basis": IDEAL if shown and shown.roughness else None,
         "energy_j": shown.energy if shown else None,
         "time_s": {
             "before": before.time if before else None,
@@ -377,6 +410,10 @@ def _advice(advice: Advice) -> dict[str, Any]:
         },
         "sensitivity": _sensitivity(advice),
         "deepest_pass_first_time_s": advice.deepest_first_time,
+        "refused_passes": [
+            {"passes": each.passes, "reason": each.why}
+            for each in (advice.cut.refused_passes if advice.cut else ())
+        ],
         "stability": _stability(advice),
         "chatter_risk": _chatter_risk(advice),
         "unchecked": records(UNCHECKED, advice.unchecked),
@@ -462,6 +499,7 @@ def report_page(plan: Plan, along: "FeedsAlongPath | None" = None) -> str:
     return rendered(
         "plan.html.jinja",
         plan=plan,
+        mode=mode_words(plan.mode),
         columns=PAGE,
         unchecked=_unchecked_words(plan).removeprefix("; "),
         change=f"{after / before - 1.0:+.0%}" if before else "",

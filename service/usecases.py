@@ -11,6 +11,7 @@ from optimiser.formulate import OptimisationTask
 from optimiser.optimise import optimise_program
 from optimiser.source import along_paths
 from service.chosen import machine_for, material_for, require_axes, with_holding
+from service.divided_depth import depth_notes
 from service.files import (
     beside,
     is_same,
@@ -21,12 +22,14 @@ from service.files import (
 )
 from service.knowledge.corrected import factors_for, finding_of, with_corrections
 from service.knowledge.place import named_place, require_apart
+from service.program_kind import ProgramKind
 from service.progress import Progress
 from service.reading import Tell, read_given, read_program, selected, silent
 from service.records import changes_of, lost_plunge_feeds
 from service.refusals import Writable, advisable, apart_from
 from service.requests.advice import AdviceRequest
-from service.requests.fields import require_bounds
+from service.requests.fields import fields_of, require_bounds
+from service.requests.serves import require_served
 from simulator.spec import Certainty, Machine, MaterialMatch
 from stepnc_model import writeback
 from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
@@ -47,6 +50,12 @@ if TYPE_CHECKING:
     from simulator.tool_table import TableTool
     from stepnc_model.entities.executables import Setup
     from stepnc_model.part21.values import Ref
+
+OF_PATHS = frozenset({
+    "motion", "is_jerk_limited", "stock_margin_mm", "corner_tolerance_mm", "max_feed_mm_min",
+    "least_feed_mm_min",
+})  # fmt: skip
+"""Fields of requests that have no effect without feeds along the paths."""
 
 NOTHING_WRITTEN = "nothing was written: no workingstep was advised"
 
@@ -134,9 +143,12 @@ def optimise(
         selected=lambda step: int(step.ref) in wanted,
         progress=Progress(tell, total=len(chosen)),
     )
-    plan = replace(plan, refused=(*possible.refused, *plan.refused))
     told = _remarks(program, tell)
-    plan = _with_file_findings(plan, (*findings, *notes, *told), match)
+    notes = (*notes, *depth_notes(program, plan, whole.given))
+    plan = replace(
+        _with_file_findings(plan, (*findings, *notes, *told), match),
+        refused=(*possible.refused, *plan.refused),
+    )
     writable = apart_from(program, changes_of(plan), plan.refused)
     changes = writable.changes
     unwritten = _unwritten(program, plan, writable, profile, tell)
@@ -193,7 +205,7 @@ def _confirmed(
         return None
     from service.confirm import confirm  # noqa: PLC0415 (numba takes a second)
 
-    return confirm(plan, _read_again(program, data), tell=tell)
+    return confirm(plan, program, _read_again(program, data), tell=tell)
 
 
 def _along(
@@ -307,6 +319,7 @@ def _write_views(
 def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
     """Refuse numbers out of bounds, and options that have no effect."""
     require_bounds(request)
+    require_served(request, ProgramKind.STEP_NC)
     if request.is_along_path:
         return
     if request.levels is not None or files.feeds is not None:
@@ -315,6 +328,9 @@ def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
         raise StepNcError("--smooth needs --along-path")
     if request.writes_toolpaths:
         raise StepNcError("--write-toolpaths needs --along-path")
+    for each in fields_of(type(request)):
+        if each.name in OF_PATHS and getattr(request, each.name) != each.default:
+            raise StepNcError(f"{each.about.flag} needs --along-path")
 
 
 def _require_run(
@@ -376,7 +392,7 @@ def _task(request: AdviceRequest, tools: "tuple[TableTool, ...]") -> Optimisatio
         safety=request.safety,
         centre_cutting={**request.centre_cutting, **_centre_cutting(tools)},
         allow_plunge=request.allow_plunge,
-        source=partial(along_paths, is_run=request.is_confirmed, body_map=_body_map),
+        source=partial(along_paths, body_map=_body_map),
         keep_going=request.keep_going,
         ignores_records=request.ignore_record,
     )

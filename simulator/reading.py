@@ -1,9 +1,10 @@
-"""Readings of a machine's sensors for the closed loop, one per tooth period.
+"""Readings of a machine's sensors for the closed loop, usually one per tooth period.
 
 Units mm, s, N, W, rev/s.
 """
 
 from dataclasses import dataclass
+from math import nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Reading:
-    """Sensor values of one tooth period, or of a time span without feed override."""
+    """Sensor values of one tooth period or any other, or of a time without feed override."""
 
     time: float
     """Time at the end of the period, s."""
@@ -37,5 +38,7 @@ class Reading:
     """Program time at an override of 1 at the end of the period, s."""
     workingstep: int
     """Number of the workingstep in the program, counted from 1; 0 for none."""
+    normal: float = nan
+    """Mean force normal to the edges over the period, N; NaN: not measured."""
     can_override: bool
     """Whether the feed override acts: not in rapid, in a dwell or at a tool change."""

@@ -58,6 +58,9 @@ CUTTER_KEYS = {
     "holder_diameter_mm",
     "overhang_mm",
 }
+SEVERAL_EDGES = {ToolKind.ENDMILL, ToolKind.FACEMILL} | ENDS
+"""Kinds of tools whose number of teeth no custom tells."""
+
 CUSTOMARY_TRAILING_DEG = 5.0
 """what remains beside κ_r = 95° of the 80° of form C of ISO 1832"""
 
@@ -107,7 +110,7 @@ class ToolRow(SpeedWindow, frozen=True, kw_only=True):
     kind: ToolKind
     id: str | None = None
     cutting_material: CuttingMaterial = CuttingMaterial.CARBIDE
-    teeth: Teeth = 1.0
+    teeth: Teeth | None = None
     helix_deg: HelixAngle | None = None
     centre_cutting: bool | None = None
     wiper: bool = False
@@ -133,7 +136,8 @@ class ToolRow(SpeedWindow, frozen=True, kw_only=True):
         require_together(self, "min_cutting_speed_m_min", "max_cutting_speed_m_min")
         require_window(self, "min_feed_mm", "max_feed_mm")
         require_whole(self, "number")
-        require_whole(self, "teeth")
+        if self.teeth is not None:
+            require_whole(self, "teeth")
         require_together(self, "holder_diameter_mm", "overhang_mm")
         self._require_keys_of_its_kind()
         if self.wiper and self.kind is not ToolKind.TURNING:
@@ -156,6 +160,16 @@ class ToolRow(SpeedWindow, frozen=True, kw_only=True):
             known = sorted(set(self.__struct_fields__) - others)
             message = f"unknown key of kind {self.kind}; known here: {', '.join(known)}"
             raise KeyFault(key, message)
+
+    @property
+    def edges(self) -> int:
+        """Number of teeth; one where the row gives none."""
+        return 1 if self.teeth is None else int(self.teeth)
+
+    @property
+    def lacks_teeth(self) -> bool:
+        """Whether the number of teeth is unknown of a tool that usually has several."""
+        return self.teeth is None and self.kind in SEVERAL_EDGES
 
     def insert(self) -> Insert:
         """Shape of a turning tool."""
@@ -180,7 +194,7 @@ class ToolRow(SpeedWindow, frozen=True, kw_only=True):
             corner_radius=self.corner_radius_mm,
             taper_angle=rad_from_deg(self.taper_angle_deg),
             point_angle=rad_from_deg(point),
-            teeth=int(self.teeth),
+            teeth=self.edges,
             edge_length=self.edge_length_mm or inf,
             is_drill=self.kind in ENDS,
             holder=holder,
@@ -195,7 +209,7 @@ def tool_of_row(row: ToolRow) -> TableTool:
         id=f"{row.kind} T{number}" if row.id is None else row.id,
         kind=row.kind,
         cutting_material=row.cutting_material,
-        teeth=int(row.teeth),
+        teeth=row.edges,
         shape=row.insert() if row.kind in TURNED else row.cutter(),
         helix_angle=None if helix is None else rad_from_deg(helix),
         centre_cutting=row.centre_cutting,

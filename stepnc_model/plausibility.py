@@ -197,8 +197,9 @@ def _findings(program: Program, step: ResolvedWorkingstep) -> Iterator[Finding]:
     is_milling = speed.attribute == "spindle"
     if is_milling and speed.scale > 0.0 and not is_left:
         yield program.finding(
-            Severity.NOTE,
-            "positive spindle speed means counter-clockwise, but the tool is not left-handed",
+            Severity.WARNING,
+            "positive spindle speed means counter-clockwise (M4), but the tool is not "
+            "left-handed",
             speed.ref,
             "spindle",
         )

@@ -147,6 +147,9 @@ def asked_control(
     sensor: str = "dynamometer",
     output: Path | None = None,
     report: Path | None = None,
+    loads: Path | None = None,
+    cut_log: Path | None = None,
+    is_teaching: bool = False,
 ) -> AskedControl:
     """Arguments of :func:`service.control.run.control`."""
     request = ControlRequest(
@@ -163,4 +166,12 @@ def asked_control(
         override_high_percent=band[1],
         sensor=member_of(SensorChoice, sensor, "sensor"),
     )
-    return request, RunFiles(file=file, code=code, output=output, report=report)
+    return request, RunFiles(
+        file=file,
+        code=code,
+        output=output,
+        report=report,
+        loads=loads,
+        cut_log=cut_log,
+        is_teaching=is_teaching,
+    )

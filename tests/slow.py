@@ -63,6 +63,7 @@ SLOW = (
     "service/test_every_missing_instance.py",
     "service/test_irregular_files.py",
     "service/test_missing_instances.py",
+    "service/test_promised.py",
     "service/trial/test_run.py",
     "service/verification/test_run.py",
     "simulator/factory/test_calendar.py",

@@ -15,6 +15,7 @@ from math import inf, pi
 
 import numpy as np
 
+from optimiser.along_path.held import held_feeds
 from optimiser.chip_load import GREATEST_THINNING, catalogue_feed
 from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind
@@ -56,6 +57,9 @@ class CapName(StrEnum):
     AIR = "air_feed"
     LOCKED = "locked"
     LEAST = "least_feed"
+    RISE = "greatest_rise"
+    STRAIGHT = "straight_plunge"
+    NO_STOCK = "no_stock_met"
 
     @property
     def words(self) -> str:
@@ -111,6 +115,8 @@ class CutBounds:
     """Greatest feeds per tooth that hold wherever there are chips, mm."""
     plunge: float | None = None
     """Greatest feed per tooth on the way down into the material, mm; None: not limited."""
+    is_held_along: bool = False
+    """Whether the work-holding of the conditions is looked at at each place."""
     least: float = 0.0
     """Feed that the user permits everywhere, mm/s, whatever the limits of the process say."""
     keeps_programmed: bool = False
@@ -264,6 +270,9 @@ def _force_bounds(
         yield CapName.CUTTING_FORCE, np.where(is_drilled, feed_at(left, along), across)
     power, torque = _spindle_bounds(bounds, spindle)
     watts = force * pi * diameter * spindle / (NMM_S_PER_WATT * machine.spindle.efficiency)
+    if bounds.is_held_along:
+        for held in held_feeds(cut, at, stations, spindle=spindle, force=force):
+            yield CapName.HOLDING, held
     yield CapName.MOTOR_POWER, feed_at(power, watts)
     yield CapName.SPINDLE_TORQUE, feed_at(torque, 0.5 * diameter * force)
 

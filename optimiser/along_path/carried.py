@@ -10,12 +10,12 @@ are judged as such: the spindle changes its speed, and with it the feed per time
 Units: mm, mm/s, s.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
 
-from optimiser.along_path.caps import NUMBER, CapName, Caps
+from optimiser.along_path.caps import NAMES, NUMBER, CapName, Caps
 from optimiser.along_path.envelope import lower_envelope
 from optimiser.along_path.pieces import SLACK, FeedPieces, PieceRules, pieces_of
 from optimiser.along_path.runs import Commands, MachineFeeds
@@ -117,6 +117,43 @@ def excess(stretch: PathStretch, machine: MachineFeeds) -> Floats:
         speed = np.where(stretch.is_free, stretch.segments.speed, 0.0)[segment]
         np.maximum.at(found, segment, speed / commands.caps.feed)
     return found
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BrokenBound:
+    """Feed that is above what the process permits."""
+
+    block: int
+    """Number of the block."""
+    ratio: float
+    """Feed over the permitted one."""
+    name: CapName
+
+
+def most_broken(stretch: PathStretch, machine: MachineFeeds) -> BrokenBound | None:
+    """Feed of a stretch that is farthest above what the process permits, chosen or not.
+
+    None where no limit is known, or nothing is met.
+
+    Raises
+    ------
+    ValueError
+        When an engagement is not a number; with its place.
+    """
+    if stretch.bounds is None:
+        return None
+    commands = permitted_commands(stretch, machine)
+    segments = stretch.segments
+    speed = np.where(segments.is_rapid, 0.0, segments.speed)[commands.segment]
+    ratio = speed / commands.caps.feed
+    if not ratio.any():
+        return None
+    worst = int(ratio.argmax())
+    return BrokenBound(
+        block=int(segments.block[commands.segment[worst]]),
+        ratio=float(ratio[worst]),
+        name=NAMES[commands.caps.name[worst]],
+    )
 
 
 def slower_pieces(

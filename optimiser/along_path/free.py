@@ -15,7 +15,7 @@ from itertools import pairwise
 import numpy as np
 
 from optimiser.along_path.caps import NAMES, Caps
-from optimiser.along_path.runs import MachineFeeds, own_caps
+from optimiser.along_path.runs import MachineFeeds, own_caps, written_caps
 from optimiser.along_path.stretch import PathStretch, PlaceCaps
 from optimiser.certificate import LimitExcess, certify
 from optimiser.path_grid import PathEnds, PathGrid, path_grid, problem_on
@@ -128,7 +128,9 @@ def free_profile(
     """
     segments = stretch.segments
     offsets = np.concatenate(([0.0], np.cumsum(segments.length)))
-    caps = places.caps.least(own_caps(stretch, machine).at(places.segment))
+    caps = places.caps.least(
+        own_caps(stretch, machine).least(written_caps(stretch)).at(places.segment)
+    )
     found = FreeProfile()
     changes = np.flatnonzero(np.diff(segments.is_rapid.astype(np.int8))) + 1
     for first, last in pairwise([0, *changes.tolist(), len(segments)]):

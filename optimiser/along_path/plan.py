@@ -16,8 +16,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from optimiser.along_path.caps import NAMES, CapName
-from optimiser.along_path.carried import excess
+from optimiser.along_path.caps import NAMES, NUMBER, CapName
+from optimiser.along_path.carried import BrokenBound, excess, most_broken
 from optimiser.along_path.free import FASTEST_ALONE, FreeProfile, FreeTask, free_profile
 from optimiser.along_path.pieces import (
     FeedPieces,
@@ -25,7 +25,7 @@ from optimiser.along_path.pieces import (
     pieces_of,
     without_small_changes,
 )
-from optimiser.along_path.runs import MachineFeeds, commands_of, own_caps
+from optimiser.along_path.runs import MachineFeeds, commands_of, own_caps, written_caps
 from optimiser.along_path.stretch import PathStretch, PlaceCaps, place_caps
 from optimiser.levels import best_levels
 from simulator.motion.segments import Bools, Floats, Ints
@@ -83,6 +83,8 @@ class PartPlan:
     """Number of different feeds."""
     shares: Mapping[CapName, tuple[float, float]]
     """Length in mm and time in s at each active limit."""
+    rise_cost: float = 0.0
+    """Time that the greatest rise over the programmed feeds costs, s."""
 
     @property
     def levels_gap(self) -> float:
@@ -118,11 +120,20 @@ class FeedPlanner:
         """Greatest programmed feed over what the process permits, by part."""
         self._locked: list[float] = []
         """Greatest feed of each run that may not be chosen, mm/s."""
+        self._rise_cost: dict[str, float] = {}
+        self._broken: dict[str, BrokenBound] = {}
+        self._kept: set[int] = set()
+        """Blocks that keep their feeds."""
 
     @property
     def excess(self) -> Mapping[str, float]:
         """Greatest programmed feed over what the process permits, by part of the program."""
         return self._excess
+
+    @property
+    def broken(self) -> Mapping[str, BrokenBound]:
+        """Programmed feeds farthest above what the process permits, by part of the program."""
+        return {name: worst for name, worst in self._broken.items() if worst.ratio > PERMITTED}
 
     def add(self, stretch: PathStretch) -> None:
         """Plan the feeds of a stretch.
@@ -147,11 +158,33 @@ class FeedPlanner:
         self._excess[name] = max(most, self._excess.get(name, 0.0))
         given = self._given_windows.get(name, 0.0)
         self._given_windows[name] = given + commands.given_window
+        worst, known = most_broken(stretch, machine), self._broken.get(name)
+        if worst is not None and (known is None or worst.ratio > known.ratio):
+            self._broken[name] = worst
+        cost = self._cost_of_rise(stretch, places, pieces)
+        self._rise_cost[name] = self._rise_cost.get(name, 0.0) + cost
+        if stretch.is_kept is not None:
+            self._kept |= set(stretch.segments.block[stretch.is_kept].tolist())
+
+    def _cost_of_rise(
+        self, stretch: PathStretch, places: PlaceCaps, pieces: FeedPieces
+    ) -> float:
+        """Time that the greatest rise costs on a stretch, s."""
+        if not len(pieces) or not (pieces.name == NUMBER[CapName.RISE]).any():
+            return 0.0
+        any_rise = replace(stretch, rise=None)
+        commands = commands_of(any_rise, places, self.task.machine)
+        free = pieces_of(any_rise, commands, self.task.rules)
+        return max(
+            float((pieces.weight / pieces.rate).sum() - (free.weight / free.rate).sum()), 0.0
+        )
 
     def _least_time(self, stretch: PathStretch, places: PlaceCaps) -> float:
         """Lower bound of the time of the moves whose feed may be chosen, s."""
         lengths = np.diff(places.ends, prepend=0.0)
-        caps = places.caps.least(own_caps(stretch, self.task.machine).at(places.segment))
+        caps = places.caps.least(
+            own_caps(stretch, self.task.machine).least(written_caps(stretch)).at(places.segment)
+        )
         rows = stretch.is_free[places.segment] & (lengths > 0.0)
         return float((lengths[rows] / caps.feed[rows]).sum())
 
@@ -174,7 +207,9 @@ class FeedPlanner:
             change = self.task.rules.least_change
             planned = replace(planned, rate=without_small_changes(planned, change))
             is_kept = name in kept or self._is_as_good(name, planned)
-            chosen[name] = replace(planned, rate=planned.programmed) if is_kept else planned
+            of_blocks = np.isin(planned.block, list(self._kept)) | is_kept
+            rate = np.where(of_blocks, planned.programmed, planned.rate)
+            chosen[name] = replace(planned, rate=rate)
         chosen = in_every_run(chosen)
         parts = tuple(self._part(name, free[name], chosen[name]) for name in chosen)
         numbers = np.repeat(np.arange(len(parts)), [len(each) for each in chosen.values()])
@@ -226,6 +261,7 @@ class FeedPlanner:
             free=self._free[name],
             feeds=len(np.unique(chosen.rate)),
             shares=shares,
+            rise_cost=self._rise_cost[name],
         )
 
 

@@ -82,6 +82,22 @@ def own_caps(stretch: PathStretch, machine: MachineFeeds) -> Caps:
     return Caps(feed=feed, name=np.where(is_locked, NUMBER[CapName.LOCKED], own.name))
 
 
+def written_caps(stretch: PathStretch) -> Caps:
+    """Greatest feeds that may be written for each segment, (N,).
+
+    They bound the words of the program and not what the tool does: a control that rounds the
+    corner to a faster move passes them, as it does at the programmed feeds.
+    """
+    found = unbounded(len(stretch.segments))
+    for feed, name in ((stretch.rise, CapName.RISE), (stretch.plunge, CapName.STRAIGHT)):
+        if feed is not None:
+            found = found.least(capped(np.where(stretch.is_free, feed, np.inf), name))
+    if stretch.is_kept is None:
+        return found
+    kept = np.where(stretch.is_kept & stretch.is_free, stretch.segments.speed, np.inf)
+    return capped(kept, CapName.NO_STOCK).least(found)
+
+
 def commands_of(stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds) -> Commands:
     """Greatest feed commands along a stretch.
 
@@ -142,6 +158,9 @@ OWN = [
 ]  # fmt: skip
 """Numbers of the limits of machine and control, whose places are exact."""
 
+WRITTEN = [NUMBER[name] for name in (CapName.RISE, CapName.STRAIGHT, CapName.NO_STOCK)]
+"""Numbers of the limits on what may be written."""
+
 
 CLEARANCE = 0.05
 """Distance by which a process limit may be displaced, over the tool diameter.
@@ -188,12 +207,17 @@ class _FeedRun:
         segments = stretch.segments[rows]
         self.clearance = clearance_of(stretch)
         self.least = 0.0 if stretch.bounds is None else stretch.bounds.least
+        self.written = written_caps(stretch).at(rows)
         _, block = np.unique(segments.block, return_inverse=True)
         self.whole = np.where(stretch.can_split[rows], -1, block)
         """Block of each segment that stays in one piece, counted from 0; -1 for others."""
         self.segments, self.offsets, self.machine = segments, offsets, machine
         self.ends, self.caps = ends, caps
         self.begins = np.concatenate((offsets[:1], ends[:-1]))
+        middles = 0.5 * (self.begins + ends)
+        own = np.minimum(np.searchsorted(offsets[1:], middles), len(segments) - 1)
+        self.within = caps.least(self.written.at(own))
+        """Caps of the places with those of what may be written."""
         moving = segments[segments.length > 0.0]
         before, after = corners(moving)
         sine = 0.5 * np.linalg.norm(after - before, axis=1)
@@ -211,7 +235,7 @@ class _FeedRun:
 
     def fastest(self) -> _Smoothed:
         """Commands of the greatest feed that gives the least time."""
-        known = self.caps.feed[np.isfinite(self.caps.feed)]
+        known = self.within.feed[np.isfinite(self.within.feed)]
         top = float(known.max(initial=float(self.segments.speed.max())))
         low = max(SLOWEST * top, self.greatest_locked)
         best = self._smoothed(top)
@@ -246,17 +270,21 @@ class _FeedRun:
     def _smoothed(self, greatest: float) -> _Smoothed:
         """Commands up to a greatest feed that keep all caps behind the control's filter."""
         smoothing = smoothing_of(self.machine.control, self.machine.limits, greatest)
-        caps = self.caps.least(capped(np.full(len(self.ends), greatest), CapName.AIR))
+        most = capped(np.full(len(self.ends), greatest), CapName.AIR)
         if smoothing.window == 0.0:
-            return self._timed(self.ends, caps, smoothing)
+            return self._timed(self.ends, self.within.least(most), smoothing)
+        caps = self.caps.least(most)
         corner = _over(self.corner_tolerance, smoothing.corner_gain * self.corner_sines)
         arcs = np.sqrt(_over(self.arc_tolerance, smoothing.arc_gain * self.bends))
         first, last = float(self.offsets[0]), float(self.offsets[-1])
-        begin = np.concatenate((self.begins, self.corner_places, self.offsets[:-1]))
-        end = np.concatenate((self.ends, self.corner_places, self.offsets[1:]))
+        starts, stops = self.offsets[:-1], self.offsets[1:]
+        # What may be written comes first: it gives its name where another cap is equal.
+        begin = np.concatenate((starts, self.begins, self.corner_places, starts))
+        end = np.concatenate((stops, self.ends, self.corner_places, stops))
         rounded = np.maximum(np.concatenate((corner, arcs)), self.least)
-        feed = np.concatenate((caps.feed, rounded))
+        feed = np.concatenate((self.written.feed, caps.feed, rounded))
         name = np.concatenate((
+            self.written.name,
             caps.name,
             np.full(len(corner), NUMBER[CapName.CORNER]),
             np.full(len(arcs), NUMBER[CapName.CURVATURE]),
@@ -265,6 +293,7 @@ class _FeedRun:
         feed, name = feed[bound], name[bound]
         clear = np.where(np.isin(name, OWN), 0.0, self.clearance)
         reach = smoothing.reach * np.minimum(feed, greatest) + clear
+        reach[np.isin(name, WRITTEN)] = 0.0
         found = lower_envelope(
             np.clip(begin[bound] - reach, first, last),
             np.clip(end[bound] + reach, first, last),

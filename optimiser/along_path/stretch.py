@@ -56,6 +56,12 @@ class PathStretch:
     bounds: CutBounds | None = None
     """Tool and permitted loads; None: nothing is known, and no feed may be chosen."""
     workingstep: str = ""
+    rise: Floats | None = None
+    """Greatest feed by the permitted rise over the programmed one, (N,), mm/s; None: any."""
+    plunge: Floats | None = None
+    """Greatest feed of straight plunges, (N,), mm/s, infinite elsewhere; None: not bounded."""
+    is_kept: Bools | None = None
+    """Whether a block keeps its feed in all its executions, (N,); None: none does."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

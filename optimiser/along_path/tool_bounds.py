@@ -5,10 +5,11 @@ the user says that a tool finishes.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import isinf
 
 from optimiser.along_path.caps import CapName, CutBounds
+from optimiser.bar_grip import BarGrip
 from optimiser.chip_load import catalogue_feed
 from optimiser.conditions import CuttingConditions, PermittedDeflection
 from optimiser.cut import Cut, CutKind, Texture
@@ -24,6 +25,7 @@ from simulator.spec import Machine, ToolGrade, ToolKind, WorkMaterial
 from simulator.table_grade import grade_of_table_tool
 from simulator.tool_table import TableTool
 from simulator.tool_windows import why_unsuited
+from simulator.work_holding import Holding
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.tool import Tool
 
@@ -36,7 +38,23 @@ TEXTURES = {
 """Surfaces that a finishing tool may leave; all of them must keep the roughness."""
 
 
-def bounds_of_tool(
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnownOfJob:
+    """What is known of a job beyond the tool table."""
+
+    force_factor: float = 1.0
+    """Accepted correction of k_c for the tool."""
+    safety_factor: float | None = None
+    """k_c at the planned quantile over its accepted correction; None: by the material."""
+    holding: Holding | None = None
+    grip: BarGrip | None = None
+    """Where a chuck grips the bar."""
+
+
+NOTHING_KNOWN = KnownOfJob()
+
+
+def bounds_of_tool(  # noqa: PLR0913 (a tool, its machine and material, and what is asked of it)
     tool: TableTool,
     machine: Machine,
     material: WorkMaterial,
@@ -44,6 +62,7 @@ def bounds_of_tool(
     quantile: float,
     is_finishing: bool,
     roughness: float | None,
+    job: KnownOfJob = NOTHING_KNOWN,
 ) -> CutBounds | None:
     """Bounds of a tool in a material; None for threading, whose feed is its pitch.
 
@@ -58,11 +77,14 @@ def bounds_of_tool(
         Whether the tool leaves final surfaces.
     roughness : float or None, mm
         Roughness Ra of final surfaces; None: general machining.
+    job : KnownOfJob
+        Accepted correction of the tool, and the work-holding.
     """
     if tool.kind in THREADS:
         return None
     spread = material.spread
     is_margin = not machine.only_stated_limits and spread is not None
+    customary = safety_factor(spread, quantile) if is_margin and spread else 1.0
     grade = grade_of_table_tool(tool, material)
     if machine.only_stated_limits and not material.iso_group:
         grade = None
@@ -77,7 +99,10 @@ def bounds_of_tool(
         if is_finishing
         else PermittedDeflection(),
         centre_cutting=tool.centre_cutting,
-        safety_factor=safety_factor(spread, quantile) if is_margin and spread else 1.0,
+        force_factor=job.force_factor,
+        safety_factor=customary if job.safety_factor is None else job.safety_factor,
+        holding=None if machine.only_stated_limits else job.holding,
+        grip=job.grip,
     )
     surface = _surface_feed(cut, at)
     return CutBounds(
@@ -86,6 +111,7 @@ def bounds_of_tool(
         fixed=() if surface is None else ((CapName.ROUGHNESS, surface),),
         plunge=permitted_plunge(cut, at),
         keeps_programmed=is_unsourced(cut, at),
+        is_held_along=at.holding is not None,
     )
 
 

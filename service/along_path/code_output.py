@@ -10,11 +10,13 @@ from service.along_path.output import (
 from service.files import write_atomically, write_lines
 from service.reading import Tell, silent
 from service.rendering.records import dump, finding_record
-from service.rendering.text import print_findings, print_line
+from service.rendering.text import RED, print_findings, print_line
 
 
 def print_code_advice(code: CodeAdvice) -> None:
-    """Print the comparison of both runs, what was changed, and the findings."""
+    """Print the faults, the comparison of both runs, what was changed, and the findings."""
+    for fault in code.faults:
+        print_line(str(fault), RED)
     print_line(
         f"{code.program}: control {code.control}, machine {code.machine.name} "
         f"({code.machine.title}), material {code.material.material.title}; the stock stands in "
@@ -27,7 +29,7 @@ def print_code_advice(code: CodeAdvice) -> None:
         f"{rewritten.restored} got the programmed feed back, {len(rewritten.unchanged)} not as "
         "advised"
     )
-    print_findings(code.findings)
+    print_findings(code.findings, told=code.faults)
 
 
 def code_advice_json(code: CodeAdvice) -> str:

@@ -15,6 +15,8 @@ from simulator.machine.interpreter import Numbered, interpret
 from simulator.machine.samples import Episode
 from simulator.machine.virtual import MachineSetup, VirtualMachine
 from simulator.motion.segments import Bools, ControlModel, Floats, Ints
+from stepnc_model.errors import Finding
+from stepnc_model.nc.written_lines import WrittenLines
 from stepnc_model.post.blocks import Circular, DrillingCycle, Linear
 
 
@@ -84,6 +86,22 @@ class BlockLog:
 Choose = Callable[[Part], CutBounds | None]
 
 
+class Cautious(Protocol):
+    """What bounds a program beyond the limits of its cuts."""
+
+    def bounded(self, stretch: PathStretch, machine: VirtualMachine) -> PathStretch:
+        """Return a stretch with bounds on how its programmed feeds may change."""
+        ...
+
+    def findings(self) -> Iterable[Finding]:
+        """Doubts about the program that were found."""
+        ...
+
+    def of_written(self, lines: WrittenLines) -> "Cautious":
+        """Bounds of code that was written from the program."""
+        ...
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PathSource:
     """Program whose paths are planned."""
@@ -94,9 +112,11 @@ class PathSource:
     """Bounds of a part of the program; None if its feed may not be chosen."""
     numbered: Callable[[PreparedRun], NumberedBlocks] = lambda run: BlockLog(run.blocks)
     """Function that numbers the blocks of a prepared program."""
+    caution: Cautious | None = None
+    """Bounds on how programmed feeds may change; None: the limits of the cuts alone."""
 
 
-def stretches_of(
+def stretches_of(  # noqa: PLR0913 (a run, its larger stock, and who watches it)
     prepared: PreparedRun,
     larger: PreparedRun | None,
     *,
@@ -104,6 +124,7 @@ def stretches_of(
     bounds: Choose,
     log: NumberedBlocks,
     watch: Callable[[Episode, VirtualMachine], None],
+    caution: Cautious | None = None,
 ) -> Iterator[PathStretch]:
     """Run a program on the virtual machine, and yield what its tools meet.
 
@@ -119,6 +140,8 @@ def stretches_of(
         Blocks of ``prepared``.
     watch : callable
         Receives all episodes of ``prepared``.
+    caution : Cautious, optional
+        Bounds on how programmed feeds may change.
 
     Raises
     ------
@@ -140,7 +163,7 @@ def stretches_of(
         chosen = bounds(part) if _meets_stock(prepared, part) else None
         blocks, spindle = course.segments.block, _spindle(episode)
         can_change = log.can_change(blocks) & (chosen is not None) & (spindle > 0.0)
-        yield PathStretch(
+        found = PathStretch(
             segments=course.segments,
             spindle=spindle,
             per_revolution=stretch.per_revolution,
@@ -151,6 +174,7 @@ def stretches_of(
             bounds=chosen,
             workingstep=name,
         )
+        yield found if caution is None else caution.bounded(found, machine)
 
 
 def _meets_stock(prepared: PreparedRun, part: Part) -> bool:

@@ -8,9 +8,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from optimiser.along_path.caps import CutBounds
+from optimiser.along_path.caps import CapName, CutBounds
 from optimiser.along_path.tool_bounds import bounds_of_tool, window_findings
 from optimiser.modes import Mode
+from service.along_path.caution import CLEARANCE, Caution, rise_left
+from service.along_path.code_job import CodeJob, job_of
 from service.along_path.course import PathSource
 from service.along_path.run import FeedsAlongPath
 from service.along_path.task import least_feed, task_of
@@ -20,6 +22,7 @@ from service.chosen import (
     DEFAULT_MILL,
     load_material_named,
     require_axes,
+    with_holding,
 )
 from service.files import (
     beside,
@@ -28,10 +31,13 @@ from service.files import (
     require_places,
     write_atomically,
 )
+from service.knowledge.place import named_place, require_apart
 from service.numbers import tool_numbers_in
+from service.program_kind import ProgramKind
 from service.reading import Tell, silent
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
+from service.requests.serves import require_served
 from service.simulation.called_tools import called_tool_findings, with_called_tools
 from service.simulation.code_paths import CodeBlocks, CodePaths
 from simulator.library import load_machine
@@ -44,6 +50,13 @@ from stepnc_model.nc.program import NcProgram, read_program
 from stepnc_model.nc.unroll import unrolled
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.units import mm_from_um
+
+NO_JOB = CodeJob()
+
+NOTHING_WRITTEN = "nothing was written: no feed of this program could be chosen"
+
+LEAST_COST = 0.05
+"""Time from which the cost of the greatest rise is told, s."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,6 +76,10 @@ class CodeFiles:
     report: Path | None = None
     feeds: Path | None = None
     """CSV table of the feeds along the paths, to be written."""
+    holding: Path | None = None
+    """Work-holding file that replaces the work-holding of the machine file."""
+    knowledge: str = ""
+    """Knowledge base with accepted corrections; empty: the one named by the environment."""
     most_repeats: int | None = None
     """Blocks and moves that may be executed beyond those of the file; None: as usual."""
 
@@ -82,6 +99,10 @@ class CodeAdvice:
     findings: tuple[Finding, ...]
     written: Path | None
     """File of the rewritten code; None when nothing was written."""
+    faults: tuple[Finding, ...] = ()
+    """Rapids through material, overloads, and bounds that the written code breaks."""
+    is_advised: bool = True
+    """Whether any feed could be chosen."""
 
 
 def optimise_code(
@@ -95,6 +116,7 @@ def optimise_code(
         When a file, a name or a number is invalid, or the machine cannot run the program.
     """
     require_bounds(request)
+    require_served(request, ProgramKind.NC_CODE)
     output = _output(files)
     name = files.name or files.file.name
     library = _tools(request, files)
@@ -111,6 +133,8 @@ def optimise_code(
     is_lathe = program.machine is MachineType.LATHE
     machine = load_machine(request.machine or (DEFAULT_LATHE if is_lathe else DEFAULT_MILL))
     require_axes(machine)
+    machine = with_holding(machine, files.holding)
+    require_apart(named_place(files.knowledge), output, files.report, files.feeds)
     material = load_material_named(request.material)
     tell(f"material: {material.reason}")
 
@@ -125,20 +149,25 @@ def optimise_code(
         )
 
     code = paths_of(program)
+    job = job_of(code, request, knowledge=files.knowledge)
     task = replace(
         task_of(request, machine), keeps_traces=files.report is not None, keeps_idle=True
     )
+    rise = rise_left(program.text.data, request.greatest_rise)
     written = written_code(
         CodeSource(
             program=program,
             paths_of=paths_of,
-            source_of=partial(_source, request),
+            source_of=partial(source_of, request, rise=rise, job=job),
             mark=request.is_marked,
+            rise=request.greatest_rise,
         ),
         task,
         tell=tell,
     )
     along, rewritten = written.along, written.rewritten
+    faults = tuple(dict.fromkeys((*along.faults(machine), *written.faults, *job.faults)))
+    is_advised = _is_advised(along)
     found = CodeAdvice(
         program=name,
         machine=machine,
@@ -153,18 +182,36 @@ def optimise_code(
             *called_tool_findings(program, library),
             *code.findings,
             *_windows(code),
+            *job.findings,
             *_idle(code, along),
+            *written.doubts,
+            *_cost_of_rise(along, request.greatest_rise, rise),
             *_unchanged(rewritten),
-            *along.findings,
+            *(each for each in along.findings if each not in faults),
             *along.above_limits,
             *written.findings,
+            *faults,
         ),
-        written=None if files.dry_run else output,
+        written=output if is_advised and not files.dry_run else None,
+        faults=faults,
+        is_advised=is_advised,
     )
-    if not files.dry_run:
+    if found.written is not None:
         write_atomically(output, rewritten.data)
         tell(f"written: {output}")
+    elif not is_advised:
+        tell(NOTHING_WRITTEN)
     return found
+
+
+def _is_advised(along: FeedsAlongPath) -> bool:
+    """Whether any feed of a program could be chosen, also where it stays as it is."""
+    return any(
+        step.plan is not None
+        and step.name not in along.idle
+        and any(name is not CapName.NO_STOCK for name in step.plan.shares)
+        for step in along.steps
+    )
 
 
 def _tools(request: AdviceRequest, files: CodeFiles) -> ToolLibrary:
@@ -176,10 +223,18 @@ def _tools(request: AdviceRequest, files: CodeFiles) -> ToolLibrary:
     return read_tools(files.tools, unit=files.tools_unit)
 
 
-def _source(request: AdviceRequest, code: CodePaths) -> PathSource:
+def source_of(
+    request: AdviceRequest, code: CodePaths, *, rise: float, job: CodeJob = NO_JOB
+) -> PathSource:
     """Paths of NC code with the bounds of their tools."""
-    bounds = _bounds(code, request)
+    bounds = _bounds(code, request, job)
     return PathSource(
+        caution=Caution(
+            fresh=code.uncut,
+            rise=rise,
+            allows_plunge=request.allow_plunge,
+            clearance=max(CLEARANCE, request.stock_margin_mm),
+        ),
         prepare=code.prepared,
         bounds=lambda part: bounds.get(part.name),
         numbered=lambda run: CodeBlocks(run.blocks, code),
@@ -201,7 +256,7 @@ def _output(files: CodeFiles) -> Path:
     return output
 
 
-def _bounds(code: CodePaths, request: AdviceRequest) -> dict[str, CutBounds]:
+def _bounds(code: CodePaths, request: AdviceRequest, job: CodeJob) -> dict[str, CutBounds]:
     """Bounds of the parts of a program by their names; parts that stay have none."""
     kept = tool_numbers_in(request.keep)
     finishing = tool_numbers_in(request.finish)
@@ -218,6 +273,7 @@ def _bounds(code: CodePaths, request: AdviceRequest) -> dict[str, CutBounds]:
             quantile=request.safety,
             is_finishing=is_finishing,
             roughness=roughness,
+            job=job.of_tool(code.tools[part.tool].id),
         )
         if bounds is not None:
             found[part.name] = replace(bounds, least=least_feed(request))
@@ -246,6 +302,29 @@ def _idle(code: CodePaths, along: FeedsAlongPath) -> Iterator[Finding]:
         yield Finding(
             severity=Severity.WARNING, message="no feed of this program may be chosen"
         )
+
+
+def _cost_of_rise(along: FeedsAlongPath, most: float, rise: float) -> Iterator[Finding]:
+    """Findings on the time that the greatest rise costs, and on code that rose before."""
+    costs = [
+        f"{step.name} {step.plan.rise_cost:.1f} s"
+        for step in along.steps
+        if step.plan is not None
+        and step.name not in along.idle
+        and step.plan.rise_cost > LEAST_COST
+    ]
+    if costs and rise == most:
+        text = (
+            f"feeds rise to at most {rise:g} times the programmed ones (--greatest-rise), "
+            f"which costs {', '.join(costs)}"
+        )
+        yield Finding(severity=Severity.NOTE, message=text)
+    if rise < most:
+        text = (
+            f"the feeds of this code rose before, as a comment says: they rise to at most "
+            f"{rise:g} times what it has; for more, advise the code that it was made from"
+        )
+        yield Finding(severity=Severity.NOTE, message=text)
 
 
 def _unchanged(rewritten: RewrittenCode) -> Iterator[Finding]:

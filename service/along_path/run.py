@@ -24,6 +24,7 @@ from optimiser.along_path.runs import MachineFeeds
 from service.along_path.course import PathSource, stretches_of
 from service.along_path.plan_run import LimitStretch, PartTotals, PlanRun, run_plan
 from service.along_path.trace import PathTrace
+from service.overload_bounds import overload_bounds
 from service.progress import Ticker
 from service.reading import Tell, silent
 from simulator.machine.totals import Total
@@ -116,6 +117,20 @@ class FeedsAlongPath:
                 )
                 found.append(Finding(severity=Severity.WARNING, message=text))
         return tuple(found)
+
+    def faults(self, machine: Machine) -> tuple[Finding, ...]:
+        """Rapids through material, and parts that overload the machine."""
+        beyond = tuple(
+            Finding(
+                severity=Severity.ERROR,
+                message=f"{step.name}: {step.after.overload_time:.3g} s above "
+                f"{overload_bounds(machine)}",
+            )
+            for step in self.steps
+            if step.after.overload_time > 0.0
+        )
+        met = (each for each in self.findings if each.severity is Severity.ERROR)
+        return (*met, *beyond)
 
     @property
     def time_before(self) -> float:
@@ -216,6 +231,7 @@ def planned(
         bounds=source.bounds,
         log=source.numbered(given),
         watch=before.add,
+        caution=source.caution,
     ):
         planner.add(stretch)
     return _path_plan(planner, before, _idle(before) if task.keeps_idle else frozenset())

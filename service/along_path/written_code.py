@@ -6,10 +6,14 @@ be too fast, or be permitted more. So what is written is planned again, and what
 written into the program, until nothing changes.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
+from optimiser.along_path.caps import CapName
 from optimiser.along_path.plan import PERMITTED, BlockFeeds, lowered
+from optimiser.greatest_rise import USUAL_RISE
+from service.along_path.caution import mark_of
 from service.along_path.course import PathSource
 from service.along_path.plan_run import PartTotals, run_plan
 from service.along_path.run import (
@@ -17,7 +21,6 @@ from service.along_path.run import (
     AlongPathTask,
     FeedsAlongPath,
     PathPlan,
-    along_path,
     planned,
     run_of,
 )
@@ -33,6 +36,11 @@ from stepnc_model.post.block_feeds import BlockPart
 
 MOST_PLANS = 8
 """Greatest number of plans of the written code."""
+
+MOST_NOTES = 16
+"""Number of blocks that are tried for the comment on the rise."""
+
+NO_NOTES: Mapping[int, str] = MappingProxyType({})
 
 CHECK = "planning the written program again"
 
@@ -53,6 +61,8 @@ class CodeSource:
     """Function that gives paths the bounds of their tools."""
     mark: bool = False
     """Whether changed blocks get a comment with the reason."""
+    rise: float = USUAL_RISE
+    """Greatest feed over the programmed one, of which a comment tells where it holds."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,6 +73,10 @@ class WrittenCode:
     rewritten: RewrittenCode
     findings: tuple[Finding, ...] = ()
     """Findings on what was written."""
+    doubts: tuple[Finding, ...] = ()
+    """Moves of the program that cast doubt on its stock."""
+    faults: tuple[Finding, ...] = ()
+    """Feeds above what the process permits that could not be lowered."""
 
 
 def written_code(
@@ -84,14 +98,23 @@ def written_code(
     """
     code = source.paths_of(source.program)
     paths = source.source_of(code)
-    along = along_path(paths, task, tell=tell)
+    ticker = Ticker(tell)
+    plans = [planned(paths, task, ticker=ticker)]
+    along = run_of(plans[0], paths, task, ticker=ticker)
+    doubts = () if paths.caution is None else tuple(paths.caution.findings())
     rewritten = _rewritten(source, code, along.feeds)
     if rewritten.data == source.program.text.data:
-        return WrittenCode(along=_left_alone(along), rewritten=rewritten)
-    ticker = Ticker(tell)
+        return WrittenCode(
+            along=_left_alone(along),
+            rewritten=rewritten,
+            doubts=doubts,
+            faults=_broken(plans[0]),
+        )
     feeds, plans, is_settled = along.feeds, list[PathPlan](), False
     while not is_settled and len(plans) < MOST_PLANS:
         written = source.source_of(_paths_of_written(source, rewritten))
+        if paths.caution is not None:
+            written = replace(written, caution=paths.caution.of_written(rewritten.lines))
         plans.append(
             planned(written, replace(task, keeps_traces=False), ticker=ticker, what=CHECK)
         )
@@ -108,7 +131,22 @@ def written_code(
         along=_as_written(along, plans[-1]),
         rewritten=rewritten,
         findings=() if is_settled else (NOT_SETTLED,),
+        doubts=doubts,
+        faults=_broken(plans[-1], rewritten.lines),
     )
+
+
+def _broken(plan: PathPlan, lines: WrittenLines | None = None) -> tuple[Finding, ...]:
+    """Faults of the parts of a program whose feeds are above what the process permits."""
+    found = []
+    for name, worst in plan.planner.broken.items():
+        text = (
+            f"{name}: its feed is {worst.ratio:.3g} times what {worst.name.words} permits, and "
+            "could not be lowered"
+        )
+        line = worst.block if lines is None else lines.origin(worst.block).line
+        found.append(Finding(severity=Severity.ERROR, message=text, line=line))
+    return tuple(found)
 
 
 def composed(feeds: BlockFeeds, more: BlockFeeds, lines: WrittenLines) -> BlockFeeds:
@@ -143,7 +181,9 @@ def composed(feeds: BlockFeeds, more: BlockFeeds, lines: WrittenLines) -> BlockF
     return found
 
 
-def block_advice(code: CodePaths, line: int, parts: tuple[BlockPart, ...]) -> BlockAdvice:
+def block_advice(
+    code: CodePaths, line: int, parts: tuple[BlockPart, ...], *, note: str = ""
+) -> BlockAdvice:
     """Advice for a line of the file; feeds per revolution at its greatest speed."""
     block = code.block_at(line)
     fastest = code.fastest(block) if parts[0].is_per_revolution else 1.0
@@ -153,12 +193,37 @@ def block_advice(code: CodePaths, line: int, parts: tuple[BlockPart, ...]) -> Bl
         ends=tuple(part.end for part in parts),
         feeds=tuple(part.rate * fastest for part in parts),
         reason=", ".join(reasons),
+        note=note,
     )
 
 
 def _rewritten(source: CodeSource, code: CodePaths, feeds: BlockFeeds) -> RewrittenCode:
-    """Program with some feeds."""
-    advice = (block_advice(code, line, parts) for line, parts in feeds.items())
+    """Program with some feeds; a comment tells how far they rose, if that bounds any.
+
+    Without it a second run would take the risen feeds for programmed ones.
+    """
+    bounded = [
+        line
+        for line, parts in feeds.items()
+        if any(part.reason == CapName.RISE.words for part in parts)
+    ]
+    mark = mark_of(source.rise)
+    found = _fed(source, code, feeds)
+    for line in bounded[:MOST_NOTES]:
+        found = _fed(source, code, feeds, notes={line: mark})
+        if mark.encode() in found.data:
+            break
+    return found
+
+
+def _fed(
+    source: CodeSource, code: CodePaths, feeds: BlockFeeds, notes: Mapping[int, str] = NO_NOTES
+) -> RewrittenCode:
+    """Program with some feeds, and with comments on some lines."""
+    advice = (
+        block_advice(code, line, parts, note=notes.get(line, ""))
+        for line, parts in feeds.items()
+    )
     return rewrite(source.program, advice, mark=source.mark)
 
 

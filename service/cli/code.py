@@ -1,8 +1,26 @@
 """The command ``optimise`` for NC code. Imports are late, so that ``--help`` stays quick."""
 
 import argparse
+from typing import TYPE_CHECKING
 
-from service.cli.options import OK
+from service.cli.options import LIMIT_EXCEEDED, NOTHING_ADVISED, OK
+
+if TYPE_CHECKING:
+    from service.program_kind import ProgramKind
+
+
+def require_typed_served(options: argparse.Namespace, kind: "ProgramKind") -> None:
+    """Refuse options that were typed and that a kind of program cannot use.
+
+    Raises
+    ------
+    StepNcError
+        With the option and the reason.
+    """
+    from service.requests.serves import require_options_served
+
+    given = {name: value for name, value in vars(options).items() if value}
+    require_options_served(given, kind, flags=options.flags)
 
 
 def optimise_code(options: argparse.Namespace) -> int:
@@ -14,10 +32,7 @@ def optimise_code(options: argparse.Namespace) -> int:
     from service.requests.advice import AdviceRequest
     from service.requests.fields import from_options
     from service.terminal import tell, write_out
-    from stepnc_model.errors import StepNcError
 
-    if options.writes_toolpaths:
-        raise StepNcError("--write-toolpaths writes into STEP-NC programs: name one")
     files = CodeFiles(
         file=options.file,
         tools=options.tools,
@@ -28,6 +43,8 @@ def optimise_code(options: argparse.Namespace) -> int:
         report=options.report,
         feeds=options.feeds_csv,
         most_repeats=options.most_repeats,
+        holding=options.holding,
+        knowledge=options.kb,
     )
     found = optimise(from_options(AdviceRequest, options), files, tell=tell)
     write_views(found, files, tell=tell)
@@ -35,4 +52,6 @@ def optimise_code(options: argparse.Namespace) -> int:
         write_out(code_advice_json(found))
     else:
         print_code_advice(found)
-    return OK
+    if found.faults:
+        return LIMIT_EXCEEDED
+    return OK if found.is_advised else NOTHING_ADVISED

@@ -186,7 +186,7 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         metavar="CSV",
         help="write the feeds along the paths as a table",
     )
-    add("--dry-run", action="store_true", help="write no STEP-NC file")
+    add("--dry-run", action="store_true", help="write no optimised program")
     add(
         "--report",
         type=output_path,
@@ -298,18 +298,22 @@ def _exit_code(error: Exception) -> int:
 def _optimise(options: argparse.Namespace) -> int:
     """Run the command ``optimise``."""
     from service import usecases
-    from service.cli.code import optimise_code
+    from service.cli.code import optimise_code, require_typed_served
     from service.code_contents import is_code
+    from service.program_kind import ProgramKind
     from service.requests.advice import AdviceRequest
     from service.requests.fields import from_options
     from service.terminal import tell, write_out
     from stepnc_model.errors import StepNcError
 
     if options.file.is_dir():
+        require_typed_served(options, ProgramKind.STEP_NC)
         return _optimise_folder(options)
     if options.cluster:
         raise StepNcError("--cluster runs the programs of a folder: name a folder")
-    if is_code(options.file):
+    kind = ProgramKind.NC_CODE if is_code(options.file) else ProgramKind.STEP_NC
+    require_typed_served(options, kind)
+    if kind is ProgramKind.NC_CODE:
         return optimise_code(options)
     outcome = usecases.optimise(
         from_options(AdviceRequest, options),

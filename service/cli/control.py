@@ -31,13 +31,16 @@ if the force requires it.
 
 disturbances, unknown to the loop:
   from a time on        depth:+50%@12s hardness:+30%@12s material:NAME@12s tooth:1@12s
-                        silence:2s@12s line:off@12s
+                        silence:2s@12s line:off@12s override:80%@12s
   from the start        kc:1.3 wear:0.05mm/min runout:20um lag:60ms noise:3% drift:1N/s
-                        missing:5%
+                        missing:5% readings:20ms jitter:10%
   orders of an operator power:-50%@12s mode:QC@12s control:off@12s
 
-Exit code 5: the loop stopped the program (a broken tooth, too many feed holds), the machine no
-longer answered, or the force stayed above its set point."""
+--law none only monitors: the feed stays as programmed, and load, wear and events are told.
+
+Exit code 5: the loop stopped the program (a broken tooth, a worn tool, too many feed holds),
+the machine no longer answered or did not follow the override, the force stayed above its set
+point, or the loop asks for a tool change."""
 
 
 def add_control_command(commands: Commands) -> None:
@@ -84,6 +87,21 @@ def _options(parser: argparse.ArgumentParser) -> None:
         help="evaluate a recorded run of the program instead: a .parquet or .csv file of "
         "`record`, or the next run that an MTConnect agent publishes",
     )
+    add(
+        "--loads",
+        type=output_path,
+        metavar="FILE",
+        help="reference loads by tool and cut (JSON): a cut that has none teaches its own, "
+        "later runs are compared with it",
+    )
+    add("--teach", action="store_true", help="teach the loads of all cuts anew")
+    add(
+        "--cut-log",
+        type=output_path,
+        metavar="CSV",
+        help="write a row for each cut: times, powers, reference load, least feed, wear, and "
+        "what was done",
+    )
     add_knowledge(parser, "records the outcomes and supplies accepted corrections")
     add(
         "--by",
@@ -106,7 +124,13 @@ def _control(options: argparse.Namespace) -> int:
 
     run = control_recorded(
         _request(options),
-        replace(run_files(options, options.file), recorded=_recorded(options)),
+        replace(
+            run_files(options, options.file),
+            recorded=_recorded(options),
+            loads=options.loads,
+            is_teaching=options.teach,
+            cut_log=options.cut_log,
+        ),
         knowledge=options.kb,
         by=options.by,
         tell=tell,

@@ -284,7 +284,8 @@ def _simulate(options: argparse.Namespace) -> int:
         print_simulation(simulation, carbon=carbon)
     if simulation.faults:
         return BAD_INPUT
-    return LIMIT_EXCEEDED if simulation.whole.overload_time > 0.0 else OK
+    is_exceeded = simulation.whole.overload_time > 0.0 or bool(simulation.collisions)
+    return LIMIT_EXCEEDED if is_exceeded else OK
 
 
 def _calibrate(options: argparse.Namespace) -> int:

@@ -42,6 +42,9 @@ class CommandParser(argparse.ArgumentParser):
         namespace, rest = super().parse_known_args(*args, **words)
         if names := output_names(self):
             namespace.output_names = names
+        namespace.flags = {
+            each.dest: each.option_strings[-1] for each in self._actions if each.option_strings
+        }
         return namespace, rest
 
 

@@ -25,7 +25,7 @@ def require_own_places(options: argparse.Namespace) -> None:
     inputs = {
         name: list(_files(value))
         for name, value in vars(options).items()
-        if name not in outputs and name != "output_names"
+        if name not in outputs and name not in {"output_names", "flags"}
     }
     require_distinct(outputs.values())
     for name, place in outputs.items():

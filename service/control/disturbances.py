@@ -16,6 +16,9 @@ lag:60ms           time constant with which the feed follows the override
 noise:3%           noise of the dynamometer
 drift:1N/s         zero drift of the dynamometer
 missing:5%         share of the dynamometer's samples that is lost
+override:80%@12s   the axes run this override, whatever is commanded
+readings:20ms      mean force over such a time in place of tooth periods
+jitter:10%         greatest deviation of that time
 power:-50%@12s     motor power that the operator allows, relative to the machine's
 mode:QC@12s        the operator switches to TC or QC
 control:off@12s    the operator switches the loop on or off
@@ -42,6 +45,9 @@ MOST_FACTOR = 10.0
 """Largest factor on depth, k_c or power; a larger one is taken for a typing error."""
 
 MOST_TEETH = 100.0
+
+LONGEST_READING = 1.0
+"""Longest time between readings, in s."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -223,6 +229,14 @@ def _hidden(name: str, read: Callable[[_Word], float]) -> Callable[..., Disturba
     return with_it
 
 
+def _bench(name: str, read: Callable[[_Word], float]) -> Callable[..., Disturbances]:
+    def with_it(found: Disturbances, word: _Word) -> Disturbances:
+        change: dict[str, Any] = {name: read(word)}
+        return replace(found, bench=replace(found.bench, **change))
+
+    return with_it
+
+
 def _instrument(name: str, read: Callable[[_Word], float]) -> Callable[..., Disturbances]:
     def with_it(found: Disturbances, word: _Word) -> Disturbances:
         dynamometer = replace(found.bench.dynamometer, **{name: read(word)})
@@ -240,6 +254,11 @@ _FROM_START: dict[str, Callable[[Disturbances, _Word], Disturbances]] = {
     ),
     "lag": _hidden("servo_lag", lambda word: _within(word, {"ms": 1e-3, "s": 1.0}, 1e-3, 10.0)),
     "noise": _instrument("noise", _share),
+    "readings": _bench(
+        "reading_period",
+        lambda word: _within(word, {"ms": 1e-3, "s": 1.0}, 1e-4, LONGEST_READING),
+    ),
+    "jitter": _bench("jitter", _share),
     "drift": _instrument("drift", lambda word: _within(word, {"N/s": 1.0}, -1e3, 1e3)),
     "missing": _instrument("missing", _share),
 }
@@ -247,6 +266,10 @@ _CHANGES: dict[str, tuple[HiddenQuantity, Callable[[_Word], float]]] = {
     "depth": (HiddenQuantity.DEPTH, _factor),
     "hardness": (HiddenQuantity.HARDNESS, _factor),
     "tooth": (HiddenQuantity.TOOTH, _tooth),
+    "override": (
+        HiddenQuantity.OVERRIDE,
+        lambda word: _within(word, {"%": 0.01}, 0.0, 2.0),
+    ),
     "line": (HiddenQuantity.LINE, _line),
     "silence": (
         HiddenQuantity.SILENCE,

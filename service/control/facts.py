@@ -79,6 +79,12 @@ class ControlRow:
         return mean, mean * ratio.log_deviation
 
     @property
+    def wear(self) -> tuple[float, float] | None:
+        """Estimated flank wear at the end with its deviation, in mm; None if not known."""
+        life = self.record.life
+        return None if life is None else (life.flank_wear, life.uncertainty)
+
+    @property
     def why(self) -> str:
         """Reasons that limited the override, in a sentence."""
         if self.inhibition:
@@ -136,6 +142,10 @@ def whole(run: ControlRun) -> ControlRow:
         for name in _ADDED:
             setattr(total, name, getattr(total, name) + getattr(record, name))
         total.peak = max(total.peak, record.peak)
+        total.power = max(total.power, record.power)
+        total.longest_over = max(
+            total.longest_over, record.longest_over, key=lambda each: each.seconds
+        )
         total.least = min(total.least, record.least)
         total.greatest = max(total.greatest, record.greatest)
     held = run.held.values()
@@ -150,7 +160,7 @@ def whole(run: ControlRun) -> ControlRow:
 
 _ADDED = (
     "time", "cutting_time", "way", "impulse", "excess", "over_time", "overrides", "revolutions",
-    "lost",
+    "lost", "work", "astray",
 )  # fmt: skip
 
 
@@ -165,6 +175,22 @@ def exceeded(run: ControlRun, found: Sequence[ControlRow]) -> tuple[str, ...]:
             f"chips above {EXCESS_RATIO:g} times the set point of {row.record.set_point:.4g} N"
             for row in found
             if row.has_stayed_over
+        ),
+        *(
+            f"{row.name}: {row.record.longest_over.seconds:.3g} s without a break above the "
+            f"set point, at most {row.record.longest_over.most:.3g} times"
+            for row in found
+            if row.record.longest_over.is_lasting
+        ),
+        *(
+            f"{row.name}: the override was not followed for {row.record.astray:.3g} s"
+            for row in found
+            if row.record.astray > 0.0
+        ),
+        *(
+            f"{event.text} (at {event.time:.2f} s)"
+            for event in run.events
+            if event.kind is EventKind.WEAR
         ),
         *(
             f"{row.name}: no force for {row.blind:.3g} s of {row.record.time:.3g} s: run at "

@@ -44,10 +44,17 @@ GRAVE = frozenset({
     EventKind.HOLD,
     EventKind.OVER,
     EventKind.LOST,
+    EventKind.ASTRAY,
 })
 """Serious events, which no good run has."""
 
-PLAIN = frozenset({EventKind.WORKINGSTEP, EventKind.SAFE, EventKind.RESUME, EventKind.ORDER})
+PLAIN = frozenset({
+    EventKind.WORKINGSTEP,
+    EventKind.SAFE,
+    EventKind.RESUME,
+    EventKind.ORDER,
+    EventKind.FOLLOWED,
+})
 """Events of a normal run."""
 
 MOST_MARKS = 1000

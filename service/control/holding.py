@@ -29,6 +29,9 @@ ASKED = "force asked for"
 STRENGTH = "strength of the tool"
 RUBBING = "no feed keeps the roughness"
 
+LEAST_FEEDS = frozenset({LimitName.CHIP_THICKNESS, LimitName.FEED_PER_TOOTH})
+"""Limits that set the least feed."""
+
 CLOSE = 1e-6
 """Relative distance within which the override counts as being at an end of its band."""
 
@@ -155,7 +158,7 @@ def ends_of(advice: Advice) -> OverrideLimits:
     if state is None:
         return OverrideLimits(reference=reference)
     highest = dict(_overrides(state, FEED_LIMITS, BoundSide.AT_MOST))
-    lowest = dict(_overrides(state, frozenset({LimitName.CHIP_THICKNESS}), BoundSide.AT_LEAST))
+    lowest = dict(_overrides(state, LEAST_FEEDS, BoundSide.AT_LEAST))
     return OverrideLimits(
         reference=reference,
         ceiling=(reference.ceiling, highest.get(reference.ceiling, RUBBING)),

@@ -14,7 +14,7 @@ from service.control.setup import hardness_against
 from service.requests.fields import loaded, require_bounds
 from service.requests.runs import ControlChanges
 from service.session.rows import CM3_MIN, LiveRows, RunUpdate, known
-from service.session.status import SessionStatus
+from service.session.status import SessionStatus, over_percent, over_seconds
 from simulator.library import material_names
 from simulator.physics.spindle import available_power
 from simulator.plant.hidden import HiddenChange, HiddenQuantity
@@ -53,6 +53,12 @@ class ControlStatus(SessionStatus):
     """Force expected with the catalogue's k_c, in N; otherwise as the measured force."""
     axial_depth_mm: float
     """Actual axial depth of cut, in mm."""
+    flank_wear_mm: float | None
+    """Flank wear of the tool as estimated from the forces, in mm; None: not known."""
+    flank_wear_deviation_mm: float | None
+    """Standard deviation of that estimate, in mm."""
+    is_tool_change_due: bool
+    """Whether the loop asks for a tool change."""
     is_done: bool
     """Whether the program has ended or was stopped."""
 
@@ -131,7 +137,11 @@ class LiveControl:
 
     def status(self) -> ControlStatus:
         """Return the status snapshot of the run."""
-        session, row = self.session, self._live_rows.last
+        session, last = self.session, self._live_rows.last
+        # After the end nothing moves, whatever the last row says.
+        row = None if self._is_done else last
+        monitor = session.loop.state.monitor
+        life = monitor.life
         loop, machine, settings = session.loop, session.machine, session.loop.state.settings
         power = self._motor_power()
         programmed = 0.0 if row is None else row.feed_programmed
@@ -140,7 +150,7 @@ class LiveControl:
             machine=session.virtual.name,
             program=session.program.name,
             progress=machine.share,
-            workingstep="" if row is None else row.workingstep,
+            workingstep="" if last is None else last.workingstep,
             feed_programmed_mm_min=mm_min_from_speed(programmed),
             feed_advised_mm_min=mm_min_from_speed(loop.state.override * programmed),
             feed_actual_mm_min=0.0 if row is None else mm_min_from_speed(row.feed_actual),
@@ -153,7 +163,14 @@ class LiveControl:
             removal_rate_cm3_min=0.0 if row is None else CM3_MIN * row.removal_rate,
             axial_depth_mm=0.0 if row is None else row.axial_depth,
             is_overloaded=not self._is_done and self._live_rows.is_overloaded(machine.time),
-            holding=session.holdings.words,
+            over_set_point_percent=None if self._is_done else over_percent(monitor),
+            over_set_point_s=0.0 if self._is_done else over_seconds(monitor),
+            is_override_followed=not loop.state.following.is_astray,
+            flank_wear_mm=None if life is None else life.flank_wear,
+            flank_wear_deviation_mm=None if life is None else life.uncertainty,
+            is_tool_change_due=monitor.tool in monitor.worn
+            or (loop.state.is_stopped and monitor.is_worn),
+            holding="" if self._is_done else session.holdings.words,
             level=session.holdings.level.value,
             criterion=settings.criterion,
             is_on=settings.is_on,

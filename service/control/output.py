@@ -8,6 +8,8 @@ from typing import Any
 
 from controller.record import EXCESS_RATIO, RunRecord
 from service.buckets import BucketedRun
+from service.control.cuts import COLUMNS as CUT_COLUMNS
+from service.control.cuts import cuts, loads_words
 from service.control.facts import (
     ControlRow,
     disturbed,
@@ -52,6 +54,10 @@ def _factor(row: ControlRow) -> str | None:
     return None if row.factor is None else f"{row.factor[0]:.3f} ± {row.factor[1]:.3f}"
 
 
+def _wear(row: ControlRow) -> str | None:
+    return None if row.wear is None else f"{row.wear[0]:.2f} ± {row.wear[1]:.2f}"
+
+
 SHOWN: tuple[Column[ControlRow], ...] = (
     Column(heading="workingstep", value=lambda row: row.name, is_key=True),
     Column(
@@ -81,7 +87,10 @@ SHOWN: tuple[Column[ControlRow], ...] = (
         heading="holds", help="number of feed holds",
         value=lambda row: row.holds if row.record.revolutions else None,
     ),
-    Column(heading="k_c factor", help="measured over catalogue value", value=_factor),
+    Column(
+        heading="k_c factor", help="measured over catalogue value, without wear", value=_factor,
+    ),
+    Column(heading="wear mm", help="estimated from the forces, VB", value=_wear),
 )  # fmt: skip
 """Columns of the table on a terminal and on the page."""
 
@@ -98,6 +107,14 @@ NUMBERS: tuple[Column[ControlRow], ...] = (
     Column(key="force_n.mean", value=lambda row: row.record.force),
     Column(key="force_n.nearest_to_bound", value=lambda row: row.record.peak),
     Column(key="over_set_point_s", value=lambda row: row.record.over_time),
+    Column(key="longest_over_set_point_s", value=lambda row: row.record.longest_over.seconds),
+    Column(
+        key="longest_over_set_point_percent",
+        value=lambda row: 100.0 * row.record.longest_over.most or None,
+    ),
+    Column(key="override_not_followed_s", value=lambda row: row.record.astray),
+    Column(key="spindle_power_w.mean", value=lambda row: row.record.mean_power),
+    Column(key="spindle_power_w.greatest", value=lambda row: row.record.power),
     Column(key="excess_impulse_n_s", value=lambda row: row.record.excess),
     Column(key="holds", value=lambda row: row.holds),
 )
@@ -121,6 +138,8 @@ def print_control(run: ControlRun) -> None:
         f"{EXCESS_RATIO:g} times the bound; excess: impulse above the bound, including noise"
     )
     print_line(f"events: {event_counts(run)}")
+    if words := loads_words(run):
+        print_line(f"load in per cent of the reference load: {words}")
     print_line(f"disturbed: {disturbed_words(run)}; seed {run.seed}")
     for text in exceeded(run, found):
         print_line(f"limit exceeded: {text}", RED)
@@ -154,6 +173,7 @@ def control_json(run: ControlRun) -> str:
                 "held_by": dict(row.shares),
                 "inhibition": row.inhibition or None,
                 "kc_factor": _factor_json(row),
+                "flank_wear": _wear_json(row),
             }
             for row, values in zip(found, records(columns, found), strict=True)
         ],
@@ -165,6 +185,7 @@ def control_json(run: ControlRun) -> str:
             {"time_s": event.time, "kind": event.kind.value, "text": event.text}
             for event in run.events
         ],
+        "cuts": records(CUT_COLUMNS, cuts(run)),
         "limits_exceeded": list(exceeded(run, found)),
         "left_out": list(run.faults),
         "findings": [finding_record(finding) for finding in run.findings],
@@ -178,6 +199,19 @@ def _factor_json(row: ControlRow) -> dict[str, Any] | None:
     value, deviation = row.factor
     readings = row.record.ratio.readings
     return {"value": value, "deviation": deviation, "readings": readings}
+
+
+def _wear_json(row: ControlRow) -> dict[str, Any] | None:
+    """Return the estimated wear of the tool as a JSON object; None if it is not known."""
+    life = row.record.life
+    if life is None:
+        return None
+    return {
+        "value_mm": life.flank_wear,
+        "deviation_mm": life.uncertainty,
+        "basis": life.basis,
+        "is_worn_out": life.is_worn_out,
+    }
 
 
 def control_page(run: ControlRun, trace: BucketedRun) -> str:
@@ -221,5 +255,6 @@ def control_page(run: ControlRun, trace: BucketedRun) -> str:
         ],
         left_out=len(run.events) - len(events),
         counts=event_counts(run),
+        loads=loads_words(run),
         disturbed=disturbed_words(run),
     )

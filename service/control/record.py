@@ -12,9 +12,11 @@ from pathlib import Path
 from controller.orders import EventKind
 from kbe.rows import CIRCUMSTANCES, OUTCOME, Value
 from kbe.store_location import parsed_place, require_openable
+from service.control.cuts import cuts_csv, taught_by
+from service.control.loads import write_loads
 from service.control.outcomes import RecordingContext, outcomes_of
 from service.control.run import ControlRun, Watcher, control
-from service.files import require_place
+from service.files import require_place, require_places, write_atomically
 from service.knowledge.place import make_folder, named_place, require_apart
 from service.knowledge.verbs import record
 from service.reading import Tell, silent
@@ -57,7 +59,12 @@ def control_recorded(
     for written in (files.output, files.report):
         if files.recorded is not None and written is not None:
             require_place(written, apart_from=files.recorded)
+    if files.is_teaching and files.loads is None:
+        raise StepNcError("--teach needs a file of reference loads: name it with --loads")
+    outputs = (files.loads, files.cut_log, files.output, files.report)
+    require_places(outputs, apart_from=[files.file, files.recorded])
     run = control(request, files, knowledge=knowledge, tell=tell, watchers=watchers)
+    _keep_cuts(run, files, tell)
     if place is not None:
         kept = files.recorded or files.output
         trace = "" if kept is None else str(kept.resolve())
@@ -65,6 +72,22 @@ def control_recorded(
         by = by or getpass.getuser()
         keep(run, place, by=by, trace=trace, recorded=recorded, tell=tell)
     return run
+
+
+def _keep_cuts(run: ControlRun, files: RunFiles, tell: Tell) -> None:
+    """Write the log of the cuts, and the reference loads that the run has taught."""
+    if files.cut_log is not None:
+        write_atomically(files.cut_log, cuts_csv(run))
+        tell(f"cuts: {files.cut_log}")
+    if files.loads is None:
+        return
+    taught = taught_by(run, is_teaching=files.is_teaching)
+    if taught:
+        write_loads(files.loads, {**run.loads, **taught})
+    names = ", ".join(f"'{key.workingstep}'" for key in taught)
+    tell(f"reference loads: {len(run.loads)} known, {len(taught)} taught {names}".rstrip())
+    if run.is_stopped:
+        tell("a run that was stopped teaches no reference load")
 
 
 def keep(

@@ -21,6 +21,7 @@ from optimiser.modes import Mode
 from service.buckets import BucketedRun
 from service.control.disturbances import TimedOrder, disturbances
 from service.control.holding import HoldTallies, HoldTally
+from service.control.loads import CutKey, Loads, key_of, read_loads
 from service.control.planned import PlannedWorkingstep, planned_steps, with_hardest
 from service.control.setup import (
     advices_in_order,
@@ -48,7 +49,11 @@ from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import Finding, StepNcError
 from stepnc_model.program import Program
 
-CHIP_FORCES = {SensorChoice.DYNAMOMETER: 10.0, SensorChoice.POWER: 60.0}
+CHIP_FORCES = {
+    SensorChoice.DYNAMOMETER: 10.0,
+    SensorChoice.COMPONENTS: 10.0,
+    SensorChoice.POWER: 60.0,
+}
 """Force above which a sensor counts as cutting, in N: several times its noise."""
 
 
@@ -95,6 +100,8 @@ class ControlRun:
     """Signals for a report, if one was requested."""
     faults: tuple[str, ...] = ()
     """Reasons why some workingsteps were left out, or not planned."""
+    loads: Loads = field(default_factory=dict)
+    """Reference loads of earlier runs."""
     recorded: str = ""
     """File of the recorded run that was evaluated; empty: it ran on the virtual machine."""
 
@@ -185,7 +192,10 @@ def prepare(
     course = planned_course(prepared, virtual, tell)
     require_teeth(found.hidden, course)
     bench = replace(
-        found.bench, efficiency=virtual.machine.spindle.efficiency, seed=request.seed
+        found.bench,
+        efficiency=virtual.machine.spindle.efficiency,
+        has_normal=request.sensor is SensorChoice.COMPONENTS,
+        seed=request.seed,
     )
     machine = (
         ControlledMachine(course, found.hidden, bench)
@@ -194,7 +204,12 @@ def prepare(
     )
     planned = planned_steps(course)
     advices = advices_in_order(virtual.workingsteps, plan.advices)
-    steps, preview = steps_of(planned, advices), preview_of(course)
+    loads = read_loads(files.loads)
+    taught = [
+        None if each is None else loads.get(_key(virtual.machine, prepared.material, each))
+        for each in advices
+    ]
+    steps, preview = steps_of(planned, advices, taught), preview_of(course)
     planned = with_hardest(planned, course, equivalent(preview, steps, settings).weight)
     loop = Loop(
         VirtualSensor(machine),
@@ -219,6 +234,7 @@ def prepare(
         plan=plan,
         advices=advices,
         planned=planned,
+        loads=loads,
         findings=(*prepared.findings, *virtual.findings, *plan.findings),
         faults=(
             *map(str, prepared.faults),
@@ -275,6 +291,7 @@ class Session:
     plan: Plan
     advices: tuple[Advice | None, ...]
     planned: Mapping[int, PlannedWorkingstep]
+    loads: Loads
     findings: tuple[Finding, ...]
     faults: tuple[str, ...]
     virtual: Machine
@@ -352,6 +369,7 @@ class Session:
                 for number, record in records.items()
             ),
             planned=self.planned,
+            loads=self.loads,
             events=tuple(self.events),
             findings=self.findings,
             faults=self.faults,
@@ -368,6 +386,10 @@ class Session:
             trace=None if trace is None else trace.trace(),
             recorded="" if self.files.recorded is None else self.files.recorded.name,
         )
+
+
+def _key(machine: Machine, match: MaterialMatch, advice: Advice) -> CutKey:
+    return key_of(machine.name, match.material.name, advice)
 
 
 def _told(event: LoopEvent) -> str:

@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from optimiser.optimise import optimise_program
 from optimiser.safety import LEAST_QUANTILE
 from optimiser.source import from_features
 from service.chosen import library_material
+from service.control.loads import ReferenceLoad
 from service.control.planned import PlannedWorkingstep
 from service.knowledge.corrected import factors_for
 from service.progress import Ticker, bar
@@ -195,12 +197,20 @@ def advices_in_order(
 
 
 def steps_of(
-    planned: Mapping[int, PlannedWorkingstep], advices: Sequence[Advice | None]
+    planned: Mapping[int, PlannedWorkingstep],
+    advices: Sequence[Advice | None],
+    taught: Sequence[ReferenceLoad | None] = (),
 ) -> list[LoopStep]:
-    """Return the loop's steps, with what is planned of their cuts."""
-    return [
+    """Return the loop's steps, with what is planned and what sharp tools have taught."""
+    steps = [
         _step(planned.get(number, PlannedWorkingstep()), advice)
         for number, advice in enumerate(advices, 1)
+    ]
+    if not taught:
+        return steps
+    return [
+        step if load is None else replace(step, taught=load.kc_factor)
+        for step, load in zip(steps, taught, strict=True)
     ]
 
 

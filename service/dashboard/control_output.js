@@ -28,6 +28,7 @@ const SMALL = {
     ["force_measured_n", "Measured force", "N", 0],
     ["removal_rate_cm3_min", "Removal rate", "cm³/min", 1],
     ["axial_depth_mm", "Actual depth", "mm", 2],
+    ["flank_wear_mm", "Estimated wear", "mm", 2],
   ],
 };
 const BAR_TOP = 1.5;
@@ -36,6 +37,11 @@ const AT_REST = { feed_actual_mm_min: 0, feed_per_tooth_mm: 0, removal_rate_cm3_
   force_predicted_n: 0, power_kw: 0, power_predicted_kw: 0 };
 /** values that are blank while the loop is off */
 const OFF = { feed_advised_mm_min: null };
+
+/** Return the words on a force above its set point, with number and time. */
+function overWords({ over_set_point_percent: percent, over_set_point_s: seconds }) {
+  return `OVER SET POINT ${fixed(percent, 0)} % for ${fixed(Math.floor(seconds), 0)} s`;
+}
 
 function named(name, words, unit, kind) {
   const node = figure(words, "–", unit, kind);
@@ -55,8 +61,8 @@ export class Output {
         ["QC", "QC", "quality-critical: the programmed chip load"]], ask);
     this.feeds = FEEDS.map(([name, words, unit]) => named(name, words, unit, "big"));
     this.lampWord = el("span", { class: "word" }, "–");
-    this.lamp = el("div", { class: "lamp idle", id: "lamp", role: "img", "aria-label": "power limit: no run" },
-      el("span", { class: "cap" }, "Power limit"), this.lampWord);
+    this.lamp = el("div", { class: "lamp idle", id: "lamp", role: "img", "aria-label": "limits: no run" },
+      el("span", { class: "cap" }, "Limits"), this.lampWord);
     this.depth = el("div", { id: "depth-warning", class: "depth" });
     this.holding = el("b", { id: "out-holding" }, "–");
     this.forceText = el("span", { id: "out-force" }, "–");
@@ -124,12 +130,16 @@ export class Output {
 
   showLamp(status, isAtRest) {
     const [tone, word] = !status ? ["idle", "NO RUN"] : isAtRest ? ["idle", "AT REST"]
-      : status.is_overloaded ? ["over", "OVER"] : ["safe", "SAFE"];
+      : status.is_overloaded ? ["over", "OVER POWER"]
+        : status.over_set_point_s ? ["over", overWords(status)]
+          : status.is_override_followed === false ? ["over", "NOT FOLLOWED"] : ["safe", "SAFE"];
     if (this.lampWord.textContent === word) return;
-    if (tone === "over" || this.lamp.classList.contains("over")) announce(`power limit: ${word}`);
+    // Numbers that count on are not announced each time.
+    if (word.split(" ")[0] !== this.lampWord.textContent.split(" ")[0]) announce(`limits: ${word}`);
     this.lampWord.textContent = word;
     this.lamp.className = `lamp ${tone}`;
-    this.lamp.setAttribute("aria-label", `power limit: ${word}`);
+    this.lamp.classList.toggle("long", word.length > 10);
+    this.lamp.setAttribute("aria-label", `limits: ${word}`);
   }
 }
 

@@ -8,6 +8,7 @@ export const LEFT = 52, RIGHT = 10;
 /** colours of event kinds, by their names in app.css */
 export const TONES = { over: "bad", stop: "bad", breakage: "bad", lost: "bad", refused: "bad", hold: "warn",
   warning: "warn", wear: "warn", hardness: "warn", unreachable: "warn", silence: "warn",
+  "not followed": "bad", averaged: "warn", followed: "good",
   safe: "good", resume: "good" };
 
 /** Return a round step that divides `top` into about a number of parts. */

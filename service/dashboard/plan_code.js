@@ -43,7 +43,8 @@ export function codeOptions(changed) {
     get fields() {
       return { tools_id: tools.id, stock: byId("code-stock").value.trim(), dialect: byId("dialect").value || null,
         finish: names("finish"), keep: names("keep"), is_marked: byId("mark").checked,
-        is_unrolled: byId("unroll").checked };
+        is_unrolled: byId("unroll").checked, allow_plunge: byId("allow-plunge").checked,
+        ...(byId("greatest-rise").value === "" ? {} : { greatest_rise: byId("greatest-rise").valueAsNumber }) };
     },
     /** Fill the options from a request. */
     async recall(request) {
@@ -51,6 +52,8 @@ export function codeOptions(changed) {
       byId("dialect").value = request.dialect ?? "";
       byId("mark").checked = request.is_marked ?? false;
       byId("unroll").checked = request.is_unrolled ?? false;
+      byId("allow-plunge").checked = request.allow_plunge ?? false;
+      byId("greatest-rise").value = request.greatest_rise ?? "";
       for (const name of ["finish", "keep"]) byId(name).value = (request[name] ?? []).join(", ");
       await tools.use(request.tools_id ?? null);
     },

@@ -163,7 +163,7 @@ function facts(step) {
     ["Depth of a pass, mm", both("axial_depth_mm")],
     ["Motor power, kW", number(step.motor_power_kw)],
     ["Cutting force, N", number(step.cutting_force_n)],
-    step.roughness_ra_um ? ["Roughness Ra, µm", number(step.roughness_ra_um)] : null,
+    step.roughness_ra_um ? [`Roughness Ra, µm (${step.roughness_basis})`, number(step.roughness_ra_um)] : null,
     ["Energy, kJ", step.energy_j === null ? "–" : number(step.energy_j / 1000, 4)],
     ["Operation", words(step.operation)],
     ["Tool", step.tool],
@@ -191,8 +191,8 @@ function sentences(step) {
 
 function front(step) {
   if (!step.pareto.length) return null;
-  return el("table", {}, el("caption", {}, "Front of time, roughness and energy"),
-    el("thead", {}, el("tr", {}, ["Time, s", "Ra, µm", "Energy, kJ", "Feed, mm/min", "Speed, rpm", "Passes"].map((title) =>
+  return el("table", {}, el("caption", {}, "Front of time, roughness (Ra ideal, not measured) and energy"),
+    el("thead", {}, el("tr", {}, ["Time, s", "Ideal Ra, µm", "Energy, kJ", "Feed, mm/min", "Speed, rpm", "Passes"].map((title) =>
       el("th", { scope: "col", class: "n" }, title)))),
     el("tbody", {}, step.pareto.map((point) => el("tr", {}, [fixed(point.time_s, 1), number(point.roughness_ra_um),
       number(point.energy_j / 1000, 4), four(point.feed_mm_min), four(point.spindle_rpm),

@@ -93,6 +93,7 @@ def _advise_code(
         output=task.folder / NC_CODE,
         report=task.folder / REPORT,
         feeds=task.folder / FEEDS,
+        knowledge=task.data_folder.knowledge,
     )
     found = optimise_code(request, places, tell=task.tell)
     findings = (
@@ -103,7 +104,7 @@ def _advise_code(
     _keep_curves(task, found.along)
     task.keep({
         **json.loads(code_advice_json(found)),
-        "is_written": True,
+        "is_written": found.written is not None,
         "nc_control": found.control,
     })
 

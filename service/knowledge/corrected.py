@@ -43,6 +43,26 @@ def factors_for(  # noqa: PLR0913 (all that a context is made of)
     StepNcError
         When the knowledge base cannot be read.
     """
+    return factors_for_tools(
+        place,
+        sorted({tool_of(program, step.tool_ref).id for step in steps}),
+        machine=machine,
+        material=material,
+        safety=safety,
+        is_new_allowed=is_new_allowed,
+    )
+
+
+def factors_for_tools(
+    place: str,
+    tools: Iterable[str],
+    *,
+    machine: Machine,
+    material: MaterialMatch,
+    safety: float = USUAL_QUANTILE,
+    is_new_allowed: bool = False,
+) -> "tuple[AcceptedFactor, ...]":
+    """Return the accepted factors for some tools by their ids, as :func:`factors_for`."""
     from service.knowledge.place import named_place  # noqa: PLC0415 (os and paths only when asked)
 
     found = named_place(place)
@@ -50,7 +70,6 @@ def factors_for(  # noqa: PLR0913 (all that a context is made of)
         return ()
     from service.knowledge.verbs import accepted_factors  # noqa: PLC0415 (SQLAlchemy)
 
-    tools = sorted({tool_of(program, step.tool_ref).id for step in steps})
     return accepted_factors(
         found,
         machine=machine.name,

@@ -11,7 +11,7 @@ from service.files import (
     write_atomically,
     write_lines,
 )
-from service.paths.remarks import tell_remarks
+from service.paths.remarks import tell_check, tell_remarks
 from service.progress import Progress
 from service.reading import Tell, one_of, read_given, silent
 from service.requests.given import ProgramRequest
@@ -171,6 +171,7 @@ def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
     if error is not None and not request.keep_going:
         raise error
     paths = with_remarks(paths_of(program, keep_going=request.keep_going, tell=tell), tell)
+    tell_check(program, paths.told, tell)
     paths = with_feeds(paths, keep_going=request.keep_going, tell=tell)
     cycles = Cycles.OWN if request.cycles else Cycles.EXPANDED
     lines = nc_lines(paths, control, cycles, is_exact=request.exact_path)

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from annotated_types import Interval, Len, MaxLen
 
+from optimiser.greatest_rise import USUAL_RISE
 from optimiser.modes import Free, Mode
 from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE
 from service.requests.fields import About
@@ -148,7 +149,8 @@ class AdviceRequest(ProgramRequest):
         bool,
         About(
             "let tools that do not cut over centre plunge straight into solid material; "
-            "without it: exit 5",
+            "without it: exit 5; of NC code: let straight plunges be faster than programmed, "
+            "by their depth",
             flag="--allow-plunge",
         ),
     ] = False
@@ -223,6 +225,14 @@ class AdviceRequest(ProgramRequest):
             unit="mm/min", name="greatest feed", flag="--max-feed", metavar="MM_MIN",
         ),
     ] = None  # fmt: skip
+    greatest_rise: Annotated[
+        float,
+        Interval(ge=1.0, le=1000.0),
+        About(
+            "of NC code: greatest feed along the path over the programmed one",
+            name="greatest rise", flag="--greatest-rise", metavar="N",
+        ),
+    ] = USUAL_RISE  # fmt: skip
     least_feed_mm_min: Annotated[
         float | None,
         Interval(gt=0.0, le=1e6),

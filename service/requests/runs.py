@@ -39,6 +39,8 @@ class SensorChoice(StrEnum):
     """Quantity that the control loop measures."""
 
     DYNAMOMETER = "dynamometer"
+    COMPONENTS = "components"
+    """Dynamometer that shows the force normal to the edges too."""
     POWER = "power"
 
 
@@ -194,7 +196,8 @@ class ControlRequest(RunRequest):
     law: Annotated[
         LawName,
         About(
-            "control law: log-pi, pi, fuzzy, self-tuning, mrac, mpc, or none (programmed feed)",
+            "control law: log-pi, pi, fuzzy, self-tuning, mrac, mpc, or none (monitors only: "
+            "the programmed feed)",
             flag="--law",
         ),
     ] = LawName.LOG_PI
@@ -231,7 +234,11 @@ class ControlRequest(RunRequest):
     ] = 120.0
     sensor: Annotated[
         SensorChoice,
-        About("sensor of the loop: dynamometer, or drive power", flag="--sensor"),
+        About(
+            "sensor of the loop: dynamometer, components (a dynamometer that shows the force "
+            "normal to the edges too, from which wear is seen best), or drive power",
+            flag="--sensor",
+        ),
     ] = SensorChoice.DYNAMOMETER
     has_corrections: Annotated[bool, About("apply accepted corrections of k_c")] = True
     is_recorded: Annotated[bool, About("record the outcomes in the knowledge base")] = True

@@ -78,6 +78,13 @@ class HoldingLoadView(View):
     lift_n: float = Field(description="largest axial force that lifts the workpiece")
 
 
+class RefusedPassesView(View):
+    """Number of passes that is no candidate for a workingstep."""
+
+    passes: int
+    reason: str
+
+
 class AdvisedView(View):
     """Advised feed of one workingstep, with the reasons."""
 
@@ -96,6 +103,12 @@ class AdvisedView(View):
     motor_power_kw: float | None
     cutting_force_n: float | None
     roughness_ra_um: float | None
+    roughness_basis: str | None = Field(
+        default=None, description="what the roughness is: ideal, not measured"
+    )
+    refused_passes: list[RefusedPassesView] = Field(
+        default=[], description="numbers of passes that would leave other stock than programmed"
+    )
     energy_j: float | None
     time_s: BeforeAfterView
     stability: StabilityView | None = Field(
@@ -122,6 +135,18 @@ class FigureView(View):
     found: float
     ratio: float | None = Field(description="found over predicted")
     bound: float | None = Field(description="bound that the value must keep")
+    found_at_quantile: float | None = Field(
+        description="value found with the k_c at the quantile of the plan; null: the same"
+    )
+
+
+class StockLeftView(View):
+    """Stock that a workingstep leaves, compared with that of the program as given."""
+
+    volume_mm3: float = Field(description="volume left in addition; negative: less is left")
+    deviation_mm: float = Field(
+        description="greatest distance beyond the resolution of the map; 0: none"
+    )
 
 
 class ConfirmedView(View):
@@ -134,13 +159,19 @@ class ConfirmedView(View):
     deflection_um: FigureView
     cutting_power_w: FigureView
     drive_power_w: FigureView
+    torque_nm: FigureView
+    volume_cm3: FigureView
+    stock_left: StockLeftView | None = Field(description="null: the stock is not known")
 
 
 class ConfirmationView(View):
     """Comparison of a plan with its simulated run."""
 
     workingsteps: list[ConfirmedView]
-    passed: list[str] = Field(description="a sentence for each bound that the run exceeded")
+    quantile: float = Field(description="quantile of k_c at which the bounds are compared")
+    passed: list[str] = Field(
+        description="a sentence for each bound that the run exceeded and for stock that differs"
+    )
 
 
 class MoveCountView(View):

@@ -14,8 +14,9 @@ from service.errors import Unreadable
 from service.files import read_bytes
 from service.numbers import tool_numbers_in
 from service.program_kind import ProgramKind, kind_of
-from service.requests.fields import dumped
+from service.requests.fields import dumped, loaded
 from service.requests.given import ISO, Name, ProgramRequest, Units
+from service.requests.serves import require_served
 from service.requests.stored_advice import StoredAdviceRequest
 from service.rest.advice_views import CodeContentsView
 from service.rest.asking import answered
@@ -209,7 +210,9 @@ def advisable(data_folder: DataFolder, asked: JobRequest) -> None:
     if words["tools_id"] is not None:
         files.require_file(data_folder, words["tools_id"], FileKind.TOOLS)
     require_stock(data_folder, words)
-    if programs.get(data_folder, asked.program).kind is ProgramKind.STEP_NC:
+    kind = programs.get(data_folder, asked.program).kind
+    require_served(loaded(StoredAdviceRequest, words), kind)
+    if kind is ProgramKind.STEP_NC:
         for name in OF_PATHS:
             if words[name] and not words["is_along_path"]:
                 raise StepNcError(f"{name} has no effect without is_along_path")

@@ -4,6 +4,7 @@ from dataclasses import asdict, dataclass
 from enum import Enum
 from typing import Any
 
+from controller.monitor import Monitor
 from controller.orders import Criterion
 
 UNITS = {
@@ -42,6 +43,12 @@ class SessionStatus:
     """True material removal rate, in cm³/min."""
     is_overloaded: bool
     """Power warning: the drive draws more than the motor delivers, or did a second ago."""
+    over_set_point_percent: float | None
+    """Mean force over its set point, in per cent, while it is above it; else None."""
+    over_set_point_s: float
+    """Time for which the force has been above its set point without a break, in s."""
+    is_override_followed: bool
+    """Whether the axes run the commanded override."""
     holding: str
     """What limits the feed now."""
     level: str
@@ -62,3 +69,13 @@ def _plain(value: Any) -> Any:
     if isinstance(value, dict):
         return {name: _plain(each) for name, each in value.items()}
     return value
+
+
+def over_percent(monitor: Monitor) -> float | None:
+    """Return the mean force over its set point, in per cent; None if it is not above it."""
+    return 100.0 * monitor.share if monitor.over.is_lasting else None
+
+
+def over_seconds(monitor: Monitor) -> float:
+    """Return for how long the force has been above its set point, in s."""
+    return monitor.over.seconds if monitor.over.is_lasting else 0.0

@@ -15,6 +15,7 @@ import numpy as np
 
 from service.raw_stock import GivenStock, larger_stock_map, raw_stock_of, stock_map
 from service.requests.stock import RawPart
+from service.simulation.line_spans import spans
 from service.simulation.setup import CountedIterator, PreparedRun
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import table_tool
@@ -23,7 +24,7 @@ from simulator.motion.segments import Bools, Floats, Ints
 from simulator.removal.cutter import Cutter, Insert
 from simulator.spec import Machine, MachineKind, MaterialMatch
 from simulator.tool_table import TableTool
-from stepnc_model.errors import Finding, Severity
+from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.nc.compensation import tool_moves
 from stepnc_model.nc.moves import (
     REASONS,
@@ -66,9 +67,6 @@ NOT_PLACED = (
 
 CLEARANCE = 5.0
 """Distance from the stock at which the tool goes around moves that are left out, mm."""
-
-MOST_SPANS = 6
-"""Greatest number of ranges of lines that a message lists."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -208,7 +206,7 @@ class CodePaths:
             lines = np.unique(text.lines[moves.block[rows]])
             yield Finding(
                 severity=Severity.WARNING,
-                message=f"{_spans(lines)}: the tool goes beside the compensated contour by its "
+                message=f"{spans(lines)}: the tool goes beside the compensated contour by its "
                 "radius in the tool table; is this the radius in the control?",
                 line=int(lines[0]),
             )
@@ -245,6 +243,19 @@ class CodePaths:
             done=lambda: blocks.share(len(moves)),
             read=lambda: blocks.count,
         )
+
+    def uncut(self, margin: float) -> StockMap:
+        """Stock as given, larger by a margin, mm.
+
+        Raises
+        ------
+        StepNcError
+            When the stock is invalid or not known.
+        """
+        raw = self._raw()
+        if raw is None:
+            raise StepNcError("the stock is not known: name it with --stock")
+        return self._map(raw, margin)
 
     def _raw(self) -> GivenStock | None:
         """Raw part; None if it is not known."""
@@ -349,7 +360,7 @@ class CodePaths:
             lines = np.unique(text.lines[moves.block[rows]])
             yield Finding(
                 severity=Severity.WARNING,
-                message=message.format(_spans(lines), reason),
+                message=message.format(spans(lines), reason),
                 line=int(lines[0]),
             )
 
@@ -416,19 +427,6 @@ def _is_uncertain(moves: NcMoves) -> Bools:
 def _is_outside(shape: object) -> bool:
     """Whether a tool comes to the stock from outside, across the axis."""
     return isinstance(shape, Insert) and not shape.is_inside
-
-
-def _spans(lines: Ints) -> str:
-    """Numbers of lines in words, consecutive ones as a range."""
-    ends = np.flatnonzero(np.diff(lines) > 1)
-    firsts, lasts = np.append(lines[0], lines[ends + 1]), np.append(lines[ends], lines[-1])
-    spans = [
-        f"{first}" if first == last else f"{first}–{last}"
-        for first, last in zip(firsts.tolist(), lasts.tolist(), strict=True)
-    ]
-    more = f" and {len(spans) - MOST_SPANS} more ranges" if len(spans) > MOST_SPANS else ""
-    word = "line" if len(lines) == 1 else "lines"
-    return f"{word} {', '.join(spans[:MOST_SPANS])}{more}"
 
 
 class _Detour:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from service.overload_bounds import overload_bounds
 from service.simulation.run import Simulation
 from simulator.machine.totals import Total
 
@@ -52,14 +53,9 @@ def ratio(part: float, whole: float) -> float:
 
 def exceeded(simulation: Simulation, found: Sequence[SimulationRow]) -> tuple[str, ...]:
     """Return a sentence for each workingstep that exceeded a limit."""
+    bounds = overload_bounds(simulation.machine)
     return tuple(
-        f"{row.name}: {row.total.overload_time:.3g} s above {_limits(simulation)}"
+        f"{row.name}: {row.total.overload_time:.3g} s above {bounds}"
         for row in found
         if row.total.overload_time > 0.0
     )
-
-
-def _limits(simulation: Simulation) -> str:
-    force = simulation.machine.max_cutting_force
-    drive = "the spindle drive's continuous power"
-    return drive if force is None else f"{drive} or the permitted force of {force:.0f} N"

@@ -166,6 +166,10 @@ def whole_row(simulation: Simulation) -> SimulationRow:
 def print_simulation(simulation: Simulation, *, carbon: CarbonFactor = WORLD) -> None:
     """Print a row per workingstep, totals, energy by component, limits exceeded, findings."""
     machine, found, whole = simulation.machine, rows(simulation), simulation.whole
+    for fault in simulation.collisions:
+        print_line(str(fault), RED)
+    for text in exceeded(simulation, found):
+        print_line(f"limit exceeded: {text}", RED)
     print_line(
         f"{simulation.program}: machine {machine.name} ({machine.title}), "
         f"control {simulation.control.value}"
@@ -190,9 +194,7 @@ def print_simulation(simulation: Simulation, *, carbon: CarbonFactor = WORLD) ->
         )
     if simulation.deviation is not None:
         print_line(_deviation(simulation.deviation))
-    for text in exceeded(simulation, found):
-        print_line(f"limit exceeded: {text}", RED)
-    print_findings(simulation.findings, told=simulation.told)
+    print_findings(simulation.findings, told=(*simulation.told, *simulation.collisions))
 
 
 def _deviation(seeded: SeededDeviation) -> str:

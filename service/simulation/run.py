@@ -37,7 +37,7 @@ from simulator.motion.fir import FixedTimeFilter
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import ControlModel, axis_limits
 from simulator.spec import Machine, MaterialMatch
-from stepnc_model.errors import Finding, SchemaError, StepNcError, WriteError
+from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError, WriteError
 from stepnc_model.program import Program
 from stepnc_model.units import mm_from_um
 
@@ -60,6 +60,12 @@ class RunFiles:
     """File for the stock that the run leaves, which a later run can take."""
     recorded: Path | None = None
     """Recorded run of the program that ``control`` evaluates instead of running it."""
+    loads: Path | None = None
+    """File of reference loads, which ``control`` reads and adds to."""
+    is_teaching: bool = False
+    """Whether the run teaches loads that the file has already."""
+    cut_log: Path | None = None
+    """File for the log of the cuts of ``control``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,6 +82,8 @@ class Simulation:
     findings: tuple[Finding, ...]
     told: tuple[Finding, ...] = ()
     """Those of the findings that were told while it ran."""
+    collisions: tuple[Finding, ...] = ()
+    """Those of the findings that tell of rapids through material."""
     samples: int = 0
     """Number of samples written."""
     tools: Mapping[int, LoadedTool] = field(default_factory=dict)
@@ -143,6 +151,7 @@ def simulate(
             *untouched(prepared, virtual, run),
         ),
         told=prepared.remarks,
+        collisions=tuple(each for each in virtual.findings if each.severity is Severity.ERROR),
         tools=virtual.setup.tools or {},
         samples=0 if run.file is None else run.file.rows,
         trace=None if run.trace is None else run.trace.trace(),

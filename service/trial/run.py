@@ -23,7 +23,7 @@ from typing import Any
 from controller.laws.choice import LawName
 from controller.orders import EventKind, LoopEvent
 from service.session.rows import CM3_MIN, LiveRows, RunUpdate, known
-from service.session.status import SessionStatus
+from service.session.status import SessionStatus, over_percent, over_seconds
 from service.trial.cut import predicted, trial_cut
 from service.trial.inputs import Inputs, change_words, changed, differing
 from service.trial.setup import TrialSetup
@@ -166,6 +166,7 @@ class TrialRun:
         override = set_up.loop.state.override
         per_tooth = feed / (cut.cut.teeth * cut.spindle_speed)
         now = predicted(cut, per_tooth)
+        monitor = set_up.loop.state.monitor
         return TrialStatus(
             inputs=inputs,
             time=self.time,
@@ -185,6 +186,9 @@ class TrialRun:
             chip_thickness_mm=now.chip_thickness,
             is_overloaded=not set_up.is_done and self._live_rows.is_overloaded(self.time),
             depth_warning=self._depth_warning,
+            over_set_point_percent=None if set_up.is_done else over_percent(monitor),
+            over_set_point_s=0.0 if set_up.is_done else over_seconds(monitor),
+            is_override_followed=not set_up.loop.state.following.is_astray,
             holding=set_up.holdings.words,
             level=set_up.holdings.level.value,
             is_stopped=set_up.loop.state.is_stopped,

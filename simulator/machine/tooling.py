@@ -11,9 +11,10 @@ from simulator.physics.drilling import LIPS_ONLY
 from simulator.physics.flutes import CuttingEdges
 from simulator.physics.strength import end_mill
 from simulator.removal.cutter import Cutter
-from simulator.removal.tool_shape import THREADS, shape_of, tool_kind
+from simulator.removal.tool_shape import THREADS, shape_of
 from simulator.spec import CuttingMaterial, Taylor, ToolGrade, ToolKind, WorkMaterial
 from simulator.table_grade import grade_of_table_tool
+from simulator.tool_kind import tool_kind
 from simulator.tool_table import TableTool
 from simulator.tool_windows import grade_for
 from stepnc_model.entities.entity import Entity

@@ -8,10 +8,11 @@ ends of each span. Units s, J, W, N, mm³.
 """
 
 from dataclasses import dataclass, field, replace
-from math import sqrt
+from math import pi, sqrt
 
 import numpy as np
 
+from simulator.machine.cutting import NMM_S_PER_WATT
 from simulator.machine.samples import Condition, Episode, PathMode, Samples
 from simulator.machine.sensing import main_power, sensed
 from simulator.motion.segments import Floats
@@ -104,6 +105,8 @@ class Total:
     """Peak tangential force, N; without the plunges of mills."""
     thrust: Peak = field(default_factory=Peak)
     """Peak thrust of drills and plunges, N."""
+    torque: Peak = field(default_factory=Peak)
+    """Peak torque of the cut at the spindle, N·mm."""
     chip: Peak = field(default_factory=Peak)
     """Peak mean chip thickness, mm."""
     deflection: Peak = field(default_factory=Peak)
@@ -133,6 +136,7 @@ class Total:
             drive_power=max(self.drive_power, other.drive_power, key=_value),
             force=max(self.force, other.force, key=_value),
             thrust=max(self.thrust, other.thrust, key=_value),
+            torque=max(self.torque, other.torque, key=_value),
             chip=max(self.chip, other.chip, key=_value),
             deflection=max(self.deflection, other.deflection, key=_value),
             overload_time=self.overload_time + other.overload_time,
@@ -202,6 +206,7 @@ def added(total: Total, episode: Episode, machine: Machine) -> Total:
         ),
         force=total.force.or_greater(feeds * _across(samples, episode), samples),
         thrust=total.thrust.or_greater(feeds * samples.thrust, samples),
+        torque=total.torque.or_greater(feeds * _torque(samples), samples),
         chip=total.chip.or_greater(feeds * samples.chip_thickness, samples),
         deflection=total.deflection.or_greater(feeds * samples.deflection, samples),
         overload_time=total.overload_time + float(weights @ is_loaded),
@@ -228,6 +233,14 @@ def _way(episode: Episode) -> float:
     there = float(ends[course.way - 1]) if course.way else 0.0
     back = float(ends[-1] - ends[-1 - course.back]) if course.back else 0.0
     return there + back
+
+
+def _torque(samples: Samples) -> Floats:
+    """Torque of the cut at the spindle, N·mm."""
+    around = 2.0 * pi * np.abs(samples.spindle_speed)
+    turning = around > 0.0
+    watts = np.divide(samples.cutting_power, around, out=np.zeros(len(around)), where=turning)
+    return NMM_S_PER_WATT * watts
 
 
 def _across(samples: Samples, episode: Episode) -> Floats:

@@ -76,7 +76,7 @@ def contacts(stock: ContactRecorder) -> list[Finding]:
         (hit, f"a rapid move cuts {hit.volume:.3g} mm³ of material near {_place(hit)}")
         for hit in met
     ]
-    findings = _first(told, "rapid moves through material")
+    findings = _first(told, "rapid moves through material", Severity.ERROR)
     told = [
         (hit, f"the holder is {hit.depth:.3g} mm deep in the material at {_place(hit)}")
         for hit in stock.holder_collisions
@@ -98,14 +98,15 @@ def _place(hit: Collision) -> str:
     return f"({x:.2f}, {y:.2f}, {z:.2f}) mm"
 
 
-def _first(told: list[tuple[Collision, str]], kind: str) -> list[Finding]:
+def _first(
+    told: list[tuple[Collision, str]], kind: str, severity: Severity = Severity.WARNING
+) -> list[Finding]:
     findings = [
-        Finding(severity=Severity.WARNING, message=text, line=hit.block)
-        for hit, text in told[:MOST]
+        Finding(severity=severity, message=text, line=hit.block) for hit, text in told[:MOST]
     ]
     if len(told) > MOST:
         more = f"{len(told) - MOST} more {kind}"
-        findings.append(Finding(severity=Severity.WARNING, message=more))
+        findings.append(Finding(severity=severity, message=more))
     return findings
 
 

@@ -52,11 +52,14 @@ class Passing:
 
     def speeds(self, segment: Ints, station: Floats) -> Floats:
         """Speed along the path at ascending positions on segments, (M,), mm/s."""
-        at = self.motion.at(self.times(self.offsets[segment] + station))
-        return np.linalg.norm(at.velocity, axis=1)
+        return np.linalg.norm(self.velocities(segment, station), axis=1)
+
+    def velocities(self, segment: Ints, station: Floats) -> Floats:
+        """Velocity at ascending positions on segments, (M, 3), mm/s."""
+        return self.motion.at(self.times(self.offsets[segment] + station)).velocity
 
 
-def reached_speeds(
+def reached_velocities(
     run: ToolPathRun,
     control: ControlModel,
     limits: AxisLimits,
@@ -64,7 +67,7 @@ def reached_speeds(
     segment: Ints,
     station: Floats,
 ) -> Floats:
-    """Speed along the path that the axes reach at ascending positions, (M,), mm/s.
+    """Velocity that the axes reach at ascending positions, (M, 3), mm/s.
 
     Parameters
     ----------
@@ -76,11 +79,11 @@ def reached_speeds(
     station : (M,) array, mm
         Position along the segment.
     """
-    speeds = np.zeros(len(segment))
+    velocities = np.zeros((len(segment), 3))
     for leg in run.legs:
         at = slice(*np.searchsorted(segment, (leg.first, leg.last)))
         if at.stop > at.start:
             part = run.segments[leg.first : leg.last]
             passing = Passing(segments=part, motion=control.plan(part, limits))
-            speeds[at] = passing.speeds(segment[at] - leg.first, station[at])
-    return speeds
+            velocities[at] = passing.velocities(segment[at] - leg.first, station[at])
+    return velocities

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from simulator.motion.control import ExactStop, control_model
+from simulator.motion.legs import Leg, SpindleRamp
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import (
     AxisLimits,
@@ -140,17 +141,6 @@ LookUp = Callable[[Feed], ModalState]
 """Function that returns the modal state which applies to a feed."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Leg:
-    """Part of a run from rest to rest, by its rows, with the wait after it."""
-
-    first: int
-    last: int
-    """Row after the last row of the leg."""
-    wait: float
-    """Waiting time after the leg, s."""
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ToolPathRun:
     """Tool path as the axes run it."""
@@ -272,12 +262,18 @@ def plunges(run: ToolPathRun) -> Bools:
 
 def duration(run: ToolPathRun, control: ControlModel, limits: AxisLimits) -> float:
     """Time from the start of a path to its end, including waits, s."""
-    moving = sum(
-        control.plan(run.segments[leg.first : leg.last], limits).duration
-        for leg in run.legs
-        if leg.last > leg.first
-    )
-    return moving + sum(leg.wait for leg in run.legs)
+    whole, speed = 0.0, None
+    for leg in run.legs:
+        moving = 0.0
+        if leg.last > leg.first:
+            moving = control.plan(run.segments[leg.first : leg.last], limits).duration
+        if leg.ramp is not None and speed is not None:
+            awaited = leg.ramp.time_from(speed) if leg.ramp.is_awaited else 0.0
+            moving = max(moving, awaited)
+            speed = leg.ramp.after(moving, speed)
+        whole += moving + leg.wait
+        speed = leg.spindle if leg.spindle is not None else speed
+    return whole
 
 
 class _Collector:
@@ -304,6 +300,10 @@ class _Collector:
         self.is_clockwise: bool | None = None
         self.is_spindle_awaited = False
         """Whether the wait of the last leg is for the spindle."""
+        self.followed: float | None = None
+        """Spindle speed at constant surface speed as commanded last, rev/s."""
+        self.target: float | None = None
+        """Spindle speed to which the spindle ramps during this leg, rev/s; None: no ramp."""
 
     def run(self) -> ToolPathRun:
         """Convert the whole path; the spindle is already turning when it begins."""
@@ -343,8 +343,26 @@ class _Collector:
                 self.feed, self.found = move.feed, self.look_up(move.feed)
             found = self.found
             self._take(found)
+        if isinstance(self.asked, SurfaceSpeed):
+            self._follow(move)
         self.rows.append(_MoveRow(self.at, move, found))
         self.at = move.end
+
+    def _follow(self, move: Move) -> None:
+        """Close legs where a rapid begins to change the spindle speed and a feed waits for it.
+
+        A rapid goes to the speed at its end at once; a feed follows the radius.
+        """
+        is_feed = move.feed is not None
+        here, there = self._speeds(np.array([self.at[0], move.end[0]])).tolist()
+        wanted = here if is_feed else there
+        if self.followed is not None and wanted != self.followed:
+            if self.rows:
+                self._close(0.0)
+            self.target = wanted
+        if is_feed and self.target is not None:
+            self._close(0.0, is_awaited=True)
+        self.followed = there
 
     def _take(self, found: ModalState) -> None:
         """Apply the spindle command of a technology."""
@@ -361,6 +379,7 @@ class _Collector:
             self._close(wait)
             self.is_spindle_awaited = True
         self.asked, self.speed = asked, wanted
+        self.followed = self.target = None
 
     def _signed(self, asked: Spin | None, command: SpindleCommand) -> float:
         """Signed spindle speed after a command, rev/s, positive clockwise."""
@@ -391,13 +410,19 @@ class _Collector:
         )
         return speeds
 
-    def _close(self, wait: float) -> None:
-        """Close a leg with the moves collected so far."""
+    def _close(self, wait: float, *, is_awaited: bool = False) -> None:
+        """Close a leg with the moves so far, and state whether a feed waits for its ramp."""
         segments, spindle = self._timed()
         if self.is_clockwise is None and any(row.found is not None for row in self.rows):
             self.is_clockwise = self._turns_clockwise()
         first = self.legs[-1].last if self.legs else 0
-        self.legs.append(Leg(first=first, last=first + len(segments), wait=wait))
+        ramp, is_fed = None, bool(self.rows) and self.rows[-1].found is not None
+        if self.target is not None:
+            ramp = SpindleRamp(speed=self.target, acceleration=self.ramp, is_awaited=is_awaited)
+        ends_at = float(spindle[-1]) if is_fed else None
+        last = first + len(segments)
+        self.legs.append(Leg(first=first, last=last, wait=wait, ramp=ramp, spindle=ends_at))
+        self.target = None
         self.parts.append((segments, spindle))
         self.moves += [row.move for row in self.rows]
         self.rows = []

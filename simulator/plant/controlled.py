@@ -8,13 +8,15 @@ mm, s, N, W, rev/s.
 
 from bisect import bisect_right
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from math import exp, inf, pi
+from dataclasses import dataclass, field, replace
+from math import ceil, exp, inf, pi
 
 import numpy as np
 
 from simulator.errors import MachineSilent
 from simulator.motion.segments import Floats, Ints
+from simulator.physics.flank import CUTTING, NORMAL
+from simulator.physics.milling import RADIAL_SHARE
 from simulator.plant.course import SAMPLES, EngagedTeeth, NominalCourse, pattern
 from simulator.plant.dynamometer import DYNAMOMETER, POWER_METER, Acquisition, Instrument
 from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
@@ -60,6 +62,12 @@ class Instrumentation:
     power_meter: Instrument = POWER_METER
     efficiency: float = 1.0
     """Efficiency of the main drive."""
+    has_normal: bool = False
+    """Whether the dynamometer shows the force normal to the edges too."""
+    reading_period: float = 0.0
+    """Time between readings, each the mean force since the last, s; 0: tooth periods."""
+    jitter: float = 0.0
+    """Greatest deviation of that time, as a share."""
     seed: int = 0
 
 
@@ -81,6 +89,10 @@ class _Now:
     """Flank wear by tool number, mm."""
     broken: dict[int, int] = field(default_factory=dict)
     """Index of the broken tooth by tool number."""
+    locked: float | None = None
+    """Override that the axes run whatever is commanded."""
+    turned_part: float = 0.0
+    """Part of a tooth period that has passed, where readings are none."""
     silent_until: float = -inf
     is_cut_off: bool = False
     factors: dict[HiddenQuantity, float] = field(
@@ -105,7 +117,8 @@ class ControlledMachine:
         self.hidden = hidden
         self.truth = TrueState()
         self._bench = bench
-        forces, powers = np.random.default_rng(bench.seed).spawn(2)
+        forces, powers, normals, self._periods = np.random.default_rng(bench.seed).spawn(4)
+        self._normals = Acquisition(bench.dynamometer, normals)
         self._forces = Acquisition(bench.dynamometer, forces)
         self._powers = Acquisition(bench.power_meter, powers)
         # A tooth that breaks before the first cut belongs to the first tool.
@@ -168,6 +181,8 @@ class ControlledMachine:
                 self._now.broken[self._now.tool] = int(change.value)
             case HiddenQuantity.LINE:
                 self._now.is_cut_off = True
+            case HiddenQuantity.OVERRIDE:
+                self._now.locked = change.value
             case HiddenQuantity.SILENCE:
                 self._now.silent_until = change.time + change.value
             case _:
@@ -187,7 +202,7 @@ class ControlledMachine:
             beyond += 1
         end = min(self._ends[beyond - 1], now.progress + LONGEST)
         period = end - now.progress
-        now.override = now.commanded
+        now.override = self._aim
         self._go_on(end, period)
         idle = float(course.idle_power[cell])
         self.truth = TrueState(power=idle, flank_wear=self._flank_wear, cell=cell)
@@ -196,34 +211,84 @@ class ControlledMachine:
         return self._reading(cell, period, still, feed=feed, tooth=0, override=now.override)
 
     def _feed(self) -> Reading:
-        """Run one tooth period at the override, or less if the feed ends."""
+        """Run one reading at the override, or less of it if the feed ends."""
         now, course, cell = self._now, self.course, self._now.cell
         now.tool = int(course.tool[cell])
         teeth, speed = int(course.teeth[cell]), float(course.spindle_speed[cell])
-        period = 1.0 / (teeth * speed) if speed > SLOWEST else LONGEST
-        ways = self._ways(period)
+        passing = 1.0 / (teeth * speed) if speed > SLOWEST else LONGEST
+        period = self._period(passing)
+        count = max(SAMPLES, ceil(SAMPLES * period / passing))
+        ways = self._ways(period, count)
         end = now.progress + float(ways[-1])
         until = self._feed_end(cell, end)
         if until < end:
             period *= _part(ways, until - now.progress)
-            ways, end = self._ways(period), until
-        now.override = now.commanded + (now.override - now.commanded) * self._left(period)
-        overrides = _steps(ways) * (SAMPLES / period)
+            ways, end = self._ways(period, count), until
+        now.override = self._aim + (now.override - self._aim) * self._left(period)
+        overrides = _steps(ways) * (count / period)
         rows = course.until.searchsorted(now.progress + ways, side="left")
         rows = np.minimum(rows, len(course) - 1)
         cut = int(rows[-1]) if course.force[rows[-1]] > 0.0 else cell
         tooth = now.turned % teeth
-        mean = self._mean_force(rows, overrides)
-        force = mean * self._pattern(cut)[tooth] if course.force[cut] > 0.0 else mean
+        chips, land = self._mean_forces(rows, overrides)
+        mean: Floats = chips + land
+        force = mean
+        if course.force[cut] > 0.0:
+            force = mean * self._shape(cut, tooth, count, periods=period / passing)
         override = float(ways[-1]) / period
-        average = float(np.add.reduce(mean)) / SAMPLES
+        average = float(np.add.reduce(mean)) / count
         self.truth = self._truth(cut, mean=average, force=force, override=override)
         if self.truth.force > 0.0:
             now.flank_wear[now.tool] = self._flank_wear + self.hidden.wear_rate * period
-        now.turned += 1
+        self._turn(period / passing)
         self._go_on(end, period)
         feed = override * float(course.feed[cell])
-        return self._reading(cell, period, force, feed=feed, tooth=tooth, override=override)
+        if self._bench.reading_period:
+            force = np.array([force.mean()])
+        reading = self._reading(cell, period, force, feed=feed, tooth=tooth, override=override)
+        return self._with_normal(reading, chips, land) if self._bench.has_normal else reading
+
+    @property
+    def _aim(self) -> float:
+        """Override towards which the axes go."""
+        now = self._now
+        return now.commanded if now.locked is None else now.locked
+
+    def _period(self, passing: float) -> float:
+        """Duration of the next reading, s, where a tooth takes some time to pass."""
+        bench = self._bench
+        if not bench.reading_period:
+            return passing
+        return bench.reading_period * (1.0 + bench.jitter * self._periods.uniform(-1.0, 1.0))
+
+    def _turn(self, periods: float) -> None:
+        """Turn the spindle on by some tooth periods."""
+        now = self._now
+        if not self._bench.reading_period:
+            now.turned += 1
+            return
+        whole, now.turned_part = divmod(now.turned_part + periods, 1.0)
+        now.turned += int(whole)
+
+    def _shape(self, cell: int, tooth: int, count: int, *, periods: float) -> Floats:
+        """Force of the teeth over their mean at each sample of a reading."""
+        shape = self._pattern(cell)
+        if not self._bench.reading_period:
+            own: Floats = shape[tooth]
+            return own
+        begin = tooth + self._now.turned_part
+        at = begin + periods * (np.arange(count) + 0.5) / count
+        found: Floats = shape.ravel()[(at * SAMPLES).astype(np.int64) % shape.size]
+        return found
+
+    def _with_normal(self, reading: Reading, chips: Floats, land: Floats) -> Reading:
+        """Add the force normal to the edges, as its channel shows it."""
+        true = RADIAL_SHARE * chips.mean() + NORMAL / CUTTING * land.mean()
+        is_lost = reading.time <= self._now.silent_until
+        shown = self._normals.shown(
+            np.array([true]), time=reading.time, interval=reading.period, is_lost=is_lost
+        )
+        return replace(reading, normal=float(shown[0]))
 
     def _truth(self, cut: int, *, mean: float, force: Floats, override: float) -> TrueState:
         course, depth = self.course, self._now.factors[HiddenQuantity.DEPTH]
@@ -248,13 +313,12 @@ class ControlledMachine:
         """Remaining share of the difference to a commanded override after some seconds."""
         return exp(-seconds / self.hidden.servo_lag)
 
-    def _ways(self, period: float) -> Floats:
+    def _ways(self, period: float, count: int) -> Floats:
         """Program time after each sample of a period, s; the override lags its command."""
-        now, lag = self._now, self.hidden.servo_lag
-        gone = 1.0 - np.exp(-period * _STEPS / lag)
-        ways: Floats = (
-            now.commanded * period * _STEPS + (now.override - now.commanded) * lag * gone
-        )
+        now, lag, aim = self._now, self.hidden.servo_lag, self._aim
+        steps = _STEPS if count == SAMPLES else (np.arange(count) + 1.0) / count
+        gone = 1.0 - np.exp(-period * steps / lag)
+        ways: Floats = aim * period * steps + (now.override - aim) * lag * gone
         return ways
 
     def _feed_end(self, cell: int, end: float) -> float:
@@ -268,15 +332,17 @@ class ControlledMachine:
             cell += 1
         return self._ends[cell - 1]
 
-    def _mean_force(self, rows: Ints, overrides: Floats) -> Floats:
-        """Mean force over a revolution at each sample, N."""
+    def _mean_forces(self, rows: Ints, overrides: Floats) -> tuple[Floats, Floats]:
+        """Mean forces of chips and of the wear land over a revolution at each sample, N."""
         now, hidden, course = self._now, self.hidden, self.course
         factor = hidden.force_factor * now.factors[HiddenQuantity.HARDNESS]
         exponent = float(course.exponent[now.cell])
         chips: Floats = factor * course.force[rows] * overrides**exponent
         # The force on the wear land is independent of the chip.
-        land = self._flank_wear * course.land_force[rows]
-        return now.factors[HiddenQuantity.DEPTH] * (chips + land)
+        land: Floats = self._flank_wear * course.land_force[rows]
+        depth = now.factors[HiddenQuantity.DEPTH]
+        chips *= depth
+        return chips, depth * land
 
     def _pattern(self, cell: int) -> Floats:
         course = self.course

@@ -20,6 +20,8 @@ class HiddenQuantity(StrEnum):
     """Number of the tooth that breaks, on the tool that is cutting."""
     SILENCE = "silence"
     """Duration, in s, during which no sample arrives."""
+    OVERRIDE = "override"
+    """Override that the axes run from now on, whatever is commanded."""
     LINE = "line"
     """Loss of the connection: the machine stops answering; the value is ignored."""
 

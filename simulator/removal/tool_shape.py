@@ -6,6 +6,7 @@ from simulator.physics.drilling import edge_angle
 from simulator.removal.cutter import Cutter, Holder, Insert
 from simulator.removal.profile import profile_of
 from simulator.spec import ToolKind
+from simulator.tool_kind import tool_kind
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import HandOfToolType
 from stepnc_model.entities.tools import CuttingTool, MillingCuttingTool, TaperedEndmill
@@ -27,38 +28,11 @@ chuck."""
 STEEPEST_DEG = 80.0
 """Largest angle between the flank of a tapered tool and its axis, degrees."""
 
-KINDS = {
-    "FACEMILL": ToolKind.FACEMILL,
-    "TWIST_DRILL": ToolKind.DRILL,
-    "SPADE_DRILL": ToolKind.DRILL,
-    "STEP_DRILL": ToolKind.DRILL,
-    "DRILL": ToolKind.DRILL,
-    "CENTER_DRILL": ToolKind.CENTER_DRILL,
-    "COUNTERSINK": ToolKind.COUNTERSINK,
-    "COUNTERBORE": ToolKind.COUNTERSINK,
-    "REAMER": ToolKind.REAMER,
-    "TAPERED_REAMER": ToolKind.REAMER,
-    "BORING_TOOL": ToolKind.BORING_BAR,
-    "TAP": ToolKind.TAP,
-    "TAPERED_TAP": ToolKind.TAP,
-    "COMBINED_DRILL_AND_TAP": ToolKind.TAP,
-    "GROOVING_TOOL": ToolKind.GROOVING,
-    "TURNING_THREADING_TOOL": ToolKind.THREADING,
-    "GENERAL_TURNING_TOOL": ToolKind.TURNING,
-    "USER_DEFINED_TURNING_TOOL": ToolKind.TURNING,
-    "KNURLING_TOOL": ToolKind.TURNING,
-}
-
 ENDS = {ToolKind.DRILL, ToolKind.CENTER_DRILL, ToolKind.REAMER, ToolKind.COUNTERSINK}
 """Kinds of tools that cut with their end only."""
 
 THREADS = {ToolKind.TAP, ToolKind.THREADING}
 """Kinds of tools that cut threads, which the map of a stock cannot represent."""
-
-
-def tool_kind(tool: Tool) -> ToolKind:
-    """Kind of a tool from its EXPRESS name; an end mill if the name is not listed."""
-    return KINDS.get(tool.keyword, ToolKind.ENDMILL)
 
 
 def shape_of(program: Program, ref: Ref[Entity]) -> Cutter | Insert | None:

@@ -128,8 +128,6 @@ def _bit(content: Mapping[str, Any], path: Path, *, number: FileValue) -> ToolRo
     given |= _dimensions(parameters, shape)
     edge = edge_given(parameters.get("Material", ""), "parameter.Material")
     notes = [] if edge else ["no edge material is known: it is taken for carbide"]
-    if kind is ToolKind.ENDMILL and "teeth" not in given:
-        notes.append("no number of teeth: it is taken for one")
     findings = tuple(assumed(f"{path.name} '{name}'", note) for note in notes)
     row = placed_row(given | edge, path)
     return ToolRows(rows=(row,), findings=findings)

@@ -219,6 +219,4 @@ def _cutter(
     if teeth:
         count = float(teeth[1] or teeth[2])
         given["teeth"] = FileValue(value=count, place="the remark")
-    elif kind in {ToolKind.ENDMILL, ToolKind.FACEMILL}:
-        notes.append("no remark tells the number of its teeth: taken for one")
     return given, notes

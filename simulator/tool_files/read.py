@@ -5,6 +5,7 @@ The content tells the format, not the name of the file: TOML and CSV with the co
 of HSMWorks (``.hsmlib``) and of FreeCAD (``.fctl``, ``.fctb``).
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from io import BytesIO
@@ -20,7 +21,7 @@ from simulator.tool_files.fusion import read_fusion
 from simulator.tool_files.hsmworks import read_hsmworks
 from simulator.tool_files.json_text import parsed_json
 from simulator.tool_files.linuxcnc import is_tool_line, read_linuxcnc
-from simulator.tool_files.placed_row import PlacedRow, ToolRows
+from simulator.tool_files.placed_row import PlacedRow, ToolRows, assumed
 from simulator.tool_table import TableTool, read_tool_rows, tool_of_row
 from stepnc_model.errors import Finding
 from stepnc_model.zip_member import DAMAGES, read_member
@@ -86,7 +87,17 @@ def read_tools(path: Path, *, unit: FileUnit | None = None) -> ToolLibrary:
     for row in rows.rows:
         _require_named_size(row, path, kind)
     tools = sorted((tool_of_row(each.row) for each in rows.rows), key=lambda each: each.number)
-    return ToolLibrary(format=kind, tools=tuple(tools), findings=rows.findings)
+    findings = (*rows.findings, *_without_teeth(rows))
+    return ToolLibrary(format=kind, tools=tuple(tools), findings=findings)
+
+
+def _without_teeth(rows: ToolRows) -> Iterator[Finding]:
+    """Findings on tools whose number of teeth the file does not give."""
+    for each in rows.rows:
+        if each.row.lacks_teeth:
+            name = f"T{each.row.number:g}" + (f" '{each.row.id}'" if each.row.id else "")
+            how = "its number of teeth is not given: taken for one"
+            yield assumed(name, how, line=each.line)
 
 
 def _detected(data: bytes, path: Path) -> tuple[ToolFormat, str]:

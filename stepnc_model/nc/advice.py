@@ -19,6 +19,8 @@ class BlockAdvice:
     """Feed of each piece, mm/s."""
     reason: str = ""
     """Reason for a comment, such as the limit that is active."""
+    note: str = ""
+    """Comment that is written where the block changes."""
 
     def __post_init__(self) -> None:
         if len(self.ends) != len(self.feeds) or not self.ends or self.ends[-1] != 1.0:
@@ -79,6 +81,7 @@ def _least(one: BlockAdvice, other: BlockAdvice) -> BlockAdvice:
         ends=tuple(ends),
         feeds=tuple(feeds),
         reason=one.reason or other.reason,
+        note=one.note or other.note,
     )
 
 

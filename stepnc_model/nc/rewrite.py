@@ -425,8 +425,9 @@ class _Rewriting:
                 ),
             ]
             new = split_block(text, plan.pieces, feeds, self._form(plan))
-        if self.mark and plan.advice.reason and new != text:
-            new = _marked_first(new, plan.advice.reason, dialect)
+        said = (plan.advice.note, plan.advice.reason if self.mark else "")
+        if new != text and any(said):
+            new = _marked_first(new, ", ".join(filter(None, said)), dialect)
         return new
 
     def _cycle_fed(self, block: int, text: str, fed_by: int | None) -> str:

@@ -142,9 +142,12 @@ def rig(
     instrument: Instrument = DYNAMOMETER,
     source: Source | None = None,
     seed: int = 0,
+    reading_period: float = 0.0,
+    jitter: float = 0.0,
 ) -> Rig:
     """Everything plugged together; log-PI, and a dynamometer with noise, unless said."""
     bench = Instrumentation(dynamometer=Instrument(), power_meter=POWER_METER, seed=seed)
+    bench = replace(bench, reading_period=reading_period, jitter=jitter)
     machine = ControlledMachine(course, HiddenTruth() if hidden is None else hidden, bench)
     sensor = Watched(machine, instrument, seed=seed)
     loop = Loop(

@@ -149,3 +149,12 @@ def test_a_hold_ends_with_an_override_that_would_have_kept_the_set_point() -> No
 def test_impossible_bands_are_refused(change: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="must"):
         OverrideBand(**change)  # type: ignore[arg-type]
+
+
+def test_below_the_least_chip_the_feed_is_not_lowered() -> None:
+    """There the edge rubs; what is too much then holds the feed."""
+    keep = replace(KEEP, least=0.3)
+    got = allowed(0.1, BAND, keep, last=0.5, actual=0.5, force=10.0 * keep.strength)
+    assert got.override == 0.3
+    assert after_hold(keep, override=0.1, force=5000.0) == 0.3
+    assert allowed(0.1, BAND, KEEP, last=0.5, actual=0.5, force=1e5).override < 0.3

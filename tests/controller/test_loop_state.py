@@ -16,14 +16,14 @@ from controller.loop_state import (
     LEAST_WAY,
     REVOLUTIONS,
     LoopState,
-    Phase,
     answered,
     begun,
     initial,
-    obeyed,
 )
 from controller.monitor import Monitor
+from controller.order_effects import obeyed
 from controller.orders import EventKind, SwitchTo
+from controller.phase import Phase
 from controller.preview import Preview
 from controller.signal import Revolution
 from simulator.reading import Reading

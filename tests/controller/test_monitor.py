@@ -1,11 +1,12 @@
 from dataclasses import replace
 from math import inf, log
+from re import fullmatch
 
 import numpy as np
 import pytest
 
 from controller.guard import WorkingstepBounds
-from controller.monitor import CALM, PAUSE, REACH, Monitor
+from controller.monitor import CALM, LASTS, PAUSE, REACH, Monitor
 from controller.orders import EventKind, LoopEvent
 from controller.preview import Expected
 from controller.signal import Revolution
@@ -90,6 +91,33 @@ def test_above_the_floor_or_at_the_set_point_it_is_within_reach(
     watching = Watching()
     for _ in range(3 * REACH):
         watching.show(force, override=override)
+    assert watching.events == []
+
+
+def test_a_force_that_stays_a_little_above_its_set_point_is_told_with_its_time() -> None:
+    """A twelfth above is no warning by itself."""
+    watching = Watching()
+    for _ in range(round(LASTS / PERIOD) + 1):
+        watching.show(436.0)
+    assert watching.kinds == [EventKind.OVER]
+    words = (
+        r"force 1\.09 times the set point of 400 N for 3(\.\d+)? s: 436 N, limit 1\.05 times"
+    )
+    assert fullmatch(words, watching.events[0].text)
+    assert watching.monitor.over.is_lasting
+    for _ in range(20):
+        watching.show(396.0)
+    assert not watching.monitor.over.is_lasting
+    for _ in range(round(CALM / PERIOD) + 1):
+        watching.show(396.0)
+    assert watching.kinds == [EventKind.OVER, EventKind.SAFE]
+
+
+def test_entries_and_steps_are_not_over_for_long() -> None:
+    watching = Watching()
+    for _ in range(20):
+        for force in [436.0] * 50 + [390.0] * 50:
+            watching.show(force)
     assert watching.events == []
 
 

@@ -148,10 +148,21 @@ def test_the_ceiling_of_a_finished_bar_is_that_of_its_roughness() -> None:
     assert reference_of(advice).ceiling == pytest.approx(feed / 0.12)
 
 
-def test_the_floor_is_that_of_the_thinnest_chip() -> None:
+def test_the_floor_is_that_of_the_catalogue_and_the_least_that_of_the_thinnest_chip() -> None:
     advice = advices("bracket")["ROUGH FACE"]
-    (load,) = loads(advice, LimitName.CHIP_THICKNESS, BoundSide.AT_LEAST)
-    assert reference_of(advice).floor == pytest.approx(load.bound / load.value)
+    (chip,) = loads(advice, LimitName.CHIP_THICKNESS, BoundSide.AT_LEAST)
+    (feed,) = loads(advice, LimitName.FEED_PER_TOOTH, BoundSide.AT_LEAST)
+    found = reference_of(advice)
+    assert found.least == pytest.approx(chip.bound / chip.value)
+    assert found.floor == pytest.approx(feed.bound / feed.value)
+
+
+def test_a_program_below_the_catalogue_s_least_feed_has_the_least_chip_for_a_floor() -> None:
+    advice = advices("bracket")["FINISH FACE"]
+    (feed,) = loads(advice, LimitName.FEED_PER_TOOTH, BoundSide.AT_LEAST)
+    assert feed.bound > feed.value
+    found = reference_of(advice)
+    assert 0.0 < found.floor == found.least < 1.0
 
 
 def roughness(bound: float) -> LimitLoad:

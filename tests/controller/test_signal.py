@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from controller.ports import Reading
-from controller.signal import Collector, Revolution
+from controller.signal import Collector, Pieces, Revolution
 from tests.controller.shown import SPINDLE_SPEED, turn
 
 
@@ -180,12 +180,10 @@ def test_revolution_begins_anew_at_a_change(change: dict[str, float]) -> None:
     [
         {"can_override": False},
         {"spindle_speed": 0.0},
-        {"period": 0.25},
-        {"period": 0.001},
     ],
     ids=str,
 )
-def test_what_is_no_tooth_period_belongs_to_no_revolution(change: dict[str, float]) -> None:
+def test_what_is_no_cut_belongs_to_no_revolution(change: dict[str, float]) -> None:
     odd = replace(NEXT[0], **change)  # type: ignore[arg-type]
     assert not any(collected([*FOUR[:3], replace(odd, tooth=3), *NEXT[:3]]))
     assert collected([*FOUR[:3], odd, *FOUR])[-1] is not None
@@ -197,3 +195,50 @@ def test_other_number_of_teeth_begins_anew() -> None:
     last = found[-1]
     assert last is not None
     assert last.force == 1.0
+
+
+def cut(reading: Reading, period: float, count: int) -> list[Reading]:
+    """Readings of another period in place of the teeth; each with the mean of its time."""
+    speed, teeth = reading.spindle_speed, reading.teeth
+    return [
+        replace(
+            reading,
+            time=(row + 1) * period,
+            progress=(row + 1) * period,
+            period=period,
+            tooth=int((row + 1) * period * speed * teeth) % teeth,
+            force=np.array([100.0 + row]),
+        )
+        for row in range(count)
+    ]
+
+
+@pytest.mark.parametrize("periods", [1.2, 1.92, 3.0, 4.0, 7.7, 40.0])
+def test_readings_of_any_period_are_averaged_over_a_turn_at_least(periods: float) -> None:
+    """In tooth periods of a cutter of four."""
+    period = periods * FOUR[0].period
+    readings = cut(FOUR[0], period, 24)
+    found = [each for each in collected(readings) if each is not None]
+    assert len(found) >= 24 * min(periods / 4.0, 1.0) * 0.6
+    for each in found:
+        assert not each.by_teeth
+        assert 0.999 <= each.turns <= 1.0 + periods / 4.0
+        assert each.samples == 1
+        assert np.isnan(each.tooth_means).all()
+        assert each.is_covered
+    forces = [each.force * each.period for each in found]
+    whole = sum(each.period for each in found)
+    mean = np.mean([each.force[0] for each in readings if each.time <= found[-1].time + 1e-9])
+    assert sum(forces) / whole == pytest.approx(mean)
+
+
+def test_pieces_of_a_tooth_period_become_one() -> None:
+    pieces = Pieces()
+    halves = cut(FOUR[0], 0.4 * FOUR[0].period, 6)
+    joined = [pieces.add(each) for each in halves]
+    assert [each is None for each in joined] == [True, True, False] * 2
+    first = joined[2]
+    assert first is not None
+    assert first.period == pytest.approx(1.2 * FOUR[0].period)
+    assert first.force == pytest.approx([101.0])
+    assert pieces.add(FOUR[0]) is FOUR[0]

@@ -13,8 +13,9 @@ from optimiser.cut import Cut, CutKind, ReachedLoads
 from optimiser.hardest import KINDS, Bending, PathContacts
 from optimiser.reached import MachineRun, with_reached
 from simulator.motion.control import ExactStop
+from simulator.motion.legs import Leg
 from simulator.motion.segments import AxisLimits, Segments, lines
-from simulator.motion.tool_path import Leg, ToolPathRun
+from simulator.motion.tool_path import ToolPathRun
 from simulator.removal.stations import Stations, stretch_lengths
 from tests.optimiser.cuts import CUT, DRILLED, TURNED
 
@@ -172,14 +173,21 @@ def test_a_turned_cut_learns_where_its_power_is_greatest() -> None:
     how = ride(path, spindle=(SPINDLE, SPINDLE / 1.5))
     deep = met(TURNED, (50, 2.0), (50, 2.2), segment=(0, 1), diameter=(40.0, 60.0))
     found = reached(TURNED, deep, how)
-    assert found.power_speed == pytest.approx(1.0 / 1.5)
+    slow, fast = found.power_places
+    assert (slow.power, slow.speed) == pytest.approx((1.0, 1.0 / 1.5))
+    assert (fast.power, fast.speed) == pytest.approx((2.0 / 2.2, 1.0))
+    # The deeper cut at 60 mm takes the greatest torque, whatever its speed.
+    assert found.torque_diameter == pytest.approx(60.0)
     # The force times this diameter, at the spindle speed of the cut.
     assert found.power_diameter == pytest.approx(60.0 / 1.5)
     assert found.reached == ReachedLoads()
 
 
+DOWN = lines([(0, 0, 0), (0, 0, -100)], speed=FEED)
+
+
 def test_a_drill_at_its_feed_has_the_chip_of_its_feed() -> None:
-    found = reached(DRILLED, met(DRILLED, (50, 70)), ride())
+    found = reached(DRILLED, met(DRILLED, (50, 70)), ride(DOWN))
     assert found.thickest == pytest.approx(1.0)
     assert found.power_diameter == pytest.approx(DRILLED.force_diameter)
     assert loads(found) == pytest.approx((1.0, 1.0, 1.0))
@@ -188,7 +196,7 @@ def test_a_drill_at_its_feed_has_the_chip_of_its_feed() -> None:
 @given(slow=st.floats(0.3, 0.95))
 def test_a_slower_spindle_alone_thickens_the_chip_of_a_drill(slow: float) -> None:
     """At the same feed ``1/slow`` times the chip: what limits hold against is all reached."""
-    found = reached(DRILLED, met(DRILLED, (50, 70)), ride(spindle=(slow * SPINDLE,)))
+    found = reached(DRILLED, met(DRILLED, (50, 70)), ride(DOWN, spindle=(slow * SPINDLE,)))
     assert found.kind is CutKind.DRILLING
     assert found.thickest == pytest.approx(1.0 / slow)
     assert found.power_diameter == pytest.approx(slow * DRILLED.force_diameter)

@@ -14,6 +14,7 @@ from service.confirmation import PASSED, Confirmation, ConfirmedStep, Figure
 from service.plan_output import plan_json, print_plan
 from service.usecases import OptimiseResult
 from simulator.errors import SimulationError
+from simulator.removal.difference import StockDifference
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program
 from stepnc_model.toolpath.task import stock_of
@@ -26,8 +27,10 @@ KEYS = [
     "cutting_force_n",
     "thrust_n",
     "deflection_um",
+    "torque_nm",
     "cutting_power_w",
     "drive_power_w",
+    "volume_cm3",
 ]
 
 
@@ -138,9 +141,12 @@ def test_json_holds_promise_finding_ratio_and_bound(outcome: OptimiseResult) -> 
     found: dict[str, Any] = json.loads(plan_json(outcome.plan, outcome.confirmation))
     assert found["confirmation"]["passed"] == []
     for step in found["confirmation"]["workingsteps"]:
-        assert list(step) == ["id", *KEYS]
+        assert list(step) == ["id", *KEYS, "stock_left"]
+        assert step["stock_left"]["deviation_mm"] == 0.0
         for key in KEYS:
-            assert list(step[key]) == ["promised", "found", "ratio", "bound"]
+            names = ["promised", "found", "ratio", "bound", "found_at_quantile"]
+            assert list(step[key]) == names
+    assert found["confirmation"]["quantile"] == 0.9
     face, slot, _ = found["confirmation"]["workingsteps"]
     assert slot["deflection_um"]["bound"] == pytest.approx(25.0)
     assert face["deflection_um"]["ratio"] is None
@@ -162,7 +168,31 @@ def test_a_bound_that_is_passed_is_said_and_is_the_exit_code(
     assert stopped.value.code == LIMIT_EXCEEDED
     shown, told = capsys.readouterr()
     assert "100 -> 130 (1.300)" in shown
-    assert "bound exceeded: ROUGH FACE: force N 130 exceeds its bound of 110" in shown + told
+    assert "not as planned: ROUGH FACE: force N 130 exceeds its bound of 110" in shown + told
+
+
+def test_bounds_are_compared_at_the_quantile(confirmation: Confirmation) -> None:
+    """The slot keeps 25 µm at the quantile that is planned, and comes near them there."""
+    slot = of(confirmation.steps[1])["deflection_um"]
+    assert slot.at_quantile == pytest.approx(slot.found * 1.2632, rel=1e-3)
+    assert slot.at_quantile == pytest.approx(25.0, rel=0.01)
+    nominal = figure(found=100.0, bound=110.0)
+    assert not nominal.is_passed
+    worse = ConfirmedStep(id="SLOT", figures=(replace(nominal, at_quantile=126.0),))
+    (told,) = Confirmation(steps=(worse,), quantile=0.9).passed
+    assert told.endswith("126 at the 90 % quantile of k_c exceeds its bound of 110")
+
+
+def test_other_stock_counts_as_not_confirmed() -> None:
+    left = StockDifference(volume=720.0, deviation=0.8)
+    steps = (ConfirmedStep(id="SLOT", figures=(), left=left),)
+    (told,) = Confirmation(steps=steps).passed
+    assert (
+        told
+        == "SLOT: leaves up to 0.8 mm more (0.72 cm³ more in all) than the program as given"
+    )
+    same = replace(steps[0], left=StockDifference(volume=0.01))
+    assert Confirmation(steps=(same,)).passed == ()
 
 
 def test_a_machine_without_axes_is_refused_before_anything_is_planned() -> None:

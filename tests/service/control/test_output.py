@@ -26,7 +26,7 @@ def test_a_row_has_programmed_and_actual(
     assert re.match(rf"MILL SLOT +{number} -> {number} +{number} ", slot)
     assert f"-> {control_run.time:.1f}" in total
     assert re.search(r" \d+ \(\d+–\d+\) +\d+, hardest \d+ +\d+\.\d [a-z ]+ +0\.\d\d ", slot)
-    assert re.search(r" 1\.\d{3} ± 0\.\d{3}$", slot)
+    assert re.search(r" 1\.\d{3} ± 0\.\d{3}  0\.00 ± 0\.0\d$", slot)
 
 
 def test_reasons_events_and_disturbances_follow(

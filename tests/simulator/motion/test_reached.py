@@ -9,10 +9,20 @@ from hypothesis import strategies as st
 
 from simulator.motion.control import ExactStop, control_model
 from simulator.motion.fir import FixedTimeFilter
+from simulator.motion.legs import Leg
 from simulator.motion.model_name import ControlModelName
-from simulator.motion.passing import reached_speeds
-from simulator.motion.segments import AxisLimits, Segments, arc, chained, lines
-from simulator.motion.tool_path import Leg, ToolPathRun
+from simulator.motion.passing import reached_velocities
+from simulator.motion.segments import (
+    AxisLimits,
+    ControlModel,
+    Floats,
+    Ints,
+    Segments,
+    arc,
+    chained,
+    lines,
+)
+from simulator.motion.tool_path import ToolPathRun
 
 AXES = AxisLimits(
     acceleration=np.full(3, 100.0), rapid=np.full(3, 500.0), feed=np.full(3, 500.0)
@@ -39,6 +49,19 @@ def straight(*x: float, speed: float = 20.0) -> Segments:
     path = lines([(each, 0, 0) for each in x], speed=speed)
     path.block[:] = 0
     return path
+
+
+def reached_speeds(
+    of: ToolPathRun,
+    control: ControlModel,
+    limits: AxisLimits,
+    *,
+    segment: Ints,
+    station: Floats,
+) -> Floats:
+    found = reached_velocities(of, control, limits, segment=segment, station=station)
+    speeds: Floats = np.linalg.norm(found, axis=1)
+    return speeds
 
 
 def speeds(of: ToolPathRun, *places: tuple[int, float]) -> list[float]:

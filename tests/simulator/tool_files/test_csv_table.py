@@ -145,3 +145,23 @@ def test_a_comma_in_quotes_is_not_guessed_at(tmp_path: Path) -> None:
     file.write_text('number,kind,diameter_mm\n1,drill,"6,8"\n', encoding="utf-8")
     with pytest.raises(LibraryError, match="line 2: diameter_mm: '6,8' is not a number"):
         read_tools(file)
+
+
+@every_case(
+    ("lines", "told"),
+    [
+        (
+            ("number,kind,diameter_mm", "1,endmill,10", "2,drill,8"),
+            ["line 2: T1: its", "line 3: T2: its"],
+        ),
+        ((HEADING, "1,endmill,10,A,", "2,drill,8,B,1"), ["line 2: T1 'A': its"]),
+        ((HEADING, "1,endmill,10,A,1"), []),
+        (("number,kind,nose_radius_mm", "1,turning,0.8"), []),
+    ],
+)
+def test_an_unknown_number_of_teeth_is_told(
+    lines: tuple[str, ...], told: list[str], tmp_path: Path
+) -> None:
+    found = [str(each) for each in read_tools(table(tmp_path, *lines)).findings]
+    how = "number of teeth is not given: taken for one"
+    assert found == [f"warning: {each} {how}" for each in told]

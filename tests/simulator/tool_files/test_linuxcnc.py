@@ -44,7 +44,8 @@ def test_a_mill(tmp_path: Path) -> None:
     ball = library.by_number[3]
     assert ball.shape == Cutter(diameter=6.0, corner_radius=3.0, teeth=2)
     told = [str(each) for each in library.findings]
-    assert "warning: line 2: T1: no remark tells the number of its teeth: taken for one" in told
+    lacks_teeth = "T1 '2mm end mill': its number of teeth is not given: taken for one"
+    assert f"warning: line 2: {lacks_teeth}" in told
     assert "warning: line 6: T10 is left out: it has no diameter D" in told
 
 

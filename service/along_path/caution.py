@@ -1,0 +1,216 @@
+"""Caution with NC code: how far its feeds may rise, and moves that cast doubt on the stock.
+
+A tool that is fed at cutting feed and meets nothing says that there is material where the given
+stock has none. Such a move keeps its feed, unless it goes through what the program itself has
+removed, or lies outside the stock with clearance. The latter holds for no drill: nobody feeds a
+drill through air on purpose, however far from the stock.
+"""
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from optimiser.along_path.cautious import (
+    is_straight_down,
+    is_straight_up,
+    plunge_feeds,
+    programmed_rates,
+    risen,
+)
+from optimiser.along_path.stretch import PathStretch
+from optimiser.greatest_rise import USUAL_RISE
+from service.simulation.code_paths import BRIDGE
+from service.simulation.line_spans import spans
+from simulator.machine.virtual import Shape, VirtualMachine
+from simulator.motion.segments import Bools, Floats, Ints, Segments
+from simulator.removal.cutter import Cutter
+from simulator.removal.stations import Stations
+from simulator.spec import MachineKind
+from stepnc_model.errors import Finding, Severity
+from stepnc_model.nc.written_lines import WrittenLines
+
+CLEARANCE = 5.0
+"""Distance from the stock from which a move that meets nothing is no doubt, mm; that of the
+stock margin if it is more."""
+
+MARK = re.compile(rb"AT MOST ([0-9.]+) TIMES THE PROGRAMMED FEED", re.I)
+"""Comment in code that was advised before: its feeds have risen already."""
+
+
+def mark_of(rise: float) -> str:
+    """Comment that says how far the feeds of a program have risen."""
+    return f"AT MOST {rise:g} TIMES THE PROGRAMMED FEED"
+
+
+def rise_left(data: bytes, rise: float) -> float:
+    """Rise that code has left whose comment says how far it rose before; at least 1."""
+    used = max((float(found[1]) for found in MARK.finditer(data)), default=1.0)
+    return max(rise / used, 1.0)
+
+
+class TrialStock(Protocol):
+    """Stock that can be cut on trial."""
+
+    def tried(self, segments: Segments, shape: Any, /) -> tuple[Stations, Any]:
+        """Cut along segments but keep the stock; return the engagement."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Doubts:
+    """Moves of one part of a program that cast doubt on the stock."""
+
+    moves: frozenset[int] = frozenset()
+    """Lines of moves near the stock."""
+    drilled: frozenset[int] = frozenset()
+    """Lines of moves and cycles of drills."""
+
+
+@dataclass(slots=True, kw_only=True)
+class Caution:
+    """Caution with one program. Running state: it notes doubts and programmed feeds."""
+
+    fresh: Callable[[float], Any]
+    """Function that gives the uncut stock, larger by some mm."""
+    rise: float = USUAL_RISE
+    """Greatest feed over the programmed one."""
+    allows_plunge: bool = False
+    """Whether straight plunges may be faster than programmed."""
+    clearance: float = CLEARANCE
+    base: Mapping[int, float] | None = None
+    """Programmed feeds by block in the unit of the block; None: those of the program itself."""
+    seen: dict[int, float] = field(default_factory=dict)
+    """Least programmed feed of each block that was seen."""
+    doubts: dict[str, Doubts] = field(default_factory=dict)
+    """Doubts by part of the program."""
+    _stocks: dict[float, TrialStock] = field(default_factory=dict)
+
+    def of_written(self, lines: WrittenLines) -> "Caution":
+        """Caution with code that was written from this program: its feeds are the base."""
+        return replace(self, base=_Origins(self.seen, lines), seen={}, doubts={})
+
+    def bounded(self, stretch: PathStretch, machine: VirtualMachine) -> PathStretch:
+        """Return a stretch with bounds on how its programmed feeds may change."""
+        if stretch.bounds is None or machine.tool is None or machine.tool.shape is None:
+            return stretch
+        shape, base = machine.tool.shape, self._base(stretch)
+        is_mill = isinstance(shape, Cutter) and not shape.is_drill
+        is_mill &= machine.machine.kind is MachineKind.MILL
+        is_kept = self._doubted(stretch, shape, is_mill=is_mill)
+        plunge = plunge_feeds(stretch, base, is_allowed=self.allows_plunge) if is_mill else None
+        return replace(
+            stretch,
+            is_kept=is_kept,
+            rise=risen(stretch, base, self.rise),
+            plunge=plunge,
+        )
+
+    def _base(self, stretch: PathStretch) -> Floats:
+        """Programmed feeds of the segments, (N,); noted by block."""
+        rates = programmed_rates(stretch)
+        for block, rate in zip(stretch.segments.block.tolist(), rates.tolist(), strict=True):
+            self.seen[block] = min(rate, self.seen.get(block, rate))
+        if self.base is None:
+            return rates
+        blocks = stretch.segments.block.tolist()
+        return np.array([
+            self.base.get(block, rate)
+            for block, rate in zip(blocks, rates.tolist(), strict=True)
+        ])
+
+    def _doubted(self, stretch: PathStretch, shape: Shape, *, is_mill: bool) -> Bools:
+        """Whether blocks meet nothing where there might be material, (N,)."""
+        segments = stretch.segments
+        met = np.zeros(len(segments))
+        np.maximum.at(met, stretch.met.segment, stretch.met.peak_section)
+        is_drill = isinstance(shape, Cutter) and not is_mill
+        is_asked = stretch.is_free & (segments.length > 0.0)
+        is_asked &= ~np.isin(segments.block, segments.block[met > 0.0])
+        if is_mill:
+            is_asked &= ~is_straight_up(stretch)
+            # A straight plunge keeps its feed anyway.
+            is_asked &= ~is_straight_down(stretch) | self.allows_plunge
+        rows = np.flatnonzero(is_asked & (segments.block != BRIDGE))
+        if len(rows) and not is_drill:
+            near = self._meeting(segments, rows, shape, self.clearance)
+            rows = rows[np.isin(segments.block[rows], near)]
+        if not len(rows):
+            return np.zeros(len(segments), dtype=np.bool_)
+        removed = self._meeting(segments, rows, shape, 0.0)
+        blocks = np.setdiff1d(segments.block[rows], removed)
+        self._note(stretch.workingstep, blocks, is_drill=is_drill)
+        doubted: Bools = np.isin(segments.block, blocks) & ~segments.is_rapid
+        return doubted
+
+    def _meeting(self, segments: Segments, rows: Ints, shape: Shape, margin: float) -> Ints:
+        """Blocks of some segments that meet the uncut stock, larger by a margin."""
+        stock = self._stocks.get(margin)
+        if stock is None:
+            stock = self._stocks[margin] = self.fresh(margin)
+        hit = rows[_sections(stock, segments[rows], shape) > 0.0]
+        if not len(hit):
+            return hit
+        # What one move removes hides a later one: those without contact are tried alone.
+        found = set(segments.block[hit].tolist())
+        for row in rows.tolist():
+            block = int(segments.block[row])
+            if block not in found and _sections(stock, segments[row : row + 1], shape)[0] > 0.0:
+                found.add(block)
+        return np.array(sorted(found))
+
+    def _note(self, part: str, blocks: Ints, *, is_drill: bool) -> None:
+        if not len(blocks):
+            return
+        known, more = self.doubts.get(part, Doubts()), frozenset(blocks.tolist())
+        self.doubts[part] = (
+            replace(known, drilled=known.drilled | more)
+            if is_drill
+            else replace(known, moves=known.moves | more)
+        )
+
+    def findings(self) -> Iterator[Finding]:
+        """Doubts by part of the program."""
+        for part, doubt in self.doubts.items():
+            for lines, what, where in (
+                (doubt.moves, "move", f" within {self.clearance:g} mm of it"),
+                (doubt.drilled, "drilling move", ""),
+            ):
+                if lines:
+                    yield _finding(part, sorted(lines), what, where)
+
+
+def _finding(part: str, lines: list[int], what: str, where: str) -> Finding:
+    is_one = len(lines) == 1
+    text = (
+        f"{part}: {len(lines)} {what}{'' if is_one else 's'} at cutting feed "
+        f"{'meets' if is_one else 'meet'} no stock{where}: {'its' if is_one else 'their'} feed "
+        f"is kept; the stock may be wrong ({spans(np.array(lines))})"
+    )
+    return Finding(severity=Severity.WARNING, message=text, line=lines[0])
+
+
+def _sections(stock: TrialStock, segments: Segments, shape: Shape) -> Floats:
+    """Greatest section that each segment would cut, (N,), mm²."""
+    stations, _ = stock.tried(segments, shape)
+    found = np.zeros(len(segments))
+    np.maximum.at(found, stations.segment, stations.peak_section)
+    return found
+
+
+class _Origins(Mapping[int, float]):
+    """Feeds of the lines from which written lines come."""
+
+    def __init__(self, feeds: Mapping[int, float], lines: WrittenLines) -> None:
+        self._feeds, self._lines = feeds, lines
+
+    def __getitem__(self, line: int) -> float:
+        return self._feeds[self._lines.origin(line).line]
+
+    def __iter__(self) -> Iterator[int]:
+        return iter(self._feeds)
+
+    def __len__(self) -> int:
+        return len(self._feeds)

@@ -1,0 +1,21 @@
+"""Lines of a program in words: consecutive ones as a range."""
+
+import numpy as np
+
+from simulator.motion.segments import Ints
+
+MOST_SPANS = 6
+"""Greatest number of ranges of lines that a message lists."""
+
+
+def spans(lines: Ints) -> str:
+    """Numbers of lines in words, consecutive ones as a range."""
+    ends = np.flatnonzero(np.diff(lines) > 1)
+    firsts, lasts = np.append(lines[0], lines[ends + 1]), np.append(lines[ends], lines[-1])
+    spans = [
+        f"{first}" if first == last else f"{first}–{last}"
+        for first, last in zip(firsts.tolist(), lasts.tolist(), strict=True)
+    ]
+    more = f" and {len(spans) - MOST_SPANS} more ranges" if len(spans) > MOST_SPANS else ""
+    word = "line" if len(lines) == 1 else "lines"
+    return f"{word} {', '.join(spans[:MOST_SPANS])}{more}"
