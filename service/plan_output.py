@@ -12,9 +12,9 @@ from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, LimitLoad, 
 from optimiser.modes import Mode
 from optimiser.problem import LimitName
 from optimiser.remedies import slower_than_programmed
-from optimiser.required import UncheckedLimit
 from optimiser.roughness import IDEAL
 from optimiser.stability import Basis
+from service.plan_checks import UNCHECKED, chatter_record, chatter_words, unchecked_words
 from service.rendering.columns import Cell, Change, Column
 from service.rendering.records import dump, finding_record, record, records
 from service.rendering.text import RED, print_findings, print_line, print_table
@@ -58,12 +58,6 @@ def _energy(state: EvaluatedSetting) -> float:
     return state.energy
 
 
-def _chatter(advice: Advice) -> str | None:
-    """Depth beyond the estimated stable depth; None without such a risk."""
-    risk = advice.chatter_risk
-    return None if risk is None else risk.words
-
-
 def _active(advice: Advice) -> str:
     """Active limit of an advice, or its status if no feed was advised."""
     is_advised = advice.after is not None and advice.status is AdviceStatus.ADVISED
@@ -99,7 +93,7 @@ SHOWN: tuple[Column[Advice], ...] = (
 )  # fmt: skip
 ACTIVE: Column[Advice] = Column(heading="active limit", value=_active, is_words=True)
 RISK: Column[Advice] = Column(
-    heading="chatter risk", value=_chatter, is_words=True, is_optional=True,
+    heading="chatter risk", value=chatter_words, is_words=True, is_optional=True,
     help="depth cut, and the optimistic end of the estimated stable depth, mm",
 )  # fmt: skip
 
@@ -166,14 +160,6 @@ LOAD: tuple[Column[LimitLoad], ...] = (
 """Columns of a limit; its margin is a share of the bound, after the safety factor."""
 
 
-UNCHECKED: tuple[Column[UncheckedLimit], ...] = (
-    Column(key="name", value=lambda limit: limit.name.value),
-    Column(key="why", value=lambda limit: limit.why),
-    Column(key="datum", value=lambda limit: limit.datum),
-)
-"""Columns of a required limit that could not be looked at."""
-
-
 def print_plan(
     plan: Plan,
     confirmation: "Confirmation | None" = None,
@@ -186,7 +172,7 @@ def print_plan(
         print_line(text, RED)
     print_line(
         f"{plan.program}: mode {mode_words(plan.mode)}, machine {plan.machine.name} "
-        f"({plan.machine.title}), material {material.title}{_unchecked_words(plan)}"
+        f"({plan.machine.title}), material {material.title}{unchecked_words(plan)}"
     )
     total = f"{plan.time_before:.1f} -> {plan.time_after:.1f}"
     print_table(TEXT, plan.advices, foot={"workingstep": "total", "time s": total})
@@ -211,16 +197,6 @@ def print_plan(
 
         print_along_path(along)
     print_findings(plan.findings, told=told)
-
-
-def _unchecked_words(plan: Plan) -> str:
-    """State how many required limits could not be looked at; empty if none."""
-    if not plan.unchecked:
-        return ""
-    steps = len({advice.workingstep.ref for advice, _ in plan.unchecked})
-    limits = "limit is" if len(plan.unchecked) == 1 else "limits are"
-    where = "workingstep" if steps == 1 else "workingsteps"
-    return f"; {len(plan.unchecked)} required {limits} unchecked in {steps} {where}"
 
 
 def mode_words(mode: Mode) -> str:
@@ -419,7 +395,7 @@ def _advice(advice: Advice) -> dict[str, Any]:
             for each in (advice.cut.refused_passes if advice.cut else ())
         ],
         "stability": _stability(advice),
-        "chatter_risk": _chatter_risk(advice),
+        "chatter_risk": chatter_record(advice),
         "unchecked": records(UNCHECKED, advice.unchecked),
         "plunge": _plunge(advice),
         "holding_load": _holding_load(advice),
@@ -439,14 +415,6 @@ def _stability(advice: Advice) -> dict[str, Any] | None:
         "stable_at_any_speed_mm": found.least,
         "band_mm": found.band,
     }
-
-
-def _chatter_risk(advice: Advice) -> dict[str, float] | None:
-    """Return depth and estimated stable depth for JSON; None without a risk."""
-    risk = advice.chatter_risk
-    if risk is None:
-        return None
-    return {"depth_mm": risk.depth, "stable_mm": risk.stable}
 
 
 def _plunge(advice: Advice) -> dict[str, Any] | None:
@@ -505,7 +473,7 @@ def report_page(plan: Plan, along: "FeedsAlongPath | None" = None) -> str:
         plan=plan,
         mode=mode_words(plan.mode),
         columns=PAGE,
-        unchecked=_unchecked_words(plan).removeprefix("; "),
+        unchecked=unchecked_words(plan).removeprefix("; "),
         change=f"{after / before - 1.0:+.0%}" if before else "",
         reasons=[
             (advice.status.value, f"{advice.workingstep.id}: {_reason(advice)}")

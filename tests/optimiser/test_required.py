@@ -8,14 +8,17 @@ import pytest
 
 from optimiser.advice import AdviceStatus, Plan
 from optimiser.cut import Cut
+from optimiser.depth_limits import depth_limits
 from optimiser.formulate import OptimisationTask, problem_of, state_of
 from optimiser.hardest import Bending, with_hardest
+from optimiser.impossible import why_impossible
 from optimiser.limits import allowance_limits, limits_of
 from optimiser.modes import Free
 from optimiser.optimise import optimise_program
 from optimiser.problem import BoundSide, Limit, LimitName
 from optimiser.required import REQUIRED, unchecked_limits
 from optimiser.source import from_features
+from optimiser.sourced_bound import borrowed_bound
 from simulator.library import load_machine, load_material
 from simulator.material_file import read_material
 from simulator.physics.engagement import full_immersion
@@ -124,6 +127,10 @@ def test_borrowed_windows_do_not_slow_a_program_down() -> None:
     assert named(limits_of(slow, at), LimitName.FEED_PER_TOOTH).bound == pytest.approx(0.048)
 
 
+def test_an_own_window_is_no_borrowed_bound() -> None:
+    assert borrowed_bound(0.1, 0.2, CARBIDE).bound == 0.1
+
+
 def test_without_any_source_the_programmed_setting_is_the_cap() -> None:
     grade = grade_for(ToolKind.FACEMILL, CuttingMaterial.CERAMIC, C45)
     at = replace(CARBIDE, grade=grade, cutting_material=CuttingMaterial.CERAMIC)
@@ -159,7 +166,8 @@ def test_a_slot_is_no_deeper_than_its_catalogue_allows(
     grade = grade_for(ToolKind.ENDMILL, edge, C45)
     at = replace(CARBIDE, grade=grade, cutting_material=edge)
     cut = replace(CUT, radial_width=12.0 * width, engagement=full_immersion(), depth_bound=None)
-    assert named(limits_of(cut, at), LimitName.AXIAL_DEPTH).bound == pytest.approx(12.0 * ratio)
+    (limit,) = depth_limits(cut, at)
+    assert limit.bound == pytest.approx(12.0 * ratio)
 
 
 def test_the_feed_of_a_centre_drill_is_that_of_its_pilot() -> None:
@@ -211,6 +219,14 @@ def test_what_a_reamer_takes_off_is_checked(
     }
     assert (BoundSide.AT_MOST in broken) is is_too_much
     assert (BoundSide.AT_LEAST in broken) is is_too_little
+
+
+def test_a_reamer_with_two_millimetres_to_take_off_is_impossible() -> None:
+    cut = replace(DRILLED, tool_kind=ToolKind.REAMER, previous_diameter=8.0)
+    why = why_impossible(cut, conditions(ToolKind.REAMER), cut.tool)
+    assert "reaming allowance 2 mm exceeds 0.3 mm" in why
+    good = replace(cut, previous_diameter=9.8)
+    assert not why_impossible(good, conditions(ToolKind.REAMER), cut.tool)
 
 
 def test_a_reamer_without_a_known_hole_lists_its_allowance_as_unchecked() -> None:
