@@ -88,7 +88,7 @@ class PassCountOptimum:
 
 
 @dataclass(slots=True, kw_only=True)
-class _Search:
+class PassCountSearch:
     """Search for the best number of passes of a workingstep (mutable state)."""
 
     cut: Cut
@@ -166,7 +166,7 @@ def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimu
     Infeasible
         When no number of passes that was tried keeps all limits.
     """
-    search = _Search(cut=cut, asked=asked)
+    search = PassCountSearch(cut=cut, asked=asked)
     given = problem.programmed.passes
     last = search.try_passes(problem, given)
     untried: list[int] = []
@@ -203,7 +203,7 @@ def _require_candidate(cut: Cut, passes: int) -> None:
             raise Infeasible(refused.words, limits=())
 
 
-def _until_feasible(search: _Search, problem: Problem) -> Problem:
+def _until_feasible(search: PassCountSearch, problem: Problem) -> Problem:
     """Try what the closed form proposes for the last path, until a path is feasible.
 
     Returns the problem of the last path.
@@ -219,7 +219,7 @@ def _until_feasible(search: _Search, problem: Problem) -> Problem:
     return problem
 
 
-def _infeasible_as_tooled(search: _Search, problem: Problem) -> Infeasible:
+def _infeasible_as_tooled(search: PassCountSearch, problem: Problem) -> Infeasible:
     """Error that names the limits that conflict in any number of passes, and what helps."""
     conflict = search.conflict or exact.conflict(problem)
     try:
@@ -235,7 +235,7 @@ def _infeasible_as_tooled(search: _Search, problem: Problem) -> Infeasible:
     )
 
 
-def _try_in_order(search: _Search, problem: Problem, deepest: int) -> list[int]:
+def _try_in_order(search: PassCountSearch, problem: Problem, deepest: int) -> list[int]:
     """Try numbers of passes, the most promising first; return what was left out.
 
     Numbers that were tried before count as tried in their turn, so that the numbers within
@@ -257,7 +257,7 @@ def _try_in_order(search: _Search, problem: Problem, deepest: int) -> list[int]:
     return sorted(untried)
 
 
-def _in_order(search: _Search, problem: Problem, deepest: int) -> list[int]:
+def _in_order(search: PassCountSearch, problem: Problem, deepest: int) -> list[int]:
     """Numbers of passes that may be best, by what the deepest path says of their cost."""
     if deepest not in search.bounds:
         return []
@@ -288,7 +288,7 @@ def _require_sensible(best: PassCountOptimum, given: int) -> None:
     )
 
 
-def _with_deepest(best: PassCountOptimum, search: _Search) -> PassCountOptimum:
+def _with_deepest(best: PassCountOptimum, search: PassCountSearch) -> PassCountOptimum:
     """Optimum with the time of the fewest feasible passes that were tried."""
     fewest = search.found[min(search.found)].optimum.solution.time
     solution = best.optimum.solution
