@@ -62,7 +62,7 @@ CORRELATED = 10.0
 """Revolutions in which errors of the expected force are alike and do not average out."""
 
 PLAN_ERROR = 0.02
-"""Flank wear that an error of the expected force may look like, mm: a hundredth or two of it."""
+"""Flank wear that an error of the expected force may look like, mm: one or two per cent."""
 
 COEFFICIENT = 80.0 / CUTTING
 """Relative standard deviation of the force of a wear land."""
