@@ -61,6 +61,9 @@ DRIFT = 1e-4
 CORRELATED = 10.0
 """Revolutions in which errors of the expected force are alike and do not average out."""
 
+PLAN_ERROR = 0.02
+"""Flank wear that an error of the expected force may look like, mm: one or two per cent."""
+
 COEFFICIENT = 80.0 / CUTTING
 """Relative standard deviation of the force of a wear land."""
 
@@ -183,8 +186,9 @@ class ToolLife:
 
     @property
     def is_wear_sure(self) -> bool:
-        """Whether there is wear beyond three standard deviations of its estimate."""
-        return self.flank_wear > 3.0 * sqrt(float(self.belief.covariance[2, 2]))
+        """Whether there is wear beyond three standard deviations and the errors of the plan."""
+        noise = sqrt(float(self.belief.covariance[2, 2]))
+        return self.flank_wear > max(3.0 * noise, PLAN_ERROR)
 
     def sharp(self, log_ratio: float, land_share: float) -> float:
         """Return ln(measured / expected) less the force of the land, if there surely is one."""
