@@ -19,7 +19,7 @@ from optimiser.formulate import OptimisationTask, problem_of
 from optimiser.modes import Mode
 from optimiser.passes import AdviceContext, PassCountOptimum, best_of
 from optimiser.plunge_feed import with_plunge_feed
-from optimiser.problem import ROUNDING, Limit, Problem, Setting
+from optimiser.problem import ROUNDING, BoundSide, Limit, Problem, Setting
 from optimiser.workingstep import limits_at
 from simulator.library import load_machine
 from simulator.matching import match_material
@@ -238,12 +238,12 @@ def _cost(time: float, energy: float, mode: Mode) -> float:
 
 
 def _programmed(advice: Advice, mode: Mode) -> Iterator[Rival]:
-    """The program as given, if it keeps the bounds."""
+    """The program as given, if it keeps the bounds; a speed may be below its window."""
     before = advice.before
     if before is not None and all(
         load.margin >= -ROUNDING
         for load in before.loads + before.plunge_loads
-        if _is_kept(load.limit)
+        if _is_kept(load.limit) or load.limit.sense is BoundSide.AT_MOST
     ):
         yield Rival(name="the program", cost=_cost(before.time, before.energy, mode))
 
