@@ -11,11 +11,10 @@ Paths with other depths of passes are tried too: those of the program as
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 from optimiser.clamped import (
     BodyMaps,
-    Change,
     ClampedStocks,
     StockMap,
     StockPlace,
@@ -25,7 +24,6 @@ from optimiser.clamped import (
 from optimiser.cut import Cut, CutKind, RefusedPasses
 from optimiser.estimated import GUESSES, estimated_cut
 from optimiser.hardest import (
-    Bending,
     PathContacts,
     bending,
     greatest_section,
@@ -53,7 +51,7 @@ from optimiser.reached import (
 )
 from optimiser.side_by_side import Result, one_by_one, side_by_side
 from optimiser.stock_left import difference_left
-from simulator.motion.segments import Bools
+from optimiser.tried_path import SearchTrace, TriedPath, air_share
 from simulator.motion.tool_path import (
     SpeedRatios,
     ToolPathRun,
@@ -65,8 +63,7 @@ from simulator.motion.tool_path import (
 )
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import BarRadii, TurningStock
-from simulator.removal.stations import StationKind
-from simulator.removal.trial import PathTrial, do_overlap, is_remembered_alike, renumbered
+from simulator.removal.trial import do_overlap, is_remembered_alike, renumbered
 from simulator.spec import Machine, MachineKind, WorkMaterial
 from stepnc_model.errors import Finding, PostError, SchemaError, Severity
 from stepnc_model.post.blocks import MachineType as PostMachine
@@ -75,46 +72,6 @@ from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.technology import programmed
 from stepnc_model.toolpath.generate import require_ready, workingstep_path
 from stepnc_model.toolpath.path import Feed, ToolPath
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TriedPath:
-    """Tool path that was tried, with its contacts, its cut and its timing."""
-
-    path: ToolPath
-    run: ToolPathRun
-    """Run of the path at the programmed feeds and speeds."""
-    cut: Cut
-    """Cut with the engagement met along the path."""
-    passes: int
-    weighted: float
-    """Chip-weighted volume over that of the hardest place, mm."""
-    air: float
-    """Share of the length that removes nothing."""
-    meeting: TrialContacts
-    along: PathContacts | None
-    """Contacts along the passes; None when they are not known."""
-    bent: Bending | None
-    """Bending forces of an end mill at these contacts."""
-    slope: PlungeCuts | None
-    """Contacts down ramps; None when there are no ramps."""
-    times: dict[tuple[float, float, float | None], Cut] = field(default_factory=dict)
-    """Timed cuts by feed ratio, speed ratio and plunge feed, filled on demand."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SearchTrace:
-    """What the search for a workingstep's setting read and changed."""
-
-    place: StockPlace | None = None
-    """Stock map that the workingstep cuts."""
-    change: Change | None = None
-    trial: PathTrial | None = None
-    """Milling trial of the change; None when the tool is not a mill."""
-    trials: tuple[PathTrial, ...] = ()
-    """Trials of all paths that were tried."""
-    left_out: dict[int, str] = field(default_factory=dict)
-    """Features whose path could not be made, with the id of the workingstep."""
 
 
 class MeasuredCuts:
@@ -365,7 +322,7 @@ class MeasuredCuts:
             section, ratio = greatest_section(cut, depth=depth)
             weighted = weighted_volume(met, self.kienzle.m_c)
             weighted /= section * ratio**-self.kienzle.m_c
-            air = _air_share(run, met, is_fed(run, step.technology_ref, cut))
+            air = air_share(run, met, is_fed(run, step.technology_ref, cut))
             if isinstance(self._found, TurningStock) and isinstance(meeting.change, BarRadii):
                 turned = turned_of(cut, met, run, self._found, meeting.change)
                 cut = replace(cut, turned=turned)
@@ -514,13 +471,3 @@ class MeasuredCuts:
 
     def _warning(self, step: ResolvedWorkingstep, text: str) -> Finding:
         return self.program.finding(Severity.WARNING, text, step.operation_ref)
-
-
-def _air_share(run: ToolPathRun, met: PathContacts, is_bound: Bools) -> float:
-    """Share of the time at the programmed feed in which nothing is removed."""
-    row = met.stations.segment
-    seconds = met.length / run.segments.speed[row]
-    bound = is_bound[row]
-    whole = float(seconds[bound].sum())
-    is_air = bound & (met.stations.kind == StationKind.AIR)
-    return float(seconds[is_air].sum()) / whole if whole > 0.0 else 0.0

@@ -42,6 +42,9 @@ class Watching:
         self.monitor = monitor
         self.events += monitor.events
 
+    def is_over(self) -> bool:
+        return self.monitor.over.is_lasting
+
     @property
     def kinds(self) -> list[EventKind]:
         return [event.kind for event in self.events]
@@ -104,10 +107,10 @@ def test_a_force_that_stays_a_little_above_its_set_point_is_told_with_its_time()
         r"force 1\.09 times the set point of 400 N for 3(\.\d+)? s: 436 N, limit 1\.05 times"
     )
     assert fullmatch(words, watching.events[0].text)
-    assert watching.monitor.over.is_lasting
+    assert watching.is_over()
     for _ in range(20):
         watching.show(396.0)
-    assert not watching.monitor.over.is_lasting
+    assert not watching.is_over()
     for _ in range(round(CALM / PERIOD) + 1):
         watching.show(396.0)
     assert watching.kinds == [EventKind.OVER, EventKind.SAFE]
