@@ -48,7 +48,7 @@ A path of a hundred levels takes seconds to evaluate.
 """
 
 WORTH = 0.004
-"""Relative saving below which the programmed number of passes is kept."""
+"""Relative saving below which the programmed number of passes is kept, or else the fewest."""
 
 TIE = 1e-4
 """Relative difference of costs that no further path is tried for."""
@@ -104,6 +104,12 @@ class PassCountSearch:
     def least(self) -> float:
         """Least cost so far, s or J; infinite without a feasible number of passes."""
         return min((self.cost(each) for each in self.found.values()), default=inf)
+
+    @property
+    def near_best(self) -> dict[int, PassCountOptimum]:
+        """Numbers of passes whose cost is so near the least that fewer passes are better."""
+        bound = self.least / (1.0 - WORTH)
+        return {n: each for n, each in self.found.items() if self.cost(each) <= bound}
 
     def cost(self, each: PassCountOptimum) -> float:
         """Cost of a number of passes along its own path, s or J."""
@@ -172,17 +178,17 @@ def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimu
     untried: list[int] = []
     if problem.passes[0] != problem.passes[1]:
         deepest = problem.deepest()
-        if deepest not in search.bounds and deepest <= problem.passes[1]:
+        # A path in deeper passes may show that still deeper ones are allowed.
+        while deepest not in search.bounds and deepest <= problem.passes[1]:
             last = search.try_passes(problem, deepest)
+            deepest = min(deepest, last.deepest())
         last = _until_feasible(search, last)
         untried = _try_in_order(search, problem, deepest)
     if not search.found:
         raise _infeasible_as_tooled(search, last)
-    best = min(search.found.values(), key=search.cost)
-    kept = search.found.get(given, best)
-    if (1.0 - WORTH) * search.cost(kept) <= search.cost(best):
-        best = kept
-    if best is not kept or given not in search.found:
+    near = search.near_best
+    best = near.get(given) or near[min(near)]
+    if given not in near:
         _require_sensible(best, given)
     # The next workingstep finds the stock as this path leaves it.
     cut = asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)

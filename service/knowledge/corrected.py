@@ -1,11 +1,12 @@
 """Corrections for a plan from the knowledge base: accepted factors on k_c, by tool."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from optimiser.safety import USUAL_QUANTILE
 from simulator.spec import Machine, MaterialMatch
-from stepnc_model.errors import Finding, Severity
+from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.tool import tool_of
 
@@ -45,12 +46,19 @@ def factors_for(  # noqa: PLR0913 (all that a context is made of)
     """
     return factors_for_tools(
         place,
-        sorted({tool_of(program, step.tool_ref).id for step in steps}),
+        sorted(set(_tools(program, steps))),
         machine=machine,
         material=material,
         safety=safety,
         is_new_allowed=is_new_allowed,
     )
+
+
+def _tools(program: Program, steps: Iterable[ResolvedWorkingstep]) -> Iterator[str]:
+    """Ids of the tools that can be read; a plan tells of the others with their workingsteps."""
+    for step in steps:
+        with suppress(StepNcError):
+            yield tool_of(program, step.tool_ref).id
 
 
 def factors_for_tools(

@@ -16,13 +16,15 @@ OVERRIDES = (1.0, 0.8, 0.6)
 def cycle(number: int, **more: float) -> LoopCycle:
     """A cycle of 20 ms that completes a revolution of 20 mm/s."""
     revolution = replace(REVOLUTION, **more)  # type: ignore[arg-type]
+    ratio = log(revolution.force / 400.0) if revolution.force > 0.0 else None
     return LoopCycle(
         reading=reading(0.0, workingstep=number, period=0.02),
         allowed=AllowedOverride(override=1.0),
         set_point=400.0,
         revolution=revolution,
         expected=400.0,
-        ratio=log(revolution.force / 400.0) if revolution.force > 0.0 else None,
+        ratio=ratio,
+        sharp_ratio=ratio,
         events=(),
     )
 

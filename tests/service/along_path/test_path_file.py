@@ -194,4 +194,4 @@ def test_nc_code_has_no_place_for_tool_paths(
     with pytest.raises(SystemExit) as stopped:
         optimise_main([str(code), "--along-path", "--write-toolpaths"])
     assert stopped.value.code == BAD_INPUT
-    assert "--write-toolpaths writes into STEP-NC programs" in capsys.readouterr().err
+    assert "tool paths are written into STEP-NC programs" in capsys.readouterr().err

@@ -23,7 +23,7 @@ def test_columns_add_up_to_the_last_row(
     simulation: Simulation, capsys: pytest.CaptureFixture[str]
 ) -> None:
     lines = printed(simulation, capsys)
-    numbers = [[float(word) for word in line.split()[-10:]] for line in lines[3:7]]
+    numbers = [[float(word) for word in line.split()[-10:]] for line in lines[4:8]]
     for place in (0, 1, 2, 3, 4, 5, 9):
         column = [line[place] for line in numbers]
         assert sum(column[:-1]) == pytest.approx(column[-1], abs=0.2)

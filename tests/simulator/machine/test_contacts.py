@@ -29,7 +29,11 @@ def test_nothing_met_is_nothing_said() -> None:
 def test_each_kind_says_what_where_and_how_much() -> None:
     found = contacts(Stock([hit(4, volume=12.5)], [hit(5, depth=0.25)], [hit(6, depth=1.5)]))
     assert [finding.line for finding in found] == [4, 5, 6]
-    assert {finding.severity for finding in found} == {Severity.WARNING}
+    assert [finding.severity for finding in found] == [
+        Severity.ERROR,
+        Severity.WARNING,
+        Severity.WARNING,
+    ]
     rapid, holder, shank = (finding.message for finding in found)
     assert "rapid" in rapid
     assert "12.5 mm³" in rapid
