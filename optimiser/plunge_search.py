@@ -55,6 +55,21 @@ def best_plunge(
     timed : callable
         Returns the cut as the axes run it at a setting.
     """
+    found = _greatest(cut, at, setting, timed)
+    given, plunge = cut.programmed.plunge_feed, found.setting.plunge_feed
+    if given is None or plunge is None or abs(given / plunge - 1.0) > CLOSE:
+        return found
+    # The search begins at another feed in a second run, and ends a little beside the first.
+    kept = _tried(found.cut, at, replace(found.setting, plunge_feed=given), timed)
+    if kept.excess > 1.0 + CLOSE:
+        return found
+    return replace(kept, balanced_feed=found.balanced_feed)
+
+
+def _greatest(
+    cut: Cut, at: CuttingConditions, setting: Setting, timed: Callable[[Cut, Setting], Cut]
+) -> PlungeOptimum:
+    """Greatest plunge feed that keeps its bounds, by the secant method."""
     found = _tried(cut, at, with_plunge_feed(cut, at, setting), timed)
     first = found.setting.plunge_feed
     if first is None:
