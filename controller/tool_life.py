@@ -61,6 +61,13 @@ DRIFT = 1e-4
 CORRELATED = 10.0
 """Revolutions in which errors of the expected force are alike and do not average out."""
 
+SOFTEST = 0.7
+"""Least k_c over that of the plan beside which a wear land is believed: two deviations of 20 %.
+
+Readings of an entry that a recording dates wrongly may part the force badly: a hard material
+that then seems to soften to nothing while the tool wears.
+"""
+
 PLAN_ERROR = 0.02
 """Flank wear that an error of the expected force may look like, mm: one or two per cent."""
 
@@ -171,7 +178,13 @@ class ToolLife:
     def is_worn_out(self) -> bool:
         """Whether the flank wear has surely reached the end of tool life, [2]_."""
         noise = sqrt(float(self.belief.covariance[2, 2]))
-        return self.flank_wear >= LIFE_CRITERION and noise < 0.25 * LIFE_CRITERION
+        is_sure = self.is_credible and noise < 0.25 * LIFE_CRITERION
+        return is_sure and self.flank_wear >= LIFE_CRITERION
+
+    @property
+    def is_credible(self) -> bool:
+        """Whether the wear is that of a material which may be the planned one."""
+        return self.hardness > SOFTEST
 
     @property
     def basis(self) -> str:
@@ -188,7 +201,7 @@ class ToolLife:
     def is_wear_sure(self) -> bool:
         """Whether there is wear beyond three standard deviations and the errors of the plan."""
         noise = sqrt(float(self.belief.covariance[2, 2]))
-        return self.flank_wear > max(3.0 * noise, PLAN_ERROR)
+        return self.is_credible and self.flank_wear > max(3.0 * noise, PLAN_ERROR)
 
     def sharp(self, log_ratio: float, land_share: float) -> float:
         """Return ln(measured / expected) less the force of the land, if there surely is one."""
