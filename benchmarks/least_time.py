@@ -14,11 +14,13 @@ from unittest.mock import patch
 
 from optimiser import optimise as advising
 from optimiser.advice import Advice, Plan
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut
 from optimiser.formulate import OptimisationTask, problem_of
 from optimiser.modes import Mode
 from optimiser.passes import AdviceContext, PassCountOptimum, best_of
-from optimiser.plunge_feed import with_plunge_feed
+from optimiser.plunge_feed import holding, plunge_limits, with_plunge_feed
+from optimiser.plunge_search import CLOSE
 from optimiser.problem import ROUNDING, BoundSide, Limit, Problem, Setting
 from optimiser.workingstep import limits_at
 from simulator.library import load_machine
@@ -51,6 +53,12 @@ MOST_PASSES = 12
 
 FEED_STEP = 1.005
 """Ratio of neighbouring feeds of the grid."""
+
+RAMP_STEP = 1.02
+"""Ratio of neighbouring feeds where a ramp and its pass depend on each other."""
+
+LEAST_OF_RAMP = 0.2
+"""Least feed of that grid over the greatest."""
 
 FEED_SPAN = 100.0
 """Greatest feed of the grid over the programmed one, and the programmed one over the least."""
@@ -199,15 +207,50 @@ def grid(
         feed = _fastest(limits_at(there, speed), given.feed, depth=depth, speed=speed)
         if feed is None:
             continue
-        setting = Setting(feed=feed, depth=depth, passes=passes, speed=speed)
-        setting = with_plunge_feed(tried, asked.at, setting)
-        timed = problem_of(asked.cuts.at(asked.step, tried, setting), asked.at, asked.task)
-        points[passes] = GridPoint(
-            setting=setting,
-            time=timed.cost.time(setting),
-            energy=timed.cost.energy(setting),
+        point = _best_ramp(
+            tried, Setting(feed=feed, depth=depth, passes=passes, speed=speed), asked
         )
+        if point is not None:
+            points[passes] = point
     return points
+
+
+def _best_ramp(cut: Cut, fastest: Setting, asked: AdviceContext) -> GridPoint | None:
+    """Best point of the grid over feeds and plunge feeds that keeps the limits of the way in.
+
+    Where the axes speed up for the pass before a ramp ends, its limits depend on both feeds.
+    """
+    best: GridPoint | None = None
+    setting = fastest
+    while setting.feed > LEAST_OF_RAMP * fastest.feed:
+        ideal = with_plunge_feed(cut, asked.at, setting)
+        plunge, least = ideal.plunge_feed, LEAST_OF_RAMP * (ideal.plunge_feed or 0.0)
+        while plunge is None or plunge > least:
+            tried = replace(setting, plunge_feed=plunge)
+            timed = asked.cuts.at(asked.step, cut, tried)
+            cost = problem_of(timed, asked.at, asked.task).cost
+            point = GridPoint(setting=tried, time=cost.time(tried), energy=cost.energy(tried))
+            if best is not None and point.time >= best.time:
+                break
+            if _keeps_way_in(timed, asked.at, tried):
+                best = point
+                break
+            if plunge is None:
+                break
+            plunge /= RAMP_STEP
+        if setting is fastest and best is not None and best.setting == ideal:
+            break
+        setting = replace(setting, feed=setting.feed / RAMP_STEP)
+    return best
+
+
+def _keeps_way_in(cut: Cut, at: CuttingConditions, setting: Setting) -> bool:
+    """Whether the plunge feed keeps its limits as the axes run it."""
+    limits, plunge = plunge_limits(cut, at, setting.speed), setting.plunge_feed
+    if plunge is None or not limits:
+        return True
+    allowed = holding(limits, setting).feed_at_bound(setting.depth, setting.speed)
+    return plunge <= (1.0 + CLOSE) * allowed
 
 
 def _fastest(

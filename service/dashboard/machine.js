@@ -16,7 +16,8 @@ const older = el("button", { id: "runs-older", hidden: true, onclick: () => list
 const badge = el("span", { id: "run-state" });
 const starting = el("details", { id: "start-box" }, el("summary", {}, "Start a run"),
   el("div", { id: "start-place" }, el("p", { class: "soft" }, "…")));
-const source = el("select", { id: "source", onchange: () => enter(source.value) });
+// A choice before the page has opened what its address names would be undone.
+const source = el("select", { id: "source", disabled: true, onchange: () => enter(source.value) });
 const sourceCard = el("section", { class: "card", "aria-label": "choice of machine", hidden: true },
   el("div", { class: "row" }, el("label", { class: "grow" }, "Machine", source)));
 const runCard = el("section", { class: "card", "aria-label": "choice of run" },
@@ -115,6 +116,7 @@ async function begin() {
     choice.value = "";
   }
   choice.disabled = !known.size;
+  source.disabled = false;
   await startForm(byId("start-place"), programs, wish, (job) => { choice.disabled = false; started(job); });
 }
 

@@ -76,7 +76,7 @@ def test_a_workingstep_opens_by_keyboard_and_headings_sort(page: Page) -> None:
     opener.focus()
     page.keyboard.press("Enter")
     detail = page.locator("#detail-0")
-    expect(detail).to_contain_text("feed per tooth0.5 ≤ 0.5 mm")
+    expect(detail).to_contain_text("feed per tooth0.054 ≤ 0.054 mm")
     page.locator("#sort-feed").focus()
     page.keyboard.press("Enter")
     expect(page.locator("#steps th[aria-sort]").first).to_be_visible()

@@ -43,7 +43,7 @@ def test_code_is_chosen_with_its_tools_and_rewritten(page: Page, tmp_path: Path)
         page.locator("#download-nc").click()
     assert code.value.suggested_filename == "plate.optimised.nc"
     code.value.save_as(tmp_path / "new.nc")
-    assert b"air feed" in (tmp_path / "new.nc").read_bytes()
+    assert b"greatest rise" in (tmp_path / "new.nc").read_bytes()
     with page.expect_download() as feeds:
         page.locator("#download-feeds").click()
     assert feeds.value.suggested_filename == "plate.feeds.csv"
