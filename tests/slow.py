@@ -13,6 +13,7 @@ SLOW = (
     "docs/test_service_page.py",
     "docs/test_site.py",
     "examples/test_learning_from_runs.py",
+    "golden",
     "kbe/test_backup.py",
     "kbe/test_concurrency.py",
     "optimiser/test_least_time.py",
