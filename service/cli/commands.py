@@ -31,13 +31,15 @@ from service.cli.options import (
     add_knowledge,
     add_most_repeats,
     add_program,
-    output_path,
     program_request,
 )
 from service.cli.paths import add_path_commands
 from service.cli.record import add_record_command
 from service.cli.serve import add_service_commands
+from service.cli.verbs import add_verb
 from service.cli.verify import add_verify_command
+from service.requests.fields import output_path
+from service.verbs.verb import verbs
 
 EXAMPLES = """examples:
   optimise part.stpnc --mode TC --machine vmc15
@@ -91,6 +93,8 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     add_factory_command(commands)
     add_dataset_command(commands)
     add_learning_commands(commands)
+    for verb in verbs().values():
+        add_verb(commands, verb)
     add_service_commands(commands)
     for kind in ("machines", "materials"):
         listing = commands.add_parser(kind, help=f"list the {kind}, or show one")

@@ -105,14 +105,17 @@ THROUGH = {
     "service/test_log_lines.py": ("service/fork_log.py",),
     "service/test_report.py": ("service/figures.py",),
     "service/test_run_file.py": ("service/growing_file.py",),
+    "service/verbs/test_verb.py": ("service/cli/verbs.py", "service/requests/files.py"),
     "service/test_uses.py": ("service/paths/remarks.py",),
 }
 """tests, and the modules that they run through others"""
 
 
 def mirror(module: str) -> Path:
-    """Test module in the place that mirrors a module's own."""
+    """Test module in the place that mirrors a module's own; that of a verb runs its folder."""
     path = TESTS / module
+    if module.startswith("service/verbs/") and module.count("/") == 3:
+        return path.with_name("test_run.py")
     return path.with_name(f"test_{path.name}")
 
 

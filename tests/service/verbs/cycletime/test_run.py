@@ -1,5 +1,6 @@
 """The command ``cycletime``: predicted beside logged, and the modified program."""
 
+import logging
 import re
 from dataclasses import replace
 from math import cos, pi, sin
@@ -8,10 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from service.blocks.cycle_time import CycleTimeRequest, cycle_time
+import stepnc
 from service.requests.runs import SimulationRequest
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles, simulate
+from service.verbs.call import call
+from service.verbs.verb import verbs
 from simulator.errors import SimulationError
 from simulator.library import load_machine
 from simulator.machine.block_times import LossCause
@@ -19,7 +22,7 @@ from simulator.machine_file import machine_toml
 from stepnc_model.errors import StepNcError
 from tests.every_case import every_case
 
-PARTS = Path(__file__).parents[3] / "examples" / "parts"
+PARTS = Path(__file__).parents[4] / "examples" / "parts"
 COUNT, SPACING = 1000, 0.1
 
 
@@ -32,7 +35,7 @@ def code(folder: Path) -> Path:
 
 
 def test_short_blocks_lose_time_and_a_hint_says_what_helps(tmp_path: Path) -> None:
-    result = cycle_time(CycleTimeRequest(file=code(tmp_path), machine="vmc15"))
+    result = stepnc.cycletime(code(tmp_path), machine="vmc15")
     assert result.total.programmed == pytest.approx(COUNT * SPACING / 100.0)
     assert result.total.by_rate == pytest.approx(COUNT * 0.0042)
     assert result.total.predicted == pytest.approx(COUNT * 0.0042, rel=0.05)
@@ -42,15 +45,16 @@ def test_short_blocks_lose_time_and_a_hint_says_what_helps(tmp_path: Path) -> No
     assert "points 0.42 mm apart would give it back" in result.hints[0]
 
 
-def test_the_modified_program_has_reachable_feeds_and_takes_as_long(tmp_path: Path) -> None:
+def test_the_modified_program_has_reachable_feeds_and_takes_as_long(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     part, modified = code(tmp_path), tmp_path / "modified.ngc"
-    told: list[str] = []
-    result = cycle_time(
-        CycleTimeRequest(file=part, machine="vmc15", output=modified), tell=told.append
-    )
+    with caplog.at_level(logging.INFO, logger="stepnc"):
+        result = stepnc.cycletime(part, machine="vmc15", output=modified)
+    told = caplog.messages
     assert "F1428.571" in modified.read_text()
     assert told[-1].endswith(f"feed lowered in {COUNT} blocks)")
-    again = cycle_time(CycleTimeRequest(file=modified, machine="vmc15"))
+    again = stepnc.cycletime(modified, machine="vmc15")
     assert again.total.programmed == pytest.approx(result.total.by_rate, rel=1e-4)
     assert again.total.predicted == pytest.approx(result.total.predicted, rel=0.01)
 
@@ -62,7 +66,7 @@ def test_a_log_of_the_same_machine_agrees_by_workingstep_and_tool(tmp_path: Path
         SimulationRequest(machine="paper003", rate_hz=20.0),
         RunFiles(file=part, output=log),
     )
-    result = cycle_time(CycleTimeRequest(file=part, machine="paper003", log=str(log)))
+    result = stepnc.cycletime(part, machine="paper003", log=str(log))
     assert result.total.actual == pytest.approx(result.total.predicted, abs=0.1)
     for row in result.rows:
         assert row.actual == pytest.approx(row.predicted, abs=0.15)
@@ -75,7 +79,7 @@ def test_nc_code_of_a_lathe_and_a_log_without_names(tmp_path: Path) -> None:
         SimulationRequest(machine="vmc15", rate_hz=50.0),
         RunFiles(code=CodeRequest(code=part), output=log),
     )
-    result = cycle_time(CycleTimeRequest(file=part, machine="vmc15", log=str(log)))
+    result = stepnc.cycletime(part, machine="vmc15", log=str(log))
     assert result.total.actual == pytest.approx(result.total.predicted, rel=0.01)
 
 
@@ -96,11 +100,11 @@ def test_code_of_another_cam_keeps_all_but_its_feeds(tmp_path: Path) -> None:
     text = "\n".join(f"{n} {line}" for n, line in enumerate([*head, *lines, "END PGM ARC MM"]))
     part, output = tmp_path / "arc.h", tmp_path / "modified.h"
     part.write_text(text + "\n", encoding="ascii")
-    before = cycle_time(CycleTimeRequest(file=part, machine="vmc15", output=output))
+    before = stepnc.cycletime(part, machine="vmc15", output=output)
     assert before.total.predicted > before.total.programmed + 0.2
     old, new = (re.sub(r" F[0-9.]+", "", each.read_text("ascii")) for each in (part, output))
     assert new == old
-    after = cycle_time(CycleTimeRequest(file=output, machine="vmc15"))
+    after = stepnc.cycletime(output, machine="vmc15")
     assert after.total.predicted == pytest.approx(before.total.predicted, rel=0.01)
     assert after.total.programmed == pytest.approx(after.total.predicted, rel=0.03)
     assert [each.message for each in before.findings if "any origin" in each.message]
@@ -116,8 +120,8 @@ def test_doubts_are_told(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     part = PARTS / "paper003_case1.stpnc"
-    request = CycleTimeRequest(file=part, machine=str(plain), log=str(log))
-    told = [each.message for each in cycle_time(request).findings]
+    found = stepnc.cycletime(part, machine=plain, log=log)
+    told = [each.message for each in found.findings]
     assert "has no block_time_s" in told[0]
     assert told[1].startswith("the log is of another program: it has workingsteps A,")
 
@@ -133,13 +137,13 @@ def test_doubts_are_told(tmp_path: Path) -> None:
     ],
 )
 def test_bad_input_is_told(tmp_path: Path, change: dict[str, object], message: str) -> None:
-    request = CycleTimeRequest(file=code(tmp_path), machine="vmc15")
+    given = {"file": code(tmp_path), "machine": "vmc15", **change}
     with pytest.raises(StepNcError, match=message):
-        cycle_time(replace(request, **change))  # type: ignore[arg-type]
+        call(verbs()["cycletime"], [], given)
 
 
 def test_a_program_that_the_machine_cannot_run_names_the_file(tmp_path: Path) -> None:
     path = tmp_path / "bad.ngc"
     path.write_text("G21 G90\nG0 X0 Y0 Z0\nG95 G1 X10 F0.1\nM2\n", encoding="utf-8")
     with pytest.raises(SimulationError, match=r"bad\.ngc: line 3"):
-        cycle_time(CycleTimeRequest(file=path, machine="vmc15"))
+        stepnc.cycletime(path, machine="vmc15")

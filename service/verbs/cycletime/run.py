@@ -1,28 +1,29 @@
-"""Cycle time of a program: as programmed, predicted, and as logged, for ``cycletime``."""
+"""Cycle time of a program: as programmed, predicted, and as logged."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from service.chosen import machine_for, require_axes
-from service.file_names import PROGRAMS
 from service.files import require_place, write_atomically, write_lines
 from service.paths.toolpaths import paths_of, with_feeds
+from service.program_kind import ProgramKind, kind_of_file
 from service.reading import Tell, read_given, silent
 from service.recording.logged_run import LoggedRun, read_logged_run
-from service.requests.given import ProgramRequest
 from service.requests.runs import RunRequest
+from service.requests.serves import require_served
 from service.simulation.of_code import IDLE, CodeRequest, dialect_of, from_code
 from service.simulation.setup import PreparedRun
+from service.verbs.cycletime.request import CycleTimeFiles, CycleTimeRequest
+from service.verbs.cycletime.result import CycleRow, CycleTimeResult, LosingStretch
 from simulator.errors import SimulationError
 from simulator.machine.block_times import BlockTimes, LossCause, block_times
 from simulator.machine.interpreter import Numbered, interpret
 from simulator.machine.virtual import MachineSetup, VirtualMachine
-from simulator.motion.control import DEVIATION, control_model
-from simulator.motion.model_name import ControlModelName
+from simulator.motion.control import control_model
 from simulator.motion.segments import Bools, axis_limits
 from simulator.spec import Machine
 from stepnc_model.errors import Finding, Severity, StepNcError
@@ -45,96 +46,22 @@ WORTH = 0.01
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CycleTimeRequest:
-    """Request of ``cycletime``, as typed."""
-
-    file: Path
-    machine: str = ""
-    log: str = ""
-    """Recorded run, MTConnect document or address of an agent; empty: none."""
-    program: ProgramRequest = field(default_factory=ProgramRequest)
-    """What is given about a STEP-NC program beyond its file."""
-    dialect: str = ""
-    """Dialect of NC code that is read or written; empty: by the file extension."""
-    control: ControlModelName = ControlModelName.FIR
-    deviation: float = DEVIATION
-    """Deviation of the junction control, mm."""
-    output: Path | None = None
-    """Modified program; None: none is written."""
-    most_repeats: int | None = None
-    """Blocks and moves of NC code beyond those of its file; None: as usual."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CycleRow:
-    """Times of one tool in one workingstep, or of all, s."""
-
-    workingstep: str
-    tool: int | None
-    blocks: int
-    programmed: float
-    by_rate: float
-    predicted: float
-    actual: float | None
-    """Logged time; None where the log does not tell it."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LosingStretch:
-    """Consecutive blocks that lose time for the same reason."""
-
-    workingstep: str
-    first: int
-    """Number of its first block or line."""
-    last: int
-    blocks: int
-    spacing: float
-    """Mean length of a block, mm."""
-    feed: float
-    """Mean programmed feed, mm/s."""
-    reached: float
-    """Mean predicted feed, mm/s."""
-    lost: float
-    """Time beyond the programmed one, s."""
-    cause: LossCause
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class CycleTimeResult:
-    """Result of ``cycletime``."""
-
-    name: str
-    machine: Machine
-    control: ControlModelName
-    times: BlockTimes
-    rows: tuple[CycleRow, ...]
-    """Rows by workingstep and tool in order of execution."""
-    total: CycleRow
-    stretches: tuple[LosingStretch, ...]
-    """Stretches that lose most, in order of their loss."""
-    hints: tuple[str, ...]
-    findings: tuple[Finding, ...]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class _Source:
     """Program that is read anew each time its blocks are asked for."""
 
     request: CycleTimeRequest
-
-    @property
-    def is_program(self) -> bool:
-        """Whether it is STEP-NC and not NC code."""
-        return self.request.file.suffix.lower() in PROGRAMS
+    files: CycleTimeFiles
+    is_program: bool
+    """True for STEP-NC, false for NC code."""
 
     def code(self) -> PreparedRun:
         """Run of NC code, without what cannot be run."""
-        request = self.request
+        request, files = self.request, self.files
         return from_code(
             CodeRequest(
-                code=request.file,
+                code=files.file,
                 dialect=request.dialect,
-                most_repeats=request.most_repeats,
+                most_repeats=files.most_repeats,
             ),
             RunRequest(machine=request.machine),
             program=None,
@@ -148,13 +75,15 @@ class _Source:
             prepared = self.code()
             found = tuple(each for each in prepared.findings if each is not IDLE)
             return prepared.machine, prepared.blocks, found
-        program = read_given(request.file, request.program, tell=tell).program
+        program = read_given(self.files.file, request, tell=tell).program
         paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
         blocks = blocks_of(program, paths.items, name=Path(program.name).stem)
         return machine_for(request.machine, program), enumerate(blocks, start=1), ()
 
 
-def cycle_time(request: CycleTimeRequest, *, tell: Tell = silent) -> CycleTimeResult:
+def run(
+    request: CycleTimeRequest, files: CycleTimeFiles, *, tell: Tell = silent
+) -> CycleTimeResult:
     """Estimate the cycle time of a program, and write its modified program if asked for.
 
     Raises
@@ -162,26 +91,29 @@ def cycle_time(request: CycleTimeRequest, *, tell: Tell = silent) -> CycleTimeRe
     StepNcError
         When a file, the machine or an option is invalid, or the machine cannot run it.
     """
-    source = _Source(request=request)
-    if request.output is not None:
-        require_place(request.output, apart_from=request.file)
-        if source.is_program or source.code().code is None:
-            dialect_of(request.output, request.dialect)
+    kind = kind_of_file(files.file)
+    require_served(request, kind)
+    is_program = kind is ProgramKind.STEP_NC
+    source = _Source(request=request, files=files, is_program=is_program)
+    if files.output is not None:
+        require_place(files.output, apart_from=files.file)
+        if is_program or source.code().code is None:
+            dialect_of(files.output, request.dialect)
     machine, blocks, left_out = source.opened(tell)
     require_axes(machine)
     virtual = _virtual(machine, request)
     try:
         times = block_times(virtual.run(interpret(blocks, machine)), axis_limits(machine))
     except SimulationError as error:
-        raise SimulationError(f"{request.file.name}: {error}") from error
-    log = read_logged_run(request.log, tell=tell) if request.log else None
+        raise SimulationError(f"{files.file.name}: {error}") from error
+    log = read_logged_run(files.log, tell=tell) if files.log else None
     names = ("", *virtual.workingsteps)
-    if request.output is not None:
-        _write_modified(source, times, request.output, tell)
+    if files.output is not None:
+        _write_modified(source, times, files.output, tell)
     stretches = _stretches(times, names)
     total = _total(times, log)
     return CycleTimeResult(
-        name=request.file.name,
+        name=files.file.name,
         machine=machine,
         control=request.control,
         times=times,
@@ -197,7 +129,7 @@ def _virtual(machine: Machine, request: CycleTimeRequest) -> VirtualMachine:
     """Machine without tools and stock, as only time counts."""
     try:
         control = control_model(
-            request.control, axis_limits(machine), deviation=request.deviation
+            request.control, axis_limits(machine), deviation=request.deviation_mm
         )
     except ValueError as error:
         text = f"machine '{machine.name}', control {request.control.value}: {error}"
