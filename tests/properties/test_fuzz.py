@@ -9,9 +9,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from service import usecases
 from service.contents import check
 from service.requests.given import ProgramRequest, Units
+from service.verbs.optimise import program as advising
 from stepnc_model.errors import StepNcError
 from tests.asking import asked_advice
 
@@ -91,7 +91,7 @@ def read_and_optimise(data: bytes, units: str = "iso") -> None:
         with suppress(StepNcError):
             check(path, ProgramRequest(units=Units(units)))
         with suppress(StepNcError):
-            usecases.optimise(*asked_advice(file=path, units=units, dry_run=True))
+            advising.advise_program(*asked_advice(file=path, units=units, dry_run=True))
         assert [each.name for each in Path(folder).iterdir()] == ["part.stpnc"]
 
 
