@@ -183,3 +183,36 @@ def test_share_of_the_land_is_what_it_adds() -> None:
 def test_watchfulness_is_positive(name: str) -> None:
     with pytest.raises(ValueError, match=f"{name} 0 must be greater"):
         WearMonitorSettings(**{name: 0})
+
+
+WRONG = {
+    "entry": np.linspace(3.2, 1.5, 25),
+    "exit": np.concatenate((np.full(300, 1.3), np.linspace(1.3, 0.4, 25))),
+}
+"""Ratios where a recording dates an entry or an exit wrongly."""
+
+
+@pytest.mark.parametrize("where", WRONG)
+def test_what_is_dated_wrongly_is_no_noise_and_is_left_behind(where: str) -> None:
+    ratios = np.concatenate((WRONG[where], np.full(60, 1.3)))
+    life = lifetime(noisy(ratios, 5, 0.005))[-1]
+    assert life.hardness == pytest.approx(1.3, rel=0.02)
+    assert life.flank_wear < 0.01
+
+
+@settings(max_examples=100)
+@given(
+    readings=st.lists(
+        st.tuples(st.floats(0.05, 20.0), st.floats(0.1, 20.0), st.floats(0.0, 5.0)),
+        min_size=1,
+        max_size=60,
+    )
+)
+def test_no_readings_make_work_or_wear_negative(
+    readings: list[tuple[float, float, float]],
+) -> None:
+    ratios, shares, normal = np.array(readings).T
+    for life in lifetime(ratios, share=shares, normal=normal):
+        assert life.hardness > 0.0
+        assert life.belief.mean[1:].min() >= 0.0
+        assert np.isfinite(life.belief.covariance).all()
