@@ -8,7 +8,6 @@ recorded run is what it was; commands have no effect. Units mm, s, N, W.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-
 from math import isnan
 
 import numpy as np
@@ -39,7 +38,7 @@ MOST_FAR = 0.2
 """Share of such samples in a run that is refused."""
 
 ALIKE = 0.1
-"""Difference between overrides by feed and by positions, as a share, up to which it is noise."""
+"""Difference of overrides by feed and by positions, as a share, up to which it is noise."""
 
 SMOOTH = 0.1
 """Time before and after a moment over which its override is measured, in s."""

@@ -145,7 +145,7 @@ def test_where_the_force_changes_places_are_not_steady(rate: float, around: floa
     while (reading := machine.read()) is not None:
         steady[round(reading.progress, 2)] = reading.is_placed
     assert not any(value for time, value in steady.items() if abs(time - 1.0) < around)
-    assert all(value for time, value in steady.items() if 1.2 < time < 2.8)
+    assert all(value for time, value in steady.items() if 1.25 < time < 2.75)
 
 
 def test_a_run_that_is_over_cannot_be_changed() -> None:
