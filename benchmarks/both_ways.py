@@ -27,6 +27,7 @@ from service.requests.advice import AdviceRequest
 from service.simulation.code_paths import CodeBlocks, CodePaths
 from service.usecases import AdviceFiles, OptimiseResult, optimise
 from simulator.edge_material import edge_material
+from simulator.removal.cutter import Insert
 from simulator.removal.tool_shape import THREADS, shape_of
 from simulator.spec import CuttingMaterial
 from simulator.tool_kind import tool_kind
@@ -163,6 +164,7 @@ def _tools(program: Program) -> dict[int, TableTool]:
             teeth=tool.teeth,
             shape=shape,
             centre_cutting=tool.centre_cutting,
+            max_depth=tool.cutting_edge_length if isinstance(shape, Insert) else None,
         )
     return found
 
