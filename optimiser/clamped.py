@@ -20,7 +20,7 @@ from stepnc_model.entities.executables import Setup
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import SchemaError
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, ResolvedWorkingstep, Stock
+from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.tool import tool_of
 from stepnc_model.toolpath.task import stock_of
 
@@ -190,4 +190,3 @@ def met_by(
         return TrialContacts(why=str(error))
     met = PathContacts(stations=stations, length=stretch_lengths(stations), cell=cell)
     return TrialContacts(met=met, change=change, trial=trial)
-

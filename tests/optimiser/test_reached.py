@@ -122,6 +122,15 @@ def test_each_load_has_a_place_of_its_own() -> None:
     assert found.reached.wall == pytest.approx(1.0)
 
 
+def test_slow_axes_brake_in_the_last_micrometres() -> None:
+    """A cone is met whole at its end: at 0.6 mm/s the way to brake is 2 µm."""
+    slow = 0.6
+    path = lines([(0, 0, 1), (0, 0, 0)], speed=slow)
+    cone = met(DRILLED, (0.7, 1.0), (1.0, 6.0), growth=(0.0, 6.0))
+    found = reached(DRILLED, cone, ride(path, feed=slow))
+    assert loads(found)[0] > 0.98
+
+
 def test_where_no_wall_bends_its_share_is_one() -> None:
     found = reached(CUT, met(CUT, (99.5, 0), (100, 6)), ride())
     assert found.reached.wall == 1.0
@@ -184,6 +193,16 @@ def test_a_turned_cut_learns_where_its_power_is_greatest() -> None:
 
 
 DOWN = lines([(0, 0, 0), (0, 0, -100)], speed=FEED)
+
+
+def test_a_spindle_that_slows_down_has_its_power_where_a_segment_begins() -> None:
+    """Between the middles of segments its speed changes evenly: 21 to 20 rev/s is 20.5."""
+    path = lines([(0, 0, 0), (0, 0, -50), (0, 0, -100)], speed=FEED)
+    both = met(TURNED, (50.0, 1e-6), (50.0, 4.0), segment=(0, 1), diameter=(40.0, 40.0))
+    even = reached(TURNED, both, ride(path, spindle=(20.0, 20.0)))
+    late = reached(TURNED, both, ride(path, spindle=(21.0, 20.0)))
+    assert even.power_diameter is not None
+    assert late.power_diameter == pytest.approx(even.power_diameter * 20.5 / 20.0)
 
 
 def test_a_drill_at_its_feed_has_the_chip_of_its_feed() -> None:
