@@ -105,11 +105,11 @@ class PassCountSearch:
         """Least cost so far, s or J; infinite without a feasible number of passes."""
         return min((self.cost(each) for each in self.found.values()), default=inf)
 
-    @property
-    def near_best(self) -> dict[int, PassCountOptimum]:
-        """Numbers of passes whose cost is so near the least that fewer passes are better."""
+    def chosen(self, given: int) -> int:
+        """Number of passes to take: the given one or the fewest of those near the least cost."""
         bound = self.least / (1.0 - WORTH)
-        return {n: each for n, each in self.found.items() if self.cost(each) <= bound}
+        near = {n for n, each in self.found.items() if self.cost(each) <= bound}
+        return given if given in near else min(near)
 
     def cost(self, each: PassCountOptimum) -> float:
         """Cost of a number of passes along its own path, s or J."""
@@ -186,9 +186,9 @@ def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimu
         untried = _try_in_order(search, problem, deepest)
     if not search.found:
         raise _infeasible_as_tooled(search, last)
-    near = search.near_best
-    best = near.get(given) or near[min(near)]
-    if given not in near:
+    chosen = search.chosen(given)
+    best = search.found[chosen]
+    if chosen != given:
         _require_sensible(best, given)
     # The next workingstep finds the stock as this path leaves it.
     cut = asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)

@@ -216,3 +216,21 @@ def test_no_readings_make_work_or_wear_negative(
         assert life.hardness > 0.0
         assert life.belief.mean[1:].min() >= 0.0
         assert np.isfinite(life.belief.covariance).all()
+
+
+def test_the_factor_that_is_recorded_is_without_the_wear() -> None:
+    flank = np.linspace(0.0, 0.2, 4000)
+    life = lifetime(noisy(worn(flank), 3))[-1]
+    assert life.is_wear_sure
+    whole = log(float(worn(0.2)))
+    assert life.sharp(whole, LAND_SHARE) == pytest.approx(0.0, abs=0.05)
+    assert new_tool().sharp(whole, LAND_SHARE) == whole
+
+
+def test_a_wear_that_an_error_of_the_plan_may_be_is_not_sure() -> None:
+    """The force of 0.012 mm is two per cent: less than a plan knows, whatever the noise."""
+    shares = np.where(np.arange(6000) % 40 < 20, 1.0, 3.0)
+    life = lifetime(1.0 + 0.012 * shares, share=shares)[-1]
+    noise = float(np.sqrt(life.belief.covariance[2, 2]))
+    assert 3.0 * noise < life.flank_wear < 0.02
+    assert not life.is_wear_sure

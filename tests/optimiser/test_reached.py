@@ -9,13 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from optimiser.cut import Cut, CutKind, ReachedLoads
+from optimiser.cut import CriticalPlace, Cut, CutKind, ReachedLoads
 from optimiser.hardest import KINDS, Bending, PathContacts
-from optimiser.reached import MachineRun, with_reached
+from optimiser.reached import MachineRun, thickened, with_reached
 from simulator.motion.control import ExactStop
 from simulator.motion.legs import Leg
 from simulator.motion.segments import AxisLimits, Segments, lines
 from simulator.motion.tool_path import ToolPathRun
+from simulator.physics.engagement import full_immersion
 from simulator.removal.stations import Stations, stretch_lengths
 from tests.optimiser.cuts import CUT, DRILLED, TURNED
 
@@ -248,3 +249,18 @@ def test_at_the_programmed_feed_no_share_is_above_one(
 def test_a_cut_keeps_all_else() -> None:
     found = reached(CUT, met(CUT, (99.5, 0), (100, 6)), ride())
     assert replace(found, reached=ReachedLoads()) == CUT
+
+
+def test_limits_bear_places_that_are_faster_than_their_feed() -> None:
+    """A control that rounds a change of the feed speeds up before it: 10 % more force."""
+    place = CriticalPlace(engagement=full_immersion(), depth_share=1.0, fill=0.5)
+    fast = ReachedLoads(force=1.1, power=1.1, wall=1.2)
+    cut = replace(CUT, shank=place, wall=place, fill=0.8, reached=fast)
+    borne = thickened(cut)
+    assert borne.fill == pytest.approx(0.88)
+    assert borne.shank is not None
+    assert borne.wall is not None
+    assert (borne.shank.fill, borne.wall.fill) == pytest.approx((0.55, 0.6))
+    assert borne.reached == ReachedLoads()
+    slow = replace(cut, reached=ReachedLoads(force=0.9, power=0.9, wall=0.9))
+    assert thickened(slow) is slow
