@@ -106,7 +106,7 @@ class PassCountSearch:
         return min((self.cost(each) for each in self.found.values()), default=inf)
 
     def chosen(self, given: int) -> int:
-        """Number of passes to take: the given one or the fewest of those near the least cost."""
+        """Number of passes to take: the given one, or the fewest near the least cost."""
         bound = self.least / (1.0 - WORTH)
         near = {n for n, each in self.found.items() if self.cost(each) <= bound}
         return given if given in near else min(near)
