@@ -66,6 +66,12 @@ DRIFT = 1e-4
 CORRELATED = 10.0
 """Revolutions in which errors of the expected force are alike and do not average out."""
 
+ENTRY = 0.1
+"""Standard deviation of ln(ratio) before it is learnt: at an entry sensors lag and settle."""
+
+EXPECTED = 20
+"""Number of revolutions as which that counts beside those that were measured."""
+
 PLAN_ERROR = 0.02
 """Flank wear that an error of the expected force may look like, mm: one or two per cent."""
 
@@ -144,7 +150,7 @@ class ToolLife:
     """Estimated wear of a tool; create a new one with :func:`new_tool`."""
 
     belief: _Belief
-    log_variance: float = 0.0
+    log_variance: float = ENTRY**2
     """Variance of the noise of ln(ratio) in single revolutions."""
     away: float = 0.0
     """ln(ratio) of the last revolution less what was explained."""
@@ -248,7 +254,7 @@ def lived(life: ToolLife, at: Ratios, *, by: WearMonitorSettings = USUAL) -> Too
     predicted = _predicted(life.belief, at.period)
     explained = max(_explained(predicted, at), _LEAST)
     away = at.log_ratio - log(explained) if life.readings else 0.0
-    part = max(1.0 / readings, 1.0 / by.memory)
+    part = max(1.0 / (readings + EXPECTED), 1.0 / by.memory)
     moved = replace(
         life,
         log_variance=(1.0 - part) * life.log_variance + part * _variance(away, life),
@@ -382,7 +388,7 @@ def _restarted(life: ToolLife, belief: _Belief, changes: tuple[float, ...]) -> T
         life,
         belief=belief,
         readings=0,
-        log_variance=0.0,
+        log_variance=ENTRY**2,
         away=0.0,
         above=CumulativeSum(),
         below=CumulativeSum(),

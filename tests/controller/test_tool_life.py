@@ -196,7 +196,7 @@ WRONG = {
 def test_what_is_dated_wrongly_is_no_noise_and_is_left_behind(where: str) -> None:
     ratios = np.concatenate((WRONG[where], np.full(60, 1.3)))
     life = lifetime(noisy(ratios, 5, 0.005))[-1]
-    assert life.hardness == pytest.approx(1.3, rel=0.02)
+    assert life.hardness == pytest.approx(1.3, rel=0.05)
     assert life.flank_wear < 0.01
 
 
