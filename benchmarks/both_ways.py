@@ -29,6 +29,7 @@ from service.verbs.optimise.plan_result import ProgramAdvice
 from service.verbs.optimise.program import advise_program as optimise
 from service.verbs.optimise.request import AdviceFiles
 from simulator.edge_material import edge_material
+from simulator.removal.cutter import Insert
 from simulator.removal.tool_shape import THREADS, shape_of
 from simulator.spec import CuttingMaterial
 from simulator.tool_kind import tool_kind
@@ -165,6 +166,7 @@ def _tools(program: Program) -> dict[int, TableTool]:
             teeth=tool.teeth,
             shape=shape,
             centre_cutting=tool.centre_cutting,
+            max_depth=tool.cutting_edge_length if isinstance(shape, Insert) else None,
         )
     return found
 

@@ -130,7 +130,8 @@ class Loop:
             mean = preview.mean(revolution.progress_before, revolution.progress)
             expected = float(mean * max(revolution.override, 0.0) ** state.step.exponent)
             # A force near zero gives no information on k_c.
-            known = expected if expected > weight * state.settings.chips else 0.0
+            is_known = reading.is_placed and expected > weight * state.settings.chips
+            known = expected if is_known else 0.0
             ratio = log_ratio(revolution, known, expected_before=state.expected)
             state = resolved(state._replace(expected=known), reading, revolution)
         self.state = answered(

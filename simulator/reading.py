@@ -42,3 +42,5 @@ class Reading:
     """Mean force normal to the edges over the period, N; NaN: not measured."""
     can_override: bool
     """Whether the feed override acts: not in rapid, in a dwell or at a tool change."""
+    is_placed: bool = True
+    """Whether its place in the program is known as exactly as the expected force needs."""

@@ -337,3 +337,13 @@ def test_a_look_ahead_into_the_past_is_refused() -> None:
 def test_an_exponent_of_nothing_is_refused() -> None:
     with pytest.raises(ValueError, match="exponent"):
         LoopStep(reference=Reference(workingstep="x"), exponent=0.0)
+
+
+def test_no_force_is_compared_where_the_place_is_not_known() -> None:
+    """A recording knows its places less exactly than forces change at an entry."""
+    known = plugged(even(6)).run()
+    unknown = plugged(even(6, is_placed=False)).run()
+    assert any(cycle.ratio is not None for cycle in known.cycles)
+    assert all(cycle.ratio is None for cycle in unknown.cycles)
+    life = unknown.loop.state.monitor.life
+    assert life is None or life.readings == 0
