@@ -7,7 +7,6 @@ module of seven seconds or more on a quiet machine, unless it is what a change b
 
 SLOW = (
     "benchmarks/test_both_ways.py",
-    "benchmarks/test_promised.py",
     "benchmarks/test_spiral.py",
     "closed_loop",
     "docs/test_pages.py",

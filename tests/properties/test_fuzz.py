@@ -44,7 +44,7 @@ Edit = st.one_of(
 )
 
 bounded = settings(
-    max_examples=120,
+    max_examples=60,
     deadline=None,
     derandomize=True,
     database=None,
@@ -128,7 +128,7 @@ def test_swapped_references_answer_or_are_refused(
     read_and_optimise(data)
 
 
-@settings(bounded, max_examples=60)
+@settings(bounded, max_examples=25)
 @given(data=st.binary(max_size=400), has_opening=st.booleans())
 def test_any_bytes_answer_or_are_refused(data: bytes, has_opening: bool) -> None:
     read_and_optimise(b"ISO-10303-21;HEADER;ENDSEC;DATA;" + data if has_opening else data)
