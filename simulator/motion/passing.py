@@ -25,19 +25,53 @@ class Passing:
         return np.concatenate(([0.0], np.cumsum(self.segments.length)))
 
     @cached_property
-    def clock(self) -> tuple[Floats, Floats]:
-        """Times in s and path lengths in mm, dense enough for linear interpolation."""
-        knots = np.unique(np.concatenate((self.motion.knots, self.motion.ends)))
+    def dense_times(self) -> Floats:
+        """Times between which the path length is nearly linear, (4·K + 1,), s."""
+        knots = self._knots
         parts = np.array([0.25, 0.5, 0.75, 1.0])
         inside = knots[:-1, None] + np.diff(knots)[:, None] * parts
-        times = np.concatenate((knots[:1], inside.ravel()))
+        return np.concatenate((knots[:1], inside.ravel()))
+
+    @cached_property
+    def _knots(self) -> Floats:
+        """Times between which speeds are smooth, with the ends of the segments, (K + 1,), s."""
+        return np.unique(np.concatenate((self.motion.knots, self.motion.ends)))
+
+    @cached_property
+    def clock(self) -> tuple[Floats, Floats]:
+        """Times in s and path lengths in mm, dense enough for linear interpolation."""
+        return self._clock_at(self.dense_times)
+
+    def _clock_at(self, times: Floats) -> tuple[Floats, Floats]:
         at = self.motion.at(times)
         along = self.offsets[at.segment] + at.station
         return times, np.maximum.accumulate(along)
 
+    def _clock_near(self, segment: Ints) -> tuple[Floats, Floats]:
+        """Part of the clock in which some segments are passed.
+
+        States of the axes cost most of the time, and few segments are looked at.
+        """
+        ends, knots = self.motion.ends, self._knots
+        rows = np.unique(segment)
+        first = np.searchsorted(knots, np.where(rows > 0, ends[rows - 1], 0.0), "right") - 1
+        last = np.searchsorted(knots, ends[rows])
+        # One more stretch on either side allows for rounding.
+        changes = np.zeros(len(knots) + 1, dtype=np.int64)
+        np.add.at(changes, np.maximum(first - 1, 0), 1)
+        np.add.at(changes, np.minimum(last + 1, len(knots) - 1), -1)
+        is_near = np.cumsum(changes)[: len(knots) - 1] > 0
+        is_kept = np.append(False, np.repeat(is_near, 4))
+        is_kept[:-1:4] |= is_near
+        return self._clock_at(self.dense_times[is_kept])
+
     def times(self, places: Floats) -> Floats:
         """Times at which points, given by ascending path length in mm, are passed, s."""
-        times, along = self.clock
+        return self._times_by(self.clock, places)
+
+    def _times_by(self, clock: tuple[Floats, Floats], places: Floats) -> Floats:
+        """Times of passing by a clock, improved by one step."""
+        times, along = clock
         guess = np.interp(places, along, times)
         at = self.motion.at(guess)
         speed = np.linalg.norm(at.velocity, axis=1)
@@ -56,7 +90,8 @@ class Passing:
 
     def velocities(self, segment: Ints, station: Floats) -> Floats:
         """Velocity at ascending positions on segments, (M, 3), mm/s."""
-        return self.motion.at(self.times(self.offsets[segment] + station)).velocity
+        clock = self._clock_near(segment)
+        return self.motion.at(self._times_by(clock, self.offsets[segment] + station)).velocity
 
 
 def reached_velocities(
