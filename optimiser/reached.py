@@ -240,7 +240,7 @@ def _greatest_reached(
 def _reached(
     met: PathContacts, ride: MachineRun, loads: _Loads, places: Ints, exponent: float
 ) -> Floats:
-    """Greatest loads that the axes reach at stations given by their place in the loads, (3,)."""
+    """Greatest loads that the axes reach at stations at places of the loads, (3,)."""
     rows = loads.rows[places]
     programmed = ride.run.segments.speed[met.stations.segment[rows], None]
     slower = (_speeds(met, ride, rows) / programmed) ** (1.0 - exponent)

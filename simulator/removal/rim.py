@@ -128,8 +128,7 @@ def look(
     else:
         slices = _slices(grid, work, tool, pose, base, upright)
     count_all = int(np.int64(0))
-    area, across, edges, widest, most = 0.0, 0.0, 0.0, 0.0, 0.0
-    ring_radius = -1.0
+    area, across, edges, widest, most, ring_radius = 0.0, 0.0, 0.0, 0.0, 0.0, -1.0
     for index in range(slices):
         work.areas[index] = 0.0
         low, high = work.bounds[index], work.bounds[index + 1]
@@ -282,12 +281,7 @@ def _slice(
             free = add_free(work.arcs, free, index * step, (index + 1) * step)
             continue
         # Neighbours mostly have the same owner.
-        if owner == used:
-            continue
-        seen = candidates - 1
-        while seen >= 0 and work.candidates[seen] != owner:
-            seen -= 1
-        if seen >= 0:
+        if owner == used or _is_candidate(work, candidates, owner):
             used = owner
             continue
         if owner >= max(latest - FORGETTING, 0) and candidates < MOST_CANDIDATES:
@@ -307,6 +301,15 @@ def _slice(
     if is_above:
         free = _named_inside(grid, before, work, circle, level, free)
     return contact_arcs(work.arcs, free), known
+
+
+@kernel
+def _is_candidate(work: RimBuffers, count: int, owner: int) -> bool:
+    """Whether the outline of a move has been used."""
+    seen = count - 1
+    while seen >= 0 and work.candidates[seen] != owner:
+        seen -= 1
+    return seen >= 0
 
 
 @kernel
