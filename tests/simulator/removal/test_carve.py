@@ -112,7 +112,7 @@ def test_an_expected_contact_spares_steps_and_changes_no_height(
     cells = random.uniform((-3.0, -3.0), (9.0, 3.0), (1000, 2)).tolist()
     found = [carve.lowest(profile, u, v, 6.0, slope) for u, v in cells]
     expected = [carve.corner_contact(profile, v, slope) for _, v in cells]
-    assert corner > profile.flat or sum(map(isnan, expected)) < 500
+    assert corner > profile.flat or sum(map(isnan, expected)) < 900
     monkeypatch.setattr(carve, "corner_contact", lambda *_: nan)
     assert found == [carve.lowest(profile, u, v, 6.0, slope) for u, v in cells]
 
