@@ -12,8 +12,8 @@ import numpy as np
 from optimiser.cut import CriticalPlace, Cut, CutKind, PowerPlace, ReachedLoads
 from optimiser.hardest import KINDS, LEAST_RATIO, Bending, PathContacts
 from optimiser.problem import ROUNDING
-from simulator.motion.passing import reached_velocities
-from simulator.motion.segments import AxisLimits, Bools, ControlModel, Floats, Ints
+from simulator.motion.passing import RunMotion
+from simulator.motion.segments import Bools, Floats, Ints
 from simulator.motion.tool_path import ToolPathRun
 from simulator.removal.stations import StationKind, Stations
 
@@ -37,13 +37,16 @@ FIRST = 16
 class MachineRun:
     """Run of a path by the machine axes."""
 
-    run: ToolPathRun
-    control: ControlModel
-    limits: AxisLimits
+    motion: RunMotion
     feed: float
     """Feed programmed in the technology, mm/s."""
     spindle: float
     """Spindle speed at the diameter of the cut, rev/s."""
+
+    @property
+    def run(self) -> ToolPathRun:
+        """Lines and arcs of the path."""
+        return self.motion.run
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -252,13 +255,8 @@ def _reached(
 def _speeds(met: PathContacts, ride: MachineRun, rows: Ints) -> Floats:
     """Speeds reached at the places in K stretches, (K, P), mm/s; of a plunge along the axis."""
     places = met.stations.station[rows, None] - met.length[rows, None] * (1.0 - INSIDE)
-    velocities = reached_velocities(
-        ride.run,
-        ride.control,
-        ride.limits,
-        segment=np.repeat(met.stations.segment[rows], len(INSIDE)),
-        station=places.ravel(),
-    )
+    segments = np.repeat(met.stations.segment[rows], len(INSIDE))
+    velocities = ride.motion.velocities(segments, places.ravel())
     is_drilling = (met.stations.kind[rows] == StationKind.DRILLING)[:, None]
     along = np.linalg.norm(velocities, axis=1).reshape(places.shape)
     down = np.abs(velocities[:, 2]).reshape(places.shape)

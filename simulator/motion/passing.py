@@ -94,31 +94,53 @@ class Passing:
         return self.motion.at(self._times_by(clock, self.offsets[segment] + station)).velocity
 
 
-def reached_velocities(
-    run: ToolPathRun,
-    control: ControlModel,
-    limits: AxisLimits,
-    *,
-    segment: Ints,
-    station: Floats,
-) -> Floats:
-    """Velocity that the axes reach at ascending positions, (M, 3), mm/s.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RunMotion:
+    """Motion of the axes along a run, planned once for all that is asked of it."""
 
-    Parameters
-    ----------
-    run : ToolPathRun
-    control : ControlModel
-    limits : AxisLimits
-    segment : (M,) array of int
-        Row of the segment in the run.
-    station : (M,) array, mm
-        Position along the segment.
-    """
-    velocities = np.zeros((len(segment), 3))
-    for leg in run.legs:
-        at = slice(*np.searchsorted(segment, (leg.first, leg.last)))
-        if at.stop > at.start:
-            part = run.segments[leg.first : leg.last]
-            passing = Passing(segments=part, motion=control.plan(part, limits))
-            velocities[at] = passing.velocities(segment[at] - leg.first, station[at])
-    return velocities
+    run: ToolPathRun
+    passings: tuple[Passing | None, ...]
+    """Motion of each leg; None for a leg without segments."""
+
+    @property
+    def duration(self) -> float:
+        """Time from the start of the path to its end, including waits, s."""
+        whole, speed = 0.0, None
+        for leg, passing in zip(self.run.legs, self.passings, strict=True):
+            moving = 0.0 if passing is None else passing.motion.duration
+            if leg.ramp is not None and speed is not None:
+                awaited = leg.ramp.time_from(speed) if leg.ramp.is_awaited else 0.0
+                moving = max(moving, awaited)
+                speed = leg.ramp.after(moving, speed)
+            whole += moving + leg.wait
+            speed = leg.spindle if leg.spindle is not None else speed
+        return whole
+
+    def velocities(self, segment: Ints, station: Floats) -> Floats:
+        """Velocity that the axes reach at ascending positions, (M, 3), mm/s.
+
+        Parameters
+        ----------
+        segment : (M,) array of int
+            Row of the segment in the run.
+        station : (M,) array, mm
+            Position along the segment.
+        """
+        velocities = np.zeros((len(segment), 3))
+        for leg, passing in zip(self.run.legs, self.passings, strict=True):
+            at = slice(*np.searchsorted(segment, (leg.first, leg.last)))
+            if passing is not None and at.stop > at.start:
+                velocities[at] = passing.velocities(segment[at] - leg.first, station[at])
+        return velocities
+
+
+def motion_of(run: ToolPathRun, control: ControlModel, limits: AxisLimits) -> RunMotion:
+    """Plan the motion of each leg of a run."""
+    parts = (run.segments[leg.first : leg.last] for leg in run.legs)
+    return RunMotion(
+        run=run,
+        passings=tuple(
+            Passing(segments=part, motion=control.plan(part, limits)) if len(part) else None
+            for part in parts
+        ),
+    )
