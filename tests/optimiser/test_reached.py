@@ -13,8 +13,10 @@ from optimiser.cut import CriticalPlace, Cut, CutKind, ReachedLoads
 from optimiser.hardest import KINDS, Bending, PathContacts
 from optimiser.reached import MachineRun, thickened, with_reached
 from simulator.motion.control import ExactStop
+from simulator.motion.fir import FixedTimeFilter
 from simulator.motion.legs import Leg
-from simulator.motion.segments import AxisLimits, Segments, lines
+from simulator.motion.passing import motion_of
+from simulator.motion.segments import AxisLimits, ControlModel, Segments, lines
 from simulator.motion.tool_path import ToolPathRun
 from simulator.physics.engagement import full_immersion
 from simulator.removal.stations import Stations, stretch_lengths
@@ -40,7 +42,8 @@ def ride(
         is_clockwise=True,
         legs=(Leg(first=0, last=len(path), wait=0.0),),
     )
-    return MachineRun(run=run, control=ExactStop(), limits=HELD, feed=feed, spindle=SPINDLE)
+    motion = motion_of(run, ExactStop(), HELD)
+    return MachineRun(motion=motion, feed=feed, spindle=SPINDLE)
 
 
 def met(
@@ -264,3 +267,27 @@ def test_limits_bear_places_that_are_faster_than_their_feed() -> None:
     assert borne.reached == ReachedLoads()
     slow = replace(cut, reached=ReachedLoads(force=0.9, power=0.9, wall=0.9))
     assert thickened(slow) is slow
+
+
+@pytest.mark.parametrize("control", [ExactStop(), FixedTimeFilter(first=0.1, second=0.05)])
+@pytest.mark.parametrize("seed", range(6))
+def test_stations_that_are_not_looked_at_change_nothing(
+    control: ControlModel, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    random = np.random.default_rng(seed)
+    corners = random.uniform(0.0, 8.0, (40, 3)) * [1.0, 1.0, 0.1]
+    path = lines(list(corners), speed=FEED)
+    path.speed[20:] *= random.uniform(0.3, 1.5)
+    rows = np.repeat(np.arange(len(path)), 5)
+    ends = (path.length[:, None] * np.linspace(0.2, 1.0, 5)).ravel()
+    section = random.uniform(0.5, 6.0, len(ends))
+    walls = random.uniform(0.0, 6.0, len(ends))
+    places = met(CUT, *zip(ends, section, strict=True), segment=rows)
+    how = replace(ride(path), motion=motion_of(ride(path).run, control, HELD))
+    found = []
+    for first in (1, 16, 10_000):
+        monkeypatch.setattr("optimiser.reached.FIRST", first)
+        found.append(loads(reached(CUT, places, how, bent(*walls))))
+    assert found[0] == pytest.approx(found[2], rel=1e-12)
+    assert found[1] == pytest.approx(found[2], rel=1e-12)
+    assert min(found[2]) > 0.0
