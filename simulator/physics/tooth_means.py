@@ -6,10 +6,13 @@ each edge as in :mod:`simulator.physics.tooth_forces`, which defines the model. 
 """
 
 from dataclasses import dataclass
-from math import ceil, pi
+from math import ceil, inf, pi
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from simulator.kernels.kernel import entry, kernel
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -48,9 +51,8 @@ class Arcs:
         )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Periods:
-    """Tooth periods of a revolution, prepared for evaluating many sets of offsets."""
+class Periods(NamedTuple):
+    """Tooth periods of a revolution, prepared for many sets of offsets; a tuple for kernels."""
 
     feed_per_tooth: Floats
     """Feed per tooth f_z, (z,), mm."""
@@ -62,6 +64,8 @@ class Periods:
     """Share of a period in which the k-th previous tooth is at a point, (z, K, P)."""
     cutting: NDArray[np.int64]
     """Number of the k-th previous tooth in each period, (z, K)."""
+    equal: Floats
+    """Force of equal teeth in each period, over ``K·k_c1.1·f_z^q``, (z,)."""
 
 
 def periods(
@@ -94,12 +98,14 @@ def periods(
     share = _passed(ends - low[:, None, :], lag[:, None, :], delay)
     share[:, 0], share[:, -1] = 0.0, 1.0
     weight = np.diff(share, axis=1) * (contact / (POINTS * pitch))[:, None, :]
+    sine = np.sin(arcs.entry_angle[:, None] + passed).clip(min=0.0)
     return Periods(
         feed_per_tooth=feed_per_tooth,
-        exponent=exponent,
-        sine=np.sin(arcs.entry_angle[:, None] + passed).clip(min=0.0),
+        exponent=float(exponent),
+        sine=sine,
         weight=weight,
         cutting=(np.arange(teeth)[:, None] - before) % teeth,
+        equal=(weight.sum(axis=1) * sine**exponent).sum(axis=1),
     )
 
 
@@ -142,13 +148,38 @@ def tooth_means(at: Periods, offsets: Floats) -> Floats:
     >>> tooth_means(four, np.array([[0.0, LOST, 0.0, 0.0]])).round(6)
     array([[1., 0., 2., 1.]])
     """
-    teeth = offsets.shape[1]
-    back = (np.arange(teeth)[:, None] - np.arange(1, teeth + 1)) % teeth
-    higher = offsets[:, :, None] - offsets[:, back]
-    steps = np.arange(1.0, teeth + 1.0)[:, None] * at.sine[:, None, None, :]
-    over = higher[:, at.cutting] / at.feed_per_tooth[:, None, None]
-    chips = (steps + over[..., None]).min(axis=3).clip(min=0.0)
-    force = (at.weight * chips**at.exponent).sum(axis=(2, 3))
-    equal = (at.weight.sum(axis=1) * at.sine**at.exponent).sum(axis=1)
-    means: Floats = force / equal
+    means = np.empty(offsets.shape)
+    _means(at, np.ascontiguousarray(offsets), means)
     return means
+
+
+@entry
+def _means(at: Periods, offsets: Floats, means: Floats) -> None:
+    """Kernel of :func:`tooth_means`; the means are written into ``means``."""
+    for row in range(offsets.shape[0]):
+        means_of(at, offsets[row], means[row])
+
+
+@kernel
+def means_of(at: Periods, offsets: Floats, means: Floats) -> None:
+    """Write the means, (z,), of one set of offsets, (z,); for kernels."""
+    for period in range(offsets.shape[0]):
+        force = 0.0
+        for back in range(at.cutting.shape[1]):
+            tooth = at.cutting[period, back]
+            for point in range(at.sine.shape[1]):
+                weight = at.weight[period, back, point]
+                if weight != 0.0:
+                    force += weight * _chip(at, offsets, period, tooth, point) ** at.exponent
+        means[period] = force / at.equal[period]
+
+
+@kernel
+def _chip(at: Periods, offsets: Floats, period: int, tooth: int, point: int) -> float:
+    """Chip of a tooth at a point of the arc over the feed per tooth."""
+    teeth, chip = offsets.shape[0], inf
+    for step in range(1, teeth + 1):
+        # An index below 0 counts from the end, in kernels too.
+        higher = offsets[tooth] - offsets[tooth - step]
+        chip = min(chip, step * at.sine[period, point] + higher / at.feed_per_tooth[period])
+    return max(chip, 0.0)
