@@ -60,7 +60,7 @@ class _Scratch(NamedTuple):
     shown: Floats
     rows: Floats
     squares: Floats
-    again: Fit
+    figures: Floats
 
 
 def misfits(shares: ToothShares, mean: Floats, *, scale: float) -> Floats:
@@ -143,10 +143,11 @@ def _starts(teeth: int) -> Floats:
 
 
 def _scratch(teeth: int) -> _Scratch:
-    square = teeth, teeth
-    again = Fit(np.empty(teeth), np.empty(square), np.zeros(2))
     return _Scratch(
-        np.empty((teeth + 1, teeth)), np.empty((6, teeth)), np.empty((8, *square)), again
+        np.empty((teeth + 1, teeth)),
+        np.empty((7, teeth)),
+        np.empty((9, teeth, teeth)),
+        np.empty(2),
     )
 
 
@@ -185,7 +186,8 @@ def _search(
     taken, expected, noise = measured
     mean, covariance, starts = known
     scale, plain, lost = settings
-    again, start, noisier = scratch.again, scratch.rows[5], scratch.squares[7]
+    start, noisier = scratch.rows[5], scratch.squares[7]
+    again = Fit(scratch.rows[6], scratch.squares[8], scratch.figures)
     _copy(noise, noisier)
     _fit(at, measured, known, mean, lost, found, scratch)
     if found.figures[0] > plain:

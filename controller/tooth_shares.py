@@ -153,8 +153,15 @@ def _noise(
     near = JITTER * expected.change / expected.force.mean()
     even = FLOOR / revolution.tooth_means.mean(), MISSED * (1.0 - revolution.coverage)
     own = READING**2 * (1.0 + taken**2) + even[0] ** 2 + even[1] ** 2
-    # An excess of one tooth shifts the mean, and with it the shares of all teeth.
-    jitter = np.diag(near) - np.outer(taken, near) / teeth
-    grown = drift * taken * ((order + 0.5) / teeth - 0.5)
-    moved = EARLY * (np.roll(taken, 1) - taken)
-    return np.diag(own) + jitter @ jitter.T + np.outer(grown, grown) + np.outer(moved, moved)
+    # Columns: jitter, of which an excess of one tooth shifts the mean, and with it the shares
+    # of all teeth; drift; early entry.
+    errors = np.empty((teeth, teeth + 2))
+    errors[:, :teeth] = taken[:, None] * (near / -teeth)
+    errors.flat[:: teeth + 3] += near
+    errors[:, -2] = drift * taken * ((order + 0.5) / teeth - 0.5)
+    errors[0, -1] = taken[-1] - taken[0]
+    errors[1:, -1] = taken[:-1] - taken[1:]
+    errors[:, -1] *= EARLY
+    noise = errors @ errors.T
+    noise.flat[:: teeth + 1] += own
+    return noise

@@ -313,7 +313,7 @@ class Session:
                 return
             if isinstance(self.machine, RecordedMachine) and not self.machine.is_steady:
                 # Places of a recording are known less exactly than forces change here.
-                cycle = replace(cycle, ratio=None)
+                cycle = cycle._replace(ratio=None)
             self.recorder.add(cycle)
             self.holdings.add(cycle, self.loop.state.settings)
             self.events += cycle.events

@@ -6,6 +6,7 @@ each edge as in :mod:`simulator.physics.tooth_forces`, which defines the model. 
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import ceil, inf, pi
 from typing import NamedTuple
 
@@ -84,29 +85,46 @@ def periods(
     delay : float, rad
         Rotation of the cutter within the time constant of the dynamometer.
     """
-    teeth = len(arcs.entry_angle)
+    return Periods(
+        feed_per_tooth,
+        float(exponent),
+        *_prepared(
+            *(
+                np.asarray(each, dtype=np.float64).tobytes()
+                for each in (arcs.entry_angle, arcs.exit_angle, arcs.lag)
+            ),
+            float(exponent),
+            delay,
+        ),
+    )
+
+
+# In a straight cut all revolutions have the same arcs; the key holds all that the values
+# depend on, so nothing makes an entry invalid.
+@lru_cache(maxsize=64)
+def _prepared(
+    entry_angle: bytes, exit_angle: bytes, lag_angle: bytes, exponent: float, delay: float
+) -> tuple[Floats, Floats, NDArray[np.int64], Floats]:
+    """What depends on the arcs, as bytes of (z,) arrays: see :class:`Periods`."""
+    begin, end, lags = (np.frombuffer(each) for each in (entry_angle, exit_angle, lag_angle))
+    teeth = len(begin)
     pitch = 2.0 * pi / teeth
-    contact = (arcs.exit_angle - arcs.entry_angle)[:, None]
+    contact = (end - begin)[:, None]
     passed = contact * ((np.arange(POINTS) + 0.5) / POINTS)
     # The ends of a straight edge are placed one point apart, so that no point is lost or
     # doubled; the excess length lies half before and half behind.
-    lag = np.maximum(arcs.lag[:, None], contact / POINTS)
-    low = passed + 0.5 * (arcs.lag[:, None] - lag)
+    lag = np.maximum(lags[:, None], contact / POINTS)
+    low = passed + 0.5 * (lags[:, None] - lag)
     reach = float((contact + lag).max()) + _LAGS * delay
     before = np.arange(min(max(ceil(reach / pitch), 1), teeth))
     ends = pitch * np.arange(len(before) + 1)[:, None]
     share = _passed(ends - low[:, None, :], lag[:, None, :], delay)
     share[:, 0], share[:, -1] = 0.0, 1.0
     weight = np.diff(share, axis=1) * (contact / (POINTS * pitch))[:, None, :]
-    sine = np.sin(arcs.entry_angle[:, None] + passed).clip(min=0.0)
-    return Periods(
-        feed_per_tooth=feed_per_tooth,
-        exponent=float(exponent),
-        sine=sine,
-        weight=weight,
-        cutting=(np.arange(teeth)[:, None] - before) % teeth,
-        equal=(weight.sum(axis=1) * sine**exponent).sum(axis=1),
-    )
+    sine = np.sin(begin[:, None] + passed).clip(min=0.0)
+    cutting = (np.arange(teeth)[:, None] - before) % teeth
+    equal: Floats = (weight.sum(axis=1) * sine**exponent).sum(axis=1)
+    return sine, weight, cutting, equal
 
 
 def _passed(angle: Floats, lag: Floats, delay: float) -> Floats:
