@@ -85,7 +85,8 @@ class Acquisition:
         gain, floor, luck = self._draws(1)[:, 0].tolist()
         value = value * gain + (floor + by.drift * time)
         if by.step > 0.0:
-            value = round(value / by.step) * by.step
+            # With digits, as numpy rounds: a zero keeps its sign.
+            value = round(value / by.step, 0) * by.step
         return nan if is_lost or luck < by.missing else value
 
     def shown(self, truth: Floats, *, time: float, interval: float, is_lost: bool) -> Floats:
