@@ -192,7 +192,9 @@ def _file(agent: Agent, path: str) -> bytes | None:
 
 
 def _parts_of(path: str) -> list[str]:
-    return [unquote(part) for part in path.split("/") if part]
+    # Few addresses have anything quoted.
+    plain = unquote if "%" in path else str
+    return [plain(part) for part in path.split("/") if part]
 
 
 def _writes(agent: Agent, parts: list[str]) -> tuple[str, ...]:
