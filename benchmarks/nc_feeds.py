@@ -78,6 +78,14 @@ def plan(blocks: int) -> None:
     )
 
 
+def seconds_of(blocks: int) -> float:
+    """CPU time of planning and rewriting a raster, s; kernels are loaded before."""
+    plan(1_000)
+    begin = time.process_time()
+    plan(blocks)
+    return time.process_time() - begin
+
+
 def read_and_rewrite(megabytes: float) -> None:
     """Print time and memory of reading a long program and writing some of its feeds."""
     blocks = int(1e6 * megabytes / BLOCK_BYTES)
