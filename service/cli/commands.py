@@ -12,7 +12,6 @@ from pathlib import Path
 
 from service.cli.agent import add_agent_command
 from service.cli.blocks import add_block_commands
-from service.cli.control import add_control_command
 from service.cli.dataset import add_dataset_command
 from service.cli.factory import add_factory_command
 from service.cli.kbe import USAGE, add_knowledge_commands
@@ -79,7 +78,6 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     add_record_command(commands)
     add_verify_command(commands)
     add_knowledge_commands(commands)
-    add_control_command(commands)
     add_factory_command(commands)
     add_dataset_command(commands)
     add_learning_commands(commands)

@@ -7,12 +7,13 @@ import pytest
 
 from controller.orders import EventKind, LoopEvent
 from controller.record import RunRecord
-from service.control.output import print_control
+from service.cli.verbs import print_result
 from service.control.run import ControlRun
+from service.verbs.control.result import ControlResult
 
 
 def printed(run: ControlRun, capsys: pytest.CaptureFixture[str]) -> list[str]:
-    print_control(run)
+    print_result(ControlResult(run=run))
     return capsys.readouterr().out.splitlines()
 
 

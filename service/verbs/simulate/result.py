@@ -3,24 +3,28 @@
 JSON keys carry their units and never change, because other programs read them.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import nan
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from service.buckets import BucketedRun
 from service.rendering.columns import Column
-from service.rendering.records import dump, finding_record, record, records
-from service.rendering.text import RED, print_findings, print_line, print_table
+from service.rendering.records import record
+from service.rendering.text import RED
+from service.rendering.view import Fact, Findings, ResultView, Table, TextLine
 from service.simulation.carbon import WORLD, CarbonFactor, kilowatt_hours
 from service.simulation.facts import COMPONENTS as NAMES
 from service.simulation.facts import SimulationRow, exceeded, ratio, rows
 from service.simulation.run import Simulation
+from service.verbs.result import BAD_INPUT, LIMIT_EXCEEDED, OK, Result
 from simulator.machine.deviation import SeededDeviation
 from simulator.machine.totals import Peak, Total
-from simulator.spec import MaterialMatch
+from stepnc_model.errors import StepNcError
 from stepnc_model.units import kw_from_watts, rpm_from_rev_s
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
 
 Columns = tuple[Column[SimulationRow], ...]
 
@@ -163,38 +167,133 @@ def whole_row(simulation: Simulation) -> SimulationRow:
     return SimulationRow(id="total", begin=nan, total=simulation.whole)
 
 
-def print_simulation(simulation: Simulation, *, carbon: CarbonFactor = WORLD) -> None:
-    """Print a row per workingstep, totals, energy by component, limits exceeded, findings."""
-    machine, found, whole = simulation.machine, rows(simulation), simulation.whole
-    for fault in simulation.collisions:
-        print_line(str(fault), RED)
-    for text in exceeded(simulation, found):
-        print_line(f"limit exceeded: {text}", RED)
-    print_line(
-        f"{simulation.program}: machine {machine.name} ({machine.title}), "
-        f"control {simulation.control.value}"
-    )
-    print_table(TEXT, (*found, whole_row(simulation)))
-    energy = whole.energy.total
-    shares = ", ".join(
-        f"{heading} {ratio(getattr(whole.energy, name), energy):.1%}"
-        for name, heading in NAMES.items()
-        if getattr(whole.energy, name)
-    )
-    print_line(f"energy {kilowatt_hours(energy):.4g} kWh: {shares}")
-    print_line(
-        f"carbon {carbon.grams(energy):.4g} g CO₂ at {carbon.grams_per_kwh:g} g/kWh "
-        f"({carbon.source})"
-    )
-    if whole.volume:
-        print_line(
-            f"removal {ratio(whole.volume, whole.duration) * CM3_MIN:.3g} cm³/min on average; "
-            f"{ratio(energy, whole.volume):.3g} J/mm³ from the mains, "
-            f"{ratio(whole.cutting_energy, whole.volume):.3g} J/mm³ at the edge"
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimulateResult(Result):
+    """A simulated run, with the carbon factor of its energy."""
+
+    simulation: Simulation
+    carbon: CarbonFactor = WORLD
+
+    @property
+    def exit_code(self) -> int:
+        """Exit code: 3 where workingsteps were left out, 5 for overloads and collisions."""
+        if self.simulation.faults:
+            return BAD_INPUT
+        is_exceeded = self.simulation.whole.overload_time > 0.0
+        return LIMIT_EXCEEDED if is_exceeded or self.simulation.collisions else OK
+
+    def view(self) -> ResultView:
+        """Return time, energy, peaks and removal of the run and of each workingstep."""
+        simulation = self.simulation
+        machine, found, whole = simulation.machine, rows(simulation), simulation.whole
+        red = [str(fault) for fault in simulation.collisions]
+        red += [f"limit exceeded: {text}" for text in exceeded(simulation, found)]
+        return ResultView([
+            *(TextLine(text=text, colour=RED) for text in red),
+            TextLine(
+                text=f"{simulation.program}: machine {machine.name} ({machine.title}), "
+                f"control {simulation.control.value}"
+            ),
+            Fact(key="program", value=simulation.program),
+            Fact(key="machine", value=machine.name),
+            Fact(key="control", value=simulation.control.value),
+            Fact(key="samples", value=simulation.samples),
+            Table(key="workingsteps", columns=(ID, BEGIN, *TOTALS), rows=found, is_shown=False),
+            Table(columns=TEXT, rows=(*found, whole_row(simulation))),
+            Fact(key="total", value=record(TOTALS, whole_row(simulation))),
+            Fact(key="power_deviation", value=_deviation_record(simulation.deviation)),
+            Fact(
+                key="carbon",
+                value={
+                    "factor_g_kwh": self.carbon.grams_per_kwh,
+                    "source": self.carbon.source,
+                    "total_g": self.carbon.grams(whole.energy.total),
+                },
+            ),
+            *(TextLine(text=text) for text in self._energies()),
+            Fact(key="left_out", value=[str(fault) for fault in simulation.faults]),
+            Findings(
+                found=simulation.findings, told=(*simulation.told, *simulation.collisions)
+            ),
+        ])
+
+    def _energies(self) -> Iterator[str]:
+        """Yield sentences on energy, carbon, removal and deviation."""
+        simulation, whole = self.simulation, self.simulation.whole
+        energy, carbon = whole.energy.total, self.carbon
+        shares = ", ".join(
+            f"{heading} {ratio(getattr(whole.energy, name), energy):.1%}"
+            for name, heading in NAMES.items()
+            if getattr(whole.energy, name)
         )
-    if simulation.deviation is not None:
-        print_line(_deviation(simulation.deviation))
-    print_findings(simulation.findings, told=(*simulation.told, *simulation.collisions))
+        yield f"energy {kilowatt_hours(energy):.4g} kWh: {shares}"
+        yield (
+            f"carbon {carbon.grams(energy):.4g} g CO₂ at {carbon.grams_per_kwh:g} g/kWh "
+            f"({carbon.source})"
+        )
+        if whole.volume:
+            yield (
+                f"removal {ratio(whole.volume, whole.duration) * CM3_MIN:.3g} cm³/min on "
+                f"average; {ratio(energy, whole.volume):.3g} J/mm³ from the mains, "
+                f"{ratio(whole.cutting_energy, whole.volume):.3g} J/mm³ at the edge"
+            )
+        if simulation.deviation is not None:
+            yield _deviation(simulation.deviation)
+
+    def figures(self) -> "list[go.Figure]":
+        """Return powers, feed, force and removal over time, if the run kept its signals."""
+        from service.simulation.figures import run_figure  # noqa: PLC0415 (plotly)
+
+        trace = self.simulation.trace
+        return [] if trace is None else [run_figure(rows(self.simulation), trace)]
+
+    def page(self) -> str:
+        """Return the HTML report.
+
+        Raises
+        ------
+        StepNcError
+            When the run kept no signals: it was run without a report.
+        """
+        from service.rendering.pages import plot, rendered  # noqa: PLC0415 (Jinja)
+
+        simulation, trace = self.simulation, self.simulation.trace
+        if trace is None:
+            raise StepNcError("the run kept no signals: name a report when it is run")
+        found, whole = rows(simulation), simulation.whole
+        energy, carbon = whole.energy.total, self.carbon
+        return rendered(
+            "simulation.html.jinja",
+            simulation=simulation,
+            material=simulation.material,
+            carbon=carbon,
+            rows=found,
+            whole=whole_row(simulation),
+            exceeded=exceeded(simulation, found),
+            figure=plot(self.plot(), "run"),
+            width=trace.width,
+            energy_kwh=kilowatt_hours(energy),
+            mean_power=kw_from_watts(ratio(energy, whole.duration)),
+            cutting_share=ratio(whole.cutting_time, whole.duration),
+            times=(NAME, BEGIN, *TIMES),
+            time_shares=_shares(TIMES, simulation, whole.duration),
+            energies=(NAME, *COMPONENTS, ENERGY, *_carbon(carbon, energy)),
+            energy_shares=_shares((*COMPONENTS, ENERGY), simulation, energy),
+            removal=REMOVAL,
+            peaks=PEAKS,
+            peak_rows=_peak_rows(simulation, found),
+        )
+
+
+def _deviation_record(seeded: SeededDeviation | None) -> dict[str, Any] | None:
+    """Return the random deviation of a run as a JSON object."""
+    if seeded is None:
+        return None
+    return {
+        "feed": seeded.deviation.feed,
+        "traverse": seeded.deviation.traverse,
+        "seed": seeded.seed,
+    }
 
 
 def _deviation(seeded: SeededDeviation) -> str:
@@ -203,78 +302,6 @@ def _deviation(seeded: SeededDeviation) -> str:
     return (
         f"motor power of each movement deviates by up to ±{100.0 * feed:g} % in feed and "
         f"±{100.0 * traverse:g} % in rapid, seed {seeded.seed}"
-    )
-
-
-def simulation_json(simulation: Simulation, *, carbon: CarbonFactor = WORLD) -> str:
-    """Return time, energy, peaks and removal of the run and of each workingstep as JSON."""
-    return dump({
-        "program": simulation.program,
-        "machine": simulation.machine.name,
-        "control": simulation.control.value,
-        "samples": simulation.samples,
-        "workingsteps": records((ID, BEGIN, *TOTALS), rows(simulation)),
-        "total": record(TOTALS, whole_row(simulation)),
-        "power_deviation": None
-        if simulation.deviation is None
-        else {
-            "feed": simulation.deviation.deviation.feed,
-            "traverse": simulation.deviation.deviation.traverse,
-            "seed": simulation.deviation.seed,
-        },
-        "carbon": {
-            "factor_g_kwh": carbon.grams_per_kwh,
-            "source": carbon.source,
-            "total_g": carbon.grams(simulation.whole.energy.total),
-        },
-        "left_out": [str(fault) for fault in simulation.faults],
-        "findings": [finding_record(finding) for finding in simulation.findings],
-    })
-
-
-def simulation_page(
-    simulation: Simulation,
-    trace: BucketedRun,
-    *,
-    material: MaterialMatch | None = None,
-    carbon: CarbonFactor = WORLD,
-) -> str:
-    """Return the HTML report of a simulated run.
-
-    Parameters
-    ----------
-    simulation : Simulation
-    trace : BucketedRun
-        Signals of the same run.
-    material : MaterialMatch, optional
-        Material match; None if the material is unknown.
-    carbon : CarbonFactor
-    """
-    from service.rendering.pages import plot, rendered  # noqa: PLC0415 (Jinja)
-    from service.simulation.figures import run_figure  # noqa: PLC0415 (plotly)
-
-    found, whole = rows(simulation), simulation.whole
-    energy = whole.energy.total
-    return rendered(
-        "simulation.html.jinja",
-        simulation=simulation,
-        material=material,
-        carbon=carbon,
-        rows=found,
-        whole=whole_row(simulation),
-        exceeded=exceeded(simulation, found),
-        figure=plot(run_figure(found, trace), "run"),
-        width=trace.width,
-        energy_kwh=kilowatt_hours(energy),
-        mean_power=kw_from_watts(ratio(energy, whole.duration)),
-        cutting_share=ratio(whole.cutting_time, whole.duration),
-        times=(NAME, BEGIN, *TIMES),
-        time_shares=_shares(TIMES, simulation, whole.duration),
-        energies=(NAME, *COMPONENTS, ENERGY, *_carbon(carbon, energy)),
-        energy_shares=_shares((*COMPONENTS, ENERGY), simulation, energy),
-        removal=REMOVAL,
-        peaks=PEAKS,
-        peak_rows=_peak_rows(simulation, found),
     )
 
 

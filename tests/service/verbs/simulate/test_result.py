@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import pytest
 
+from service.cli.verbs import print_result
 from service.simulation.carbon import WORLD, CarbonFactor
-from service.simulation.output import print_simulation
 from service.simulation.run import Simulation
+from service.verbs.simulate.result import SimulateResult
 from simulator.machine.totals import Total
 
 
@@ -15,7 +16,7 @@ def printed(
     capsys: pytest.CaptureFixture[str],
     carbon: CarbonFactor = WORLD,
 ) -> list[str]:
-    print_simulation(simulation, carbon=carbon)
+    print_result(SimulateResult(simulation=simulation, carbon=carbon))
     return capsys.readouterr().out.splitlines()
 
 
