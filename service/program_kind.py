@@ -48,6 +48,19 @@ def kind_of_file(path: Path) -> ProgramKind:
     return kind_of(read_head(path, LOOKED_AT))
 
 
+def kind_for(path: Path, control: str) -> ProgramKind:
+    """Tell the kind of a program by its content; with a control, what is neither is NC code.
+
+    Raises
+    ------
+    StepNcError
+        When the file cannot be read.
+    """
+    head = read_head(path, LOOKED_AT)
+    is_code = bool(control) and not PART21.search(head)
+    return ProgramKind.NC_CODE if is_code else kind_of(head)
+
+
 def kind_of(data: bytes) -> ProgramKind:
     r"""Tell the kind of a program by the beginning of its content.
 

@@ -8,6 +8,8 @@ from service.verbs.result import Result as Result
 from stepnc_model.errors import StepNcError as StepNcError
 
 from service.verbs.cycletime.result import CycleTimeResult as CycleTimeResult
+from service.verbs.toolpath.result import CodePathResult as CodePathResult
+from service.verbs.toolpath.result import ToolPathResult as ToolPathResult
 
 def cycletime(
     file: str | Path,
@@ -26,3 +28,16 @@ def cycletime(
     control: Literal['exact-stop', 'junction', 'fir'] = ...,
     deviation_mm: float = ...,
 ) -> CycleTimeResult: ...
+def toolpath(
+    file: str | Path,
+    *,
+    most_repeats: int | None = ...,
+    plot: str | Path | None = ...,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    dialect: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
+    keep_going: bool = ...,
+) -> ToolPathResult | CodePathResult: ...

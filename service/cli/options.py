@@ -1,4 +1,4 @@
-"""Exit codes and options that several commands share. Imports nothing slow."""
+"""Options that several commands share. Imports nothing slow."""
 
 import argparse
 import re
@@ -6,10 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from service.exit_codes import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED, OK
 from service.requests.fields import output_path
 
-OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED = 0, 3, 4, 5, 6
-"""Exit codes; with ``NOTHING_ADVISED`` ``optimise`` says that it wrote no program."""
+__all__ = ["BAD_INPUT", "INFEASIBLE", "LIMIT_EXCEEDED", "NOTHING_ADVISED", "OK"]
 
 CONTROLS = "linuxcnc, fanuc, haas, sinumerik, heidenhain or canonical"
 

@@ -8,7 +8,6 @@ from service.cli.options import (
     CONTROLS,
     OK,
     Commands,
-    add_json,
     add_program,
     program_request,
 )
@@ -17,27 +16,8 @@ from service.requests.fields import output_path
 
 def add_path_commands(commands: Commands) -> None:
     """Add the commands for tool paths and NC code to ``stepnc``."""
-    _add_toolpath(commands)
     _add_post(commands)
     _add_canonical(commands)
-
-
-def _add_toolpath(commands: Commands) -> None:
-    """Add the command ``stepnc toolpath``."""
-    parser = commands.add_parser(
-        "toolpath", help="generate the tool paths of a program, or use those that it contains"
-    )
-    parser.fill = _toolpath_options
-
-
-def _toolpath_options(parser: argparse.ArgumentParser) -> None:
-    add_program(parser)
-    _add_keep_going(parser)
-    parser.add_argument(
-        "--plot", type=output_path, metavar="PNG", help="draw paths, coloured by type"
-    )
-    add_json(parser)
-    parser.set_defaults(run=_toolpath)
 
 
 def _add_post(commands: Commands) -> None:
@@ -85,28 +65,6 @@ def _add_keep_going(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="skip workingsteps for which no path can be generated; exit code 3 remains",
     )
-
-
-def _toolpath(options: argparse.Namespace) -> int:
-    """Run the command ``stepnc toolpath``."""
-    from service.paths import toolpaths
-    from service.terminal import tell, write_out
-
-    paths = toolpaths.tool_paths(
-        options.file, program_request(options), keep_going=options.keep_going, tell=tell
-    )
-    if options.plot is not None:
-        toolpaths.plot(paths, options.file, options.plot)
-        tell(f"picture: {options.plot}")
-    if options.json:
-        from service.paths.output import paths_json
-
-        write_out(paths_json(paths))
-    else:
-        from service.paths.output import print_paths
-
-        print_paths(paths)
-    return BAD_INPUT if paths.faults else OK
 
 
 def _post(options: argparse.Namespace) -> int:

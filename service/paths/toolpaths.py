@@ -8,7 +8,6 @@ from service.files import (
     beside,
     read_bytes,
     require_place,
-    write_atomically,
     write_lines,
 )
 from service.paths.remarks import tell_check, tell_remarks
@@ -17,7 +16,7 @@ from service.reading import Tell, one_of, read_given, silent
 from service.requests.given import ProgramRequest
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import Setup
-from stepnc_model.errors import Finding, PostError, SchemaError, StepNcError, WriteError
+from stepnc_model.errors import Finding, PostError, SchemaError, StepNcError
 from stepnc_model.part21.values import Ref
 from stepnc_model.plausibility import refusal
 from stepnc_model.post.blocks import Cycles, MachineType
@@ -90,34 +89,6 @@ class PostRequest:
     keep_going: bool = False
 
 
-def tool_paths(
-    path: Path,
-    request: ProgramRequest | None = None,
-    *,
-    keep_going: bool = False,
-    tell: Tell = silent,
-) -> Paths:
-    """Read a program and generate its tool paths, or take those that it contains.
-
-    Parameters
-    ----------
-    path : Path
-    request : ProgramRequest, optional
-        What is given about the program beyond its file.
-    keep_going : bool
-        Whether executables without a path are left out.
-    tell : callable
-        Receives messages.
-
-    Raises
-    ------
-    StepNcError
-        At the first executable for which no path can be generated, unless it keeps going.
-    """
-    program = read_given(path, request or ProgramRequest(), tell=tell).program
-    return with_remarks(paths_of(program, keep_going=keep_going, tell=tell), tell)
-
-
 def with_remarks(paths: Paths, tell: Tell) -> Paths:
     """Tell the warnings about a program, and keep them with its paths."""
     told = paths.remarks
@@ -142,17 +113,6 @@ def paths_of(program: Program, *, keep_going: bool = False, tell: Tell = silent)
     if not any(isinstance(item, ToolPath) for item in items):
         raise faults[0] if faults else SchemaError("the program has nothing to machine")
     return Paths(program=program, items=tuple(items), faults=tuple(faults))
-
-
-def plot(paths: Paths, file: Path, picture: Path) -> None:
-    """Draw the tool paths of a file into a PNG file."""
-    from service.paths.plot import path_png  # noqa: PLC0415 (matplotlib takes a second)
-
-    if picture.suffix.lower() != ".png":
-        raise WriteError("the name of a picture must end with .png", path=str(picture))
-    require_place(picture, apart_from=file)
-    data = path_png(paths.paths, paths.stock, paths.clamps, title=paths.program.name)
-    write_atomically(picture, data)
 
 
 def post(request: PostRequest, *, tell: Tell = silent) -> Paths:

@@ -6,6 +6,29 @@ from typing import Annotated
 from annotated_types import Interval
 
 from service.requests.fields import About, FileUse
+from stepnc_model.post.dialect import Dialect
+
+ProgramFile = Annotated[
+    Path,
+    About("a STEP-NC program (Part 21), or NC code", use=FileUse.INPUT, metavar="FILE"),
+]
+
+CodeControl = Annotated[
+    Dialect | None,
+    About(
+        "control of NC code: linuxcnc, fanuc, haas, sinumerik or heidenhain (default: guessed "
+        "from the code)",
+        name="control", flag="--control", metavar="NAME",
+    ),
+]  # fmt: skip
+
+KeepsGoing = Annotated[
+    bool,
+    About(
+        "skip workingsteps for which no path can be generated; exit code 3 remains",
+        flag="--keep-going",
+    ),
+]
 
 MostRepeats = Annotated[
     int | None,

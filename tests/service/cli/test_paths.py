@@ -1,6 +1,5 @@
 """The commands ``toolpath``, ``post`` and ``canonical``: options, exit codes, outputs."""
 
-import json
 from pathlib import Path
 
 import pytest
@@ -17,20 +16,6 @@ def run(*words: object) -> object:
     with pytest.raises(SystemExit) as stopped:
         main(list(map(str, words)))
     return stopped.value.code
-
-
-def test_paths_are_a_table_or_json(capsys: pytest.CaptureFixture[str]) -> None:
-    assert run("toolpath", SLOT) == OK
-    assert "MILL SLOT" in capsys.readouterr().out
-    assert run("toolpath", SLOT, "--json") == OK
-    assert "MILL SLOT" in json.dumps(json.loads(capsys.readouterr().out))
-
-
-def test_paths_are_drawn(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    picture = tmp_path / "path.png"
-    assert run("toolpath", SLOT, "--plot", picture) == OK
-    assert picture.read_bytes().startswith(b"\x89PNG")
-    assert f"picture: {picture}" in capsys.readouterr().err
 
 
 def test_code_is_written_and_read_again(

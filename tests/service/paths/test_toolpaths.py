@@ -1,16 +1,15 @@
 """The verbs toolpath, post and canonical: what they write, and what they refuse."""
 
-import json
 from pathlib import Path
 
 import pytest
 
 from service.cli.main import main, optimise_main
-from service.paths.toolpaths import PostRequest, canonical_of, plot, post, tool_paths
-from stepnc_model.errors import SchemaError, StepNcError, WriteError
+from service.paths.toolpaths import PostRequest, canonical_of, post
+from stepnc_model.errors import SchemaError, StepNcError
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.dialects import read
-from stepnc_model.toolpath.path import Function, MoveType, ToolPath
+from stepnc_model.toolpath.path import Function
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
 BRACKET = PARTS / "bracket.stpnc"
@@ -44,64 +43,6 @@ def bracket(tmp_path: Path) -> Path:
     path = tmp_path / "bracket.stpnc"
     path.write_bytes(BRACKET.read_bytes())
     return path
-
-
-def test_every_workingstep_of_the_bracket_gets_a_path() -> None:
-    paths = tool_paths(BRACKET)
-    assert [path.id for path in paths.paths] == [step.id for step in paths.program.workingsteps]
-    assert all(
-        any(move.type is MoveType.CONTACT for move in path.moves) for path in paths.paths
-    )
-
-
-def test_stops_stay_between_the_paths() -> None:
-    items = tool_paths(BRACKET).items
-    kinds = [isinstance(item, ToolPath) for item in items]
-    assert kinds.count(False) == 1
-    assert not kinds[4]
-
-
-def test_a_workingstep_without_a_path_ends_the_run(part: Path) -> None:
-    with pytest.raises(SchemaError, match="#140 CLOSED_POCKET"):
-        tool_paths(part)
-
-
-def test_keep_going_makes_the_others_and_says_what_is_left_out(part: Path) -> None:
-    told: list[str] = []
-    paths = tool_paths(part, keep_going=True, tell=told.append)
-    left = {step.id for step in paths.program.workingsteps} - {path.id for path in paths.paths}
-    assert left == {"ROUGH POCKET", "FINISH POCKET"}
-    assert len(paths.faults) == 2
-    assert [line for line in told if line.startswith("left out: ")]
-
-
-def test_a_program_of_which_nothing_is_left_is_an_error(part: Path) -> None:
-    text = part.read_text().replace("#1=PROJECT('BRACKET',#2", "#1=PROJECT('BRACKET',#5")
-    part.write_text(
-        text.replace(
-            "#5=WORKPLAN('POCKETS',(#16,#17,#18,#19)", "#5=WORKPLAN('POCKETS',(#16,#17)"
-        )
-    )
-    with pytest.raises(SchemaError):
-        tool_paths(part, keep_going=True)
-
-
-def test_a_picture_is_a_png(tmp_path: Path) -> None:
-    picture = tmp_path / "path.png"
-    plot(tool_paths(SHAFT), SHAFT, picture)
-    assert picture.read_bytes().startswith(PNG)
-
-
-def test_another_kind_of_picture_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(WriteError, match=r"\.png"):
-        plot(tool_paths(SHAFT), SHAFT, tmp_path / "path.svg")
-
-
-def test_the_picture_does_not_replace_the_program(tmp_path: Path) -> None:
-    file = tmp_path / "part.png"
-    file.write_bytes(SHAFT.read_bytes())
-    assert stepnc("toolpath", file, "--plot", file) == BAD_INPUT
-    assert file.read_bytes() == SHAFT.read_bytes()
 
 
 @pytest.mark.parametrize("control", list(Dialect))
@@ -161,19 +102,6 @@ def test_a_line_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     code.write_text("%\nO0001\nG21\nG1 X10. Q?\nM30\n%\n")
     with pytest.raises(StepNcError, match=r"part\.nc: line 4: "):
         list(canonical_of(code, control="fanuc", is_lathe=False))
-
-
-def test_toolpath_prints_a_row_for_each_workingstep(capsys: pytest.CaptureFixture[str]) -> None:
-    assert stepnc("toolpath", SHAFT) == OK
-    out = capsys.readouterr().out
-    assert "THREAD M30 X 2" in out
-    assert "threading_rough" in out
-
-
-def test_toolpath_prints_json(capsys: pytest.CaptureFixture[str]) -> None:
-    assert stepnc("toolpath", SHAFT, "--json") == OK
-    found = json.loads(capsys.readouterr().out)
-    assert [item["id"] for item in found["items"]][-1] == "THREAD M30 X 2"
 
 
 def test_canonical_prints_commands(bracket: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -63,8 +63,9 @@ def say(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Verb]:
     for name, text in FOLDER.items():
         (folder / name).write_text(text, encoding="utf-8")
     monkeypatch.setattr(package, "__path__", [*package.__path__, str(tmp_path)])
+    # The commands first: imported after the other, they would keep what it is replaced by.
+    monkeypatch.setattr("service.cli.commands.verbs", lambda: {"say": Verb(folder="say")})
     monkeypatch.setattr(module, "verbs", lambda: {"say": Verb(folder="say")})
-    monkeypatch.setattr("service.cli.commands.verbs", module.verbs)
     yield Verb(folder="say")
     for name in [each for each in sys.modules if each.startswith("service.verbs.say")]:
         del sys.modules[name]
