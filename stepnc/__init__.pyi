@@ -7,10 +7,24 @@ from typing import Literal
 from service.verbs.result import Result as Result
 from stepnc_model.errors import StepNcError as StepNcError
 
+from service.verbs.canonical.result import CanonicalResult as CanonicalResult
 from service.verbs.cycletime.result import CycleTimeResult as CycleTimeResult
+from service.verbs.post.result import PostResult as PostResult
 from service.verbs.toolpath.result import CodePathResult as CodePathResult
 from service.verbs.toolpath.result import ToolPathResult as ToolPathResult
 
+def canonical(
+    file: str | Path,
+    *,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    dialect: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
+    is_lathe: bool = ...,
+    keep_going: bool = ...,
+) -> CanonicalResult: ...
 def cycletime(
     file: str | Path,
     log: str | Path | None = ...,
@@ -28,6 +42,20 @@ def cycletime(
     control: Literal['exact-stop', 'junction', 'fir'] = ...,
     deviation_mm: float = ...,
 ) -> CycleTimeResult: ...
+def post(
+    file: str | Path,
+    *,
+    output: str | Path | None = ...,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    control: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'],
+    cycles: bool = ...,
+    exact_path: bool = ...,
+    keep_going: bool = ...,
+) -> PostResult: ...
 def toolpath(
     file: str | Path,
     *,

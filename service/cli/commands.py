@@ -33,7 +33,6 @@ from service.cli.options import (
     add_program,
     program_request,
 )
-from service.cli.paths import add_path_commands
 from service.cli.record import add_record_command
 from service.cli.serve import add_service_commands
 from service.cli.verbs import add_verb
@@ -82,7 +81,6 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     optimise.fill = add_optimise_options
     _add_check(commands)
     _add_convert(commands)
-    add_path_commands(commands)
     add_machine_commands(commands)
     add_block_commands(commands)
     add_agent_command(commands)
