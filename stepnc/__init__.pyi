@@ -8,6 +8,8 @@ from service.verbs.result import Result as Result
 from stepnc_model.errors import StepNcError as StepNcError
 
 from service.verbs.canonical.result import CanonicalResult as CanonicalResult
+from service.verbs.check.result import CodeContents as CodeContents
+from service.verbs.check.result import ProgramContents as ProgramContents
 from service.verbs.cycletime.result import CycleTimeResult as CycleTimeResult
 from service.verbs.post.result import PostResult as PostResult
 from service.verbs.toolpath.result import CodePathResult as CodePathResult
@@ -25,6 +27,18 @@ def canonical(
     is_lathe: bool = ...,
     keep_going: bool = ...,
 ) -> CanonicalResult: ...
+def check(
+    file: str | Path,
+    *,
+    name: str | Path = ...,
+    most_repeats: int | None = ...,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    dialect: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
+) -> ProgramContents | CodeContents: ...
 def cycletime(
     file: str | Path,
     log: str | Path | None = ...,

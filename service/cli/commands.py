@@ -30,8 +30,6 @@ from service.cli.options import (
     add_json,
     add_knowledge,
     add_most_repeats,
-    add_program,
-    program_request,
 )
 from service.cli.record import add_record_command
 from service.cli.serve import add_service_commands
@@ -79,7 +77,6 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     optimise.fill = add_optimise_options
-    _add_check(commands)
     _add_convert(commands)
     add_machine_commands(commands)
     add_block_commands(commands)
@@ -198,30 +195,6 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
     add_cluster(parser)
     add_json(parser)
     parser.set_defaults(run=_optimise)
-
-
-def _add_check(commands: Commands) -> None:
-    """Add the command ``stepnc check``."""
-    parser = commands.add_parser(
-        "check",
-        help="show the contents of a program or of NC code and its errors; exit 3 if it is "
-        "unusable",
-    )
-    parser.fill = _check_options
-
-
-def _check_options(parser: argparse.ArgumentParser) -> None:
-    add_program(parser)
-    parser.add_argument(
-        "--control",
-        default="",
-        metavar="NAME",
-        help="control of NC code: linuxcnc, fanuc, haas, sinumerik or heidenhain; default: "
-        "guessed from the code",
-    )
-    add_most_repeats(parser)
-    add_json(parser)
-    parser.set_defaults(run=_check)
 
 
 def _add_convert(commands: Commands) -> None:
@@ -389,61 +362,6 @@ def _optimise_folder(options: argparse.Namespace) -> int:
         if found.has(status):
             return code
     return OK
-
-
-def _check(options: argparse.Namespace) -> int:
-    """Run the command ``stepnc check``."""
-    from service.code_contents import is_code
-
-    return (
-        _check_code(options)
-        if options.control or is_code(options.file)
-        else _check_program(options)
-    )
-
-
-def _check_code(options: argparse.Namespace) -> int:
-    """Check NC code."""
-    from service.code_contents import check_code
-    from service.requests.given import ProgramRequest
-    from service.terminal import write_out
-    from stepnc_model.errors import StepNcError
-
-    if program_request(options) != ProgramRequest():
-        raise StepNcError(
-            "--units, --stock, --set, --teeth and --feed are for STEP-NC programs"
-        )
-    contents = check_code(
-        options.file, control=options.control, most_repeats=options.most_repeats
-    )
-    if options.json:
-        from service.code_contents_output import code_json
-
-        write_out(code_json(contents))
-    else:
-        from service.code_contents_output import print_code
-
-        print_code(contents)
-    return OK
-
-
-def _check_program(options: argparse.Namespace) -> int:
-    """Check a STEP-NC program."""
-    from service.contents import check
-    from service.paths.remarks import tell_remarks
-    from service.terminal import tell, write_out
-
-    contents = check(options.file, program_request(options), tell=tell)
-    tell_remarks(contents.remarks, tell)
-    if options.json:
-        from service.contents_output import contents_json
-
-        write_out(contents_json(contents))
-    else:
-        from service.contents_output import print_contents
-
-        print_contents(contents)
-    return OK if contents.is_of_use else BAD_INPUT
 
 
 def _convert(options: argparse.Namespace) -> int:

@@ -9,8 +9,6 @@ import pytest
 
 from optimiser.advice import tightest
 from service import chosen, usecases
-from service.contents import check
-from service.contents_output import contents_json
 from service.library_output import entries_json, entry_json
 from service.plan_output import plan_json
 from tests.asking import asked_advice
@@ -117,15 +115,6 @@ def test_each_limit_is_told_once_for_each_sense() -> None:
         for load in state.loads:
             worst = told[pairs.index((load.limit.name, load.limit.sense))]
             assert worst.margin <= load.margin
-
-
-def test_contents_tell_the_workingsteps_in_order() -> None:
-    contents = json.loads(contents_json(check(PARTS / "bracket.stpnc")))
-    assert contents["is_usable"] is True
-    assert contents["schemas"] == ["MACHINING_SCHEMA", "MILLING_SCHEMA"]
-    assert [step["id"] for step in contents["workingsteps"]][:3] == [
-        "ROUGH FACE", "FINISH FACE", "ROUGH CONTOUR",
-    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("kind", ["machines", "materials"])

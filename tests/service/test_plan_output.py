@@ -7,40 +7,15 @@ from pathlib import Path
 import pytest
 
 from service import chosen, usecases
-from service.contents import Contents, check
-from service.contents_output import print_contents
 from service.library_output import print_entries, print_entry
 from service.plan_output import print_plan
-from service.rendering.text import MOST_FINDINGS
 from simulator.library import load_machine
 from simulator.machine_file import machine_toml
 from simulator.spec import ModeDirection, VibratingPart, VibrationMode
-from stepnc_model.errors import Finding, Severity
 from tests.asking import asked_advice
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 ESCAPE = "\x1b"
-
-
-class Terminal:
-    """Text that claims to be shown on a terminal."""
-
-    def __init__(self) -> None:
-        self.text = ""
-
-    def write(self, text: str) -> None:
-        self.text += text
-
-    def isatty(self) -> bool:
-        return True
-
-
-def contents(*findings: Finding) -> Contents:
-    return replace(check(PARTS / "paper002.stpnc"), findings=findings)
-
-
-def warning(number: int) -> Finding:
-    return Finding(severity=Severity.WARNING, message=f"finding {number}")
 
 
 def test_a_plan_shows_both_feeds_and_the_limit_that_binds(
@@ -64,45 +39,6 @@ def test_columns_of_a_plan_are_aligned(capsys: pytest.CaptureFixture[str]) -> No
     assert set(rule) == {"-", " "}
     for name in ("operation", "tool", "rpm"):
         assert rule[header.index(name) - 1 : header.index(name) + 1] == " -"
-
-
-def test_contents_show_the_tree_and_whether_it_is_usable(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    print_contents(check(PARTS / "bracket.stpnc"))
-    shown = capsys.readouterr().out
-    assert "workplan" in shown
-    assert "REAM HOLE 2" in shown
-    assert shown.endswith("  advice: yes\n")
-
-
-def test_nobody_sees_colours_in_a_file(capsys: pytest.CaptureFixture[str]) -> None:
-    print_contents(contents(warning(1)))
-    assert ESCAPE not in capsys.readouterr().out
-
-
-def test_a_terminal_has_colours_unless_it_wants_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    for wish, is_coloured in (("", True), ("1", False)):
-        terminal = Terminal()
-        monkeypatch.setattr("sys.stdout", terminal)
-        monkeypatch.setenv("NO_COLOR", wish)
-        print_contents(contents(warning(1)))
-        assert (ESCAPE in terminal.text) is is_coloured
-
-
-def test_equal_findings_are_told_once_and_errors_first(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    fault = Finding(severity=Severity.ERROR, message="cannot be")
-    print_contents(contents(warning(1), warning(1), fault))
-    shown = capsys.readouterr().out
-    assert shown.count("finding 1") == 1
-    assert shown.index("cannot be") < shown.index("finding 1")
-
-
-def test_many_findings_are_counted_rather_than_told(capsys: pytest.CaptureFixture[str]) -> None:
-    print_contents(contents(*(warning(number) for number in range(MOST_FINDINGS + 7))))
-    assert "... and 7 more findings (--json has all)" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("kind", ["machines", "materials"])

@@ -6,12 +6,12 @@ import pytest
 
 from optimiser.advice import AdviceStatus
 from service import usecases
-from service.contents import check
 from service.reading import read_program
 from simulator.errors import UnknownMachine, UnknownMaterial
 from stepnc_model.errors import SchemaError, Severity, StepNcError, WriteError
 from stepnc_model.file_profile import FileProfile
 from tests.asking import AskedAdvice, asked_advice
+from tests.checked import check
 
 ROOT = Path(__file__).parents[2]
 PARTS = ROOT / "examples" / "parts"
