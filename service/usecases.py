@@ -24,7 +24,7 @@ from service.knowledge.corrected import factors_for, finding_of, with_correction
 from service.knowledge.place import named_place, require_apart
 from service.program_kind import ProgramKind
 from service.progress import Progress
-from service.reading import Tell, read_given, read_program, selected, silent
+from service.reading import Tell, read_given, selected, silent
 from service.records import changes_of, lost_plunge_feeds
 from service.refusals import Writable, advisable, apart_from
 from service.requests.advice import AdviceRequest
@@ -348,13 +348,6 @@ def _tell_conflicts(plan: Plan, tell: Tell) -> None:
             f"'{each.workingstep.id}' ({each.workingstep.ref})" for each in conflicts
         )
         tell(f"infeasible, left as programmed: {names}")
-
-
-def convert(path: Path, *, profile: FileProfile, output: Path) -> None:
-    """Convert the optimisation records of a file into another file profile."""
-    require_place(output, apart_from=path)
-    program = read_program(path, units="iso")
-    write_atomically(output, writeback.convert(program, profile))
 
 
 def _output(files: AdviceFiles) -> Path:

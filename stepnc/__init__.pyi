@@ -10,7 +10,12 @@ from stepnc_model.errors import StepNcError as StepNcError
 from service.verbs.canonical.result import CanonicalResult as CanonicalResult
 from service.verbs.check.result import CodeContents as CodeContents
 from service.verbs.check.result import ProgramContents as ProgramContents
+from service.verbs.convert.result import ConvertResult as ConvertResult
 from service.verbs.cycletime.result import CycleTimeResult as CycleTimeResult
+from service.verbs.library import EntryResult as EntryResult
+from service.verbs.library import EntryResult as EntryResult
+from service.verbs.library import ListingResult as ListingResult
+from service.verbs.library import ListingResult as ListingResult
 from service.verbs.post.result import PostResult as PostResult
 from service.verbs.toolpath.result import CodePathResult as CodePathResult
 from service.verbs.toolpath.result import ToolPathResult as ToolPathResult
@@ -39,6 +44,13 @@ def check(
     feed: str | Path = ...,
     dialect: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
 ) -> ProgramContents | CodeContents: ...
+def convert(
+    file: str | Path,
+    *,
+    output: str | Path,
+    to: Literal['iso14649', 'ap238'] | None = ...,
+    profile: Literal['optimisation', 'standard'] | None = ...,
+) -> ConvertResult: ...
 def cycletime(
     file: str | Path,
     log: str | Path | None = ...,
@@ -56,6 +68,12 @@ def cycletime(
     control: Literal['exact-stop', 'junction', 'fir'] = ...,
     deviation_mm: float = ...,
 ) -> CycleTimeResult: ...
+def machines(
+    name: str | Path | None = ...,
+) -> ListingResult | EntryResult: ...
+def materials(
+    name: str | Path | None = ...,
+) -> ListingResult | EntryResult: ...
 def post(
     file: str | Path,
     *,

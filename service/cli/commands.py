@@ -77,7 +77,6 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     optimise.fill = add_optimise_options
-    _add_convert(commands)
     add_machine_commands(commands)
     add_block_commands(commands)
     add_agent_command(commands)
@@ -91,11 +90,6 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     for verb in verbs().values():
         add_verb(commands, verb)
     add_service_commands(commands)
-    for kind in ("machines", "materials"):
-        listing = commands.add_parser(kind, help=f"list the {kind}, or show one")
-        listing.add_argument("name", nargs="?", default="", help="show only this one, in full")
-        add_json(listing)
-        listing.set_defaults(run=_show_library)
     return top, commands
 
 
@@ -195,26 +189,6 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
     add_cluster(parser)
     add_json(parser)
     parser.set_defaults(run=_optimise)
-
-
-def _add_convert(commands: Commands) -> None:
-    """Add the command ``stepnc convert``."""
-    parser = commands.add_parser(
-        "convert",
-        help="convert a program to AP238 or ISO 14649, or its records to the other profile",
-    )
-    parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
-    what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument(
-        "--to",
-        metavar="STANDARD",
-        help="write the program by another standard: ap238 or iso14649",
-    )
-    what.add_argument(
-        "--profile", help="write the optimisation records in profile optimisation or standard"
-    )
-    parser.add_argument("-o", "--output", type=output_path, required=True, metavar="FILE")
-    parser.set_defaults(run=_convert)
 
 
 def _run(options: argparse.Namespace) -> int:
@@ -361,46 +335,4 @@ def _optimise_folder(options: argparse.Namespace) -> int:
     ):
         if found.has(status):
             return code
-    return OK
-
-
-def _convert(options: argparse.Namespace) -> int:
-    """Run the command ``stepnc convert``."""
-    from service import usecases
-    from service.conversion import Standard, convert_to
-    from service.requests.fields import member_of
-    from service.terminal import tell
-    from stepnc_model.file_profile import FileProfile
-
-    if options.to is not None:
-        standard = member_of(Standard, options.to, "standard")
-        for finding in convert_to(options.file, standard=standard, output=options.output):
-            tell(str(finding))
-        tell(f"{options.output}: written by standard '{standard.value}'")
-        return OK
-
-    profile = member_of(FileProfile, options.profile, "profile")
-    usecases.convert(options.file, profile=profile, output=options.output)
-    tell(f"{options.output}: records converted to profile '{profile.value}'")
-    return OK
-
-
-def _show_library(options: argparse.Namespace) -> int:
-    """Run the commands ``stepnc machines`` and ``stepnc materials``."""
-    from service import library_output
-    from service.chosen import library_entries, library_entry
-    from service.terminal import write_out
-
-    kind, name = options.command, options.name
-    if name:
-        entry = library_entry(kind, name)
-        if options.json:
-            write_out(library_output.entry_json(entry))
-        else:
-            library_output.print_entry(entry)
-        return OK
-    entries = library_entries(kind)
-    write_out(
-        library_output.entries_json(entries)
-    ) if options.json else library_output.print_entries(kind, entries)
     return OK

@@ -47,3 +47,11 @@ Report = Annotated[
         flag="--report", use=FileUse.OUTPUT, metavar="HTML",
     ),
 ]  # fmt: skip
+
+EntryName = Annotated[
+    str | None,
+    About(
+        "show only this one, in full: its name or the path of its file",
+        use=FileUse.INPUT, metavar="NAME",
+    ),
+]  # fmt: skip

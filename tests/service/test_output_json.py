@@ -8,8 +8,7 @@ from typing import Any
 import pytest
 
 from optimiser.advice import tightest
-from service import chosen, usecases
-from service.library_output import entries_json, entry_json
+from service import usecases
 from service.plan_output import plan_json
 from tests.asking import asked_advice
 
@@ -115,22 +114,6 @@ def test_each_limit_is_told_once_for_each_sense() -> None:
         for load in state.loads:
             worst = told[pairs.index((load.limit.name, load.limit.sense))]
             assert worst.margin <= load.margin
-
-
-@pytest.mark.parametrize("kind", ["machines", "materials"])
-def test_a_library_is_json(kind: str) -> None:
-    entries = chosen.library_entries(kind)
-    listed = json.loads(entries_json(entries), parse_constant=refused)
-    assert [each["name"] for each in listed] == [entry.name for entry in entries]
-
-
-@pytest.mark.parametrize(
-    ("kind", "name"),
-    [("machines", "vmc15"), ("machines", "lathe22"), ("materials", "c45")],
-)
-def test_an_entry_is_json(kind: str, name: str) -> None:
-    entry = chosen.library_entry(kind, name)
-    assert json.loads(entry_json(entry), parse_constant=refused)["name"] == name
 
 
 def test_an_estimated_stability_is_told_with_its_band() -> None:

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from service import chosen, usecases
-from service.library_output import print_entries, print_entry
+from service import usecases
 from service.plan_output import print_plan
 from simulator.library import load_machine
 from simulator.machine_file import machine_toml
@@ -39,24 +38,6 @@ def test_columns_of_a_plan_are_aligned(capsys: pytest.CaptureFixture[str]) -> No
     assert set(rule) == {"-", " "}
     for name in ("operation", "tool", "rpm"):
         assert rule[header.index(name) - 1 : header.index(name) + 1] == " -"
-
-
-@pytest.mark.parametrize("kind", ["machines", "materials"])
-def test_a_library_is_a_row_an_entry(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
-    entries = chosen.library_entries(kind)
-    print_entries(kind, entries)
-    rows = capsys.readouterr().out.splitlines()[2:]
-    assert [row.split()[0] for row in rows] == [entry.name for entry in entries]
-
-
-@pytest.mark.parametrize(("kind", "name"), [("machines", "vmc15"), ("materials", "c45")])
-def test_an_entry_tells_its_source(
-    kind: str, name: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    print_entry(chosen.library_entry(kind, name))
-    shown = capsys.readouterr().out
-    assert shown.startswith(f"{name}: ")
-    assert "\nsource: " in shown
 
 
 MODE = VibrationMode(
@@ -97,15 +78,3 @@ def test_a_plan_tells_what_is_stable_or_why_that_is_not_asked(
     notes = [line for line in lines if "no modes are measured" in line]
     assert len(notes) == 1
     assert "'END MILL 12MM'" in notes[0]
-
-
-def test_a_machine_shows_its_measured_modes(capsys: pytest.CaptureFixture[str]) -> None:
-    work = replace(MODE, part=VibratingPart.WORKPIECE, tool="", direction=ModeDirection.X)
-    wide = replace(MODE, tool="", tool_diameter=12.0)
-    print_entry(replace(load_machine("vmc15"), modes=(MODE, work, wide)))
-    shown = capsys.readouterr().out
-    assert re.search(
-        r"mode of tool END MILL 20MM along xy +1150 Hz, damping 0\.03, 5 N/µm", shown
-    )
-    assert "mode of workpiece along x " in shown
-    assert "mode of tool 12 mm along xy " in shown

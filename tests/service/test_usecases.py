@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+import stepnc
 from optimiser.advice import AdviceStatus
 from service import usecases
 from service.reading import read_program
@@ -202,8 +203,8 @@ def test_records_convert_there_and_back(paper: Path, profile: FileProfile) -> No
     assert written is not None
     (other,) = set(FileProfile) - {profile}
     there, back = paper.with_name("there"), paper.with_name("back")
-    usecases.convert(written, profile=other, output=there)
-    usecases.convert(there, profile=profile, output=back)
+    stepnc.convert(written, profile=other.value, output=there)
+    stepnc.convert(there, profile=profile.value, output=back)
     assert check(there).is_usable
     assert check(back).is_usable
 
@@ -211,7 +212,7 @@ def test_records_convert_there_and_back(paper: Path, profile: FileProfile) -> No
 def test_a_program_is_not_converted_onto_itself(paper: Path) -> None:
     before = paper.read_bytes()
     with pytest.raises(WriteError, match="name another file"):
-        usecases.convert(paper, profile=FileProfile.STANDARD, output=paper)
+        stepnc.convert(paper, profile="standard", output=paper)
     assert paper.read_bytes() == before
 
 

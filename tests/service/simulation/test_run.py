@@ -70,7 +70,7 @@ def face(part: Path) -> Path:
 def posted(file: Path, control: Dialect, folder: Path) -> CodeRequest:
     """NC code of a program."""
     code = folder / f"code{control.suffix}"
-    stepnc.post(file, control=control.value, output=code)  # type: ignore[arg-type]
+    stepnc.post(file, control=control.value, output=code)
     return CodeRequest(code=code, dialect=control.value)
 
 

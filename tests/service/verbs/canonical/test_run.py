@@ -23,7 +23,7 @@ def bracket(tmp_path: Path) -> Path:
 
 def test_canonical_commands_of_nc_code_equal_those_of_the_program(bracket: Path) -> None:
     for control in ("linuxcnc", "sinumerik"):
-        stepnc.post(bracket, control=control)  # type: ignore[arg-type]
+        stepnc.post(bracket, control=control)
     one = stepnc.canonical(bracket.with_suffix(".ngc")).commands
     other = stepnc.canonical(bracket.with_suffix(".mpf")).commands
     feeds = [
