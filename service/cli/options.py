@@ -1,21 +1,18 @@
-"""Exit codes and options that several commands share. Imports nothing slow."""
+"""Options that several commands share. Imports nothing slow."""
 
 import argparse
 import re
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from service.exit_codes import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED, OK
 from service.requests.fields import output_path
 
-OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED = 0, 3, 4, 5, 6
-"""Exit codes; with ``NOTHING_ADVISED`` ``optimise`` says that it wrote no program."""
+__all__ = ["BAD_INPUT", "INFEASIBLE", "LIMIT_EXCEEDED", "NOTHING_ADVISED", "OK"]
 
 CONTROLS = "linuxcnc, fanuc, haas, sinumerik, heidenhain or canonical"
 
 if TYPE_CHECKING:
-    from service.requests.given import ProgramRequest
-
     Commands = argparse._SubParsersAction["CommandParser"]
 else:
     Commands = object
@@ -53,36 +50,6 @@ class CommandParser(argparse.ArgumentParser):
 def output_names(parser: argparse.ArgumentParser) -> tuple[str, ...]:
     """Names of the arguments of a command that are outputs."""
     return tuple(each.dest for each in parser._actions if each.type is output_path)
-
-
-def add_program(parser: argparse.ArgumentParser) -> None:
-    """Add the program file, and the options for what is given beyond it."""
-    parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
-    add_program_options(parser)
-
-
-def add_program_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options for what is given about a program beyond its file."""
-    from service.requests.fields import add_options
-    from service.requests.given import ProgramRequest
-
-    add_options(parser, ProgramRequest)
-
-
-def program_request(options: argparse.Namespace) -> "ProgramRequest":
-    """Return what the options give about a program beyond its file.
-
-    Raises
-    ------
-    StepNcError
-        When an option is not valid.
-    """
-    from service.requests.fields import from_options, require_bounds
-    from service.requests.given import ProgramRequest
-
-    request = from_options(ProgramRequest, options)
-    require_bounds(request)
-    return request
 
 
 def add_most_repeats(parser: argparse.ArgumentParser) -> None:

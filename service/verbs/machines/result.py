@@ -1,61 +1,35 @@
-"""Machines and materials of the library as text and JSON."""
-
-from collections.abc import Sequence
-from dataclasses import asdict
+"""Columns of ``machines``, and what matters of one machine."""
 
 from service.rendering.columns import Column
-from service.rendering.records import dump, plain
-from service.rendering.text import print_line, print_table
-from simulator.spec import Handling, Machine, WorkMaterial
+from service.verbs.library import EntryFact
+from simulator.spec import Handling, Machine
 from simulator.work_holding import Clamp, Holding
 from stepnc_model.units import (
     kn_from_newtons,
     kw_from_watts,
-    m_min_from_speed,
     mm_min_from_speed,
     n_um_from_n_mm,
     rpm_from_rev_s,
 )
 
-Fact = tuple[str, str]
-
 MACHINES: tuple[Column[Machine], ...] = (
-    Column(heading="name", value=lambda machine: machine.name, is_key=True),
-    Column(heading="kind", value=lambda machine: machine.kind.value),
     Column(
-        heading="kW", form="g", help="maximum power of the spindle motor",
+        key="name", kind=str, heading="name", is_key=True,
+        value=lambda machine: machine.name,
+    ),
+    Column(key="kind", kind=str, heading="kind", value=lambda machine: machine.kind.value),
+    Column(
+        key="power_kw", heading="kW", form="g", help="maximum power of the spindle motor",
         value=lambda machine: max(kw_from_watts(each.power) for each in machine.spindle.curve),
     ),
     Column(
-        heading="rpm", form="g", help="maximum spindle speed",
+        key="max_speed_rpm", heading="rpm", form="g", help="maximum spindle speed",
         value=lambda machine: None
         if machine.spindle.max_speed is None
         else rpm_from_rev_s(machine.spindle.max_speed),
     ),
-    Column(heading="title", value=lambda machine: machine.title),
+    Column(key="title", kind=str, heading="title", value=lambda machine: machine.title),
 )  # fmt: skip
-
-MATERIALS: tuple[Column[WorkMaterial], ...] = (
-    Column(heading="name", value=lambda material: material.name, is_key=True),
-    Column(heading="ISO", value=lambda material: material.iso_group, help="ISO 513 group"),
-    Column(heading="k_c1.1 N/mm2", form="g", value=lambda material: material.kienzle.k_c11),
-    Column(heading="m_c", form="g", value=lambda material: material.kienzle.m_c),
-    Column(heading="title", value=lambda material: material.title),
-)
-
-FACTS: tuple[Column[Fact], ...] = (
-    Column(heading="what", value=lambda fact: fact[0]),
-    Column(heading="value", value=lambda fact: fact[1]),
-)
-
-
-def print_entries(kind: str, entries: Sequence[Machine | WorkMaterial]) -> None:
-    """Print a table of all machines or all materials."""
-    if kind == "machines":
-        print_table(MACHINES, [each for each in entries if isinstance(each, Machine)])
-    else:
-        print_table(MATERIALS, [each for each in entries if isinstance(each, WorkMaterial)])
-
 
 CONTROL = (
     "fir, unless --control names another; not identified on a machine: its filter times follow "
@@ -64,29 +38,9 @@ CONTROL = (
 """Which control model a machine of the library has, and where it comes from."""
 
 
-def print_entry(entry: Machine | WorkMaterial) -> None:
-    """Print the data of one machine or material."""
-    print_line(f"{entry.name}: {entry.title}")
-    facts = _machine_facts(entry) if isinstance(entry, Machine) else _material_facts(entry)
-    print_table(FACTS, facts)
-    print_line(f"source: {entry.source}")
-    for remark in entry.remarks:
-        print_line(f"remark: {remark}")
-
-
-def entry_json(entry: Machine | WorkMaterial) -> str:
-    """Return a machine or material as JSON, in canonical units (mm, s, N, W, rev/s)."""
-    return dump(plain(asdict(entry)))
-
-
-def entries_json(entries: Sequence[Machine | WorkMaterial]) -> str:
-    """Return the names and titles of all machines or materials as JSON."""
-    return dump([{"name": entry.name, "title": entry.title} for entry in entries])
-
-
-def _machine_facts(machine: Machine) -> list[Fact]:
+def machine_facts(machine: Machine) -> list[EntryFact]:
     """List the data of a machine that matter to a planner, as name and value."""
-    facts: list[Fact] = [
+    facts: list[EntryFact] = [
         (
             f"spindle at {rpm_from_rev_s(point.speed):g} rpm",
             f"{kw_from_watts(point.power):g} kW"
@@ -131,7 +85,7 @@ def _machine_facts(machine: Machine) -> list[Fact]:
     return facts
 
 
-def _handled(handling: Handling) -> list[Fact]:
+def _handled(handling: Handling) -> list[EntryFact]:
     """Describe the states between parts and batches, as name and value."""
     states = {
         "batch setup": handling.batch_setup,
@@ -147,7 +101,7 @@ def _handled(handling: Handling) -> list[Fact]:
     return [*facts, ("handling scatter", f"{scatter} ({handling.source})")]
 
 
-def _held(holding: Holding) -> Fact:
+def _held(holding: Holding) -> EntryFact:
     """Describe one work-holding of a machine, as name and value."""
     of = f" of {holding.setup}" if holding.setup else ""
     if isinstance(holding, Clamp):
@@ -155,20 +109,3 @@ def _held(holding: Holding) -> Fact:
         return f"clamps{of}", f"{force}, friction {holding.friction:g}"
     force = f"{kn_from_newtons(holding.clamping_force):g} kN at rest"
     return f"chuck{of}", f"{force}, {holding.jaws} jaws, friction {holding.friction:g}"
-
-
-def _material_facts(material: WorkMaterial) -> list[Fact]:
-    """List the data of a material that matter to a planner, as name and value."""
-    facts: list[Fact] = [
-        ("ISO group", material.iso_group or "none"),
-        ("also called", ", ".join(material.equivalents)),
-        ("k_c1.1 N/mm2", f"{material.kienzle.k_c11:g}"),
-        ("m_c", f"{material.kienzle.m_c:g}"),
-    ]
-    for window in material.windows:
-        body = f" {window.tool_body.value}" if window.tool_body else ""
-        low = window.min_cutting_speed
-        high = window.max_cutting_speed
-        shown = " to ".join(f"{m_min_from_speed(each):g}" for each in (low, high) if each)
-        facts.append((f"m/min with {window.cutting_material.value}{body}", shown))
-    return facts
