@@ -22,7 +22,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 
-PRODUCT = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service")
+PRODUCT = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service", "stepnc")
 
 ALLOWED = {
     "optimiser.profile.smooth_limit": "problems of paths without jumps, made by hand",

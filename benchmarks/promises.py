@@ -82,6 +82,42 @@ def _help() -> float:
     return min(usage([OPTIMISE, "--help"]).wall for _ in range(3))
 
 
+def _control() -> float:
+    from benchmarks.control_step import BRACKET, simulated_speed  # noqa: PLC0415
+    from service.requests.advice import AdviceRequest  # noqa: PLC0415
+    from service.verbs.optimise.program import advise_program  # noqa: PLC0415
+    from service.verbs.optimise.request import AdviceFiles  # noqa: PLC0415
+
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / BRACKET.name
+        advise_program(AdviceRequest(machine="vmc15"), AdviceFiles(file=BRACKET, output=file))
+        return simulated_speed(file)
+
+
+def _current() -> float:
+    from benchmarks.agent import current_ratio  # noqa: PLC0415
+
+    return current_ratio()
+
+
+def _shop() -> float:
+    from benchmarks.factory import event_ratio  # noqa: PLC0415
+
+    return event_ratio(hours=400.0)
+
+
+def _long_shop() -> float:
+    from benchmarks.factory import event_ratio  # noqa: PLC0415
+
+    return event_ratio(hours=4000.0)
+
+
+def _raster() -> float:
+    from benchmarks.nc_feeds import seconds_of  # noqa: PLC0415
+
+    return seconds_of(100_000)
+
+
 ROWS = (
     Row(
         name="workingstep",
@@ -112,6 +148,45 @@ ROWS = (
         goal=10.0,
     ),
     Row(name="help", work="optimise --help", measure=_help, unit="s", goal=0.3),
+    Row(
+        name="control",
+        work="bracket, optimised, under control with preview",
+        measure=_control,
+        unit="× real time",
+        goal=100.0,
+        is_least=True,
+    ),
+    Row(
+        name="current",
+        work="/current of the agent, arrivals at 20 Hz",
+        measure=_current,
+        unit="of bare route",
+        goal=0.5,
+        is_least=True,
+    ),
+    Row(
+        name="factory",
+        work="50 machines, 400 h, by events",
+        measure=_shop,
+        unit="of bare SimPy",
+        goal=0.5,
+        is_least=True,
+    ),
+    Row(
+        name="long-factory",
+        work="50 machines, 4000 h, by events",
+        measure=_long_shop,
+        unit="of bare SimPy",
+        goal=0.5,
+        is_least=True,
+    ),
+    Row(
+        name="nc-code",
+        work="optimise 100 000 blocks of a raster",
+        measure=_raster,
+        unit="s of CPU",
+        goal=30.0,
+    ),
 )
 
 

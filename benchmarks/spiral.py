@@ -25,11 +25,11 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import uvicorn
 
+import stepnc
 from service.agent.play import begun, play
 from service.agent.run import PublishedRun, listening, published_run
 from service.blocks.block_fit import BlockFitRequest, fit_blocks
 from service.blocks.block_program import write_test
-from service.blocks.cycle_time import CycleTimeRequest, cycle_time
 from service.requests.agent import AgentRequest
 from service.requests.blocks import BlockTestRequest
 from service.simulation.of_code import CodeRequest
@@ -154,8 +154,7 @@ def found_on(hidden: HiddenMachine, folder: Path) -> MachineResult:
         code = folder / "spiral.ngc"
         code.write_text(spiral_code(feed), encoding="utf-8")
         with _served(_run(hidden, real, code)) as url:
-            request = CycleTimeRequest(file=code, machine=str(found), log=url)
-            total = cycle_time(request).total
+            total = stepnc.cycletime(code, url, machine=found).total
         spirals.append(
             SpiralResult(
                 feed_in_min=feed,

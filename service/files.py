@@ -13,6 +13,23 @@ MOST_BYTES = 1 << 31
 """Largest file that is read as a whole, bytes."""
 
 
+def read_head(path: Path, size: int) -> bytes:
+    """Read the beginning of a file.
+
+    Raises
+    ------
+    StepNcError
+        When it cannot be read.
+    """
+    try:
+        with open_regular(path) as file:
+            return file.read(size)
+    except OSError as error:
+        raise StepNcError(f"{path}: {_reason(error)}") from error
+    except ValueError as error:
+        raise StepNcError(f"{str(path)!r} is not a valid file name: {error}") from error
+
+
 def read_bytes(path: Path, *, most: int = MOST_BYTES) -> bytes:
     """Read all bytes of a file.
 

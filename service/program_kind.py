@@ -7,7 +7,9 @@ is neither counts as STEP-NC, whose reader says what is wrong.
 
 import re
 from enum import StrEnum
+from pathlib import Path
 
+from service.files import read_head
 from stepnc_model.nc.recognise import COMMENTS, LOOKED_AT, recognise
 
 PART21 = re.compile(
@@ -33,6 +35,17 @@ class ProgramKind(StrEnum):
     def words(self) -> str:
         """Name of the kind in messages."""
         return "NC code" if self is ProgramKind.NC_CODE else "a STEP-NC program"
+
+
+def kind_of_file(path: Path) -> ProgramKind:
+    """Tell the kind of a program by the beginning of its file.
+
+    Raises
+    ------
+    StepNcError
+        When the file cannot be read.
+    """
+    return kind_of(read_head(path, LOOKED_AT))
 
 
 def kind_of(data: bytes) -> ProgramKind:

@@ -1,29 +1,19 @@
-"""Commands on block rate and cycle time: ``blocktest``, ``blockfit`` and ``cycletime``."""
+"""Commands on block rate: ``blocktest`` and ``blockfit``."""
 
 import argparse
 from pathlib import Path
 
-from service.cli.options import (
-    CONTROLS,
-    OK,
-    Commands,
-    add_json,
-    add_most_repeats,
-    add_program_options,
-    output_path,
-    program_request,
-    text,
-)
+from service.cli.options import CONTROLS, OK, Commands, add_json, text
+from service.requests.fields import output_path
 
 
 def add_block_commands(commands: Commands) -> None:
-    """Add the commands on block rate and cycle time to ``stepnc``."""
+    """Add the commands on block rate to ``stepnc``."""
     test = commands.add_parser(
         "blocktest", help="write a test program for the block rate of a control"
     )
     test.fill = _test_options
     _add_fit(commands)
-    _add_cycle_time(commands)
 
 
 def _add_fit(commands: Commands) -> None:
@@ -58,46 +48,6 @@ def _add_fit(commands: Commands) -> None:
     )
     add_json(parser)
     parser.set_defaults(run=_fit)
-
-
-def _add_cycle_time(commands: Commands) -> None:
-    """Add the command ``stepnc cycletime``."""
-    parser = commands.add_parser(
-        "cycletime",
-        help="estimate a program's cycle time from the block rate, and compare it with a log",
-    )
-    parser.fill = _cycle_time_options
-
-
-def _cycle_time_options(parser: argparse.ArgumentParser) -> None:
-    add = parser.add_argument
-    add("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21), or NC code")
-    add(
-        "log",
-        type=text,
-        nargs="?",
-        default="",
-        metavar="LOG",
-        help="recorded run (.parquet, .csv), MTConnect document (.xml) or address of an agent",
-    )
-    add_program_options(parser)
-    add("--machine", default="", help="one of `stepnc machines`, or your own file")
-    add("--dialect", default="", metavar="NAME", help=f"dialect of NC code: {CONTROLS}")
-    add_most_repeats(parser)
-    add("--control", default="fir", metavar="NAME",
-        help="motion control: fir (default), junction or exact-stop")  # fmt: skip
-    add("--deviation-mm", type=float, default=0.01, metavar="MM",
-        help="path deviation of the junction control, mm (default: 0.01)")  # fmt: skip
-    add("-o", "--output", type=output_path, metavar="CODE",
-        help="write NC code with each feed lowered to what will be reached")  # fmt: skip
-    add(
-        "--report",
-        type=output_path,
-        metavar="HTML",
-        help="write a self-contained page with a plot",
-    )
-    add_json(parser)
-    parser.set_defaults(run=_cycle_time)
 
 
 def _test_options(parser: argparse.ArgumentParser) -> None:
@@ -152,37 +102,4 @@ def _fit(options: argparse.Namespace) -> int:
         write_out(block_fit_json(result))
     else:
         print_block_fit(result)
-    return OK
-
-
-def _cycle_time(options: argparse.Namespace) -> int:
-    """Run the command ``stepnc cycletime``."""
-    from service.blocks.cycle_output import cycle_time_json, cycle_time_page, print_cycle_time
-    from service.blocks.cycle_time import CycleTimeRequest, cycle_time
-    from service.files import write_atomically
-    from service.requests.fields import member_of
-    from service.terminal import tell, write_out
-    from simulator.motion.model_name import ControlModelName
-
-    result = cycle_time(
-        CycleTimeRequest(
-            file=options.file,
-            machine=options.machine,
-            log=options.log,
-            program=program_request(options),
-            dialect=options.dialect,
-            control=member_of(ControlModelName, options.control, "control"),
-            deviation=options.deviation_mm,
-            output=options.output,
-            most_repeats=options.most_repeats,
-        ),
-        tell=tell,
-    )
-    if options.report is not None:
-        write_atomically(options.report, cycle_time_page(result).encode())
-        tell(f"report: {options.report}")
-    if options.json:
-        write_out(cycle_time_json(result))
-    else:
-        print_cycle_time(result)
     return OK

@@ -12,9 +12,9 @@ from service.cli.options import (
     Commands,
     add_json,
     add_knowledge,
-    output_path,
     text,
 )
+from service.requests.fields import output_path
 
 if TYPE_CHECKING:
     from service.requests.runs import ControlRequest

@@ -27,7 +27,8 @@ from service.cli.kbe_verbs import (
     withdraw_command,
     write_command,
 )
-from service.cli.options import Commands, add_json, output_path, text
+from service.cli.options import Commands, add_json, text
+from service.requests.fields import output_path
 
 USAGE = 2
 

@@ -4,7 +4,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from service.cli.options import LIMIT_EXCEEDED, OK, Commands, add_json, output_path
+from service.cli.options import LIMIT_EXCEEDED, OK, Commands, add_json
+from service.requests.fields import output_path
 from stepnc_model.errors import StepNcError
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from service.cli.options import (
     Commands,
     add_json,
     add_most_repeats,
-    output_path,
 )
+from service.requests.fields import output_path
 
 if TYPE_CHECKING:
     from service.requests.runs import RunRequest

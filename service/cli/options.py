@@ -6,6 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from service.requests.fields import output_path
+
 OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED = 0, 3, 4, 5, 6
 """Exit codes; with ``NOTHING_ADVISED`` ``optimise`` says that it wrote no program."""
 
@@ -46,15 +48,6 @@ class CommandParser(argparse.ArgumentParser):
             each.dest: each.option_strings[-1] for each in self._actions if each.option_strings
         }
         return namespace, rest
-
-
-def output_path(word: str) -> Path:
-    """Type of an argument that names a file or folder to be written.
-
-    The places of a command's outputs are told from those of its inputs by this type, and
-    compared before it starts (:mod:`service.cli.places`).
-    """
-    return Path(word)
 
 
 def output_names(parser: argparse.ArgumentParser) -> tuple[str, ...]:

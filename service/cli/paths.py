@@ -10,9 +10,9 @@ from service.cli.options import (
     Commands,
     add_json,
     add_program,
-    output_path,
     program_request,
 )
+from service.requests.fields import output_path
 
 
 def add_path_commands(commands: Commands) -> None:

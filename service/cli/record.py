@@ -2,7 +2,8 @@
 
 import argparse
 
-from service.cli.options import OK, Commands, output_path
+from service.cli.options import OK, Commands
+from service.requests.fields import output_path
 
 
 def add_record_command(commands: Commands) -> None:

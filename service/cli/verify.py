@@ -3,7 +3,8 @@
 import argparse
 from pathlib import Path
 
-from service.cli.options import LIMIT_EXCEEDED, OK, Commands, add_json, output_path
+from service.cli.options import LIMIT_EXCEEDED, OK, Commands, add_json
+from service.requests.fields import output_path
 
 
 def add_verify_command(commands: Commands) -> None:

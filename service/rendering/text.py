@@ -104,15 +104,22 @@ def print_line(text: str, colour: str = "") -> None:
 
 def print_findings(findings: Sequence[Finding], *, told: Sequence[Finding] = ()) -> None:
     """Print findings without duplicates, errors first; not those that were told already."""
+    for text, colour in finding_lines(findings, told=told):
+        print_line(text, colour)
+
+
+def finding_lines(
+    findings: Sequence[Finding], *, told: Sequence[Finding] = ()
+) -> Iterator[tuple[str, str]]:
+    """Yield findings with their colours: without duplicates and what was told, errors first."""
     said = {str(finding) for finding in told}
     order = list(Severity)[::-1]
     ranked = sorted(findings, key=lambda finding: order.index(finding.severity))
     unique = {str(finding): COLOURS[finding.severity] for finding in ranked}
     unique = {text: colour for text, colour in unique.items() if text not in said}
-    for text, colour in list(unique.items())[:MOST_FINDINGS]:
-        print_line(text, colour)
+    yield from list(unique.items())[:MOST_FINDINGS]
     if len(unique) > MOST_FINDINGS:
-        print_line(f"... and {len(unique) - MOST_FINDINGS} more findings (--json has all)")
+        yield f"... and {len(unique) - MOST_FINDINGS} more findings (--json has all)", ""
 
 
 def one_line(text: str) -> str:

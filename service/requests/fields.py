@@ -9,6 +9,7 @@ import argparse
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, Field, dataclass, fields, replace
 from enum import StrEnum
+from pathlib import Path
 from types import UnionType
 from typing import (
     Annotated,
@@ -34,6 +35,15 @@ LONGEST_NAME = 200
 """Largest number of characters in a name."""
 
 
+class FileUse(StrEnum):
+    """Use of a file or folder by a command."""
+
+    INPUT = "input"
+    OUTPUT = "output"
+    PROGRAM = "program"
+    """Input whose kind decides which options serve."""
+
+
 @dataclass(frozen=True, slots=True)
 class About:
     """Documentation of a field."""
@@ -45,6 +55,12 @@ class About:
     """Name of the field in messages; empty: the attribute's name."""
     flag: str = ""
     """Option on the command line; empty: none."""
+    short: str = ""
+    """Short form of the option, as "-o"."""
+    use: "FileUse | None" = None
+    """How a file or folder is used; None: the value is none."""
+    group: str = ""
+    """Heading in the help under which the option stands; empty: the general ones."""
     metavar: str | None = None
     examples: tuple[object, ...] = ()
     read: Callable[[str], object] | None = None
@@ -117,6 +133,15 @@ def _field(field: Field[Any], hint: Any) -> RequestField | None:
     )
 
 
+def output_path(word: str) -> Path:
+    """Type of an argument that names a file or folder to be written.
+
+    The places of a command's outputs are told from those of its inputs by this type, and
+    compared before it starts (:mod:`service.cli.places`).
+    """
+    return Path(word)
+
+
 def add_options(
     parser: argparse.ArgumentParser,
     kind: type[Request],
@@ -132,30 +157,54 @@ def add_options(
     usual : mapping, optional
         Command-specific default values, by field name.
     """
+    groups: dict[str, Any] = {"": parser}
     for each in fields_of(kind):
         field = replace(each, default=(usual or {}).get(each.name, each.default))
-        flag, about = field.about.flag, field.about
-        if not flag:
+        about = field.about
+        if not (about.flag or about.use is not None):
             continue
-        if field.kind is bool:
-            parser.add_argument(flag, dest=field.name, action="store_true", help=_help(field))
-        elif field.is_sequence and not field.default and not field.is_optional:
-            parser.add_argument(
-                flag, dest=field.name, action="append", default=[], metavar=about.metavar,
-                help=_help(field),
-            )  # fmt: skip
-        else:
-            parser.add_argument(
-                flag, dest=field.name, default=None, metavar=about.metavar, help=_help(field),
-                type=field.kind if not field.is_sequence and field.kind in NUMBERS else str,
-            )  # fmt: skip
+        if about.group not in groups:
+            groups[about.group] = _group(parser, about.group)
+        _add_option(groups[about.group], field)
+
+
+def _group(parser: argparse.ArgumentParser, title: str) -> Any:
+    """Group of options with a title; two requests of a command may share it."""
+    known = {each.title: each for each in parser._action_groups}
+    return known.get(title) or parser.add_argument_group(title)
+
+
+def _add_option(parser: Any, field: RequestField) -> None:
+    """Add one option, or a file that is named without an option."""
+    about = field.about
+    words: dict[str, Any] = {"metavar": about.metavar, "help": _help(field)}
+    if field.kind is Path:
+        words["type"] = output_path if about.use is FileUse.OUTPUT else Path
+    elif not field.is_sequence and field.kind in NUMBERS:
+        words["type"] = field.kind
+    elif field.kind is not bool:
+        words["type"] = str
+    if not about.flag:
+        nargs = "*" if field.is_sequence else "?" if field.is_optional else None
+        parser.add_argument(field.name, nargs=nargs, **words)
+        return
+    words |= {"dest": field.name, "default": None}
+    if field.kind is bool:
+        del words["metavar"]
+        words |= {"action": "store_true", "default": False}
+    elif field.is_sequence and not field.default and not field.is_optional:
+        words |= {"action": "append", "default": []}
+    elif field.default is MISSING:
+        words["required"] = True
+    parser.add_argument(*filter(None, (about.short, about.flag)), **words)
 
 
 def _help(field: RequestField) -> str:
     """Return the help text of an option, including its default."""
     text = field.about.text.replace("%", "%%")
     shown = field.default
-    if field.kind is bool or shown is None or shown == () or not str(shown):
+    is_none = shown is None or shown is MISSING or shown == ()
+    if field.kind is bool or is_none or not str(shown):
         return text
     if isinstance(shown, tuple):
         shown = ",".join(map(str, shown))
@@ -179,7 +228,8 @@ def from_options(kind: type[R], options: argparse.Namespace, **values: object) -
         When a word is not a value of its field.
     """
     for field in fields_of(kind):
-        typed = getattr(options, field.name, None) if field.about.flag else None
+        is_typed = bool(field.about.flag) or field.about.use is not None
+        typed = getattr(options, field.name, None) if is_typed else None
         if typed is not None and typed != []:
             values[field.name] = _read(field, typed)
     return kind(**values)

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
+import stepnc
 from service.blocks.block_fit import paper_points
-from service.blocks.cycle_time import CycleTimeRequest, cycle_time
 from service.blocks.figures import MOST_POINTS, block_fit_figure, cycle_time_figure
 from simulator.calibration.block_fit import fitted_block_time
-from tests.service.blocks.test_cycle_time import code
+from tests.service.verbs.cycletime.test_run import code
 
 
 def test_the_fit_of_table_2_is_drawn_with_its_outlier() -> None:
@@ -21,7 +21,7 @@ def test_the_fit_of_table_2_is_drawn_with_its_outlier() -> None:
 
 
 def test_feeds_of_blocks_are_drawn_and_long_programs_thinned(tmp_path: Path) -> None:
-    times = cycle_time(CycleTimeRequest(file=code(tmp_path), machine="vmc15")).times
+    times = stepnc.cycletime(code(tmp_path), machine="vmc15").times
     drawn = {each.name: each for each in cycle_time_figure(times).data}
     assert len(drawn["predicted"].x) == 1000 <= MOST_POINTS
     assert max(drawn["by the block rate"].y) == pytest.approx(60.0 * 0.1 / 0.0042)

@@ -10,9 +10,10 @@ import pytest
 
 from service.cli.commands import parser
 from service.cli.main import main
-from service.cli.options import CommandParser, output_path
+from service.cli.options import CommandParser
 from service.cli.places import require_own_places
 from service.files import require_distinct
+from service.requests.fields import output_path
 from stepnc_model.errors import StepNcError, WriteError
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"

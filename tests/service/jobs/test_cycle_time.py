@@ -3,8 +3,7 @@
 import json
 from pathlib import Path
 
-from service.blocks.cycle_output import cycle_time_json
-from service.blocks.cycle_time import CycleTimeRequest, cycle_time
+import stepnc
 from service.jobs.task import REPORT, RESULT
 from service.requests.fields import dumped
 from service.requests.stored_cycle_time import QueuedCycleTime
@@ -26,7 +25,7 @@ def test_a_cycle_time_is_that_of_the_command_line(shop: Shop, tmp_path: Path) ->
     job = shop.over(jobs.add(shop.data_folder, asked).id)
     assert (job.state, job.problem) == (JobState.SUCCEEDED, None)
     folder = shop.data_folder.job_folder(job.id)
-    wanted = cycle_time(CycleTimeRequest(file=SLOT, machine=SLOT_MACHINE, log=str(log)))
+    wanted = stepnc.cycletime(SLOT, machine=SLOT_MACHINE, log=log)
     found = json.loads((folder / RESULT).read_bytes())
-    assert found == {**json.loads(cycle_time_json(wanted)), "log": "run.parquet"}
+    assert found == {**json.loads(json.dumps(wanted.record())), "log": "run.parquet"}
     assert str(shop.data_folder.root) not in (folder / REPORT).read_text(encoding="utf-8")

@@ -7,6 +7,7 @@ the server opens; that a file is there must not change an answer either.
 import json
 import os
 import socket
+import tempfile
 from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import dataclass
@@ -181,11 +182,17 @@ class Asker:
         return told
 
 
+@pytest.fixture
+def short_folder() -> Iterator[Path]:
+    """Folder whose path is short enough to stay whole in every message."""
+    with tempfile.TemporaryDirectory() as name:
+        yield Path(name)
+
+
 def test_no_text_of_a_request_is_a_path(
-    service: Server, client: httpx.Client, done: Done, tmp_path: Path
+    service: Server, client: httpx.Client, done: Done, short_folder: Path
 ) -> None:
-    folder = tmp_path / "watched"
-    folder.mkdir()
+    folder = short_folder
     mesh = write_stl(folder / "there.stl", box((0.0, 0.0, -20.0), (60.0, 40.0, 0.0)))
     for name, suffix in (("machines", ".toml"), ("materials", ".toml")):
         source = next((DATA / name).glob("*.toml"))

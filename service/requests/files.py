@@ -1,0 +1,41 @@
+"""Files and options that several verbs have besides their requests."""
+
+from pathlib import Path
+from typing import Annotated
+
+from annotated_types import Interval
+
+from service.requests.fields import About, FileUse
+from simulator.tool_files.file_unit import FileUnit
+
+MostRepeats = Annotated[
+    int | None,
+    Interval(ge=0, le=999_999_999),
+    About(
+        "blocks, and moves, that NC code may execute beyond those of its file, by calls, loops "
+        "and repeated cycles (default: 1000000, which take about 100 MB and 10 s)",
+        flag="--most-repeats", metavar="N",
+    ),
+]  # fmt: skip
+
+Report = Annotated[
+    Path | None,
+    About(
+        "write a self-contained page with plots",
+        flag="--report", use=FileUse.OUTPUT, metavar="HTML",
+    ),
+]  # fmt: skip
+
+ToolsUnit = Annotated[
+    FileUnit | None,
+    About("unit of a tool.tbl: mm or inch", name="unit", flag="--tools-unit", metavar="UNIT"),
+]
+
+Knowledge = Annotated[
+    str,
+    About(
+        "knowledge base, a file or postgresql://…, with accepted corrections of k_c; runs "
+        "record their outcomes in it (default: $STEPNC_KB)",
+        flag="--kb", metavar="PLACE",
+    ),
+]  # fmt: skip

@@ -1,0 +1,173 @@
+"""Calling a verb with values of Python: its request and files from keywords."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import MISSING
+from difflib import get_close_matches
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+from service.program_kind import ProgramKind, kind_of_file
+from service.reading import Tell, silent
+from service.requests.fields import (
+    NUMBERS,
+    FileUse,
+    Request,
+    RequestField,
+    fields_of,
+    member_of,
+    require_bounds,
+)
+from service.requests.serves import require_options_served
+from service.verbs.result import Result
+from service.verbs.verb import Verb
+from stepnc_model.errors import StepNcError
+
+
+def call(
+    verb: Verb, args: Sequence[object], words: Mapping[str, object], *, tell: Tell = silent
+) -> Result:
+    """Run a verb.
+
+    Parameters
+    ----------
+    verb : Verb
+    args : sequence
+        Files that the command line takes without an option, in its order.
+    words : mapping
+        Values by the names of the fields of its request and its files.
+    tell : callable
+        Receives messages.
+
+    Raises
+    ------
+    TypeError
+        When a name is not one of a field, a value is missing, or has another type.
+    StepNcError
+        When a value is not valid; and as the verb.
+    """
+    of_files, of_request = fields_of(verb.files), fields_of(verb.request)
+    places = [each.name for each in of_files if each.about.use and not each.about.flag]
+    if len(args) > len(places):
+        raise TypeError(f"{verb.folder}() takes {len(places)} positional arguments")
+    given = dict(zip(places, args, strict=False))
+    if twice := sorted(given.keys() & words.keys()):
+        raise TypeError(f"{verb.folder}() got {twice[0]} twice")
+    given |= words
+    known = {each.name for each in (*of_files, *of_request)}
+    for name in given:
+        if name not in known:
+            near = get_close_matches(name, known, n=3)
+            hint = f"; near to it: {', '.join(near)}" if near else ""
+            raise TypeError(f"{verb.folder}() has no argument '{name}'{hint}")
+    request = _built(verb.request, of_request, given)
+    require_bounds(request)
+    files = _built(verb.files, of_files, given)
+    require_bounds(files)
+    return ran(verb, request, files, given=given, tell=tell)
+
+
+def ran(
+    verb: Verb,
+    request: Request,
+    files: Request,
+    *,
+    given: Mapping[str, object],
+    tell: Tell,
+) -> Result:
+    """Run a verb with its request and files, and write its page if one is named.
+
+    Parameters
+    ----------
+    verb : Verb
+    request, files : Request
+    given : mapping
+        Values that the caller named, by their fields; those that do not serve the kind of
+        program are refused, even if they are the usual ones.
+    tell : callable
+        Receives messages.
+
+    Raises
+    ------
+    StepNcError
+        When a value does not serve the program; and as the verb.
+    """
+    _require_given_served((*fields_of(verb.files), *fields_of(verb.request)), files, given)
+    result = verb.run(request, files, tell=tell)
+    report: Path | None = getattr(files, "report", None)
+    if report is not None:
+        from service.files import write_atomically  # noqa: PLC0415 (only where one is written)
+
+        write_atomically(report, result.page().encode(errors="replace"))
+        tell(f"report: {report}")
+    return result
+
+
+def _require_given_served(
+    fields: Sequence[RequestField], files: Request, given: Mapping[str, object]
+) -> None:
+    """Refuse values that the kind of program cannot use."""
+    flags = {each.name: each.about.flag for each in fields}
+    for field in fields:
+        program = getattr(files, field.name, None)
+        if field.about.use is FileUse.PROGRAM and isinstance(program, Path):
+            kind = ProgramKind.STEP_NC if program.is_dir() else kind_of_file(program)
+            require_options_served(given, kind, flags=flags)
+
+
+def _built(
+    kind: type[Request], fields: Iterable[RequestField], given: Mapping[str, object]
+) -> Request:
+    """Build a request or files from the values that belong to them."""
+    values = {}
+    for field in fields:
+        if field.name in given:
+            values[field.name] = value_of(field, given[field.name])
+        elif field.default is MISSING:
+            raise TypeError(f"the argument '{field.name}' is missing: {field.about.text}")
+    return kind(**values)
+
+
+def value_of(field: RequestField, value: object) -> Any:
+    """Convert a value of Python to that of a field; words are read as on the command line.
+
+    Raises
+    ------
+    TypeError
+        When it has another type.
+    StepNcError
+        When a word is none of the field's.
+    """
+    if value is None:
+        if field.is_optional or field.default is None:
+            return None
+        raise TypeError(f"{field.name} must not be None")
+    if not field.is_sequence:
+        return _member(field, value)
+    if isinstance(value, str):
+        value = [word.strip() for word in value.split(",")]
+    elif not isinstance(value, Iterable):
+        value = [value]
+    return tuple(_member(field, each) for each in value)
+
+
+def _member(field: RequestField, value: object) -> Any:
+    """Convert one value."""
+    kind = field.kind
+    if field.about.read is not None and isinstance(value, str | Path):
+        return field.about.read(str(value))
+    if isinstance(kind, type) and issubclass(kind, StrEnum):
+        return member_of(kind, str(value), field.label)
+    if kind is Path and isinstance(value, str | Path):
+        return Path(value)
+    if kind is bool and isinstance(value, bool):
+        return value
+    if kind in NUMBERS and isinstance(value, int | float) and not isinstance(value, bool):
+        if kind is int and not float(value).is_integer():
+            raise StepNcError(f"{field.label} {value:g}: expected a whole number")
+        return kind(value)
+    if kind is str and isinstance(value, str | Path):
+        return str(value)
+    if kind in {bool, Path, str, *NUMBERS}:
+        raise TypeError(f"{field.name} is a {kind.__name__}, not {value!r}")
+    return value

@@ -1,0 +1,1 @@
+"""Estimate a program's cycle time from the block rate, and compare it with a log."""

@@ -1,0 +1,84 @@
+"""Functions of ``stepnc``, made by ``python -m tests.tree.python_stub``."""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Literal
+
+from service.verbs.result import Result as Result
+from stepnc_model.errors import StepNcError as StepNcError
+
+from service.verbs.cycletime.result import CycleTimeResult as CycleTimeResult
+from service.verbs.optimise.result import OptimiseResult as OptimiseResult
+
+def cycletime(
+    file: str | Path,
+    log: str | Path | None = ...,
+    *,
+    most_repeats: int | None = ...,
+    output: str | Path | None = ...,
+    report: str | Path | None = ...,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    machine: str | Path = ...,
+    dialect: str | Path = ...,
+    control: Literal['exact-stop', 'junction', 'fir'] = ...,
+    deviation_mm: float = ...,
+) -> CycleTimeResult: ...
+def optimise(
+    file: str | Path,
+    *,
+    output: str | Path | None = ...,
+    in_place: bool = ...,
+    holding: str | Path | None = ...,
+    tools: str | Path | None = ...,
+    tools_unit: Literal['mm', 'inch'] | None = ...,
+    most_repeats: int | None = ...,
+    kb: str | Path = ...,
+    feeds_csv: str | Path | None = ...,
+    dry_run: bool = ...,
+    report: str | Path | None = ...,
+    cluster: str | Path = ...,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    mode: Literal['TC', 'QC', 'EC'] = ...,
+    machine: str | Path = ...,
+    material: str | Path = ...,
+    roughness_um: float | None = ...,
+    free: Literal['feed', 'depth', 'speed'] | Iterable[Literal['feed', 'depth', 'speed']] = ...,
+    workingsteps: str | Path | Iterable[str | Path] = ...,
+    profile: Literal['optimisation', 'standard'] = ...,
+    records: Literal['all', 'none'] = ...,
+    nc_control: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
+    is_exact_path: bool = ...,
+    has_pareto: bool = ...,
+    tool_change_s: float = ...,
+    has_corrections: bool = ...,
+    is_confirmed: bool = ...,
+    safety: float = ...,
+    centre_cutting: Mapping[str, bool] = ...,
+    ignore_record: bool = ...,
+    keep_going: bool = ...,
+    allow_plunge: bool = ...,
+    is_along_path: bool = ...,
+    levels: int | None = ...,
+    motion: Literal['exact-stop', 'junction', 'fir'] = ...,
+    is_jerk_limited: bool = ...,
+    smooth_share: float | None = ...,
+    writes_toolpaths: bool = ...,
+    stock_margin_mm: float = ...,
+    corner_tolerance_mm: float = ...,
+    max_feed_mm_min: float | None = ...,
+    greatest_rise: float = ...,
+    least_feed_mm_min: float | None = ...,
+    finish: str | Path | Iterable[str | Path] = ...,
+    keep: str | Path | Iterable[str | Path] = ...,
+    is_unrolled: bool = ...,
+    dialect: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
+    is_marked: bool = ...,
+) -> OptimiseResult: ...

@@ -1,0 +1,1 @@
+"""What every verb prints, writes and answers, frozen while its code is moved."""

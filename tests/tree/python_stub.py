@@ -1,0 +1,81 @@
+"""Types of the functions of ``stepnc``, from the declarations of the verbs.
+
+``python -m tests.tree.python_stub`` writes ``stepnc/__init__.pyi`` anew. Type checkers and
+editors cannot read declarations that are made into functions at run time.
+"""
+
+from collections.abc import Iterator
+from dataclasses import MISSING
+from enum import StrEnum
+from pathlib import Path
+from typing import get_type_hints
+
+from service.requests.fields import RequestField, fields_of
+from service.verbs.verb import Verb, verbs
+
+STUB = Path(__file__).parents[2] / "stepnc" / "__init__.pyi"
+
+HEAD = '''"""Functions of ``stepnc``, made by ``python -m tests.tree.python_stub``."""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Literal
+
+from service.verbs.result import Result as Result
+from stepnc_model.errors import StepNcError as StepNcError
+'''
+
+
+def stub() -> str:
+    """Return the text of the stub."""
+    found = list(verbs().values())
+    results = sorted(_result(each) for each in found)
+    lines = [f"from {module} import {name} as {name}" for module, name in results]
+    return "\n".join([HEAD, *lines, "", *(line for each in found for line in _function(each))])
+
+
+def _result(verb: Verb) -> tuple[str, str]:
+    """Module and name of the type that a verb returns."""
+    found = get_type_hints(verb.run)["return"]
+    return found.__module__, found.__name__
+
+
+def _function(verb: Verb) -> Iterator[str]:
+    files, request = fields_of(verb.files), fields_of(verb.request)
+    places = [each for each in files if each.about.use is not None and not each.about.flag]
+    yield f"def {verb.folder}("
+    for field in places:
+        yield f"    {_argument(field)},"
+    yield "    *,"
+    for field in (*files, *request):
+        if field not in places:
+            yield f"    {_argument(field)},"
+    yield f") -> {_result(verb)[1]}: ..."
+
+
+def _argument(field: RequestField) -> str:
+    default = "" if field.default is MISSING else " = ..."
+    return f"{field.name}: {_type(field)}{default}"
+
+
+def _type(field: RequestField) -> str:
+    """Type that a caller may give."""
+    one = _kind(field)
+    if field.is_sequence:
+        one = f"{one} | Iterable[{one}]"
+    return f"{one} | None" if field.is_optional or field.default is None else one
+
+
+def _kind(field: RequestField) -> str:
+    kind = field.kind
+    if field.about.use is not None:
+        return "str | Path"
+    if isinstance(kind, type) and issubclass(kind, StrEnum):
+        return f"Literal[{', '.join(repr(each.value) for each in kind)}]"
+    if isinstance(kind, type) and kind in {bool, int, float, str}:
+        return kind.__name__ if kind is not str else "str | Path"
+    return "Mapping[str, bool]" if "Mapping" in str(kind) else "str | Path"
+
+
+if __name__ == "__main__":
+    STUB.write_text(stub(), encoding="utf-8")
