@@ -169,5 +169,3 @@ def _exit_code(error: Exception) -> int:
     from optimiser.errors import OptimisationError
 
     return INFEASIBLE if isinstance(error, OptimisationError) else BAD_INPUT
-
-    return OK
