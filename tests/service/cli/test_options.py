@@ -7,8 +7,9 @@ import pytest
 
 from service.cli import options as cli_options
 from service.cli.interrupts import INTERRUPTED
-from service.cli.options import add_json, add_program, program_request
-from service.requests.given import ProgramRequest
+from service.cli.options import add_json
+from service.requests.fields import add_options, from_options
+from service.verbs.toolpath.request import ToolPathFiles, ToolPathRequest
 from stepnc_model.post.dialect import Dialect
 
 
@@ -25,11 +26,12 @@ def test_every_control_is_named() -> None:
 
 def test_a_file_is_asked_for_and_units_and_json_need_not_be_given() -> None:
     parser = argparse.ArgumentParser()
-    add_program(parser)
+    add_options(parser, ToolPathFiles)
+    add_options(parser, ToolPathRequest)
     add_json(parser)
     options = parser.parse_args(["part.stpnc"])
     assert (options.file, options.json) == (Path("part.stpnc"), False)
-    assert program_request(options) == ProgramRequest()
+    assert from_options(ToolPathRequest, options) == ToolPathRequest()
     assert parser.parse_args(["part.stpnc", "--units", "rpm-mmin", "--json"]).json
     with pytest.raises(SystemExit):
         parser.parse_args([])
