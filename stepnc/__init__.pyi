@@ -7,8 +7,31 @@ from typing import Literal
 from service.verbs.result import Result as Result
 from stepnc_model.errors import StepNcError as StepNcError
 
+from service.verbs.blockfit.result import BlockFitResult as BlockFitResult
+from service.verbs.blocktest.result import BlockTestResult as BlockTestResult
 from service.verbs.cycletime.result import CycleTimeResult as CycleTimeResult
 
+def blockfit(
+    log: str | Path,
+    *,
+    program: str | Path | None = ...,
+    output: str | Path | None = ...,
+    report: str | Path | None = ...,
+    dialect: str | Path = ...,
+    zero: str | Path = ...,
+    machine: str | Path = ...,
+) -> BlockFitResult: ...
+def blocktest(
+    *,
+    output: str | Path,
+    machine: str | Path = ...,
+    dialect: str | Path = ...,
+    unit: Literal['in', 'mm'] = ...,
+    spacing: float | Iterable[float] | None = ...,
+    radius: float | Iterable[float] | None = ...,
+    feed: float | None = ...,
+    lines: int = ...,
+) -> BlockTestResult: ...
 def cycletime(
     file: str | Path,
     log: str | Path | None = ...,

@@ -11,7 +11,6 @@ from functools import partial
 from pathlib import Path
 
 from service.cli.agent import add_agent_command
-from service.cli.blocks import add_block_commands
 from service.cli.control import add_control_command
 from service.cli.dataset import add_dataset_command
 from service.cli.factory import add_factory_command
@@ -84,7 +83,6 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     _add_convert(commands)
     add_path_commands(commands)
     add_machine_commands(commands)
-    add_block_commands(commands)
     add_agent_command(commands)
     add_record_command(commands)
     add_verify_command(commands)
