@@ -1,4 +1,4 @@
-"""Commands of the virtual machine: ``simulate``, ``calibrate`` and ``taptest``."""
+"""Commands of the virtual machine: ``simulate`` and ``calibrate``."""
 
 import argparse
 from pathlib import Path
@@ -30,7 +30,6 @@ def add_machine_commands(commands: Commands) -> None:
     """Add the commands of the virtual machine to ``stepnc``."""
     _add_simulate(commands)
     _add_calibrate(commands)
-    _add_tap_test(commands)
 
 
 def add_code(parser: argparse.ArgumentParser) -> None:
@@ -95,40 +94,6 @@ def _calibrate_options(parser: argparse.ArgumentParser) -> None:
     )
     add_json(parser)
     parser.set_defaults(run=_calibrate, refuse=parser.error)
-
-
-def _add_tap_test(commands: Commands) -> None:
-    parser = commands.add_parser(
-        "taptest", help="fit modes, for chatter stability, to a measured frequency response"
-    )
-    add = parser.add_argument
-    add(
-        "response",
-        type=Path,
-        metavar="FRF.csv",
-        help="columns frequency_hz, and real and imaginary part: real_um_n, imag_um_n "
-        "(or m_n, mm_n; m_s2_n for an accelerometer)",
-    )
-    add(
-        "--direction",
-        required=True,
-        help="direction of the tap: x, y, z, or xy for a round tool",
-    )
-    add("--tool", default="", metavar="ID", help="tool that was tapped, as programs name it")
-    add("--tool-diameter-mm", type=float, metavar="MM", help="tool diameter, for round tools")
-    add("--workpiece", action="store_true", help="the workpiece was tapped")
-    add("--modes", type=int, metavar="N", help="number of modes (default: by peaks)")
-    add("--source", default="", help="who measured, with which holder and overhang")
-    add("--machine", default="", help="one of `stepnc machines`, or your own file")
-    add(
-        "-o",
-        "--output",
-        type=output_path,
-        metavar="TOML",
-        help="write the machine with its modes",
-    )
-    add_json(parser)
-    parser.set_defaults(run=_tap_test)
 
 
 def _add_simulate(commands: Commands) -> None:
@@ -344,31 +309,4 @@ def _calibrate_tool_life(options: argparse.Namespace) -> int:
     if options.output is not None:
         tell(f"tool life: {options.output}")
     write_out(tool_life_json(result) if options.json else tool_life_text(result))
-    return OK
-
-
-def _tap_test(options: argparse.Namespace) -> int:
-    """Run the command ``stepnc taptest``."""
-    from service.calibration.tap_output import print_tap_test, tap_test_json
-    from service.calibration.tap_test import TapTestRequest, tap_test
-    from service.terminal import tell, write_out
-
-    result = tap_test(
-        TapTestRequest(
-            response=options.response,
-            direction=options.direction,
-            tool=options.tool,
-            tool_diameter_mm=options.tool_diameter_mm,
-            workpiece=options.workpiece,
-            modes=options.modes,
-            source=options.source,
-            machine=options.machine,
-            output=options.output,
-        ),
-        tell=tell,
-    )
-    if options.json:
-        write_out(tap_test_json(result))
-    else:
-        print_tap_test(result)
     return OK

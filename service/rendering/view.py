@@ -24,6 +24,8 @@ class TextLine:
     text: str
     colour: str = ""
     """ANSI colour on terminals."""
+    is_told: bool = False
+    """True if it was told while the work was done; shown where messages were not."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,6 +34,7 @@ class Fact:
 
     key: str
     value: Any
+    """Value, or a function without arguments that makes it where it takes time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,7 +95,7 @@ class ResultView:
         """
         for item in self.items:
             match item:
-                case TextLine():
+                case TextLine() if not (item.is_told and is_told):
                     yield item.text, item.colour
                 case Table() if item.is_shown:
                     yield from _table_lines(item, width)
@@ -105,7 +108,7 @@ class ResultView:
         for item in self.items:
             match item:
                 case Fact():
-                    found[item.key] = item.value
+                    found[item.key] = item.value() if callable(item.value) else item.value
                 case Table() if item.key:
                     found[item.key] = records(item.columns, item.rows)
                     if item.total is not None:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import MISSING
 from enum import StrEnum
 from pathlib import Path
-from typing import get_type_hints
+from typing import get_args, get_type_hints
 
 from service.requests.fields import RequestField, fields_of
 from service.verbs.verb import Verb, verbs
@@ -29,15 +29,15 @@ from stepnc_model.errors import StepNcError as StepNcError
 def stub() -> str:
     """Return the text of the stub."""
     found = list(verbs().values())
-    results = sorted(_result(each) for each in found)
+    results = sorted(result for each in found for result in _results(each))
     lines = [f"from {module} import {name} as {name}" for module, name in results]
     return "\n".join([HEAD, *lines, "", *(line for each in found for line in _function(each))])
 
 
-def _result(verb: Verb) -> tuple[str, str]:
-    """Module and name of the type that a verb returns."""
+def _results(verb: Verb) -> list[tuple[str, str]]:
+    """Modules and names of the types that a verb returns."""
     found = get_type_hints(verb.run)["return"]
-    return found.__module__, found.__name__
+    return [(each.__module__, each.__name__) for each in get_args(found) or (found,)]
 
 
 def _function(verb: Verb) -> Iterator[str]:
@@ -50,7 +50,8 @@ def _function(verb: Verb) -> Iterator[str]:
     for field in (*files, *request):
         if field not in places:
             yield f"    {_argument(field)},"
-    yield f") -> {_result(verb)[1]}: ..."
+    returned = " | ".join(name for _, name in _results(verb))
+    yield f") -> {returned}: ..."
 
 
 def _argument(field: RequestField) -> str:
