@@ -24,6 +24,7 @@ from benchmarks import (
     post,
     process,
     promised,
+    promises,
     removal,
     rest,
     safety,
@@ -35,6 +36,7 @@ from benchmarks import (
 )
 
 for title, bench in (
+    ("Promised speeds", promises),
     ("Part 21", part21),
     ("AP238", ap238),
     ("Workingsteps", workingsteps),

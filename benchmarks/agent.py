@@ -5,6 +5,8 @@ and conditions.
 Agent and bare route are one process each and are asked in turn by the same four connections;
 the route answers with the bytes of the agent's own answer. With ``--streams`` as many clients
 listen to the agent meanwhile, which takes observations at 10 Hz.
+
+``current_ratio`` is the row of ``benchmarks.promises``: observations arrive at 20 Hz.
 """
 
 import argparse
@@ -16,6 +18,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime, timedelta
 from multiprocessing.connection import Connection
+from statistics import median
 from typing import Any
 
 import numpy as np
@@ -35,6 +38,8 @@ PATHS = ("/probe", "/current", "/sample?count=100", "/sample?count=1000")
 FILL = 1 << 17
 BATCH = 5000
 LINES = 200_000
+ARRIVALS = 10.0
+"""Hz at which observations of all items arrive while clients ask."""
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -51,6 +56,25 @@ def main(arguments: list[str] | None = None) -> None:
     with _process(_agent) as ours:
         for streams in (0, options.streams):
             asyncio.run(_rows(ours, streams, options.seconds))
+
+
+def current_ratio(arrivals: float = 20.0, rounds: int = 7, seconds: float = 1.0) -> float:
+    """Requests a second of ``/current`` over those of a bare route, while observations arrive.
+
+    Both are asked in turn, and the median of the rounds is taken: others use the machine too.
+    """
+    return asyncio.run(_current_ratio(arrivals, rounds, seconds))
+
+
+async def _current_ratio(arrivals: float, rounds: int, seconds: float) -> float:
+    found: list[float] = []
+    with _process(_agent, arrivals) as ours:
+        with _process(_bare, await _once(ours, "/current")) as peer:
+            for _ in range(rounds):
+                rate, _ = await _load(ours, "/current", seconds)
+                bare, _ = await _load(peer, "/", seconds)
+                found.append(rate / bare)
+    return median(found)
 
 
 async def _rows(port: int, streams: int, seconds: float) -> None:
@@ -143,7 +167,7 @@ def _model() -> DeviceModel:
     return machine_model(load_machine("vmc15")).model
 
 
-def _agent(pipe: Connection) -> None:
+def _agent(pipe: Connection, arrivals: float = ARRIVALS) -> None:
     agent = Agent(model=_model(), clock=lambda: time.time_ns() // 1000)
     _fill(agent, FILL)
 
@@ -154,7 +178,7 @@ def _agent(pipe: Connection) -> None:
             value += 1.0
             stamps = np.full(len(numbers), agent.clock())
             agent.add(numbers, stamps, [value] * len(numbers))
-            await asyncio.sleep(0.1)
+            await asyncio.sleep(1.0 / arrivals)
 
     _run(_serve(application(agent), pipe, feed()))
 

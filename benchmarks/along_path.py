@@ -17,7 +17,8 @@ from service.along_path.run import FeedsAlongPath
 from service.requests.advice import AdviceRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, simulate
-from service.usecases import AdviceFiles, optimise
+from service.verbs.optimise.program import advise_program as optimise
+from service.verbs.optimise.request import AdviceFiles
 from simulator.machine.totals import Total
 
 PARTS = Path(__file__).parents[1] / "examples" / "parts"

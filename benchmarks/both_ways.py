@@ -25,8 +25,11 @@ from service.paths.toolpaths import paths_of
 from service.reading import read_program
 from service.requests.advice import AdviceRequest
 from service.simulation.code_paths import CodeBlocks, CodePaths
-from service.usecases import AdviceFiles, OptimiseResult, optimise
+from service.verbs.optimise.plan_result import ProgramAdvice
+from service.verbs.optimise.program import advise_program as optimise
+from service.verbs.optimise.request import AdviceFiles
 from simulator.edge_material import edge_material
+from simulator.removal.cutter import Insert
 from simulator.removal.tool_shape import THREADS, shape_of
 from simulator.spec import CuttingMaterial
 from simulator.tool_kind import tool_kind
@@ -94,7 +97,7 @@ def both_ways(part: str) -> Iterator[BothWays]:
 
 
 def _along_code(
-    text: str, program: Program, result: OptimiseResult, chosen: dict[str, Advice]
+    text: str, program: Program, result: ProgramAdvice, chosen: dict[str, Advice]
 ) -> FeedsAlongPath:
     """Feeds along the paths of NC code, by workingstep."""
     names = [advice.workingstep.id for advice in result.plan.advices]
@@ -129,7 +132,7 @@ def _along_code(
     return replace(along, steps=tuple(steps))
 
 
-def told(tool: TableTool, advice: Advice, result: OptimiseResult) -> CutBounds | None:
+def told(tool: TableTool, advice: Advice, result: ProgramAdvice) -> CutBounds | None:
     """Bounds of a tool whose roughness and tolerance are told, as for NC code."""
     at = advice.conditions
     if at is None:
@@ -163,6 +166,7 @@ def _tools(program: Program) -> dict[int, TableTool]:
             teeth=tool.teeth,
             shape=shape,
             centre_cutting=tool.centre_cutting,
+            max_depth=tool.cutting_edge_length if isinstance(shape, Insert) else None,
         )
     return found
 

@@ -14,11 +14,13 @@ from pathlib import Path
 
 import numpy as np
 
-from service.along_path.of_code import CodeAdvice, CodeFiles, optimise_code
 from service.requests.advice import AdviceRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles, Simulation, simulate
+from service.verbs.optimise.code import optimise_code
+from service.verbs.optimise.code_result import CodeAdvice
+from service.verbs.optimise.request import AdviceFiles
 from stepnc_model.errors import StepNcError
 from stepnc_model.nc.program import NcProgram, read_program
 from stepnc_model.post.blocks import MachineType
@@ -65,7 +67,7 @@ class Sample:
     def advised(self, data: bytes, folder: Path) -> CodeAdvice:
         """Feeds along the paths of the program, or of what became of it."""
         code = self._code(data, folder)
-        files = CodeFiles(file=code.code, tools=code.tools, dry_run=True)
+        files = AdviceFiles(file=code.code, tools=code.tools, dry_run=True)
         return optimise_code(self.request, files)
 
 

@@ -17,7 +17,8 @@ from optimiser.modes import Free, Mode
 from service.confirmation import Confirmation, Figure
 from service.requests.advice import AdviceRequest
 from service.requests.given import Units
-from service.usecases import AdviceFiles, optimise
+from service.verbs.optimise.program import advise_program as optimise
+from service.verbs.optimise.request import AdviceFiles
 from stepnc_model.errors import StepNcError
 
 ROOT = Path(__file__).parents[1]

@@ -14,11 +14,14 @@ from optimiser.errors import Infeasible
 from optimiser.modes import Mode
 from optimiser.problem import Problem
 
+COUNT = 10_000
+"""Workingsteps that are drawn."""
+
 
 def main(arguments: list[str] | None = None) -> None:
     """Print seconds for each workingstep, and the ratio."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--workingsteps", type=int, default=10_000)
+    parser.add_argument("--workingsteps", type=int, default=COUNT)
     parser.add_argument("--sample", type=int, default=150, help="solved by cvxpy too")
     options = parser.parse_args(arguments)
     random = Random(2026)
@@ -36,6 +39,13 @@ def main(arguments: list[str] | None = None) -> None:
     ):
         print(f"{name:34}{count:14}{count * each:10.3f}{each * 1e6:12.1f}")
     print(f"ratio on the same sample: {general / same:.0f}")
+
+
+def microseconds_each() -> float:
+    """CPU time of the closed form, µs a workingstep."""
+    random = Random(2026)
+    problems = [random_problem(random) for _ in range(COUNT)]
+    return 1e6 * _seconds(problems, by_program=False) / COUNT
 
 
 def _is_feasible(problem: Problem) -> bool:

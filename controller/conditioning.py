@@ -10,7 +10,7 @@ References
    J. Intell. Manuf., 2010, "Process monitoring and control" and Fig. 5; eq. (5) for the power.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import exp, isnan, pi
 
 import numpy as np
@@ -89,7 +89,7 @@ def tared(tare: Tare, reading: Reading, *, has_chips: bool | None = None) -> Tar
 
 def without_offset(reading: Reading, tare: Tare) -> Reading:
     """Subtract the zero of the dynamometer from a reading."""
-    return replace(reading, force=reading.force - tare.offset)
+    return reading._replace(force=reading.force - tare.offset)
 
 
 def idled(idle: IdlePower, reading: Reading, *, has_chips: bool | None = None) -> IdlePower:
@@ -148,10 +148,10 @@ def force_from_power(
     require_at_most(efficiency, 1.0, thing="efficiency", unit="")
     is_same = _is_same_speed(idle.spindle_speed, reading.spindle_speed)
     if not (is_same and idle.tare.is_known and reading.spindle_speed > 0.0):
-        return replace(reading, force=np.array([np.nan]))
+        return reading._replace(force=np.array([np.nan]))
     cutting = (reading.power - idle.tare.offset) * efficiency
     around = pi * tool_diameter * reading.spindle_speed
-    return replace(reading, force=np.array([_NMM_S_PER_WATT * cutting / around]))
+    return reading._replace(force=np.array([_NMM_S_PER_WATT * cutting / around]))
 
 
 def conditioned(set_point: float, wanted: float, *, rise: float = RISE) -> float:

@@ -4,7 +4,7 @@ Forces are the equivalent forces that the loop controls (:mod:`controller.equiva
 by the weight they are the real ones.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from controller.guard import AllowedOverride
 from controller.monitor import NOT_OVER, OverTime
@@ -14,8 +14,7 @@ from controller.tool_life import ToolLife
 from simulator.reading import Reading
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class LoopCycle:
+class LoopCycle(NamedTuple):
     """Reading, override, set point and events of one control cycle."""
 
     reading: Reading
@@ -30,6 +29,7 @@ class LoopCycle:
     """Expected force at the override that was run with catalogue k_c, N; 0: no cut."""
     ratio: float | None
     """ln(measured / expected force); None when not comparable."""
+    events: tuple[LoopEvent, ...]
     weight: float = 1.0
     """Weight: equivalent force over real force."""
     over: OverTime = NOT_OVER
@@ -40,7 +40,6 @@ class LoopCycle:
     """The ratio without the force of the wear land; None when not comparable."""
     is_astray: bool = False
     """Whether the axes do not follow the override."""
-    events: tuple[LoopEvent, ...]
 
     @property
     def bound(self) -> float:

@@ -48,4 +48,4 @@ def weighed(reading: Reading, weight: float) -> Reading:
     """Convert the forces of a reading to equivalent forces."""
     if weight == 1.0:
         return reading
-    return replace(reading, force=reading.force * weight, normal=reading.normal * weight)
+    return reading._replace(force=reading.force * weight, normal=reading.normal * weight)

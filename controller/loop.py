@@ -6,7 +6,6 @@ machine behind them may be virtual. Mutable state. Units: mm, s, N, W, rev/s.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cache
 from math import nan
 
@@ -18,6 +17,7 @@ from controller.loop_settings import LoopSettings, LoopStep
 from controller.loop_state import (
     LEAST_WAY,
     LawFor,
+    LoopState,
     answered,
     awaited,
     begun,
@@ -30,6 +30,7 @@ from controller.preview import Preview
 from controller.signal import Collector, ToothJoiner, tooth_periods
 from controller.source import Source
 from controller.supervision import resolved, supervised
+from controller.tool_life import ToolLife
 from simulator.reading import Reading
 
 IMPLAUSIBLE = 5.0
@@ -98,13 +99,7 @@ class Loop:
     def _answered(self, raw: Reading) -> LoopCycle:
         """Process one reading: condition it, update the state, and command the override."""
         is_new = raw.time > self.state.time
-        state = self.state._replace(time=raw.time, events=())
-        if raw.workingstep != state.workingstep:
-            state = begun(state, raw, self._steps)
-        while self._orders:
-            order = self._orders.pop(0)
-            state = obeyed(state, order, plain=self._plain, steps=self._steps)
-        state = supervised(state, raw)
+        state = supervised(self._entered(raw), raw)
         # Program time that one revolution takes at the present override.
         way = _turn(raw) * max(raw.override, LEAST_WAY)
         preview, least = state.preview, -IMPLAUSIBLE * state.settings.chips
@@ -118,7 +113,7 @@ class Loop:
             # A part of a tooth period is no load of a tooth.
             self.state = awaited(state, reading, self._law_for)
             self._port.set(self.state.override)
-            return self._cycle(reading, weight)
+            return self._cycle(reading, weight, None)
         is_tooth = whole is reading
         revolution = self._collector.add(whole, is_tooth=is_tooth) if is_new else None
         if revolution is not None and revolution.force < least:
@@ -130,7 +125,8 @@ class Loop:
             mean = preview.mean(revolution.progress_before, revolution.progress)
             expected = float(mean * max(revolution.override, 0.0) ** state.step.exponent)
             # A force near zero gives no information on k_c.
-            known = expected if expected > weight * state.settings.chips else 0.0
+            is_known = reading.is_placed and expected > weight * state.settings.chips
+            known = expected if is_known else 0.0
             ratio = log_ratio(revolution, known, expected_before=state.expected)
             state = resolved(state._replace(expected=known), reading, revolution)
         self.state = answered(
@@ -142,20 +138,27 @@ class Loop:
             law_for=self._law_for,
         )
         self._port.set(self.state.override)
-        cycle = self._cycle(reading, weight)
-        life, sharp = self.state.monitor.life, ratio
-        if life is not None and ratio is not None:
-            sharp = life.sharp(ratio, self.state.monitor.land_share)
-        return replace(
-            cycle,
-            revolution=revolution,
-            expected=expected,
-            ratio=ratio,
-            life=life,
-            sharp_ratio=sharp,
+        cycle = self._cycle(reading, weight, self.state.monitor.life)
+        if revolution is None:
+            return cycle
+        sharp = ratio
+        if cycle.life is not None and ratio is not None:
+            sharp = cycle.life.sharp(ratio, self.state.monitor.land_share)
+        return cycle._replace(
+            revolution=revolution, expected=expected, ratio=ratio, sharp_ratio=sharp
         )
 
-    def _cycle(self, reading: Reading, weight: float) -> LoopCycle:
+    def _entered(self, raw: Reading) -> LoopState:
+        """State in the workingstep of a reading, once the orders are obeyed."""
+        state = self.state._replace(time=raw.time, events=())
+        if raw.workingstep != state.workingstep:
+            state = begun(state, raw, self._steps)
+        while self._orders:
+            order = self._orders.pop(0)
+            state = obeyed(state, order, plain=self._plain, steps=self._steps)
+        return state
+
+    def _cycle(self, reading: Reading, weight: float, life: ToolLife | None) -> LoopCycle:
         """Result of a cycle in which no revolution ends."""
         state = self.state
         return LoopCycle(
@@ -165,10 +168,11 @@ class Loop:
             revolution=None,
             expected=0.0,
             ratio=None,
+            events=state.events,
             weight=weight,
             over=state.monitor.over,
+            life=life,
             is_astray=state.following.is_astray,
-            events=state.events,
         )
 
 

@@ -212,7 +212,7 @@ def answered(
     """
     if not reading.can_override:
         return _out_of_cut(state)._replace(without_sample=0.0, without_force=0.0, greatest=0.0)
-    state, load = _loaded(_listened(state, reading, revolution, force), reading, force)
+    state, load = _loaded(state, reading, revolution, force)
     if revolution is not None:
         keep = approached(state.keep, state.settings, state.step)
         state = state._replace(keep=keep, holds=max(0.0, state.holds - FORGIVING))
@@ -244,7 +244,8 @@ def awaited(state: LoopState, reading: Reading, law_for: LawFor) -> LoopState:
         Part of a tooth period, which has no load of a tooth.
     law_for : callable
     """
-    state = _listened(state, reading, None, nan)
+    without_sample, without_force = _listened(state, reading, None, nan)
+    state = state._replace(without_sample=without_sample, without_force=without_force)
     if state.phase in {Phase.HELD, Phase.STOPPED} or not state.is_blind(reading.spindle_speed):
         return state
     return _decided(state, None, None, is_blind=True, law_for=law_for)
@@ -259,31 +260,39 @@ def _out_of_cut(state: LoopState) -> LoopState:
 
 def _listened(
     state: LoopState, reading: Reading, revolution: Revolution | None, force: float
-) -> LoopState:
-    """Update the time since the last valid force."""
+) -> tuple[float, float]:
+    """Time since the last sample and since the last valid force, s."""
     if revolution is not None and revolution.is_covered:
-        return state._replace(without_sample=0.0, without_force=0.0)
-    return state._replace(
-        without_sample=state.without_sample + reading.period if isnan(force) else 0.0,
-        without_force=state.without_force + reading.period,
-    )
+        return 0.0, 0.0
+    without_sample = state.without_sample + reading.period if isnan(force) else 0.0
+    return without_sample, state.without_force + reading.period
 
 
-def _loaded(state: LoopState, reading: Reading, force: float) -> tuple[LoopState, float]:
+def _loaded(
+    state: LoopState, reading: Reading, revolution: Revolution | None, force: float
+) -> tuple[LoopState, float]:
     """Update the load of a tooth period, N, as compared with the threshold; NaN: not known."""
+    without_sample, without_force = _listened(state, reading, revolution, force)
     shares = state.shares
     if len(shares.usual) != reading.teeth:
         shares = overload.fresh(reading.teeth)
     if not state.by_teeth:
         # Means of other periods do not show runout.
-        load = state.keep.load(state.settings.band, level=force, force=force)
-        return state._replace(shares=shares, greatest=max(state.greatest, load)), load
-    # Noise in air and the entry into the work do not show runout.
-    see = overload.seen if state.has_chips else overload.noted
-    shares = see(shares, reading.tooth, force)
-    level = overload.level(shares, reading.tooth, force)
+        level = force
+    else:
+        # Noise in air and the entry into the work do not show runout.
+        see = overload.seen if state.has_chips else overload.noted
+        shares = see(shares, reading.tooth, force)
+        level = overload.level(shares, reading.tooth, force)
     load = state.keep.load(state.settings.band, level=level, force=force)
-    return state._replace(shares=shares, greatest=max(state.greatest, load)), load
+    # One copy of the state and not four: this runs once in each tooth period.
+    state = state._replace(
+        without_sample=without_sample,
+        without_force=without_force,
+        shares=shares,
+        greatest=max(state.greatest, load),
+    )
+    return state, load
 
 
 def _held(state: LoopState, reading: Reading, load: float) -> LoopState:

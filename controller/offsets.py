@@ -12,14 +12,14 @@ References
    IEEE Trans. Automatic Control 38 (1993), 294-297.
 """
 
-from dataclasses import dataclass, replace
-from math import inf, pi
+from dataclasses import dataclass
+from math import pi
 
 import numpy as np
 
+from controller import offset_fit
 from controller.ports import Floats
 from controller.tooth_shares import ToothShares
-from simulator.physics.tooth_means import LOST
 
 ECCENTRICITY = 0.02
 """Initial standard deviation of each component of the eccentricity, mm.
@@ -44,12 +44,6 @@ Arcs of contact are not exactly as planned, thin ones above all.
 
 PLAIN = 1.5
 """Misfit per tooth of a revolution as expected; above it, the fit is repeated."""
-
-_STEP = 1e-4  # step for numerical derivatives, mm
-_NEAR = 5e-4  # change between iterations at which they have converged, mm
-_ITERATIONS = 8
-_ANGLES = 8
-_RADII = (0.01, 0.025)  # eccentricities tried as starting points, mm
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -91,10 +85,7 @@ def misfits(offsets: Offsets, shares: ToothShares) -> Floats:
     (z + 1,) array
         The first entry is with all teeth.
     """
-    teeth = len(offsets.mean)
-    guesses = np.tile(offsets.mean, (teeth + 1, 1))
-    np.fill_diagonal(guesses[1:], LOST)
-    return _square(shares.taken - shares.of(guesses), _scaled(shares, offsets.mean).noise)
+    return offset_fit.misfits(shares, offsets.mean, scale=SCALE)
 
 
 def judged(offsets: Offsets, shares: ToothShares, *, lost: int | None = None) -> Judged:
@@ -108,82 +99,21 @@ def judged(offsets: Offsets, shares: ToothShares, *, lost: int | None = None) ->
         Number of the tooth that takes no chip; None: all teeth cut.
     """
     teeth = len(offsets.mean)
-    covariance = offsets.covariance + WANDER**2 * np.eye(teeth)
-    known = replace(offsets, covariance=covariance)
-    found = _fitted(known, shares, lost, start=offsets.mean)
-    if found.misfit > PLAIN * teeth:
-        # From offsets that keep teeth out of the work, the gradient search cannot return.
-        again = _fitted(known, shares, lost, start=_start(known, shares, lost))
-        found = min(found, again, key=lambda each: each.misfit)
-    near = found.offsets.mean
-    found = _fitted(known, _scaled(shares, near, lost), lost, start=near)
-    if found.misfit <= OUTLIER * teeth:
-        return found
-    return Judged(log_likelihood=found.log_likelihood, misfit=found.misfit, offsets=offsets)
-
-
-def _scaled(shares: ToothShares, offsets: Floats, lost: int | None = None) -> ToothShares:
-    """Add the error of a common change of chip thickness to the noise of the shares."""
-    pair = shares.of(_without(np.vstack((offsets, (1.0 + SCALE) * offsets)), lost))
-    error = pair[1] - pair[0]
-    return replace(shares, noise=shares.noise + np.outer(error, error))
-
-
-def _start(known: Offsets, shares: ToothShares, lost: int | None) -> Floats:
-    """Best of some eccentricities as a starting point for the search."""
-    teeth = len(known.mean)
-    angles = 2.0 * pi * np.arange(_ANGLES) / _ANGLES
-    eccentric = np.cos(angles[:, None] - 2.0 * pi / teeth * np.arange(teeth))
-    away = np.vstack([np.zeros(teeth), *(radius * eccentric for radius in _RADII)])
-    error = shares.taken - shares.of(_without(known.mean + away, lost))
-    cost = _square(error, shares.noise) + _square(away, known.covariance)
-    start: Floats = known.mean + away[cost.argmin()]
-    return start
-
-
-def _fitted(known: Offsets, shares: ToothShares, lost: int | None, *, start: Floats) -> Judged:
-    """Fit the offsets by Gauss-Newton, [1]_; a step that makes the fit worse is halved."""
-    at, covariance = start, known.covariance
-    precision, certainty = np.linalg.inv(shares.noise), np.linalg.inv(covariance)
-    best, least = start, inf
-    for _ in range(_ITERATIONS):
-        guesses = np.vstack((at, at + _STEP * np.eye(len(at))))
-        shown = shares.of(_without(guesses, lost))
-        error, away = shares.taken - shown[0], at - known.mean
-        misfit = float(error @ precision @ error + away @ certainty @ away)
-        if misfit >= least:
-            at = 0.5 * (at + best)
-            continue
-        best, least = at, misfit
-        slope = (shown[1:] - shown[0]).T / _STEP
-        spread = slope @ covariance @ slope.T + shares.noise
-        gain = covariance @ slope.T @ np.linalg.inv(spread)
-        at = known.mean + gain @ (error + slope @ away)
-        if np.abs(at - best).max() < _NEAR:
-            best = at
-            break
-    is_expected = least <= PLAIN * len(best)
-    return Judged(
-        log_likelihood=-0.5 * (least + float(np.linalg.slogdet(spread)[1])),
-        misfit=least,
-        offsets=Offsets(
-            mean=best,
-            covariance=covariance - gain @ slope @ covariance,
-            confirmed=known.confirmed + 1 if is_expected else known.confirmed // 2,
-        ),
+    found = offset_fit.fitted(
+        shares,
+        offsets.mean,
+        offsets.covariance + WANDER**2 * np.eye(teeth),
+        lost=lost,
+        scale=SCALE,
+        plain=PLAIN * teeth,
     )
-
-
-def _square(rows: Floats, covariance: Floats) -> Floats:
-    """Squared lengths of (M, z) rows in standard deviations, (M,)."""
-    squares: Floats = (rows @ np.linalg.inv(covariance) * rows).sum(axis=1)
-    return squares
-
-
-def _without(offsets: Floats, lost: int | None) -> Floats:
-    """Mark a tooth as lost in (M, z) guesses of the offsets."""
-    if lost is None:
-        return offsets
-    without = offsets.copy()
-    without[:, lost] = LOST
-    return without
+    log_likelihood, misfit = -0.5 * (found.misfit + found.log_determinant), found.misfit
+    if misfit > OUTLIER * teeth:
+        return Judged(log_likelihood=log_likelihood, misfit=misfit, offsets=offsets)
+    is_expected = misfit <= PLAIN * teeth
+    confirmed = offsets.confirmed + 1 if is_expected else offsets.confirmed // 2
+    return Judged(
+        log_likelihood=log_likelihood,
+        misfit=misfit,
+        offsets=Offsets(mean=found.mean, covariance=found.covariance, confirmed=confirmed),
+    )

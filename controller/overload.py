@@ -5,8 +5,8 @@ tooth usually takes. The usual share is learnt slowly, so that the load of a bre
 not learnt. Units: N.
 """
 
-from dataclasses import dataclass
 from math import isnan, log, nan
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,8 +33,7 @@ LEAST, MOST = 0.4, 2.5
 """Range of the usual share; values beyond it are not due to runout."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class UsualShares:
+class UsualShares(NamedTuple):
     """Usual share of each tooth in the mean force of a revolution."""
 
     usual: tuple[float, ...]
@@ -79,7 +78,7 @@ def noted(shares: UsualShares, tooth: int, force: float) -> UsualShares:
     if isnan(force):
         return shares
     last = (*shares.seen[:tooth], force, *shares.seen[tooth + 1 :])
-    return UsualShares(usual=shares.usual, seen=last, mean=shares.mean, steady=shares.steady)
+    return UsualShares(shares.usual, last, shares.mean, shares.steady)
 
 
 def seen(shares: UsualShares, tooth: int, force: float) -> UsualShares:

@@ -13,7 +13,7 @@ References
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import isnan, nan
 
 import numpy as np
@@ -307,8 +307,7 @@ def _joined(readings: Sequence[Reading]) -> Reading:
     powers = [(each.power, each.period) for each in readings if not isnan(each.power)]
     seconds = sum(each for _, each in powers)
     # Readings of unequal lengths have no evenly spaced samples: the whole has its mean.
-    return replace(
-        readings[-1],
+    return readings[-1]._replace(
         period=period,
         force=np.array([_mean(readings)]) if len(readings) > 1 else readings[0].force,
         power=sum(power * each for power, each in powers) / seconds if seconds else nan,

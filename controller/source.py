@@ -3,7 +3,6 @@
 Mutable state: the zero of the instrument. Units: mm, N, W.
 """
 
-from dataclasses import replace
 from math import isnan, nan
 from typing import Protocol
 
@@ -63,8 +62,8 @@ class Dynamometer:
         self._tare = tared(self._tare, reading, has_chips=has_chips)
         if isnan(reading.normal):
             return less if reading.can_override else reading
-        normal = replace(reading, force=np.array([reading.normal]))
-        less = replace(less, normal=reading.normal - self._normal.offset)
+        normal = reading._replace(force=np.array([reading.normal]))
+        less = less._replace(normal=reading.normal - self._normal.offset)
         self._normal = tared(self._normal, normal, has_chips=has_chips)
         return less if reading.can_override else reading
 
@@ -88,15 +87,15 @@ class DrivePower:
         self, reading: Reading, diameter: float, *, is_air: bool = False
     ) -> Reading:
         """Return the reading with the force from power; none if the diameter is not known."""
-        reading = replace(reading, normal=nan)
-        told = replace(reading, force=reading.force[:0])
+        reading = reading._replace(normal=nan)
+        told = reading._replace(force=reading.force[:0])
         if diameter > 0.0:
             told = force_from_power(
                 reading, self._idle, tool_diameter=diameter, efficiency=self._efficiency
             )
         is_still = is_air and not _mean(told) > self._chips
         self._idle = idled(self._idle, reading, has_chips=False if is_still else None)
-        return told if reading.can_override else replace(told, force=told.force[:0])
+        return told if reading.can_override else told._replace(force=told.force[:0])
 
 
 def _mean(reading: Reading) -> float:

@@ -14,7 +14,7 @@ from simulator.reading import Reading
 
 def supervised(state: LoopState, reading: Reading) -> LoopState:
     """Report axes that do not run the commanded override, and that they do so again."""
-    if state.phase in {Phase.OFF, Phase.INHIBITED}:
+    if state.phase is Phase.OFF or state.phase is Phase.INHIBITED:
         return state._replace(following=Following(modelled=reading.override))
     before = state.following
     now = followed(before, reading, state.override, lag=state.settings.servo_lag)

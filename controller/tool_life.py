@@ -23,6 +23,9 @@ References
 .. [2] ISO 8688-2, "Tool life testing in milling": 0.3 mm of flank wear ends a tool's life.
 .. [3] Y. Bar-Shalom, X. R. Li, T. Kirubarajan, "Estimation with applications to tracking and
    navigation", Wiley, 2001: linear Kalman filter, nearly constant velocity.
+.. [4] J. von Neumann, R. H. Kent, H. R. Bellinson, B. I. Hart, "The mean square successive
+   difference", Ann. Math. Stat. 12 (1941), 153-162.
+.. [5] D. Simon, "Optimal state estimation", Wiley, 2006, section 7.5: projected estimates.
 """
 
 from dataclasses import dataclass, replace
@@ -38,6 +41,8 @@ from simulator.physics.tool_life import LIFE_CRITERION
 
 _DECISION = 10.0  # standard deviations
 _LEAST = 0.02  # least K that is believed
+_BOUNDS = np.array([_LEAST, 0.0, 0.0, 0.0])  # of K, sharp normal ratio, VB and its rate
+_IN_ORDER = (3, 0, 1, 2)  # VB last, as the others move it
 
 FRESH = np.array([0.3, 0.5 * RADIAL_SHARE, 0.005, 0.003])
 """Standard deviations of K, sharp normal ratio, VB in mm and its rate in mm/s at first.
@@ -61,12 +66,11 @@ DRIFT = 1e-4
 CORRELATED = 10.0
 """Revolutions in which errors of the expected force are alike and do not average out."""
 
-SOFTEST = 0.7
-"""Least k_c over that of the plan beside which a wear land is believed: two deviations of 20 %.
+ENTRY = 0.1
+"""Standard deviation of ln(ratio) before it is learnt: at an entry sensors lag and settle."""
 
-Readings of an entry that a recording dates wrongly may part the force badly: a hard material
-that then seems to soften to nothing while the tool wears.
-"""
+EXPECTED = 20
+"""Number of revolutions as which that counts beside those that were measured."""
 
 PLAN_ERROR = 0.02
 """Flank wear that an error of the expected force may look like, mm: one or two per cent."""
@@ -146,8 +150,10 @@ class ToolLife:
     """Estimated wear of a tool; create a new one with :func:`new_tool`."""
 
     belief: _Belief
-    log_variance: float = 0.0
-    """Variance of ln(ratio) of single revolutions about what is explained."""
+    log_variance: float = ENTRY**2
+    """Variance of the noise of ln(ratio) in single revolutions."""
+    away: float = 0.0
+    """ln(ratio) of the last revolution less what was explained."""
     readings: int = 0
     """Number of revolutions since the comparison began."""
     above: CumulativeSum = CumulativeSum()
@@ -178,13 +184,7 @@ class ToolLife:
     def is_worn_out(self) -> bool:
         """Whether the flank wear has surely reached the end of tool life, [2]_."""
         noise = sqrt(float(self.belief.covariance[2, 2]))
-        is_sure = self.is_credible and noise < 0.25 * LIFE_CRITERION
-        return is_sure and self.flank_wear >= LIFE_CRITERION
-
-    @property
-    def is_credible(self) -> bool:
-        """Whether the wear is that of a material which may be the planned one."""
-        return self.hardness > SOFTEST
+        return self.flank_wear >= LIFE_CRITERION and noise < 0.25 * LIFE_CRITERION
 
     @property
     def basis(self) -> str:
@@ -201,7 +201,7 @@ class ToolLife:
     def is_wear_sure(self) -> bool:
         """Whether there is wear beyond three standard deviations and the errors of the plan."""
         noise = sqrt(float(self.belief.covariance[2, 2]))
-        return self.is_credible and self.flank_wear > max(3.0 * noise, PLAN_ERROR)
+        return self.flank_wear > max(3.0 * noise, PLAN_ERROR)
 
     def sharp(self, log_ratio: float, land_share: float) -> float:
         """Return ln(measured / expected) less the force of the land, if there surely is one."""
@@ -254,10 +254,11 @@ def lived(life: ToolLife, at: Ratios, *, by: WearMonitorSettings = USUAL) -> Too
     predicted = _predicted(life.belief, at.period)
     explained = max(_explained(predicted, at), _LEAST)
     away = at.log_ratio - log(explained) if life.readings else 0.0
-    part = max(1.0 / readings, 1.0 / by.memory)
+    part = max(1.0 / (readings + EXPECTED), 1.0 / by.memory)
     moved = replace(
         life,
-        log_variance=(1.0 - part) * (life.log_variance + part * away * away),
+        log_variance=(1.0 - part) * life.log_variance + part * _variance(away, life),
+        away=away,
         readings=readings,
         has_normal=life.has_normal or not isnan(at.normal),
     )
@@ -278,6 +279,16 @@ def lived(life: ToolLife, at: Ratios, *, by: WearMonitorSettings = USUAL) -> Too
     if below.total > decision:
         return _changed(moved, -below.total / below.revolutions - allowance, below, at)
     return moved
+
+
+def _variance(away: float, life: ToolLife) -> float:
+    """Variance from the difference of successive revolutions, [4]_.
+
+    The distance from what is explained is no noise: a filter that took it for such would
+    believe a wrong start the longer, the more wrong it is.
+    """
+    step = away - life.away
+    return 0.5 * step * step
 
 
 def _explained(belief: _Belief, at: Ratios) -> float:
@@ -304,17 +315,24 @@ def _updated(belief: _Belief, at: Ratios, *, deviation: float) -> _Belief:
         row = np.array([0.0, 1.0, at.land_share * NORMAL / CUTTING, 0.0])
         error = CORRELATED * (deviation * max(abs(at.normal), _LEAST)) ** 2
         belief = _measured(belief, row, at.normal, error)
-    # Wear does not heal.
-    return _not_negative(_not_negative(belief, 3), 2)
+    return _physical(belief)
 
 
-def _not_negative(belief: _Belief, at: int) -> _Belief:
-    """Belief with a quantity at 0 if it is below, the others as they are likely then."""
-    value, covariance = float(belief.mean[at]), belief.covariance
-    if value >= 0.0:
+def _physical(belief: _Belief) -> _Belief:
+    """Belief with each quantity at its bound if it is below, the others as likely then.
+
+    Wear does not heal, and no work is softer than nothing. The projection of [5]_ on one active
+    constraint after the other, weighted with the inverse covariance.
+    """
+    if (belief.mean >= _BOUNDS).all():
         return belief
-    mean = belief.mean - covariance[:, at] * (value / float(covariance[at, at]))
-    return _Belief(mean=mean, covariance=covariance)
+    mean, covariance = belief.mean, belief.covariance
+    for at in _IN_ORDER:
+        short = float(_BOUNDS[at] - mean[at])
+        if short > 0.0:
+            mean = mean + covariance[:, at] * (short / float(covariance[at, at]))
+    # A later projection may have moved an earlier quantity a little.
+    return _Belief(mean=np.maximum(mean, _BOUNDS), covariance=covariance)
 
 
 def _measured(belief: _Belief, row: Floats, value: float, error: float) -> _Belief:
@@ -370,7 +388,8 @@ def _restarted(life: ToolLife, belief: _Belief, changes: tuple[float, ...]) -> T
         life,
         belief=belief,
         readings=0,
-        log_variance=0.0,
+        log_variance=ENTRY**2,
+        away=0.0,
         above=CumulativeSum(),
         below=CumulativeSum(),
         changes=changes,

@@ -11,7 +11,8 @@ import numpy as np
 from controller.ports import Floats
 from controller.preview import Expected
 from controller.signal import Revolution
-from simulator.physics.tooth_means import Periods, periods, tooth_means
+from simulator.kernels.kernel import entry, kernel
+from simulator.physics.tooth_means import Periods, means_of, periods
 
 READING = 0.011
 """Relative standard deviations of a tooth period's mean by dynamometer and model.
@@ -66,9 +67,29 @@ class ToothShares:
 
     def of(self, offsets: Floats) -> Floats:
         """Shares that (M, z) guesses of the tooth offsets, mm, would give, (M, z)."""
-        force = self.expected * tooth_means(self.periods, offsets)
-        shares: Floats = force / np.maximum(force.mean(axis=1, keepdims=True), _LEAST)
+        shares = np.empty(offsets.shape)
+        _all_shares(self.periods, self.expected, np.ascontiguousarray(offsets), shares)
         return shares
+
+
+@entry
+def _all_shares(at: Periods, expected: Floats, offsets: Floats, shares: Floats) -> None:
+    """Kernel of :meth:`ToothShares.of`."""
+    for row in range(offsets.shape[0]):
+        shares_into(at, expected, offsets[row], shares[row])
+
+
+@kernel
+def shares_into(at: Periods, expected: Floats, offsets: Floats, shares: Floats) -> None:
+    """Write the shares, (z,), that (z,) offsets would give; for kernels."""
+    means_of(at, offsets, shares)
+    total = 0.0
+    for each in range(shares.shape[0]):
+        shares[each] *= expected[each]
+        total += shares[each]
+    mean = max(total / shares.shape[0], _LEAST)
+    for each in range(shares.shape[0]):
+        shares[each] /= mean
 
 
 def force_ratio(revolution: Revolution, expected: Expected | None) -> float | None:
@@ -132,8 +153,15 @@ def _noise(
     near = JITTER * expected.change / expected.force.mean()
     even = FLOOR / revolution.tooth_means.mean(), MISSED * (1.0 - revolution.coverage)
     own = READING**2 * (1.0 + taken**2) + even[0] ** 2 + even[1] ** 2
-    # An excess of one tooth shifts the mean, and with it the shares of all teeth.
-    jitter = np.diag(near) - np.outer(taken, near) / teeth
-    grown = drift * taken * ((order + 0.5) / teeth - 0.5)
-    moved = EARLY * (np.roll(taken, 1) - taken)
-    return np.diag(own) + jitter @ jitter.T + np.outer(grown, grown) + np.outer(moved, moved)
+    # Columns: jitter, of which an excess of one tooth shifts the mean, and with it the shares
+    # of all teeth; drift; early entry.
+    errors = np.empty((teeth, teeth + 2))
+    errors[:, :teeth] = taken[:, None] * (near / -teeth)
+    errors.flat[:: teeth + 3] += near
+    errors[:, -2] = drift * taken * ((order + 0.5) / teeth - 0.5)
+    errors[0, -1] = taken[-1] - taken[0]
+    errors[1:, -1] = taken[:-1] - taken[1:]
+    errors[:, -1] *= EARLY
+    noise = errors @ errors.T
+    noise.flat[:: teeth + 1] += own
+    return noise

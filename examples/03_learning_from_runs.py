@@ -18,7 +18,8 @@ from service.requests.advice import AdviceRequest
 from service.requests.knowledge import ReviewRequest
 from service.requests.runs import ControlRequest
 from service.simulation.run import RunFiles
-from service.usecases import AdviceFiles, optimise
+from service.verbs.optimise.program import advise_program as optimise
+from service.verbs.optimise.request import AdviceFiles
 
 PART = Path(__file__).parent / "parts" / "paper002.stpnc"
 TRUTH = float(sys.argv[1]) if len(sys.argv) > 1 else 1.35

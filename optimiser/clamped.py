@@ -1,7 +1,7 @@
 """Remaining stock of each setup, and simulated contact of tool paths with it."""
 
 from dataclasses import dataclass
-from math import sqrt
+from math import inf
 from typing import Protocol
 
 from optimiser.assumed_stock import assumed_stock, words_of
@@ -14,21 +14,15 @@ from simulator.removal.lathe import BarRadii, TurningStock
 from simulator.removal.stations import stretch_lengths
 from simulator.removal.tool_shape import shape_of
 from simulator.removal.trial import PathTrial, StockPatch
-from simulator.removal.zmap import MOST_CELLS
+from simulator.removal.zmap import cell_size
 from simulator.spec import Machine, MachineKind
 from stepnc_model.entities.executables import Setup
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import SchemaError
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, ResolvedWorkingstep, Stock
+from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.tool import tool_of
 from stepnc_model.toolpath.task import stock_of
-
-USUAL_CELLS = 200_000
-"""Usual number of cells of a stock map, fewer than the virtual machine uses."""
-
-CELLS_PER_TOOL = 16.0
-"""Least number of cells across the diameter of the smallest tool."""
 
 StockMap = MillingStock | TurningStock
 
@@ -137,7 +131,9 @@ class ClampedStocks:
                     self.assumed[place] = words_of(raw)
             if raw is None:
                 return None
-            cell = None if place.is_turning else _cell(raw, self._diameters())
+            # The map is as fine as that of the run: slivers thinner than a cell are met alike.
+            smallest = min(self._diameters(), default=inf)
+            cell = None if place.is_turning else cell_size(raw, smallest_diameter=smallest)
             body = self._body(place, cell) if raw.is_around else None
             if body is not None:
                 return body
@@ -194,10 +190,3 @@ def met_by(
         return TrialContacts(why=str(error))
     met = PathContacts(stations=stations, length=stretch_lengths(stations), cell=cell)
     return TrialContacts(met=met, change=change, trial=trial)
-
-
-def _cell(raw: Stock, diameters: list[float]) -> float:
-    """Cell size of a stock map fine enough for engagements, mm."""
-    x, y = raw.high[0] - raw.low[0], raw.high[1] - raw.low[1]
-    wanted = min(sqrt(x * y / USUAL_CELLS), min(diameters, default=x) / CELLS_PER_TOOL)
-    return max(wanted, sqrt(x * y / MOST_CELLS))

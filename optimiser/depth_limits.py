@@ -21,27 +21,45 @@ def depth_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
     if cut.kind not in {CutKind.MILLING, CutKind.TURNING}:
         return
     of_tool = _grade_depth(cut, at)
-    bounds = [at.machine.max_axial_depth, cut.depth_bound, at.bounds.axial_depth]
-    known = [bound for bound in (*bounds, of_tool.bound) if bound is not None]
-    if known:
-        is_of_tool = min(known) == of_tool.bound
+    greatest = _least_known(cut, at, of_tool)
+    if greatest is not None:
+        is_of_tool = greatest == of_tool.bound
         deepest = cut.deepest_share if cut.is_depth_free else 1.0
         yield Limit(
             name=LimitName.AXIAL_DEPTH,
             label="depth at the deepest place" if deepest > DEEPER else "",
             load=Monomial(coefficient=deepest, depth_exponent=1.0),
-            bound=min(known),
+            bound=greatest,
             unit="mm",
             origin=of_tool.origin if is_of_tool else "",
             datum=of_tool.datum if is_of_tool else "",
         )
-        yield from _shoulder_limits(cut, min(known))
+        yield from _shoulder_limits(cut, greatest)
+
+
+def depth_at_shoulder(cut: Cut, at: CuttingConditions) -> float | None:
+    """Depth of a turning tool beyond which a place keeps its programmed feed, mm; None: any."""
+    if cut.kind is not CutKind.TURNING or cut.is_depth_free or at.grade is None:
+        return None
+    return _least_known(cut, at, _grade_depth(cut, at))
+
+
+def _least_known(cut: Cut, at: CuttingConditions, of_tool: SourcedBound) -> float | None:
+    """Least of the greatest depths that anything permits, mm; None: any."""
+    bounds = [at.machine.max_axial_depth, cut.depth_bound, at.bounds.axial_depth]
+    known = [bound for bound in (*bounds, of_tool.bound) if bound is not None]
+    return min(known, default=None)
 
 
 def _shoulder_limits(cut: Cut, bound: float) -> Iterator[Limit]:
     """Keep the programmed feed where a finishing cut meets more than its insert may cut.
 
-    No feed makes a shoulder less deep: the program itself must change.
+    An insert that turns along the axis up to a shoulder meets the allowance of its face with
+    the whole edge, as high as the shoulder is: an edge at 93° stands 3° off the face, so that
+    an allowance of 0.5 mm is met on 9.5 mm of it at once. What is left along the face's normal
+    would count only for a move along the face. No feed makes a shoulder less deep: the program
+    itself must change. One feed holds for a workingstep; along the path only the place itself
+    keeps it (:mod:`optimiser.along_path.caps`).
     """
     depth = cut.programmed.depth
     deepest = cut.deepest_share * depth
@@ -54,7 +72,7 @@ def _shoulder_limits(cut: Cut, bound: float) -> Iterator[Limit]:
         unit="mm",
         step=0.01,
         origin=f"{deepest:.3g} mm deep at a shoulder, where the tool may cut {bound:.3g} mm",
-        datum="a tool for that depth, or roughing nearer to the shoulder",
+        datum="a tool for that depth, roughing nearer to the shoulder, or facing it inwards",
         stands_for=LimitName.AXIAL_DEPTH,
     )
 

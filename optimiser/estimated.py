@@ -7,6 +7,7 @@ finishes, and the programmed setting.
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
+from optimiser.conditions import tool_grade
 from optimiser.cut import Cut, CutKind, Texture
 from optimiser.estimate import FULL_LOAD, INTO_SOLID, hole_cut, is_hole_making, milling_cut
 from optimiser.estimate_turning import mean_diameter, turning_cut
@@ -14,7 +15,6 @@ from optimiser.problem import Setting
 from optimiser.side_by_side import Result, one_by_one
 from simulator.edge_material import edge_material
 from simulator.spec import CuttingMaterial, Machine, WorkMaterial
-from simulator.tool_windows import grade_for
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program, ResolvedWorkingstep
@@ -66,8 +66,8 @@ def estimated_cut(
     step : ResolvedWorkingstep
     machine : Machine
     material : WorkMaterial
-        Workpiece material; helix and parallel land come from the tool grade, unless the
-        machine uses only its stated limits.
+        Workpiece material; helix and parallel land come from the tool grade, the land unless
+        the machine uses only its stated limits.
 
     Raises
     ------
@@ -98,11 +98,13 @@ def estimated_cut(
     elif is_hole_making(operation, tool):
         make = hole_cut
     cut, found = make(program, step, tool, speed=speed, feed=feed)
-    if cut.kind is CutKind.MILLING and not machine.only_stated_limits:
+    if cut.kind is CutKind.MILLING:
         cutting_material = edge_material(tool.edge_material) or CuttingMaterial.CARBIDE
-        grade = grade_for(cut.tool_kind, cutting_material, material)
+        grade = tool_grade(cut.tool_kind, cutting_material, machine, material)
         if grade is not None:
-            is_marked = cut.texture is Texture.CORNER_PER_REVOLUTION
+            is_marked = (
+                cut.texture is Texture.CORNER_PER_REVOLUTION and not machine.only_stated_limits
+            )
             land = grade.parallel_land if is_marked else 0.0
             cut = replace(cut, helix_angle=grade.helix_angle, parallel_land=land)
     return cut, findings + list(found)

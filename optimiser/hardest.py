@@ -20,6 +20,7 @@ from simulator.motion.tool_path import PIECE, ToolPathRun
 from simulator.physics import drilling
 from simulator.physics.engagement import Engagement
 from simulator.physics.flutes import CuttingEdges, ForceLaw
+from simulator.physics.known_places import DIGITS, peak_at, wall_at
 from simulator.physics.slender_bar import BarSection
 from simulator.physics.tooth_forces import Places, peak_resultant, wall_force
 from simulator.removal.lathe import BarRadii, TurningStock
@@ -34,9 +35,6 @@ LIKELY = 0.65
 
 A rough force is always above 0.7 of the exact one.
 """
-
-DIGITS = 3
-"""Decimals by which engagements are distinguished: µm, mrad."""
 
 KINDS = {
     CutKind.MILLING: StationKind.MILLING,
@@ -99,18 +97,17 @@ def bending(
     if cut.tool_kind is not ToolKind.ENDMILL or not len(at):
         return Bending(at=at[:0], shank=np.empty(0), wall=np.empty(0))
     arcs = single_arcs(stations)
-    columns = (arcs.entry_angle, arcs.exit_angle, arcs.depth)
-    keys = np.round(np.stack([column[at] for column in columns]), DIGITS)
-    told, row = np.unique(keys, axis=1, return_inverse=True)
+    columns = np.stack((arcs.entry_angle[at], arcs.exit_angle[at], arcs.depth[at]))
+    law = ForceLaw(exponent=1.0 - kienzle.m_c)
+    if is_exact:
+        peak, walled = peak_at(cut.edges, law, columns), wall_at(cut.edges, law, columns)
+        return Bending(at=at, shank=arcs.fill[at] * peak, wall=arcs.fill[at] * walled)
+    told, row = np.unique(np.round(columns, DIGITS), axis=1, return_inverse=True)
     places = Places(entry_angle=told[0], exit_angle=told[1], axial_depth=told[2])
-    law, fill = ForceLaw(exponent=1.0 - kienzle.m_c), np.zeros(told.shape[1])
+    fill = np.zeros(told.shape[1])
     np.maximum.at(fill, row.ravel(), arcs.fill[at])
     forces = (
-        (
-            each(cut.edges, places, law)
-            if is_exact
-            else _where_hard(each, cut.edges, places, law, fill)
-        )[row.ravel()]
+        _where_hard(each, cut.edges, places, law, fill)[row.ravel()]
         for each in (peak_resultant, wall_force)
     )
     shank, wall = (arcs.fill[at] * force for force in forces)

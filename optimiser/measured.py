@@ -52,10 +52,10 @@ from optimiser.reached import (
 from optimiser.side_by_side import Result, one_by_one, side_by_side
 from optimiser.stock_left import difference_left
 from optimiser.tried_path import SearchTrace, TriedPath, air_share
+from simulator.motion.passing import motion_of
 from simulator.motion.tool_path import (
     SpeedRatios,
     ToolPathRun,
-    duration,
     paced,
     plunges,
     run_of,
@@ -425,15 +425,14 @@ class MeasuredCuts:
             run = self._run(seen.path, pace)
         seconds = run.segments.length / run.segments.speed
         fed = float(seconds[is_fed(run, step.technology_ref, cut)].sum())
-        rest = max(0.0, duration(run, self.control, self.limits) - fed)
+        motion = motion_of(run, self.control, self.limits)
+        rest = max(0.0, motion.duration - fed)
         per_second = given.feed * pace.feed * cut.tool.teeth * given.speed * pace.speed
         length = fed * per_second
         known = not seen.meeting.why and length > 0.0
         if seen.along is not None and seen.bent is not None:
             ride = MachineRun(
-                run=run,
-                control=self.control,
-                limits=self.limits,
+                motion=motion,
                 feed=per_second,
                 spindle=given.speed * pace.speed,
             )

@@ -30,7 +30,7 @@ from optimiser.least_cost import least_cost
 from optimiser.modes import Free
 from optimiser.pass_bounds import PassCountBounds, are_alike, bounds_of
 from optimiser.plunge_search import CLOSE, PlungeOptimum, at_foot, best_plunge
-from optimiser.problem import SCALES_WITH_FORCE, Limit, LimitName, Problem, Setting
+from optimiser.problem import SCALES_WITH_FORCE, BoundSide, Limit, LimitName, Problem, Setting
 from optimiser.remedy_words import remedy_for
 from optimiser.source import CutSource
 from stepnc_model.program import ResolvedWorkingstep
@@ -105,11 +105,11 @@ class PassCountSearch:
         """Least cost so far, s or J; infinite without a feasible number of passes."""
         return min((self.cost(each) for each in self.found.values()), default=inf)
 
-    @property
-    def near_best(self) -> dict[int, PassCountOptimum]:
-        """Numbers of passes whose cost is so near the least that fewer passes are better."""
+    def chosen(self, given: int) -> int:
+        """Number of passes to take: the given one, or the fewest near the least cost."""
         bound = self.least / (1.0 - WORTH)
-        return {n: each for n, each in self.found.items() if self.cost(each) <= bound}
+        near = {n for n, each in self.found.items() if self.cost(each) <= bound}
+        return given if given in near else min(near)
 
     def cost(self, each: PassCountOptimum) -> float:
         """Cost of a number of passes along its own path, s or J."""
@@ -186,9 +186,9 @@ def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimu
         untried = _try_in_order(search, problem, deepest)
     if not search.found:
         raise _infeasible_as_tooled(search, last)
-    near = search.near_best
-    best = near.get(given) or near[min(near)]
-    if given not in near:
+    chosen = search.chosen(given)
+    best = search.found[chosen]
+    if chosen != given:
         _require_sensible(best, given)
     # The next workingstep finds the stock as this path leaves it.
     cut = asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)
@@ -362,11 +362,32 @@ def _plunging(
 ) -> tuple[_Plunging, PlungeOptimum]:
     """Optimum of the passes below a limit, with the best plunge feed before it."""
     at, task = asked.at, asked.task
-    optimum = _with_passes(_held(problem_of(cut, at, task), held), passes, task)
     timed = partial(asked.cuts.at, asked.step)
-    found = best_plunge(cut, at, optimum.solution.setting, timed)
+    for _ in range(UNTIL_FEASIBLE):
+        optimum = _with_passes(_held(problem_of(cut, at, task), held), passes, task)
+        found = best_plunge(cut, at, optimum.solution.setting, timed)
+        if _keeps(found.cut, optimum.solution.setting, asked):
+            break
+        cut = found.cut
     plunging = _Plunging(optimum=optimum, cut=found.cut, setting=found.setting, held=held)
     return plunging, found
+
+
+def _keeps(cut: Cut, setting: Setting, asked: AdviceContext) -> bool:
+    """Whether a turned cut keeps the greatest loads also as timed at its setting.
+
+    A spindle that follows the radius is late by another share at another speed or feed, so that
+    the place of the greatest power has another power.
+    """
+    if not cut.kind.is_turned:
+        return True
+    problem = problem_of(cut, asked.at, asked.task)
+    return all(
+        limit.load.value(setting.feed, setting.depth, setting.speed)
+        <= (1.0 + CLOSE) * limit.bound_at(setting.speed)
+        for limit in exact.limits_at(problem, setting.speed)
+        if limit.sense is BoundSide.AT_MOST
+    )
 
 
 def _time(plunging: _Plunging, asked: AdviceContext) -> float:

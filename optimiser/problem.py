@@ -232,10 +232,11 @@ class Limit:
         load = self.load
         if load.feed_exponent == 0.0:
             return inf
+        curve = load.curve
         rest = (
             self.bound
             * speed ** (self.bound_speed_exponent - load.speed_exponent)
-            / load.depth_factor(depth)
+            / (depth**load.depth_exponent if curve is None else curve(depth))
             - load.offset
         ) / load.coefficient
         return float(rest ** (1.0 / load.feed_exponent)) if rest > 0.0 else 0.0
@@ -339,18 +340,31 @@ class Cost:
 
     def time(self, at: Setting) -> float:
         """Time from first cut to last retract, with the share of tool changes, s."""
-        cutting = self.cutting_time(at)
-        changes = 0.0
-        if self.wear_rate is not None:
-            lives = cutting * self.wear_rate.value(at.feed, at.depth, at.speed)
-            changes = self.tool_change * lives
-        return cutting + changes + at.passes * self.link_time
+        return self.time_of(at.feed, at.depth, at.passes, at.speed)
 
     def energy(self, at: Setting) -> float:
         """Energy drawn from the mains, J."""
-        idle = self.standby_power_per_speed * at.speed
-        cut = self.motor_power.value(at.feed, at.depth, at.speed)
-        return self.standby_power * self.time(at) + (idle + cut) * self.cutting_time(at)
+        return self.energy_of(at.feed, at.depth, at.passes, at.speed)
+
+    # A search compares many settings, and making each would cost more than its time.
+
+    def time_of(self, feed: float, depth: float, passes: int, speed: float) -> float:
+        """Time of a setting that is given by its numbers, s."""
+        cutting = (passes * self.length + self.once_length) / (self.teeth * feed * speed)
+        if self.wear_rate is None:
+            return cutting + passes * self.link_time
+        changes = self.tool_change * (cutting * self.wear_rate.value(feed, depth, speed))
+        return cutting + changes + passes * self.link_time
+
+    def energy_of(self, feed: float, depth: float, passes: int, speed: float) -> float:
+        """Energy of a setting that is given by its numbers, J."""
+        idle = self.standby_power_per_speed * speed
+        cut = self.motor_power.value(feed, depth, speed)
+        cutting = self.travel(passes) / (self.teeth * feed * speed)
+        return (
+            self.standby_power * self.time_of(feed, depth, passes, speed)
+            + (idle + cut) * cutting
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -382,6 +396,13 @@ class Problem:
         if self.passes[0] == self.passes[1]:
             return self.programmed.depth
         return float(f"{self.total_depth / passes:.{DIGITS}g}")
+
+    @property
+    def depth_limits(self) -> list[Limit]:
+        """Limits of the whole speed range that concern only the depth of a pass."""
+        # Most limits are of the feed; asking each for its property would cost more.
+        still = [limit for limit in self.limits if limit.load.feed_exponent == 0.0]
+        return [limit for limit in still if limit.is_of_depth]
 
     @property
     def curved(self) -> Limit | None:
@@ -416,10 +437,7 @@ class Problem:
 
     def deepest(self) -> int:
         """Least number of passes that the depth limits allow."""
-        depth = min(
-            (self._greatest_depth(limit) for limit in self.limits if limit.is_of_depth),
-            default=self.total_depth,
-        )
+        depth = min(map(self._greatest_depth, self.depth_limits), default=self.total_depth)
         if depth == inf:
             return self.passes[0]
         return max(self.passes[0], ceil(self.total_depth / depth - ROUNDING))

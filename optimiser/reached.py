@@ -12,16 +12,23 @@ import numpy as np
 from optimiser.cut import CriticalPlace, Cut, CutKind, PowerPlace, ReachedLoads
 from optimiser.hardest import KINDS, LEAST_RATIO, Bending, PathContacts
 from optimiser.problem import ROUNDING
-from simulator.motion.passing import reached_velocities
-from simulator.motion.segments import AxisLimits, Bools, ControlModel, Floats, Ints
+from simulator.motion.passing import RunMotion
+from simulator.motion.segments import Bools, Floats, Ints
 from simulator.motion.tool_path import ToolPathRun
 from simulator.removal.stations import StationKind, Stations
 
-INSIDE = np.array([1e-6, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - 1e-6])
-"""Relative places in a stretch, the first and the last just inside its ends."""
+INSIDE = np.array([1e-6, 0.01, 0.05, 0.125, 0.3, 0.5, 0.7, 0.875, 0.95, 0.99, 1.0 - 1e-6])
+"""Relative places in a stretch, the first and the last just inside its ends.
+
+They lie closer there: a slow axis brakes within micrometres before the place where most is met.
+"""
 
 FASTER = 1.01
 """Ratio of two spindle speeds from which the idling power of the drive is told apart."""
+
+FOLLOWED = 1.1
+"""Ratio of spindle speeds of neighbours up to which a spindle changes evenly between them; more
+is another command, for which a feed waits."""
 
 NOT_BENT = Bending(at=np.empty(0, dtype=np.int64), shank=np.empty(0), wall=np.empty(0))
 """Bending forces of a tool that bends nowhere."""
@@ -29,18 +36,24 @@ NOT_BENT = Bending(at=np.empty(0, dtype=np.int64), shank=np.empty(0), wall=np.em
 HARD = 0.5
 """Share of the greatest force; if a place above it keeps more, no easier place is harder."""
 
+FIRST = 16
+"""Number of stations of the greatest possible load whose speeds are worked out first."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MachineRun:
     """Run of a path by the machine axes."""
 
-    run: ToolPathRun
-    control: ControlModel
-    limits: AxisLimits
+    motion: RunMotion
     feed: float
     """Feed programmed in the technology, mm/s."""
     spindle: float
     """Spindle speed at the diameter of the cut, rev/s."""
+
+    @property
+    def run(self) -> ToolPathRun:
+        """Lines and arcs of the path."""
+        return self.motion.run
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -82,7 +95,7 @@ def with_power(
             thickest=ratio ** (1.0 / (1.0 - exponent)),
             power_diameter=_power_diameter(loads, ride) / ratio,
         )
-    speeds = ride.run.spindle[met.stations.segment[loads.rows]] / ride.spindle
+    speeds = _fastest(ride.run)[met.stations.segment[loads.rows]] / ride.spindle
     return replace(
         cut,
         power_diameter=_power_diameter(loads, ride),
@@ -183,11 +196,12 @@ def _loads(
     wall = np.zeros(len(stations))
     wall[bent.at] = bent.wall
     spindle = ride.run.spindle[segment]
+    fastest = _fastest(ride.run)[segment] if cut.kind.is_turned else spindle
     chip = ride.run.segments.speed[segment] / ride.feed * ride.spindle / spindle
     if cut.kind.is_turned:
         chip = np.ones(len(rows))
     thinned = chip ** (1.0 - exponent)
-    programmed = np.stack((force, force * diameter * spindle, wall[rows])) * thinned
+    programmed = np.stack((force, force * diameter * fastest, wall[rows])) * thinned
     most = float(force.max())
     power = most * cut.force_diameter * ride.spindle
     return _Loads(
@@ -195,6 +209,22 @@ def _loads(
         programmed=programmed,
         nominal=np.array([most, power, float(wall[rows].max())]),
     )
+
+
+def _fastest(run: ToolPathRun) -> Floats:
+    """Greatest spindle speed within each segment, (N,), rev/s.
+
+    A spindle that follows the radius changes its speed within a segment, most where it is late
+    after a retract; between the middles of two segments at a feed it changes evenly.
+    """
+    fastest = run.spindle.copy()
+    is_fed, one, other = ~run.segments.is_rapid, run.spindle[:-1], run.spindle[1:]
+    is_even = is_fed[1:] & is_fed[:-1]
+    is_even &= np.maximum(one, other) <= FOLLOWED * np.minimum(one, other)
+    between = np.where(is_even, 0.5 * (one + other), 0.0)
+    np.maximum(fastest[1:], between, out=fastest[1:])
+    np.maximum(fastest[:-1], between, out=fastest[:-1])
+    return fastest
 
 
 def _power_diameter(loads: _Loads, ride: MachineRun) -> float:
@@ -206,27 +236,51 @@ def _shares(
     met: PathContacts, ride: MachineRun, loads: _Loads, at: Bools, exponent: float
 ) -> Floats:
     """Share of the nominal loads that the axes reach, (3,); 1 for a load of zero."""
-    rows = loads.rows[at]
-    if not len(rows):
+    if not at.any():
         return np.zeros(3)
-    programmed = ride.run.segments.speed[met.stations.segment[rows], None]
-    slower = (_speeds(met, ride, rows) / programmed) ** (1.0 - exponent)
-    reached = loads.programmed[:, at] * (_filled(met.stations, rows) * slower).max(axis=1)
     is_some = loads.nominal > 0.0
     whole = np.where(is_some, loads.nominal, 1.0)
-    return np.where(is_some, reached.max(axis=1) / whole, 1.0)
+    return np.where(is_some, _greatest_reached(met, ride, loads, at, exponent) / whole, 1.0)
+
+
+def _greatest_reached(
+    met: PathContacts, ride: MachineRun, loads: _Loads, at: Bools, exponent: float
+) -> Floats:
+    """Greatest loads that the axes reach at some of the stations, (3,).
+
+    No control exceeds the greatest feed of the path, so a station whose load at that feed is
+    below what another station reaches needs no motion.
+    """
+    segments, places = ride.run.segments, np.flatnonzero(at)
+    speed = segments.speed[met.stations.segment[loads.rows[places]]]
+    fastest = segments.speed[~segments.is_rapid].max()
+    filled = _filled(met.stations, loads.rows[places]).max(axis=1)
+    most = loads.programmed[:, places] * filled * (fastest / speed) ** (1.0 - exponent)
+    is_first = np.any(most >= np.sort(most, axis=1)[:, -FIRST:][:, :1], axis=0)
+    found = _reached(met, ride, loads, places[is_first], exponent)
+    is_next = np.any(most * (1.0 + ROUNDING) > found[:, None], axis=0) & ~is_first
+    if not is_next.any():
+        return found
+    return np.maximum(found, _reached(met, ride, loads, places[is_next], exponent))
+
+
+def _reached(
+    met: PathContacts, ride: MachineRun, loads: _Loads, places: Ints, exponent: float
+) -> Floats:
+    """Greatest loads that the axes reach at stations at places of the loads, (3,)."""
+    rows = loads.rows[places]
+    programmed = ride.run.segments.speed[met.stations.segment[rows], None]
+    slower = (_speeds(met, ride, rows) / programmed) ** (1.0 - exponent)
+    share = (_filled(met.stations, rows) * slower).max(axis=1)
+    greatest: Floats = (loads.programmed[:, places] * share).max(axis=1)
+    return greatest
 
 
 def _speeds(met: PathContacts, ride: MachineRun, rows: Ints) -> Floats:
     """Speeds reached at the places in K stretches, (K, P), mm/s; of a plunge along the axis."""
     places = met.stations.station[rows, None] - met.length[rows, None] * (1.0 - INSIDE)
-    velocities = reached_velocities(
-        ride.run,
-        ride.control,
-        ride.limits,
-        segment=np.repeat(met.stations.segment[rows], len(INSIDE)),
-        station=places.ravel(),
-    )
+    segments = np.repeat(met.stations.segment[rows], len(INSIDE))
+    velocities = ride.motion.velocities(segments, places.ravel())
     is_drilling = (met.stations.kind[rows] == StationKind.DRILLING)[:, None]
     along = np.linalg.norm(velocities, axis=1).reshape(places.shape)
     down = np.abs(velocities[:, 2]).reshape(places.shape)

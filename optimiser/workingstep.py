@@ -6,24 +6,23 @@ the best point for k is a vertex of the feasible polygon in (ln f, ln n), since 
 both costs fall with the feed; all vertices are tried.
 
 Where every load is a power of the depth, the cost of the best point is a convex function of
-ln k (it is the value of a geometric program), so trying k = k_min, k_min + 1, … may stop at the
-first rise. Along a helix loads are curves of the depth, and where lobes bound the depth the
+ln k (it is the value of a geometric program): a number of passes whose neighbours cost no less
+is the best. At one speed the search starts where the caps that do not depend on the depth take
+over, which is seldom more than one pass off; else it tries k = k_min, k_min + 1, … and stops at
+the first rise. Along a helix loads are curves of the depth, and where lobes bound the depth the
 permitted speeds are a union of ranges, whose vertices are all tried. In these cases k rises
 until the limits that do not depend on the depth, and the links between passes, already cost
 more than the best so far. The result is exact, not a rounded relaxation. Ties keep the
 programmed setting.
-
-At one spindle speed the limits are reduced to what still depends on the number of passes.
-Without an offset a limit caps the feed at ``f = ((b/c)·n^(δ−γ))^(1/α) · a^(−β/α)``: one power
-of the depth. All caps that do not depend on the depth reduce to one number.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import combinations
-from math import exp, inf, log
+from math import ceil, exp, inf, log
 
-from optimiser.errors import Infeasible, OptimisationError
+from optimiser.errors import Infeasible
+from optimiser.feed_caps import FeedCaps, caps_at
 from optimiser.least_cost import least_cost
 from optimiser.modes import Mode
 from optimiser.problem import (
@@ -37,83 +36,6 @@ from optimiser.problem import (
     Setting,
 )
 from stepnc_model.units import rpm_from_rev_s
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FeedCaps:
-    """Greatest and least feed per tooth as functions of the depth, at one spindle speed."""
-
-    constant: float
-    """Least of the caps that do not depend on the depth, mm."""
-    powers: tuple[tuple[float, float], ...]
-    """(factor, exponent) of each cap that is a power of the depth."""
-    others: tuple[Limit, ...]
-    """Limits that depend on the depth, but not as a power of it."""
-    floor: float
-    """Greatest of the lower limits that do not depend on the depth, mm."""
-    floors: tuple[Limit, ...]
-    """Lower limits that depend on the depth."""
-    deepest: float
-    """Greatest depth that the depth limits allow, mm."""
-    speed: float
-    """Spindle speed, rev/s."""
-
-    def greatest(self, depth: float) -> float:
-        """Greatest feed per tooth at a depth, mm; infinite when nothing caps it.
-
-        Zero at a depth that is not allowed.
-        """
-        if depth > self.deepest * (1.0 + ROUNDING):
-            return 0.0
-        feed = self.constant
-        for factor, exponent in self.powers:
-            feed = min(feed, factor * depth**exponent)
-        for limit in self.others:
-            feed = min(feed, limit.feed_at_bound(depth, self.speed))
-        return feed
-
-    def least(self, depth: float) -> float:
-        """Least feed per tooth that the lower limits allow at a depth, mm."""
-        feed = self.floor
-        for limit in self.floors:
-            feed = max(feed, limit.feed_at_bound(depth, self.speed))
-        return feed
-
-
-def caps_at(limits: Iterable[Limit], speed: float) -> FeedCaps:
-    """Collect the feed caps of all limits at one spindle speed in rev/s."""
-    constant, floor, deepest = inf, 0.0, inf
-    powers: list[tuple[float, float]] = []
-    others: list[Limit] = []
-    floors: list[Limit] = []
-    for limit in limits:
-        load = limit.load
-        if load.feed_exponent == 0.0:
-            if limit.is_of_depth:
-                deepest = min(deepest, limit.greatest_depth(speed))
-            continue
-        if limit.sense is BoundSide.AT_LEAST:
-            if not load.knows_depth:
-                floor = max(floor, limit.feed_at_bound(1.0, speed))
-            else:
-                floors.append(limit)
-        elif not load.knows_depth:
-            constant = min(constant, limit.feed_at_bound(1.0, speed))
-        elif load.offset == 0.0 and load.curve is None:
-            exponent = -load.depth_exponent / load.feed_exponent
-            powers.append((limit.feed_at_bound(1.0, speed), exponent))
-        else:
-            others.append(limit)
-    return FeedCaps(
-        constant=constant,
-        powers=tuple(powers),
-        others=tuple(others),
-        floor=floor,
-        deepest=deepest,
-        floors=tuple(floors),
-        speed=speed,
-    )
-
 
 TIE = 1e-9
 """Relative difference of cost below which two settings are equally good."""
@@ -162,11 +84,76 @@ def solve(problem: Problem, mode: Mode) -> Solution:
         When nothing limits the feed.
     """
     cost = cost_function(problem, mode)
+    caps = _caps(problem, problem.speeds[0]) if len(problem.speeds) == 1 else None
+    best_in = _search(problem, cost, caps)
+    if caps is not None and is_posynomial(problem):
+        first, best = _ends_of_descent(problem, mode, caps)
+    else:
+        first, best = _ends_of_trials(problem, mode, best_in)
+    given = problem.programmed
+    # At one speed the caps know the depth limits.
+    if caps is not None or _may_keep(problem):
+        kept = best_in(given.passes, given.depth)
+        if kept is not None and (best is None or cost(kept) <= cost(best) * (1.0 + TIE)):
+            best = kept
+    if best is None:
+        raise conflict(problem)
+    return settled(problem, best, first)
+
+
+Ends = tuple[Setting | None, Setting | None]
+"""Best settings with the fewest feasible passes and with the best number of them."""
+
+
+def _ends_of_descent(problem: Problem, mode: Mode, caps: FeedCaps) -> Ends:
+    """Search down a cost that is convex in ln k, at the only spindle speed."""
+    cost_of = problem.cost.energy_of if mode is Mode.EC else problem.cost.time_of
+    speed, (fewest, most) = caps.speed, problem.passes
+    fewest = max(fewest, ceil(problem.total_depth / caps.deepest - ROUNDING))
+    first = None
+    while fewest <= most:
+        first = _setting(caps, fewest, problem.depth_at(fewest))
+        if first is not None:
+            break
+        fewest += 1
+    if first is None:
+        return None, None
+
+    def cost(passes: int) -> float:
+        depth = problem.depth_at(passes)
+        feed = caps.best(depth)
+        return cost_of(feed, depth, passes, speed) if feed > 0.0 else inf
+
+    # With more passes than these no cap grows, so the cost seldom falls.
+    guess = ceil(caps.passes_to_constant(problem.total_depth)) - 1
+    passes = least_of_convex(cost, fewest, most, guess=guess)
+    if passes == fewest:
+        return first, first
+    return first, _setting(caps, passes, problem.depth_at(passes))
+
+
+def least_of_convex(cost: Callable[[int], float], low: int, high: int, *, guess: int) -> int:
+    """Least number in [low, high] at which a convex cost stops falling, found from a guess."""
+    at = min(max(guess, low), high)
+    here = cost(at)
+    is_falling = False
+    while at < high and (after := cost(at + 1)) < here * (1.0 - TIE):
+        at, here, is_falling = at + 1, after, True
+    while not is_falling and at > low and here >= (before := cost(at - 1)) * (1.0 - TIE):
+        at, here = at - 1, before
+    return at
+
+
+def _ends_of_trials(
+    problem: Problem, mode: Mode, best_in: Callable[[int], Setting | None]
+) -> Ends:
+    """Try one number of passes after the other until more cannot be better."""
+    cost = cost_function(problem, mode)
     best: Setting | None = None
     first: Setting | None = None
     least = inf
     is_convex = is_posynomial(problem) and not problem.is_branched
-    best_in, bound = _search(problem, cost), least_cost(problem, mode)
+    bound = least_cost(problem, mode)
     for passes in range(problem.deepest(), problem.passes[1] + 1):
         if not is_convex and bound(passes) > least * (1.0 + TIE):
             break
@@ -179,15 +166,7 @@ def solve(problem: Problem, mode: Mode) -> Solution:
             break
         if found < least * (1.0 - TIE):
             best, least = setting, found
-    given = problem.programmed
-    kept = None
-    if _may_keep(problem):
-        kept = best_in(given.passes, given.depth)
-    if kept is not None and (best is None or cost(kept) <= least * (1.0 + TIE)):
-        best = kept
-    if best is None:
-        raise conflict(problem)
-    return settled(problem, best, first)
+    return first, best
 
 
 def cost_function(problem: Problem, mode: Mode) -> Callable[[Setting], float]:
@@ -339,15 +318,18 @@ def _may_keep(problem: Problem) -> bool:
     at = problem.programmed
     return all(
         limit.holds(at.feed, at.depth, at.speed)
-        for limit in problem.limits
-        if limit.is_of_depth and limit.curve is None
+        for limit in problem.depth_limits
+        if limit.curve is None
     )
 
 
 def is_posynomial(problem: Problem) -> bool:
     """Whether every load is a power of the depth, so that the cost is convex in ln k."""
-    each = (problem.limits, *problem.stretches)
-    return all(limit.load.curve is None for limits in each for limit in limits)
+    for limits in (problem.limits, *problem.stretches):
+        for limit in limits:
+            if limit.load.curve is not None:
+                return False
+    return True
 
 
 def at_depth(problem: Problem, depth: float) -> Problem:
@@ -368,10 +350,12 @@ def at_depth(problem: Problem, depth: float) -> Problem:
 
 
 def _search(
-    problem: Problem, cost: Callable[[Setting], float]
+    problem: Problem, cost: Callable[[Setting], float], caps: FeedCaps | None
 ) -> Callable[..., Setting | None]:
-    """Return a solver for a number of passes; it returns None if no setting is feasible."""
-    caps = _fixed_caps(problem)
+    """Return a solver for a number of passes; it returns None if no setting is feasible.
+
+    The caps are those at the only speed, None when the speed may be chosen.
+    """
 
     def best(passes: int, depth: float | None = None) -> Setting | None:
         depth = problem.depth_at(passes) if depth is None else depth
@@ -388,11 +372,6 @@ def _search(
     return best
 
 
-def _fixed_caps(problem: Problem) -> FeedCaps | None:
-    """Feed caps at the only speed, or None when the speed may be chosen."""
-    return _caps(problem, problem.speeds[0]) if len(problem.speeds) == 1 else None
-
-
 def _caps(problem: Problem, speed: float) -> FeedCaps:
     """Feed caps of all limits at one speed."""
     return caps_at(limits_at(problem, speed), speed)
@@ -400,15 +379,10 @@ def _caps(problem: Problem, speed: float) -> FeedCaps:
 
 def _setting(caps: FeedCaps, passes: int, depth: float) -> Setting | None:
     """Setting with the greatest feed at one depth and speed, or None if infeasible."""
-    highest, lowest = caps.greatest(depth), caps.least(depth)
-    if highest == inf:
-        raise OptimisationError(
-            "nothing limits the feed: the machine, the material and the tool grade give "
-            "no power, force, chip load or feed bound"
-        )
-    if highest < lowest * (1.0 - ROUNDING) or highest <= 0.0:
+    feed = caps.best(depth)
+    if feed <= 0.0:
         return None
-    return Setting(feed=highest, depth=depth, passes=passes, speed=caps.speed)
+    return Setting(feed=feed, depth=depth, passes=passes, speed=caps.speed)
 
 
 def _speed_candidates(problem: Problem, depth: float) -> Iterator[float]:
@@ -455,11 +429,12 @@ def _crossing(
 def settled(problem: Problem, best: Setting, first: Setting | None = None) -> Solution:
     """Solution at a setting: its time and energy, and the limit that sets its feed."""
     limits = limits_at(problem, best.speed)
-    active = min(
-        (limit for limit in limits if limit.sense is BoundSide.AT_MOST),
-        key=lambda limit: limit.feed_at_bound(best.depth, best.speed),
-    )
+    at_most, depth, speed = BoundSide.AT_MOST, best.depth, best.speed
+    caps = [limit for limit in limits if limit.sense is at_most]
+    feeds = [limit.feed_at_bound(depth, speed) for limit in caps]
+    active = caps[feeds.index(min(feeds))]
     time = problem.cost.time(best)
+    with_first = time if first is None or first is best else problem.cost.time(first)
     return Solution(
         setting=best,
         time=time,
@@ -467,5 +442,5 @@ def settled(problem: Problem, best: Setting, first: Setting | None = None) -> So
         active=active.name,
         holding=active,
         limits=limits,
-        deepest_first_time=max(time, problem.cost.time(first or best)),
+        deepest_first_time=max(time, with_first),
     )

@@ -16,6 +16,7 @@ EXTRAS = {
     "fsspec": "files",
     "matplotlib": "plot",
     "paho": "mqtt",
+    "pandas": "notebook",
     "psycopg": "postgres",
     "pyarrow": "parquet",
     "sklearn": "learn",

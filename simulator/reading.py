@@ -3,8 +3,8 @@
 Units mm, s, N, W, rev/s.
 """
 
-from dataclasses import dataclass
 from math import nan
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Reading:
-    """Sensor values of one tooth period or any other, or of a time without feed override."""
+class Reading(NamedTuple):
+    """Sensor values of one tooth period or any other, or of a time without feed override.
+
+    A tuple and not a dataclass, as several are made in each tooth period.
+    """
 
     time: float
     """Time at the end of the period, s."""
@@ -38,7 +40,9 @@ class Reading:
     """Program time at an override of 1 at the end of the period, s."""
     workingstep: int
     """Number of the workingstep in the program, counted from 1; 0 for none."""
-    normal: float = nan
-    """Mean force normal to the edges over the period, N; NaN: not measured."""
     can_override: bool
     """Whether the feed override acts: not in rapid, in a dwell or at a tool change."""
+    normal: float = nan
+    """Mean force normal to the edges over the period, N; NaN: not measured."""
+    is_placed: bool = True
+    """Whether its place in the program is known as exactly as the expected force needs."""

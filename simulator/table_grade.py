@@ -10,7 +10,7 @@ from simulator.tool_windows import grade_for
 def grade_of_table_tool(tool: TableTool, material: WorkMaterial) -> ToolGrade | None:
     """Grade of a tool in a material.
 
-    The vendor's windows of feed and speed, the helix angle and the name of the grade replace
+    The vendor's windows of feed, speed and depth, helix angle and name of the grade replace
     those of the library where the table gives them.
 
     Parameters
@@ -40,6 +40,8 @@ def grade_of_table_tool(tool: TableTool, material: WorkMaterial) -> ToolGrade | 
             max_feed=tool.max_feed,
             borrowed="" if tool.max_feed is not None else grade.borrowed,
         )
+    if tool.max_depth is not None:
+        grade = replace(grade, max_depth=tool.max_depth)
     if tool.min_cutting_speed is not None or tool.max_cutting_speed is not None:
         grade = replace(
             grade,

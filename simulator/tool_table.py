@@ -48,6 +48,7 @@ INSERT_KEYS = {
     "width_mm",
     "hand",
     "inside",
+    "max_depth_mm",
 }
 CUTTER_KEYS = {
     "diameter_mm",
@@ -97,6 +98,8 @@ class TableTool:
     """Least feed that the vendor recommends, mm per tooth of mills, else per revolution"""
     max_feed: float | None = None
     """Greatest feed that the vendor recommends, mm per tooth of mills, else per revolution"""
+    max_depth: float | None = None
+    """Greatest depth of cut of an insert that the vendor recommends, mm"""
     min_cutting_speed: float | None = None
     """Least cutting speed that the vendor recommends, mm/s"""
     max_cutting_speed: float | None = None
@@ -130,6 +133,7 @@ class ToolRow(SpeedWindow, frozen=True, kw_only=True):
     grade: str = ""
     min_feed_mm: VendorFeed | None = None
     max_feed_mm: VendorFeed | None = None
+    max_depth_mm: Diameter | None = None
 
     def __post_init__(self) -> None:
         require_window(self, "min_cutting_speed_m_min", "max_cutting_speed_m_min")
@@ -217,6 +221,7 @@ def tool_of_row(row: ToolRow) -> TableTool:
         grade=row.grade,
         min_feed=row.min_feed_mm,
         max_feed=row.max_feed_mm,
+        max_depth=row.max_depth_mm,
         min_cutting_speed=row.speeds[0],
         max_cutting_speed=row.speeds[1],
     )

@@ -13,7 +13,7 @@ from service.requests.given import Units
 from service.requests.runs import ControlRequest, ForceView, SensorChoice, SimulationRequest
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles
-from service.usecases import AdviceFiles
+from service.verbs.optimise.request import AdviceFiles
 from simulator.machine.noise_kind import NoiseKind
 from simulator.motion.model_name import ControlModelName
 from stepnc_model.file_profile import FileProfile
@@ -50,7 +50,7 @@ def asked_advice(
     tools: Path | None = None,
     allow_plunge: bool = False,
 ) -> AskedAdvice:
-    """Arguments of :func:`service.usecases.optimise`."""
+    """Arguments of :func:`service.advising.run`."""
     request = AdviceRequest(
         mode=member_of(Mode, mode, "mode"),
         machine=machine,
@@ -76,7 +76,7 @@ def asked_advice(
         report=report,
         holding=holding,
         tools=tools,
-        knowledge=knowledge,
+        kb=knowledge,
     )
     return request, files
 

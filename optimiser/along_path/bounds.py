@@ -2,6 +2,7 @@
 
 from optimiser.advice import Advice
 from optimiser.along_path.caps import CapName, CutBounds
+from optimiser.depth_limits import depth_at_shoulder
 from optimiser.limits import STRAIGHT_DOWN
 from optimiser.plunge_feed import permitted_plunge
 from optimiser.problem import BoundSide, LimitName
@@ -20,8 +21,9 @@ FIXED = {
 def bounds_of(advice: Advice) -> CutBounds | None:
     """Bounds along the path of a workingstep; None if its feed may not be chosen.
 
-    Loads that depend on the engagement get a cap of their own at each place. Roughness and
-    work-holding keep the feed that the whole workingstep may have.
+    Loads that depend on the engagement get a cap of their own at each place, as does a shoulder
+    that is too deep. Roughness and work-holding keep the feed that the whole workingstep may
+    have.
     """
     state = advice.after
     if state is None or advice.cut is None or advice.conditions is None:
@@ -30,7 +32,8 @@ def bounds_of(advice: Advice) -> CutBounds | None:
     for load in state.loads:
         name = FIXED.get(load.limit.name)
         is_down = load.limit.words.endswith(STRAIGHT_DOWN)
-        if name is None or is_down or load.limit.sense is not BoundSide.AT_MOST:
+        is_elsewhere = is_down or load.limit.stands_for is LimitName.AXIAL_DEPTH
+        if name is None or is_elsewhere or load.limit.sense is not BoundSide.AT_MOST:
             continue
         feed = load.limit.feed_at_bound(state.setting.depth, state.setting.speed)
         fixed[name] = min(feed, fixed.get(name, feed))
@@ -39,4 +42,5 @@ def bounds_of(advice: Advice) -> CutBounds | None:
         at=advice.conditions,
         fixed=tuple(fixed.items()),
         plunge=permitted_plunge(advice.cut, advice.conditions),
+        deepest=depth_at_shoulder(advice.cut, advice.conditions),
     )

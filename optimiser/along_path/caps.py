@@ -60,6 +60,7 @@ class CapName(StrEnum):
     RISE = "greatest_rise"
     STRAIGHT = "straight_plunge"
     NO_STOCK = "no_stock_met"
+    SHOULDER = "depth_at_a_shoulder"
 
     @property
     def words(self) -> str:
@@ -119,6 +120,8 @@ class CutBounds:
     """Whether the work-holding of the conditions is looked at at each place."""
     least: float = 0.0
     """Feed that the user permits everywhere, mm/s, whatever the limits of the process say."""
+    deepest: float | None = None
+    """Depth of a turning tool beyond which the programmed feed stays, mm; None: any depth."""
     keeps_programmed: bool = False
     """Whether no feed in the material may rise, because no source says how far."""
 

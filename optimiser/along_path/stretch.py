@@ -21,6 +21,7 @@ from optimiser.along_path.caps import (
     unbounded,
 )
 from optimiser.cut import CutKind
+from optimiser.depth_limits import DEEPER
 from simulator.motion.path_limits import CENTRIPETAL_SHARE, block_lengths, least
 from simulator.motion.segments import AxisLimits, Bools, Floats, Ints, Segments
 from simulator.removal.stations import StationKind, Stations
@@ -223,7 +224,11 @@ def _caps_of(stretch: PathStretch, stations: Stations, bounds: CutBounds) -> Sta
     found = station_caps(
         stations, bounds, spindle=stretch.spindle[segment], descent=-direction[:, 2]
     )
-    if not bounds.keeps_programmed:
-        return found
-    given = np.where(stations.peak_section > 0.0, stretch.segments.speed[segment], np.inf)
-    return replace(found, caps=found.caps.least(capped(given, CapName.LOCKED)))
+    caps, given = found.caps, stretch.segments.speed[segment]
+    if bounds.deepest is not None:
+        is_deep = stations.axial_depth > DEEPER * bounds.deepest
+        caps = caps.least(capped(np.where(is_deep, given, np.inf), CapName.SHOULDER))
+    if bounds.keeps_programmed:
+        kept = np.where(stations.peak_section > 0.0, given, np.inf)
+        caps = caps.least(capped(kept, CapName.LOCKED))
+    return replace(found, caps=caps)

@@ -13,6 +13,7 @@ from optimiser.bar_grip import BarGrip
 from optimiser.chip_load import catalogue_feed
 from optimiser.conditions import CuttingConditions, PermittedDeflection
 from optimiser.cut import Cut, CutKind, Texture
+from optimiser.depth_limits import depth_at_shoulder
 from optimiser.optimise import DEFAULT_QUALITY
 from optimiser.plunge_feed import permitted_plunge
 from optimiser.problem import BoundSide, Setting
@@ -110,6 +111,7 @@ def bounds_of_tool(  # noqa: PLR0913 (a tool, its machine and material, and what
         at=at,
         fixed=() if surface is None else ((CapName.ROUGHNESS, surface),),
         plunge=permitted_plunge(cut, at),
+        deepest=depth_at_shoulder(cut, at),
         keeps_programmed=is_unsourced(cut, at),
         is_held_along=at.holding is not None,
     )

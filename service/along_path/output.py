@@ -5,7 +5,7 @@ from typing import Any
 
 from service.along_path.run import AlongPathStep, FeedsAlongPath
 from service.rendering.columns import Change, Column
-from service.rendering.text import print_line, print_table
+from service.rendering.view import Item, Table, TextLine
 from stepnc_model.units import kw_from_watts, mm_min_from_speed, um_from_mm
 
 STEP: tuple[Column[AlongPathStep], ...] = (
@@ -61,20 +61,23 @@ STEP: tuple[Column[AlongPathStep], ...] = (
 """Columns of the comparison of one feed per part with feeds along its path."""
 
 
-def print_along_path(along: FeedsAlongPath) -> None:
-    """Print the comparison of both runs, and what limits the feed along the path."""
-    print_line("one feed per part -> along the path, both run on the virtual machine")
+def along_path_items(along: FeedsAlongPath) -> Iterator[Item]:
+    """Yield the comparison of both runs, and what limits the feed along the path."""
+    yield TextLine(text="one feed per part -> along the path, both run on the virtual machine")
     total = f"{along.time_before:.1f} -> {along.time_after:.1f}"
-    print_table(STEP, along.shown, foot={"part of the program": "total", "time s": total})
+    yield Table(
+        key="parts", columns=STEP, rows=along.shown, is_in_json=False,
+        foot={"part of the program": "total", "time s": total},
+    )  # fmt: skip
     ratio = along.time_after / along.time_before if along.time_before else 1.0
     to_plan = along.time_after / along.planned_time if along.planned_time else 1.0
-    print_line(
-        f"time × {ratio:.3f}; {len(along.feeds)} blocks changed, {along.parts} splits; "
+    yield TextLine(
+        text=f"time × {ratio:.3f}; {len(along.feeds)} blocks changed, {along.parts} splits; "
         f"run/plan {to_plan:.4f}"
     )
-    print_line(free_words(along))
+    yield TextLine(text=free_words(along))
     shares = ", ".join(f"{words} {share:.0%}" for words, share in active_shares(along))
-    print_line(f"share of the path by active limit: {shares}")
+    yield TextLine(text=f"share of the path by active limit: {shares}")
 
 
 def free_words(along: FeedsAlongPath) -> str:

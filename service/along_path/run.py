@@ -82,6 +82,14 @@ class AlongPathStep:
         return self.before.duration + change
 
 
+BEYOND_LIMITS = {
+    CapName.LEAST: "the limits demand less than the least feed (--least-feed), which is taken",
+    CapName.SHOULDER: "the insert meets more than its greatest depth of cut, as at a shoulder; "
+    "the programmed feed stays there",
+}
+"""What is warned of where a feed stands beyond what the limits tell."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FeedsAlongPath:
     """Feeds along the paths of a program."""
@@ -106,17 +114,17 @@ class FeedsAlongPath:
 
     @property
     def above_limits(self) -> tuple[Finding, ...]:
-        """Warnings of parts in which the least feed is above what the limits permit."""
-        found = []
-        for step in self.shown:
-            shares = step.plan.shares if step.plan else {}
-            if CapName.LEAST in shares:
-                text = (
-                    f"{step.name}: on {shares[CapName.LEAST][0]:.4g} mm of its path the limits "
-                    "demand less than the least feed (--least-feed), which is taken"
-                )
-                found.append(Finding(severity=Severity.WARNING, message=text))
-        return tuple(found)
+        """Warnings of parts with feeds above what the limits permit, or beyond their reach."""
+        return tuple(
+            Finding(
+                severity=Severity.WARNING,
+                message=f"{step.name}: on {step.plan.shares[name][0]:.4g} mm of its path "
+                f"{text}",
+            )
+            for step in self.shown
+            for name, text in BEYOND_LIMITS.items()
+            if step.plan is not None and name in step.plan.shares
+        )
 
     def faults(self, machine: Machine) -> tuple[Finding, ...]:
         """Rapids through material, and parts that overload the machine."""

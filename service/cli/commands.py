@@ -20,14 +20,10 @@ from service.cli.machine import add_machine_commands
 from service.cli.options import (
     BAD_INPUT,
     INFEASIBLE,
-    LIMIT_EXCEEDED,
-    NOTHING_ADVISED,
     OK,
     CommandParser,
     Commands,
-    add_cluster,
     add_json,
-    add_knowledge,
     add_most_repeats,
     add_program,
     program_request,
@@ -35,7 +31,7 @@ from service.cli.options import (
 from service.cli.paths import add_path_commands
 from service.cli.record import add_record_command
 from service.cli.serve import add_service_commands
-from service.cli.verbs import add_verb
+from service.cli.verbs import add_verb, verb_parser
 from service.cli.verify import add_verify_command
 from service.requests.fields import output_path
 from service.verbs.verb import verbs
@@ -72,13 +68,7 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
         help="print a completion script for a shell",
     )
     commands = top.add_subparsers(dest="command", metavar="COMMAND", parser_class=CommandParser)
-    optimise = commands.add_parser(
-        "optimise",
-        help="optimise the feeds of a program and write them back",
-        description=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    optimise.fill = add_optimise_options
+    add_verb(commands, verbs()["optimise"])
     _add_check(commands)
     _add_convert(commands)
     add_path_commands(commands)
@@ -92,7 +82,8 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     add_dataset_command(commands)
     add_learning_commands(commands)
     for verb in verbs().values():
-        add_verb(commands, verb)
+        if verb.name not in commands.choices:
+            add_verb(commands, verb)
     add_service_commands(commands)
     for kind in ("machines", "materials"):
         listing = commands.add_parser(kind, help=f"list the {kind}, or show one")
@@ -113,7 +104,10 @@ def parsed(name: str, arguments: Sequence[str] | None = None) -> Callable[[], in
         Default: those of this process.
     """
     top = _commands()[0] if name == "stepnc" else _optimise_parser()
-    options = top.parse_args(arguments)
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    if words and words[0] == "optimize" and name == "stepnc":
+        words[0] = "optimise"
+    options = top.parse_args(words)
     if getattr(options, "print_completion", None):
         return partial(_print_completion, options.print_completion)
     if "run" not in options:
@@ -122,13 +116,7 @@ def parsed(name: str, arguments: Sequence[str] | None = None) -> Callable[[], in
 
 
 def _optimise_parser() -> CommandParser:
-    parser = CommandParser(
-        prog="optimise",
-        description=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    add_optimise_options(parser)
-    return parser
+    return verb_parser(verbs()["optimise"], partial(CommandParser, prog="optimise"))
 
 
 def _print_completion(shell: str) -> int:
@@ -143,61 +131,6 @@ def _print_completion(shell: str) -> int:
 def _print_help(top: argparse.ArgumentParser) -> int:
     top.print_help()
     return USAGE
-
-
-def add_optimise_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of ``optimise``: those of its request, and its files."""
-    from service.requests.advice import AdviceRequest
-    from service.requests.fields import add_options
-
-    add = parser.add_argument
-    add(
-        "file",
-        type=Path,
-        metavar="FILE",
-        help="a STEP-NC program (Part 21), a folder of them, or NC code",
-    )
-    add_options(parser, AdviceRequest)
-    add(
-        "-o",
-        "--output",
-        type=output_path,
-        metavar="FILE",
-        help="default: FILE.optimised.stpnc; of a folder: another folder",
-    )
-    add("--in-place", action="store_true", help="overwrite the input file")
-    add(
-        "--holding",
-        type=Path,
-        metavar="TOML",
-        help="work-holding: [[holding]] tables of chuck, vice or clamps, by setup",
-    )
-    add(
-        "--tools",
-        type=Path,
-        metavar="TABLE",
-        help="tool table: the tools of NC code; of a program, which cut over centre or have "
-        "wipers",
-    )
-    add("--tools-unit", default="", metavar="UNIT", help="unit of a tool.tbl: mm or inch")
-    add_most_repeats(parser)
-    add_knowledge(parser, "supplies accepted corrections of k_c")
-    add(
-        "--feeds-csv",
-        type=output_path,
-        metavar="CSV",
-        help="write the feeds along the paths as a table",
-    )
-    add("--dry-run", action="store_true", help="write no optimised program")
-    add(
-        "--report",
-        type=output_path,
-        metavar="HTML",
-        help="write a self-contained page with plots",
-    )
-    add_cluster(parser)
-    add_json(parser)
-    parser.set_defaults(run=_optimise)
 
 
 def _add_check(commands: Commands) -> None:
@@ -297,100 +230,6 @@ def _exit_code(error: Exception) -> int:
     return INFEASIBLE if isinstance(error, OptimisationError) else BAD_INPUT
 
 
-def _optimise(options: argparse.Namespace) -> int:
-    """Run the command ``optimise``."""
-    from service import usecases
-    from service.cli.code import optimise_code, require_typed_served
-    from service.code_contents import is_code
-    from service.program_kind import ProgramKind
-    from service.requests.advice import AdviceRequest
-    from service.requests.fields import from_options
-    from service.terminal import tell, write_out
-    from stepnc_model.errors import StepNcError
-
-    if options.file.is_dir():
-        require_typed_served(options, ProgramKind.STEP_NC)
-        return _optimise_folder(options)
-    if options.cluster:
-        raise StepNcError("--cluster runs the programs of a folder: name a folder")
-    kind = ProgramKind.NC_CODE if is_code(options.file) else ProgramKind.STEP_NC
-    require_typed_served(options, kind)
-    if kind is ProgramKind.NC_CODE:
-        return optimise_code(options)
-    outcome = usecases.optimise(
-        from_options(AdviceRequest, options),
-        usecases.AdviceFiles(
-            file=options.file,
-            output=options.output,
-            in_place=options.in_place,
-            dry_run=options.dry_run,
-            report=options.report,
-            feeds=options.feeds_csv,
-            holding=options.holding,
-            tools=options.tools,
-            knowledge=options.kb,
-        ),
-        tell=tell,
-    )
-    confirmation = outcome.confirmation
-    if options.json:
-        from service.plan_output import plan_json
-
-        write_out(plan_json(outcome.plan, confirmation, outcome.along))
-    else:
-        from service.plan_output import print_plan
-
-        print_plan(outcome.plan, confirmation, outcome.along, outcome.told)
-    if outcome.plan.has_bad_data:
-        return BAD_INPUT
-    if outcome.plan.is_infeasible:
-        return INFEASIBLE
-    is_passed = confirmation is not None and bool(confirmation.passed)
-    if is_passed or outcome.plan.faults:
-        return LIMIT_EXCEEDED
-    return OK if outcome.is_advised else NOTHING_ADVISED
-
-
-def _optimise_folder(options: argparse.Namespace) -> int:
-    """Run the command ``optimise`` for the programs of a folder."""
-    from service.execution.pools import pools_of
-    from service.folder_advice.ledger import ProgramStatus
-    from service.folder_advice.output import folder_advice_json, print_folder_advice
-    from service.folder_advice.run import FolderFiles, optimise_folder
-    from service.requests.advice import AdviceRequest
-    from service.requests.fields import from_options
-    from service.terminal import tell, write_out
-    from stepnc_model.errors import StepNcError
-
-    if options.output is None or options.in_place or options.report is not None:
-        raise StepNcError(
-            f"{options.file}: is a folder: name another folder with -o, without --in-place and "
-            "--report"
-        )
-    files = FolderFiles(
-        folder=options.file,
-        output=options.output,
-        dry_run=options.dry_run,
-        holding=options.holding,
-        tools=options.tools,
-        knowledge=options.kb,
-    )
-    request = from_options(AdviceRequest, options)
-    found = optimise_folder(request, files, pools=pools_of(options.cluster), tell=tell)
-    if options.json:
-        write_out(folder_advice_json(found))
-    else:
-        print_folder_advice(found)
-    for status, code in (
-        (ProgramStatus.BAD, BAD_INPUT),
-        (ProgramStatus.INFEASIBLE, INFEASIBLE),
-        (ProgramStatus.EXCEEDED, LIMIT_EXCEEDED),
-    ):
-        if found.has(status):
-            return code
-    return OK
-
-
 def _check(options: argparse.Namespace) -> int:
     """Run the command ``stepnc check``."""
     from service.code_contents import is_code
@@ -448,7 +287,6 @@ def _check_program(options: argparse.Namespace) -> int:
 
 def _convert(options: argparse.Namespace) -> int:
     """Run the command ``stepnc convert``."""
-    from service import usecases
     from service.conversion import Standard, convert_to
     from service.requests.fields import member_of
     from service.terminal import tell
@@ -462,7 +300,9 @@ def _convert(options: argparse.Namespace) -> int:
         return OK
 
     profile = member_of(FileProfile, options.profile, "profile")
-    usecases.convert(options.file, profile=profile, output=options.output)
+    from service.verbs.optimise.program import convert
+
+    convert(options.file, profile=profile, output=options.output)
     tell(f"{options.output}: records converted to profile '{profile.value}'")
     return OK
 

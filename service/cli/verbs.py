@@ -1,23 +1,35 @@
 """Door of the command line to the verbs: options, output and exit code from declarations."""
 
 import argparse
+from collections.abc import Callable
 from functools import partial
 
-from service.cli.options import Commands
+from service.cli.options import CommandParser, Commands
+from service.verbs.result import Result
 from service.verbs.verb import Verb
 
 
 def add_verb(commands: Commands, verb: Verb) -> None:
-    """Add a verb with the options that its request and files declare."""
-    first, _, rest = verb.about.strip().partition("\n\n")
-    line = " ".join(first.split()).removesuffix(".")
-    parser = commands.add_parser(
-        verb.name.rpartition(" ")[2],
-        help=(line[:1].lower() + line[1:]).replace("%", "%%"),
-        description=rest.strip() or line,
+    """Add a verb to the commands."""
+    line = verb.line
+    verb_parser(
+        verb,
+        partial(
+            commands.add_parser,
+            verb.name.rpartition(" ")[2],
+            help=(line[:1].lower() + line[1:]).replace("%", "%%"),
+        ),
+    )
+
+
+def verb_parser(verb: Verb, made: Callable[..., CommandParser]) -> CommandParser:
+    """Make a parser with the options that a verb's request and files declare."""
+    parser = made(
+        description=verb.details or verb.line,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.fill = partial(_fill, verb)
+    return parser
 
 
 def _fill(verb: Verb, parser: argparse.ArgumentParser) -> None:
@@ -38,15 +50,22 @@ def _run(verb: Verb, options: argparse.Namespace) -> int:
     request = from_options(verb.request, options)
     require_bounds(request)
     files = from_options(verb.files, options)
-    result = ran(verb, request, files, tell=tell)
+    typed = {name: value for name, value in vars(options).items() if value or value == 0}
+    given = {name: value for name, value in typed.items() if value is not False}
+    result = ran(verb, request, files, given=given, tell=tell)
     if options.json:
         from service.rendering.records import dump
         from service.terminal import write_out
 
         write_out(dump(result.record()))
     else:
-        from service.rendering.text import print_line, screen_width
-
-        for text, colour in result.view().lines(width=screen_width()):
-            print_line(text, colour)
+        print_result(result)
     return result.exit_code
+
+
+def print_result(result: Result) -> None:
+    """Print a result as text, as wide as the terminal."""
+    from service.rendering.text import print_line, screen_width
+
+    for text, colour in result.view().lines(width=screen_width()):
+        print_line(text, colour)

@@ -311,9 +311,6 @@ class Session:
                 return
             if cycle is None:
                 return
-            if isinstance(self.machine, RecordedMachine) and not self.machine.is_steady:
-                # Places of a recording are known less exactly than forces change here.
-                cycle = replace(cycle, ratio=None)
             self.recorder.add(cycle)
             self.holdings.add(cycle, self.loop.state.settings)
             self.events += cycle.events

@@ -67,7 +67,7 @@ def plain(value: Any) -> Any:
     """Convert a value for JSON; numbers that are not finite become null."""
     match value:
         case float():
-            return value if isfinite(value) else None
+            return float(value) if isfinite(value) else None
         case datetime():
             return value.isoformat()
         case Change(before=before, after=after):
@@ -76,6 +76,22 @@ def plain(value: Any) -> Any:
             return {key: plain(each) for key, each in value.items()}
         case list() | tuple():
             return [plain(each) for each in value]
+    return value
+
+
+def bare(value: Any) -> Any:
+    """Convert numbers of Part 21 files to those of Python, in containers too."""
+    match value:
+        case bool():
+            return value
+        case float():
+            return float(value)
+        case int():
+            return int(value)
+        case dict():
+            return {key: bare(each) for key, each in value.items()}
+        case list() | tuple():
+            return [bare(each) for each in value]
     return value
 
 

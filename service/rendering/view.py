@@ -10,7 +10,7 @@ from html import escape
 from typing import Any, TypeVar
 
 from service.rendering.columns import Column, visible
-from service.rendering.records import finding_record, record, records
+from service.rendering.records import bare, finding_record, record, records
 from service.rendering.text import finding_lines, table
 from stepnc_model.errors import Finding, StepNcError
 
@@ -55,8 +55,12 @@ class Table:
     foot: Mapping[str, str] | None = None
     row_of: Callable[[Any], object] = id
     colour: Callable[[Any], str] | None = None
+    record: Callable[[Any], dict[str, Any]] | None = None
+    """Function that returns the JSON object of a row; None: the columns with a key."""
     is_shown: bool = True
     """False for rows that only JSON and tables of other programs get."""
+    is_in_json: bool = True
+    """False where another member of the JSON object holds the rows."""
 
     @property
     def shown_rows(self) -> Sequence[Any]:
@@ -108,9 +112,13 @@ class ResultView:
         for item in self.items:
             match item:
                 case Fact():
-                    found[item.key] = item.value() if callable(item.value) else item.value
-                case Table() if item.key:
-                    found[item.key] = records(item.columns, item.rows)
+                    found[item.key] = bare(item.value() if callable(item.value) else item.value)
+                case Table() if item.key and item.is_in_json:
+                    found[item.key] = (
+                        records(item.columns, item.rows)
+                        if item.record is None
+                        else [bare(item.record(row)) for row in item.rows]
+                    )
                     if item.total is not None:
                         found[item.total_key] = record(item.columns, item.total)
                 case Findings() if item.key:

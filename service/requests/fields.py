@@ -40,6 +40,8 @@ class FileUse(StrEnum):
 
     INPUT = "input"
     OUTPUT = "output"
+    PROGRAM = "program"
+    """Input whose kind decides which options serve."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ from typing import Annotated
 from annotated_types import Interval
 
 from service.requests.fields import About, FileUse
+from simulator.tool_files.file_unit import FileUnit
 
 MostRepeats = Annotated[
     int | None,
@@ -22,5 +23,19 @@ Report = Annotated[
     About(
         "write a self-contained page with plots",
         flag="--report", use=FileUse.OUTPUT, metavar="HTML",
+    ),
+]  # fmt: skip
+
+ToolsUnit = Annotated[
+    FileUnit | None,
+    About("unit of a tool.tbl: mm or inch", name="unit", flag="--tools-unit", metavar="UNIT"),
+]
+
+Knowledge = Annotated[
+    str,
+    About(
+        "knowledge base, a file or postgresql://…, with accepted corrections of k_c; runs "
+        "record their outcomes in it (default: $STEPNC_KB)",
+        flag="--kb", metavar="PLACE",
     ),
 ]  # fmt: skip

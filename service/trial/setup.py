@@ -61,14 +61,14 @@ class TrialMachine:
     def truth(self) -> TrueState:
         """True state of the last period."""
         truth = self._machine.truth
-        return replace(truth, power=truth.power / self.efficiency)
+        return truth._replace(power=truth.power / self.efficiency)
 
     def read(self) -> Reading | None:
         """Return the next reading (:class:`controller.ports.Sensor`)."""
         raw = self._machine.read()
         if raw is None:
             return None
-        return replace(raw, time=self._begin + raw.time, power=raw.power / self.efficiency)
+        return raw._replace(time=self._begin + raw.time, power=raw.power / self.efficiency)
 
     def set(self, override: float, /) -> None:
         """Command an override (:class:`controller.ports.Override`)."""
@@ -146,7 +146,7 @@ class TrialSetup:
         # The run reports orders itself, with old and new values.
         events = tuple(each for each in cycle.events if each.kind is not EventKind.ORDER)
         if len(events) < len(cycle.events):
-            cycle = replace(cycle, events=events)
+            cycle = cycle._replace(events=events)
         self._override = cycle.reading.override
         self._hold(cycle)
         self.trace(cycle, self._drive.truth)

@@ -7,15 +7,18 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
+from service.program_kind import ProgramKind, kind_of_file
 from service.reading import Tell, silent
 from service.requests.fields import (
     NUMBERS,
+    FileUse,
     Request,
     RequestField,
     fields_of,
     member_of,
     require_bounds,
 )
+from service.requests.serves import require_options_served
 from service.verbs.result import Result
 from service.verbs.verb import Verb
 from stepnc_model.errors import StepNcError
@@ -61,11 +64,35 @@ def call(
     require_bounds(request)
     files = _built(verb.files, of_files, given)
     require_bounds(files)
-    return ran(verb, request, files, tell=tell)
+    return ran(verb, request, files, given=given, tell=tell)
 
 
-def ran(verb: Verb, request: Request, files: Request, *, tell: Tell) -> Result:
-    """Run a verb with its request and files, and write its page if one is named."""
+def ran(
+    verb: Verb,
+    request: Request,
+    files: Request,
+    *,
+    given: Mapping[str, object],
+    tell: Tell,
+) -> Result:
+    """Run a verb with its request and files, and write its page if one is named.
+
+    Parameters
+    ----------
+    verb : Verb
+    request, files : Request
+    given : mapping
+        Values that the caller named, by their fields; those that do not serve the kind of
+        program are refused, even if they are the usual ones.
+    tell : callable
+        Receives messages.
+
+    Raises
+    ------
+    StepNcError
+        When a value does not serve the program; and as the verb.
+    """
+    _require_given_served((*fields_of(verb.files), *fields_of(verb.request)), files, given)
     result = verb.run(request, files, tell=tell)
     report: Path | None = getattr(files, "report", None)
     if report is not None:
@@ -74,6 +101,18 @@ def ran(verb: Verb, request: Request, files: Request, *, tell: Tell) -> Result:
         write_atomically(report, result.page().encode(errors="replace"))
         tell(f"report: {report}")
     return result
+
+
+def _require_given_served(
+    fields: Sequence[RequestField], files: Request, given: Mapping[str, object]
+) -> None:
+    """Refuse values that the kind of program cannot use."""
+    flags = {each.name: each.about.flag for each in fields}
+    for field in fields:
+        program = getattr(files, field.name, None)
+        if field.about.use is FileUse.PROGRAM and isinstance(program, Path):
+            kind = ProgramKind.STEP_NC if program.is_dir() else kind_of_file(program)
+            require_options_served(given, kind, flags=flags)
 
 
 def _built(

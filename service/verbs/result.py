@@ -1,10 +1,10 @@
 """Result of a verb: the base of what every verb returns."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from service.rendering.columns import Column
+from service.rendering.columns import Change, Column
 from service.rendering.view import ResultView
 from stepnc_model.errors import StepNcError
 
@@ -64,8 +64,7 @@ class Result:
         import pyarrow as pa  # noqa: PLC0415 (an extra)
 
         found = self.view().table(key)
-        columns = [each for each in found.columns if each.key]
-        return pa.table({each.key: _values(each, found.rows) for each in columns})
+        return pa.table(dict(_columns(found.columns, found.rows)))
 
     def to_pandas(self, key: str = "") -> Any:
         """Return a table of the result for pandas; see :meth:`table`."""
@@ -124,8 +123,18 @@ class Result:
         return self.view().html()
 
 
-def _values(column: Column[Any], rows: Sequence[Any]) -> list[Any]:
-    """Values of a column for files."""
-    from service.rendering.records import plain  # noqa: PLC0415 (JSON)
-
-    return [plain(column.value(row)) for row in rows]
+def _columns(
+    columns: Sequence[Column[Any]], rows: Sequence[Any]
+) -> Iterator[tuple[str, list[Any]]]:
+    """Yield names and values of columns; one of changes gives two."""
+    for column in columns:
+        values = [column.value(row) for row in rows] if column.key else []
+        if any(isinstance(each, Change) for each in values):
+            pairs = [
+                (each.before, each.after) if isinstance(each, Change) else (None, each)
+                for each in values
+            ]
+            yield f"{column.key}.before", [before for before, _ in pairs]
+            yield f"{column.key}.after", [after for _, after in pairs]
+        elif column.key:
+            yield column.key, values

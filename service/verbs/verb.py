@@ -43,7 +43,17 @@ class Verb:
     @property
     def about(self) -> str:
         """Help: a sentence, and details after an empty line."""
-        return import_module(f"service.verbs.{self.folder}").__doc__ or ""
+        return self._package.__doc__ or ""
+
+    @property
+    def line(self) -> str:
+        """First sentence of the help, without its full stop."""
+        return " ".join(self.about.partition("\n\n")[0].split()).removesuffix(".")
+
+    @property
+    def details(self) -> str:
+        """The rest of the help; empty if there is none."""
+        return self.about.partition("\n\n")[2].strip()
 
     @property
     def request(self) -> type[Request]:
@@ -62,6 +72,10 @@ class Verb:
         """Function that does the work."""
         found: Callable[..., Result] = self._part("run").run
         return found
+
+    @property
+    def _package(self) -> ModuleType:
+        return import_module(f"service.verbs.{self.folder}")
 
     def _part(self, name: str) -> ModuleType:
         return import_module(f"service.verbs.{self.folder}.{name}")

@@ -13,6 +13,7 @@ from datetime import UTC, datetime
 from functools import cache
 from math import isfinite
 from pathlib import Path
+from time import time as wall_clock
 from typing import Any
 from xml.sax.saxutils import escape, quoteattr
 
@@ -118,6 +119,10 @@ class DocumentWriter:
     _groups: list[tuple[int, int]] = field(init=False)
     _stamp: tuple[int, str] = field(init=False, default=(-1, ""))
     _devices: tuple[str, ...] = field(init=False)
+    _last: tuple[tuple[int, str, int, int, int], bytes, bytes] = field(
+        init=False, default=((0, "", 0, 0, 0), b"", b"")
+    )
+    """Key, body and document of the streams that were written last."""
 
     def __post_init__(self) -> None:
         self._devices = tuple(
@@ -169,14 +174,22 @@ class DocumentWriter:
         following : int
             ``nextSequence``.
         """
-        header = self._header(
-            bufferSize=buffer.size,
-            nextSequence=following,
-            firstSequence=buffer.first,
-            lastSequence=buffer.last,
-            **self._changed(),
-        )
-        return self._document("Streams", header, body)
+        # All that a document says: the creation time in whole seconds, too. One is kept, as
+        # clients ask more often than observations arrive.
+        now = int(wall_clock())
+        key = now, self.changed, buffer.first, buffer.last, following
+        last_key, last_body, document = self._last
+        if key != last_key or body is not last_body:
+            header = self._header(
+                bufferSize=buffer.size,
+                nextSequence=following,
+                firstSequence=buffer.first,
+                lastSequence=buffer.last,
+                **self._changed(),
+            )
+            document = self._document("Streams", header, body)
+            self._last = key, body, document
+        return document
 
     def observations(self, entries: Iterable[tuple[int, bytes]]) -> bytes:
         """Body with observations by component and category.

@@ -6,8 +6,7 @@ client that does not read is dropped; the machine never waits for one.
 
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 from urllib.parse import parse_qsl, unquote
 from uuid import uuid4
 
@@ -74,9 +73,8 @@ KINDS = {
 }
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HttpRequest:
-    """What a request says of itself."""
+class HttpRequest(NamedTuple):
+    """What a request says of itself; a tuple, as making it is a good part of an answer."""
 
     method: str
     path: str
@@ -112,20 +110,12 @@ def application(agent: Agent) -> Callable[[Mapping[str, Any], Receive, Send], Aw
 
 
 def _request(scope: Mapping[str, Any]) -> HttpRequest:
-    headers = {
-        key.decode("latin-1"): value.decode("latin-1") for key, value in scope["headers"]
-    }
+    headers = dict(scope["headers"])
     query = scope.get("query_string", b"").decode("latin-1")
     raw = scope.get("raw_path") or scope["path"].encode()
-    try:
-        pairs = parse_qsl(query, keep_blank_values=True, max_num_fields=MOST_PARAMETERS)
-    except ValueError:
-        pairs = []
-    values: dict[str, str] = {}
-    for key, value in pairs:
-        values.setdefault(key, value)
+    values = _values(query) if query else {}
     uri = raw.decode("latin-1") + (f"?{query}" if query else "")
-    accept = headers.get("accept", "").lower()
+    accept = headers.get(b"accept", b"").decode("latin-1").lower()
     wanted = values.get("format", "").lower()
     return HttpRequest(
         method=scope["method"],
@@ -133,11 +123,24 @@ def _request(scope: Mapping[str, Any]) -> HttpRequest:
         uri=uri[:LONGEST_URI],
         values=values,
         is_json=wanted == "json" or ("application/json" in accept and wanted != "xml"),
-        is_page=wanted == "html" or (_kinds(accept) >= BROWSER and not wanted),
-        takes_gzip="gzip" in headers.get("accept-encoding", ""),
-        origin=headers.get("origin", ""),
-        host=headers.get("host", ""),
+        is_page=wanted == "html"
+        or ("html" in accept and _kinds(accept) >= BROWSER and not wanted),
+        takes_gzip=b"gzip" in headers.get(b"accept-encoding", b""),
+        origin=headers.get(b"origin", b"").decode("latin-1"),
+        host=headers.get(b"host", b"").decode("latin-1"),
     )
+
+
+def _values(query: str) -> dict[str, str]:
+    """Parameters of a query, each as it stands first; none if there are too many."""
+    try:
+        pairs = parse_qsl(query, keep_blank_values=True, max_num_fields=MOST_PARAMETERS)
+    except ValueError:
+        return {}
+    values: dict[str, str] = {}
+    for key, value in pairs:
+        values.setdefault(key, value)
+    return values
 
 
 def _kinds(accept: str) -> set[str]:
@@ -190,7 +193,9 @@ def _file(agent: Agent, path: str) -> bytes | None:
 
 
 def _parts_of(path: str) -> list[str]:
-    return [unquote(part) for part in path.split("/") if part]
+    # Few addresses have anything quoted.
+    plain = unquote if "%" in path else str
+    return [plain(part) for part in path.split("/") if part]
 
 
 def _writes(agent: Agent, parts: list[str]) -> tuple[str, ...]:

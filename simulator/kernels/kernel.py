@@ -13,12 +13,22 @@ owner references (none here), its size, item size, address, shape and strides.
 """
 
 import logging
-from collections.abc import Callable, Iterator
-from ctypes import CFUNCTYPE, c_double, c_int32, c_int64, c_void_p, create_string_buffer
+from collections.abc import Callable, Iterable, Iterator
+from ctypes import (
+    CFUNCTYPE,
+    addressof,
+    c_char,
+    c_double,
+    c_int32,
+    c_int64,
+    c_void_p,
+    create_string_buffer,
+)
 from functools import update_wrapper
-from typing import Generic, ParamSpec, TypeVar
+from typing import Any, Generic, ParamSpec, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from simulator.kernels import link, store
 from simulator.kernels.identity import digest
@@ -106,17 +116,28 @@ def _type_of(value: object) -> object:
     raise TypeError(f"a kernel takes numbers, arrays and tuples of them, not {value!r}")
 
 
-def _numbers(values: tuple[object, ...]) -> Iterator[Number]:
+def _numbers(values: Iterable[object]) -> list[Number]:
     """All numbers of some values in the order in which machine code expects them."""
+    numbers: list[Number] = []
     for value in values:
         if isinstance(value, np.ndarray):
-            yield from (0, 0, value.size, value.itemsize, value.ctypes.data)
-            yield from value.shape
-            yield from value.strides
+            numbers += (0, 0, value.size, value.itemsize, _address(value))
+            numbers += value.shape
+            numbers += value.strides
         elif isinstance(value, tuple):
-            yield from _numbers(value)
+            numbers += _numbers(value)
         elif isinstance(value, (int, float)):
-            yield value
+            numbers.append(value)
+    return numbers
+
+
+def _address(array: NDArray[Any]) -> int:
+    """Address of the first item of an array."""
+    flags = array.flags
+    # An eighth of the time of numpy's own ``ctypes.data``, which small kernels would feel.
+    if flags.writeable and flags.c_contiguous and array.size:
+        return addressof(c_char.from_buffer(array))
+    return int(array.ctypes.data)
 
 
 def _ctypes(values: tuple[object, ...]) -> Iterator[type[c_int64 | c_double]]:

@@ -234,7 +234,8 @@ class _Interpreter:
         """Actions with their lines; collected moves are passed on when another action comes."""
         for line, block in blocks:
             self.line = line
-            yield from (ProgramAct(line=line, act=act) for act in self._read(block))
+            for act in self._read(block):
+                yield ProgramAct(line=line, act=act)
             if isinstance(block, ProgramEnd):
                 return
         yield from (ProgramAct(line=self.line, act=act) for act in self._flush())
@@ -319,8 +320,12 @@ class _Interpreter:
 
     def _start(self, end: Point) -> Point:
         """Start of a move; unknown coordinates are taken from its end."""
-        known = [e if isnan(a) else a for a, e in zip(self.at, end, strict=True)]
-        return known[0], known[1], known[2]
+        x, y, z = self.at
+        return (
+            end[0] if isnan(x) else x,
+            end[1] if isnan(y) else y,
+            end[2] if isnan(z) else z,
+        )
 
     def _retract(self, block: Retract) -> Iterator[Act]:
         x, y, _ = self.at
@@ -343,6 +348,13 @@ class _Interpreter:
     def _linear(self, block: Linear) -> Iterator[Act]:
         start = self._start(block.end)
         yield from self._cut_begins(start[0])
+        if self.surface is None:
+            # The usual case, once in each block: the line is one piece.
+            pace = self._pace(block.rate, 0.5 * (start[0] + block.end[0]), block.end[0])
+            if start != block.end:
+                self.rows.line(start, block.end, pace=pace, line=self.line)
+            self.at = list(block.end)
+            return
         *parts, _ = self._parts(start[0], block.end[0])
         at = start
         for to in (*(_between(start, block.end, part) for part in parts), block.end):

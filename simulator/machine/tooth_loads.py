@@ -15,16 +15,13 @@ from simulator.machine.transients import entry_share
 from simulator.motion.segments import Bools, Floats, Ints
 from simulator.physics import flank
 from simulator.physics.flutes import CuttingEdges, ForceLaw
+from simulator.physics.known_places import wall_at
 from simulator.physics.tooth_forces import (
     Places,
     forces,
-    wall_force,
 )
 from simulator.physics.uneven_teeth import Runout, eccentric_runout
 from simulator.removal.stations import StationKind, Stations, single_arcs
-
-DIGITS = 3
-"""Number of decimals to which engagements are distinguished: µm, mrad."""
 
 LAND = ForceLaw(exponent=0.0, radial_share=flank.NORMAL / flank.CUTTING)
 """Force law of a wear land, which rubs along the engaged edges whatever the chip."""
@@ -100,12 +97,9 @@ def wall_forces(stations: Stations, edge: CuttingEdge) -> Floats:
     if edge.compliance == 0.0 or not len(at):
         return found
     arcs = single_arcs(stations)
-    columns = (arcs.entry_angle, arcs.exit_angle, arcs.depth)
-    keys = np.round(np.stack([column[at] for column in columns]), DIGITS)
-    told, row = np.unique(keys, axis=1, return_inverse=True)
-    places = Places(entry_angle=told[0], exit_angle=told[1], axial_depth=told[2])
+    columns = np.stack((arcs.entry_angle[at], arcs.exit_angle[at], arcs.depth[at]))
     for made, law in zip(found, (_law(edge), LAND), strict=True):
-        made[at] = wall_force(_flutes(edge), places, law)[row.ravel()]
+        made[at] = wall_at(_flutes(edge), law, columns)
     return found
 
 

@@ -260,22 +260,6 @@ def plunges(run: ToolPathRun) -> Bools:
     return plunging
 
 
-def duration(run: ToolPathRun, control: ControlModel, limits: AxisLimits) -> float:
-    """Time from the start of a path to its end, including waits, s."""
-    whole, speed = 0.0, None
-    for leg in run.legs:
-        moving = 0.0
-        if leg.last > leg.first:
-            moving = control.plan(run.segments[leg.first : leg.last], limits).duration
-        if leg.ramp is not None and speed is not None:
-            awaited = leg.ramp.time_from(speed) if leg.ramp.is_awaited else 0.0
-            moving = max(moving, awaited)
-            speed = leg.ramp.after(moving, speed)
-        whole += moving + leg.wait
-        speed = leg.spindle if leg.spindle is not None else speed
-    return whole
-
-
 class _Collector:
     """Converter of a tool path; keeps the position of the tool and the state of the spindle."""
 

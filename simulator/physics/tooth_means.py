@@ -6,10 +6,14 @@ each edge as in :mod:`simulator.physics.tooth_forces`, which defines the model. 
 """
 
 from dataclasses import dataclass
-from math import ceil, pi
+from functools import lru_cache
+from math import ceil, inf, pi
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from simulator.kernels.kernel import entry, kernel
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -48,9 +52,8 @@ class Arcs:
         )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Periods:
-    """Tooth periods of a revolution, prepared for evaluating many sets of offsets."""
+class Periods(NamedTuple):
+    """Tooth periods of a revolution, prepared for many sets of offsets; a tuple for kernels."""
 
     feed_per_tooth: Floats
     """Feed per tooth f_z, (z,), mm."""
@@ -62,6 +65,8 @@ class Periods:
     """Share of a period in which the k-th previous tooth is at a point, (z, K, P)."""
     cutting: NDArray[np.int64]
     """Number of the k-th previous tooth in each period, (z, K)."""
+    equal: Floats
+    """Force of equal teeth in each period, over ``K·k_c1.1·f_z^q``, (z,)."""
 
 
 def periods(
@@ -80,27 +85,46 @@ def periods(
     delay : float, rad
         Rotation of the cutter within the time constant of the dynamometer.
     """
-    teeth = len(arcs.entry_angle)
+    return Periods(
+        feed_per_tooth,
+        float(exponent),
+        *_prepared(
+            *(
+                np.asarray(each, dtype=np.float64).tobytes()
+                for each in (arcs.entry_angle, arcs.exit_angle, arcs.lag)
+            ),
+            float(exponent),
+            delay,
+        ),
+    )
+
+
+# In a straight cut all revolutions have the same arcs; the key holds all that the values
+# depend on, so nothing makes an entry invalid.
+@lru_cache(maxsize=64)
+def _prepared(
+    entry_angle: bytes, exit_angle: bytes, lag_angle: bytes, exponent: float, delay: float
+) -> tuple[Floats, Floats, NDArray[np.int64], Floats]:
+    """What depends on the arcs, as bytes of (z,) arrays: see :class:`Periods`."""
+    begin, end, lags = (np.frombuffer(each) for each in (entry_angle, exit_angle, lag_angle))
+    teeth = len(begin)
     pitch = 2.0 * pi / teeth
-    contact = (arcs.exit_angle - arcs.entry_angle)[:, None]
+    contact = (end - begin)[:, None]
     passed = contact * ((np.arange(POINTS) + 0.5) / POINTS)
     # The ends of a straight edge are placed one point apart, so that no point is lost or
     # doubled; the excess length lies half before and half behind.
-    lag = np.maximum(arcs.lag[:, None], contact / POINTS)
-    low = passed + 0.5 * (arcs.lag[:, None] - lag)
+    lag = np.maximum(lags[:, None], contact / POINTS)
+    low = passed + 0.5 * (lags[:, None] - lag)
     reach = float((contact + lag).max()) + _LAGS * delay
     before = np.arange(min(max(ceil(reach / pitch), 1), teeth))
     ends = pitch * np.arange(len(before) + 1)[:, None]
     share = _passed(ends - low[:, None, :], lag[:, None, :], delay)
     share[:, 0], share[:, -1] = 0.0, 1.0
     weight = np.diff(share, axis=1) * (contact / (POINTS * pitch))[:, None, :]
-    return Periods(
-        feed_per_tooth=feed_per_tooth,
-        exponent=exponent,
-        sine=np.sin(arcs.entry_angle[:, None] + passed).clip(min=0.0),
-        weight=weight,
-        cutting=(np.arange(teeth)[:, None] - before) % teeth,
-    )
+    sine = np.sin(begin[:, None] + passed).clip(min=0.0)
+    cutting = (np.arange(teeth)[:, None] - before) % teeth
+    equal: Floats = (weight.sum(axis=1) * sine**exponent).sum(axis=1)
+    return sine, weight, cutting, equal
 
 
 def _passed(angle: Floats, lag: Floats, delay: float) -> Floats:
@@ -142,13 +166,38 @@ def tooth_means(at: Periods, offsets: Floats) -> Floats:
     >>> tooth_means(four, np.array([[0.0, LOST, 0.0, 0.0]])).round(6)
     array([[1., 0., 2., 1.]])
     """
-    teeth = offsets.shape[1]
-    back = (np.arange(teeth)[:, None] - np.arange(1, teeth + 1)) % teeth
-    higher = offsets[:, :, None] - offsets[:, back]
-    steps = np.arange(1.0, teeth + 1.0)[:, None] * at.sine[:, None, None, :]
-    over = higher[:, at.cutting] / at.feed_per_tooth[:, None, None]
-    chips = (steps + over[..., None]).min(axis=3).clip(min=0.0)
-    force = (at.weight * chips**at.exponent).sum(axis=(2, 3))
-    equal = (at.weight.sum(axis=1) * at.sine**at.exponent).sum(axis=1)
-    means: Floats = force / equal
+    means = np.empty(offsets.shape)
+    _means(at, np.ascontiguousarray(offsets), means)
     return means
+
+
+@entry
+def _means(at: Periods, offsets: Floats, means: Floats) -> None:
+    """Kernel of :func:`tooth_means`; the means are written into ``means``."""
+    for row in range(offsets.shape[0]):
+        means_of(at, offsets[row], means[row])
+
+
+@kernel
+def means_of(at: Periods, offsets: Floats, means: Floats) -> None:
+    """Write the means, (z,), of one set of offsets, (z,); for kernels."""
+    for period in range(offsets.shape[0]):
+        force = 0.0
+        for back in range(at.cutting.shape[1]):
+            tooth = at.cutting[period, back]
+            for point in range(at.sine.shape[1]):
+                weight = at.weight[period, back, point]
+                if weight != 0.0:
+                    force += weight * _chip(at, offsets, period, tooth, point) ** at.exponent
+        means[period] = force / at.equal[period]
+
+
+@kernel
+def _chip(at: Periods, offsets: Floats, period: int, tooth: int, point: int) -> float:
+    """Chip of a tooth at a point of the arc over the feed per tooth."""
+    teeth, chip = offsets.shape[0], inf
+    for step in range(1, teeth + 1):
+        # An index below 0 counts from the end, in kernels too.
+        higher = offsets[tooth] - offsets[tooth - step]
+        chip = min(chip, step * at.sine[period, point] + higher / at.feed_per_tooth[period])
+    return max(chip, 0.0)

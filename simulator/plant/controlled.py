@@ -6,10 +6,11 @@ influences. It satisfies the protocols of :mod:`controller.ports` without import
 mm, s, N, W, rev/s.
 """
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import ceil, exp, inf, pi
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,12 +31,10 @@ SLOWEST = 0.1
 
 NMM_S_PER_WATT = 1000.0
 
-_STEPS = (np.arange(SAMPLES) + 1.0) / SAMPLES
 _FINE = 100.0  # reciprocal resolution to which patterns round angles and runout over feed
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TrueState:
+class TrueState(NamedTuple):
     """True state of the machine in the last period."""
 
     force: float = 0.0
@@ -100,6 +99,17 @@ class _Now:
     )
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Lagged:
+    """Response of the axes within a period; kept until one of another length is asked for."""
+
+    period: float
+    steps: Floats
+    """Share of the period at each sample, (K,)."""
+    gone: Floats
+    """Share of the difference to the command that is gone then, (K,)."""
+
+
 class ControlledMachine:
     """Virtual machine with a feed override; a mutable object.
 
@@ -125,6 +135,7 @@ class ControlledMachine:
         self._now = _Now(tool=int(course.tool[course.can_override.argmax()]))
         self._changes = sorted(hidden.changes, key=lambda change: change.time)
         self._ends: list[float] = course.until.tolist()
+        self._lagged = _Lagged(period=0.0, steps=np.empty(0), gone=np.empty(0))
 
     @property
     def time(self) -> float:
@@ -226,9 +237,9 @@ class ControlledMachine:
             ways, end = self._ways(period, count), until
         now.override = self._aim + (now.override - self._aim) * self._left(period)
         overrides = _steps(ways) * (count / period)
-        rows = course.until.searchsorted(now.progress + ways, side="left")
-        rows = np.minimum(rows, len(course) - 1)
-        cut = int(rows[-1]) if course.force[rows[-1]] > 0.0 else cell
+        rows = self._rows(ways)
+        last = int(rows[-1])
+        cut = last if course.force[last] > 0.0 else cell
         tooth = now.turned % teeth
         chips, land = self._mean_forces(rows, overrides)
         mean: Floats = chips + land
@@ -247,6 +258,16 @@ class ControlledMachine:
             force = np.array([force.mean()])
         reading = self._reading(cell, period, force, feed=feed, tooth=tooth, override=override)
         return self._with_normal(reading, chips, land) if self._bench.has_normal else reading
+
+    def _rows(self, ways: Floats) -> Ints:
+        """Cell of each sample; of a tooth period within a cell, one for all of them."""
+        progress, last = self._now.progress, len(self._ends) - 1
+        begin, end = progress + float(ways[0]), progress + float(ways[-1])
+        cell = min(bisect_left(self._ends, begin, lo=max(self._now.cell - 1, 0)), last)
+        if begin <= end <= self._ends[cell] or cell == last:
+            return np.array([cell])
+        found = self.course.until.searchsorted(progress + ways, side="left")
+        return np.minimum(found, last)
 
     @property
     def _aim(self) -> float:
@@ -283,12 +304,12 @@ class ControlledMachine:
 
     def _with_normal(self, reading: Reading, chips: Floats, land: Floats) -> Reading:
         """Add the force normal to the edges, as its channel shows it."""
-        true = RADIAL_SHARE * chips.mean() + NORMAL / CUTTING * land.mean()
+        true = float(RADIAL_SHARE * chips.mean() + NORMAL / CUTTING * land.mean())
         is_lost = reading.time <= self._now.silent_until
-        shown = self._normals.shown(
-            np.array([true]), time=reading.time, interval=reading.period, is_lost=is_lost
+        shown = self._normals.shown_one(
+            true, time=reading.time, interval=reading.period, is_lost=is_lost
         )
-        return replace(reading, normal=float(shown[0]))
+        return reading._replace(normal=shown)
 
     def _truth(self, cut: int, *, mean: float, force: Floats, override: float) -> TrueState:
         course, depth = self.course, self._now.factors[HiddenQuantity.DEPTH]
@@ -315,10 +336,15 @@ class ControlledMachine:
 
     def _ways(self, period: float, count: int) -> Floats:
         """Program time after each sample of a period, s; the override lags its command."""
-        now, lag, aim = self._now, self.hidden.servo_lag, self._aim
-        steps = _STEPS if count == SAMPLES else (np.arange(count) + 1.0) / count
-        gone = 1.0 - np.exp(-period * steps / lag)
-        ways: Floats = aim * period * steps + (now.override - aim) * lag * gone
+        lag, aim = self.hidden.servo_lag, self._aim
+        if self._lagged.period != period or len(self._lagged.steps) != count:
+            steps = (np.arange(count) + 1.0) / count
+            gone = 1.0 - np.exp(-period * steps / lag)
+            self._lagged = _Lagged(period=period, steps=steps, gone=gone)
+        known = self._lagged
+        ways: Floats = (
+            aim * period * known.steps + (self._now.override - aim) * lag * known.gone
+        )
         return ways
 
     def _feed_end(self, cell: int, end: float) -> float:
@@ -381,13 +407,14 @@ class ControlledMachine:
         now, course = self._now, self.course
         is_lost = now.time <= now.silent_until
         interval = period / SAMPLES
-        power = np.array([self.truth.power])
-        power = self._powers.shown(power, time=now.time, interval=period, is_lost=is_lost)
+        power = self._powers.shown_one(
+            self.truth.power, time=now.time, interval=period, is_lost=is_lost
+        )
         return Reading(
             time=now.time,
             period=period,
             force=self._forces.shown(force, time=now.time, interval=interval, is_lost=is_lost),
-            power=float(power[0]),
+            power=power,
             feed=feed,
             override=override,
             spindle_speed=float(course.spindle_speed[cell]),

@@ -16,6 +16,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields
 from functools import lru_cache
 from math import atan, ceil, cos, hypot, pi
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,9 +45,8 @@ SUNKEN = 10.0
 """Distance of a broken tooth below the others, in feeds per tooth, so that it cuts nothing."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EngagedTeeth:
-    """Teeth of a cutter on one contact arc."""
+class EngagedTeeth(NamedTuple):
+    """Teeth of a cutter on one contact arc; a tuple, as one is looked up for each tooth."""
 
     count: int
     entry_angle: float

@@ -73,6 +73,21 @@ class Acquisition:
         self._held = 0.0
         self._step = _LagStep(0.0, 0, 0.0)
         self._drawn = np.empty((3, 0))
+        self._used = 0
+
+    def shown_one(self, truth: float, *, time: float, interval: float, is_lost: bool) -> float:
+        """Apply the errors to one true value: :meth:`shown` of one sample, but faster."""
+        by, step, value = self.instrument, self._step, truth
+        if by.lag > 0.0:
+            if step.interval != interval or len(step.kept) != 1:
+                step = self._step = _LagStep(interval, 1, by.lag)
+            value = self._held = step.weight * truth + step.share * self._held
+        gain, floor, luck = self._draws(1)[:, 0].tolist()
+        value = value * gain + (floor + by.drift * time)
+        if by.step > 0.0:
+            # With digits, as numpy rounds: a zero keeps its sign.
+            value = round(value / by.step, 0) * by.step
+        return nan if is_lost or luck < by.missing else value
 
     def shown(self, truth: Floats, *, time: float, interval: float, is_lost: bool) -> Floats:
         """Apply the errors of the instrument to true values.
@@ -94,8 +109,8 @@ class Acquisition:
         by, count = self.instrument, len(truth)
         values: Floats = self._late(truth, interval) if by.lag > 0.0 else truth
         # Drawn even if lost, so that later samples do not depend on what arrived.
-        relative, absolute, luck = self._draws(count)
-        values = values * (1.0 + by.noise * relative) + (by.floor * absolute + by.drift * time)
+        gain, floor, luck = self._draws(count)
+        values = values * gain + (floor + by.drift * time)
         if by.step > 0.0:
             values = np.rint(values / by.step) * by.step
         if is_lost:
@@ -105,14 +120,18 @@ class Acquisition:
         return values
 
     def _draws(self, count: int) -> Floats:
-        """Random numbers, (3, K): two rows normal, one uniform; drawn in bulk for speed."""
-        if self._drawn.shape[1] < count:
-            more = max(DRAWN, count)
-            normal = self._random.standard_normal((2, more))
-            fresh = np.concatenate((normal, self._random.random((1, more))))
-            self._drawn = np.concatenate((self._drawn, fresh), axis=1)
-        now, self._drawn = self._drawn[:, :count], self._drawn[:, count:]
-        return now
+        """Random gains, zeros and luck, (3, K): two normal, one uniform; drawn in bulk."""
+        if self._drawn.shape[1] - self._used < count:
+            more, by = max(DRAWN, count), self.instrument
+            fresh = np.empty((3, more))
+            fresh[:2] = self._random.standard_normal((2, more))
+            fresh[2] = self._random.random(more)
+            fresh[0] = 1.0 + by.noise * fresh[0]
+            fresh[1] = by.floor * fresh[1]
+            self._drawn = np.concatenate((self._drawn[:, self._used :], fresh), axis=1)
+            self._used = 0
+        begin, self._used = self._used, self._used + count
+        return self._drawn[:, begin : self._used]
 
     def _late(self, truth: Floats, interval: float) -> Floats:
         """First-order lag of a truth that is constant between samples."""
@@ -136,3 +155,5 @@ class _LagStep:
         """Weight of each true sample, (K, K)."""
         self.kept = decay ** (rows + 1.0)
         """Weight of the previously held value, (K,)."""
+        self.weight = float(self.weights[0, 0]) if count else 0.0
+        self.share = float(self.kept[0]) if count else 0.0

@@ -6,7 +6,9 @@ So every moment of the run gets a program time, whatever feed was run. The overr
 recorded run is what it was; commands have no effect. Units mm, s, N, W.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from math import isnan
 
 import numpy as np
 
@@ -17,9 +19,6 @@ from simulator.plant.course import NominalCourse
 from simulator.plant.hidden import HiddenChange
 from simulator.reading import Reading
 
-NEAR = 1.0
-"""Offset between the zero points of program and recording that is taken as none, in mm."""
-
 AHEAD = 2.0
 """Multiple of the measured way within which the next place is looked for."""
 
@@ -29,17 +28,26 @@ MARGIN = 2.0
 PREFERENCE = 0.1
 """Distance that counts as much as a unit of way more or less than was measured."""
 
+FITS = 0.05
+"""Mean distance from the path, in mm, at which an offset needs no other to compare with."""
+
 FAR = 5.0
 """Distance from the path at which a sample is not of this program, in mm."""
 
 MOST_FAR = 0.2
 """Share of such samples in a run that is refused."""
 
+ALIKE = 0.1
+"""Difference of overrides by feed and by positions, as a share, up to which it is noise."""
+
 SMOOTH = 0.1
 """Time before and after a moment over which its override is measured, in s."""
 
 TINY = 1e-12
 """Squared length of a step between cells that counts as none, in mm²."""
+
+LOOKS = 13
+"""Number of places around one at which forces are compared."""
 
 LIKE = 1.1
 """Ratio of forces that count as the same."""
@@ -87,8 +95,7 @@ def program_times(signals: RecordedSignals, course: NominalCourse) -> Floats:
     gone = _way(measured)
     if not gone[-1] > 0.0:
         raise CalibrationError("the recorded positions do not change")
-    measured = measured - _offset(measured, path, gone * (way[-1] / gone[-1]), way)
-    places, far = _followed(measured, path, gone, way)
+    places, far = _placed(measured, path, gone, way)
     if np.mean(far > FAR) > MOST_FAR:
         raise CalibrationError(
             f"{np.mean(far > FAR):.0%} of the positions are more than {FAR:g} mm off the path: "
@@ -106,11 +113,34 @@ def _way(path: Floats) -> Floats:
     return np.concatenate(([0.0], np.cumsum(steps)))
 
 
-def _offset(measured: Floats, path: Floats, gone: Floats, way: Floats) -> Floats:
-    """Return the offset of the recorded zero point from that of the program, in mm."""
+def _placed(measured: Floats, path: Floats, gone: Floats, way: Floats) -> tuple[Floats, Floats]:
+    """Return the place of each sample and its distance with the offset that fits best."""
+    best: tuple[Floats, Floats] | None = None
+    for offset in _offsets(measured, path, gone * (way[-1] / gone[-1]), way):
+        found = _followed(measured - offset, path, gone, way)
+        if best is None or _misfit(found[1]) < _misfit(best[1]):
+            best = found
+        if _misfit(found[1]) <= FITS:
+            break
+    assert best is not None
+    return best
+
+
+def _misfit(far: Floats) -> float:
+    """Return the mean distance from the path, in mm; samples of something else count alike."""
+    return float(np.minimum(far, FAR).mean())
+
+
+def _offsets(measured: Floats, path: Floats, gone: Floats, way: Floats) -> Iterator[Floats]:
+    """Generate offsets of the recorded zero point that may be, in mm, the likeliest first.
+
+    A whole run goes as far to both sides as the program. The way gone tells less: corners that
+    are cut between samples shorten it, so that all samples seem to lag.
+    """
+    yield np.zeros(path.shape[1])
+    yield 0.5 * sum(ends(measured, axis=0) - ends(path, axis=0) for ends in (np.min, np.max))
     near = np.minimum(way.searchsorted(gone), len(path) - 1)
-    offset: Floats = np.median(measured - path[near], axis=0)
-    return np.where(np.abs(offset) > NEAR, offset, 0.0)
+    yield np.median(measured - path[near], axis=0)
 
 
 def _followed(
@@ -143,13 +173,18 @@ def _followed(
     return places, far
 
 
-def _steady(course: NominalCourse) -> Bools:
-    """Return for each cell whether the force hardly changes around it, (N,)."""
-    first = course.until.searchsorted(course.until - SMOOTH)
-    last = np.minimum(course.until.searchsorted(course.until + SMOOTH), len(course) - 1)
+def _steady(course: NominalCourse, interval: float) -> Bools:
+    """Return for each cell whether the force hardly changes around it, (N,).
+
+    A force between two samples is interpolated, so that it knows of an interval on both sides.
+    """
     force = np.asarray(course.force, dtype=np.float64)
-    ends = np.stack([force[first], force, force[last]])
-    return np.asarray(ends.max(axis=0) <= LIKE * ends.min(axis=0))
+    low, high = force.copy(), force.copy()
+    for away in np.linspace(-1.0, 1.0, LOOKS) * (SMOOTH + interval):
+        rows = np.minimum(course.until.searchsorted(course.until + away), len(course) - 1)
+        np.minimum(low, force[rows], out=low)
+        np.maximum(high, force[rows], out=high)
+    return np.asarray(high <= LIKE * low)
 
 
 class RecordedMachine:
@@ -176,7 +211,7 @@ class RecordedMachine:
         self._signals = signals
         self._program = program_times(signals, course)
         self._ends: list[float] = course.until.tolist()
-        self._is_steady = _steady(course)
+        self._is_steady = _steady(course, self.interval)
         self._end = float(signals.time[-1])
         self._cell = int(course.until.searchsorted(self._program[0], side="right"))
         self._progress = float(self._program[0])
@@ -188,11 +223,6 @@ class RecordedMachine:
     def interval(self) -> float:
         """Usual time between samples, in s."""
         return float(np.median(np.diff(self._signals.time)))
-
-    @property
-    def is_steady(self) -> bool:
-        """Whether the expected force is the same shortly before and after this place."""
-        return bool(self._is_steady[min(self._cell, len(self.course) - 1)])
 
     @property
     def share(self) -> float:
@@ -262,14 +292,26 @@ class RecordedMachine:
         begin, end = np.interp(times, self._signals.time, self._program)
         return float((end - begin) / (times[1] - times[0]))
 
+    def _override_of(self, feed: float, cell: int, time: float) -> float:
+        """Return the override by the recorded feed, or by positions where they contradict it.
+
+        Stamps and positions come in steps, so that positions alone tell an override that
+        wavers. Force over wavering feeds looks like the force of a worn edge.
+        """
+        gone, nominal = self._override(time), float(self.course.feed[cell])
+        if not nominal > 0.0 or isnan(feed):
+            return gone
+        told = feed / nominal
+        return told if abs(told - gone) <= ALIKE * gone else gone
+
     def _reading(self, cell: int, period: float, *, is_feed: bool) -> Reading:
-        signals, course = self._signals, self.course
+        signals, course, middle = self._signals, self.course, self.time - 0.5 * period
         # NaN beside a sample that is unknown.
         force, power, feed = (
-            float(np.interp(self.time - 0.5 * period, signals.time, each))
+            float(np.interp(middle, signals.time, each))
             for each in (signals.force, signals.power, signals.feed)
         )
-        override = self._override(self.time - 0.5 * period) if is_feed else 1.0
+        override = self._override_of(feed, cell, middle) if is_feed else 1.0
         teeth = int(course.teeth[cell])
         tooth = self._turned % teeth
         self._turned += is_feed
@@ -295,4 +337,6 @@ class RecordedMachine:
             progress=self._progress,
             workingstep=int(course.workingstep[cell]),
             can_override=is_feed,
+            # Places of a recording are known less exactly than forces change elsewhere.
+            is_placed=bool(self._is_steady[min(self._cell, len(course) - 1)]),
         )

@@ -9,7 +9,7 @@ nearest point decides as well, and a flat tool on a helix has a closed form. All
 from the arc by at most ``CHORD_SHARE`` of a cell. Units mm and rad.
 """
 
-from math import ceil, floor, hypot, inf, sqrt
+from math import ceil, copysign, floor, hypot, inf, nan, sqrt
 from typing import NamedTuple
 
 from simulator.kernels.kernel import kernel
@@ -30,6 +30,9 @@ from simulator.removal.zmap import HeightGrid
 CHORD_SHARE = 0.01
 """Greatest deviation of chords from an arc without a closed form, as a share of a cell."""
 
+UNDER = 1.0 - 1e-9
+"""Share of the flat's area of which rounding leaves no doubt that a cell lies under it."""
+
 MEASURE = -1
 """Move number that requests measuring only: no cell is cut."""
 
@@ -40,6 +43,17 @@ slot that run through cell middles only one removes its cells."""
 _PLACE = 1e-4
 """Tolerance, mm, of the position of the contact point found by bisection; the error of the
 height is its square over the corner radius."""
+
+_MANY = 16.0
+"""Width of a bisection, in tolerances, from which it is worth to work out where it ends."""
+
+_GUARD = 1e-5
+"""Distance, mm, from an expected contact beyond which the sign of the derivative is known."""
+
+_SETTLED = 1e-6
+"""Change, mm, of the distance of an expected contact below which it is known well enough."""
+
+_REPETITIONS = 6
 
 
 @kernel
@@ -186,6 +200,11 @@ def _over(line: _Line, profile: CutterProfile, x: float, y: float, height: float
     x, y = x - line.way.x, y - line.way.y
     u = x * line.along_x + y * line.along_y
     v = y * line.along_x - x * line.along_y
+    if line.slope < 0.0 and profile.slope == 0.0:
+        # On a ramp most cells lie under the flat of the tool at the end of the move.
+        ahead = line.length - u
+        if ahead * ahead + v * v <= UNDER * profile.flat**2:
+            return line.way.z + line.slope * (u + ahead)
     # The nearest point of the path at its lowest height gives a lower bound for any tool.
     beyond = u - min(max(u, 0.0), line.length)
     square = beyond * beyond + v * v
@@ -284,16 +303,47 @@ def _bisected(
         high = max(min(high, -inner), low)
     else:
         low = min(max(low, inner), high)
+    expected = corner_contact(profile, v, slope) if high - low > _MANY * _PLACE else nan
     while high - low > _PLACE:
         middle = 0.5 * (low + high)
-        distance = max(sqrt(middle * middle + v * v), LEAST)
-        if slope + steepness(profile, distance) * middle / distance > 0.0:
+        if abs(middle - expected) > _GUARD:
+            is_beyond = middle > expected
+        else:
+            distance = max(sqrt(middle * middle + v * v), LEAST)
+            is_beyond = slope + steepness(profile, distance) * middle / distance > 0.0
+        if is_beyond:
             high = middle
         else:
             low = middle
     middle = 0.5 * (low + high)
     distance = min(sqrt(middle * middle + v * v), profile.radius)
     return slope * (u + middle) + rise(profile, distance)
+
+
+@kernel
+def corner_contact(profile: CutterProfile, v: float, slope: float) -> float:
+    """Position along a sloping line at which a corner touches a cell, from the axis, mm.
+
+    The distance d from the axis meets ``d = flat + corner·t/√(1 + t²)`` with
+    ``t = |slope|/√(1 − v²/d²)``, which a few repetitions solve when the corner is small. It
+    only spares evaluations of a bisection, whose result is the same.
+
+    Returns
+    -------
+    float, mm
+        NaN where it is not found so.
+    """
+    if profile.slope > 0.0 or profile.corner <= 0.0 or abs(v) >= profile.flat:
+        return nan
+    distance = profile.flat
+    for _ in range(_REPETITIONS):
+        along = sqrt(1.0 - (v / distance) ** 2)
+        tangent = abs(slope) / along
+        nearer = profile.flat + profile.corner * tangent / sqrt(1.0 + tangent * tangent)
+        change, distance = abs(nearer - distance), nearer
+        if change < _SETTLED * along and distance < profile.tangent:
+            return copysign(sqrt(distance * distance - v * v), -slope)
+    return nan
 
 
 @kernel

@@ -74,9 +74,10 @@ def windows_of(segments: Segments, cell: float) -> Windows:
     count[segments.is_rapid] = 1
     segment = np.repeat(np.arange(len(length)), count)
     rank = np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)
-    is_last = rank == count[segment] - 1
-    start, end = rank * step[segment], (rank + 1) * step[segment]
-    end[is_last] = length[segment[is_last]]
+    # Counted from the end of a segment, where the walls of shoulders are met.
+    left = count[segment] - 1 - rank
+    end = length[segment] - left * step[segment]
+    start = np.where(rank == 0, 0.0, np.roll(end, 1))
     return Windows(
         segment=np.insert(segment, 0, segment[:1]),
         start=np.insert(start, 0, start[:1]),

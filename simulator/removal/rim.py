@@ -128,15 +128,17 @@ def look(
     else:
         slices = _slices(grid, work, tool, pose, base, upright)
     count_all = int(np.int64(0))
-    area, across, edges, widest, most = 0.0, 0.0, 0.0, 0.0, 0.0
+    area, across, edges, widest, most, ring_radius = 0.0, 0.0, 0.0, 0.0, 0.0, -1.0
     for index in range(slices):
         work.areas[index] = 0.0
         low, high = work.bounds[index], work.bounds[index + 1]
         middle = 0.5 * (low + high)
         radius = radius_at(profile, middle - pose.z)
         circle = circle_of(pose, radius, tool.side)
-        if not plain:
+        # Slices of a cylindrical flank share a ring.
+        if not plain and radius != ring_radius:
             read_ring(grid, work, circle, gap)
+            ring_radius = radius
         found, known = _slice(grid, before, work, circle, middle, index > 0)
         if not plain and pose.climb > 0.0:
             found = _leading(work, found, profile, middle - pose.z, pose.climb)
@@ -264,9 +266,10 @@ def _slice(
     samples = len(work.heights)
     step = pi / samples
     known, is_at_border = True, grid.radius > 0.0
-    free, candidates = _recent(before, work, circle, level), min(latest, RECENT)
     if _runs(work, level) == 0:
         return 0, True
+    free, candidates = _recent(before, work, circle, level), min(latest, RECENT)
+    used = np.int64(OUTSIDE)
     for index in range(samples):
         if work.solid[index] == 0:
             continue
@@ -277,10 +280,9 @@ def _slice(
         if work.solid[index] > NEAR:
             free = add_free(work.arcs, free, index * step, (index + 1) * step)
             continue
-        seen = candidates - 1
-        while seen >= 0 and work.candidates[seen] != owner:
-            seen -= 1
-        if seen >= 0:
+        # Neighbours mostly have the same owner.
+        if owner == used or _is_candidate(work, candidates, owner):
+            used = owner
             continue
         if owner >= max(latest - FORGETTING, 0) and candidates < MOST_CANDIDATES:
             tried = free_by_move(
@@ -290,6 +292,7 @@ def _slice(
                 free = tried
                 work.candidates[candidates] = owner
                 candidates += 1
+                used = owner
                 continue
         known = False
         free = add_free(work.arcs, free, index * step, (index + 1) * step)
@@ -298,6 +301,15 @@ def _slice(
     if is_above:
         free = _named_inside(grid, before, work, circle, level, free)
     return contact_arcs(work.arcs, free), known
+
+
+@kernel
+def _is_candidate(work: RimBuffers, count: int, owner: int) -> bool:
+    """Whether the outline of a move has been used."""
+    seen = count - 1
+    while seen >= 0 and work.candidates[seen] != owner:
+        seen -= 1
+    return seen >= 0
 
 
 @kernel

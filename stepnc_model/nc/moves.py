@@ -9,9 +9,9 @@ NaN. Rows name their block, so that advice finds its way back into the file.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum, IntFlag, StrEnum
-from functools import cached_property
+from functools import cache, cached_property
 from math import inf, nan, pi
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -186,9 +186,11 @@ class ModalSetting:
     """Distance along Z of the tip from the programmed place (DL), mm."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NcMove:
-    """One executed move, for readers that go through them one by one."""
+class NcMove(NamedTuple):
+    """One executed move, for readers that go through them one by one.
+
+    A tuple and not a dataclass, as a long program has one for each block.
+    """
 
     kind: MoveKind
     start: Point
@@ -459,7 +461,7 @@ class NcMoves:
             seconds=word if kind == MoveKind.DWELL else 0.0,
             block=block,
             call=call,
-            flags=MoveFlag(flags),
+            flags=_flag(flags),
             setting=self.settings[setting],
         )
 
@@ -471,6 +473,12 @@ class NcMoves:
         found = index >= 0
         spread[found] = values[index[found]]
         return spread
+
+
+@cache
+def _flag(number: int) -> MoveFlag:
+    """Flag of a number; there are few different ones."""
+    return MoveFlag(number)
 
 
 def _point(numbers: Sequence[float]) -> Point:

@@ -37,6 +37,9 @@ APART = 1e-6
 """Distance above which a move does not start where the last one ended, mm."""
 
 
+FED = frozenset({MoveKind.LINE, MoveKind.ARC, MoveKind.THREAD})
+"""Kinds of moves at a feed."""
+
 NOTHING: Mapping[int, Block] = {}
 
 
@@ -60,9 +63,11 @@ def neutral_blocks(
         line = text.line(move.block)
         if index in before:
             yield line, before[index]
-        for block in _set(state.setting, move.setting):
-            yield line, block
-        state.setting = move.setting
+        # Moves share their setting: mostly it is the same object.
+        if move.setting is not state.setting:
+            for block in _set(state.setting, move.setting):
+                yield line, block
+            state.setting = move.setting
         for block in _moved(state, move):
             yield line, block
     yield line, ProgramEnd()
@@ -102,7 +107,7 @@ def _moved(state: _State, move: NcMove) -> Iterator[Block]:
         if move.kind is MoveKind.RAPID and not isnan(move.end[2]) and isnan(sum(state.at)):
             yield Retract(z=move.end[2])
         return
-    is_fed = move.kind in {MoveKind.LINE, MoveKind.ARC, MoveKind.THREAD} and move.feed > 0.0
+    is_fed = move.kind in FED and move.feed > 0.0
     is_begun = isnan(sum(move.start))
     if not is_begun and _is_apart(state.at, move.start) and (is_fed or not isnan(state.at[0])):
         yield Rapid(end=move.start, is_way=True)
@@ -129,4 +134,8 @@ def _rate(move: NcMove) -> Rate:
 
 
 def _is_apart(one: Point, other: Point) -> bool:
-    return not all(abs(a - b) <= APART for a, b in zip(one, other, strict=True))
+    return not (
+        abs(one[0] - other[0]) <= APART
+        and abs(one[1] - other[1]) <= APART
+        and abs(one[2] - other[2]) <= APART
+    )

@@ -74,7 +74,7 @@ class Watched:
         is_lost = bool(np.isnan(force).any())
         # While the machine's own sensor is silent, the mean of all teeth is what is known.
         self.truth.append(self._machine.truth.force if is_lost else float(force.mean()))
-        return replace(reading, force=self._shown(reading, is_lost=is_lost))
+        return reading._replace(force=self._shown(reading, is_lost=is_lost))
 
     def _shown(self, reading: Reading, *, is_lost: bool) -> Floats:
         interval = reading.period / len(reading.force)

@@ -148,7 +148,7 @@ def _patterns() -> None:
     Danger().run((1.0,))
 
 
-@settings(max_examples=150)
+@settings(max_examples=80)
 @given(DANGERS, WISHES)
 def test_no_law_breaks_the_tool(danger: Danger, wishes: tuple[float, ...]) -> None:
     done = danger.run(wishes)

@@ -67,7 +67,7 @@ class Told:
                 raise MachineLost("no answer")
             return None
         self._count += 1
-        values = {name: getattr(given, name) for name in Reading.__dataclass_fields__}
+        values = {name: getattr(given, name) for name in Reading._fields}
         time = self._count * PERIOD
         values |= {"time": time, "progress": time, "tooth": (self._count - 1) % given.teeth}
         return Reading(**values)

@@ -1,6 +1,5 @@
 """From what sensors show to a force, from what the operator wants to a set point."""
 
-from dataclasses import replace
 from math import e, exp, isnan, log, nan, pi
 
 import numpy as np
@@ -23,12 +22,12 @@ from controller.ports import Reading
 from tests.controller.shown import turn
 from tests.every_case import every_case
 
-IDLE = replace(turn(np.full((1, 4), 5.0))[0], period=0.25, time=0.25, can_override=False)
+IDLE = turn(np.full((1, 4), 5.0))[0]._replace(period=0.25, time=0.25, can_override=False)
 """a quarter of a second in rapid, with 5 N of offset"""
 
 
 def rest(force: list[float], *, time: float) -> Reading:
-    return replace(IDLE, force=np.array(force), time=time)
+    return IDLE._replace(force=np.array(force), time=time)
 
 
 def test_offset_is_the_mean_without_chips() -> None:
@@ -40,16 +39,16 @@ def test_offset_is_the_mean_without_chips() -> None:
 
 def test_nothing_is_learnt_from_chips_or_from_silence() -> None:
     known = Tare(offset=3.0, seconds=1.0)
-    assert tared(known, replace(IDLE, can_override=True)) is known
+    assert tared(known, IDLE._replace(can_override=True)) is known
     assert tared(known, IDLE, has_chips=True) is known
     assert tared(known, rest([nan, nan], time=1.0)) is known
     assert tared(known, rest([], time=1.0)) is known
-    assert tared(known, replace(IDLE, period=0.0)) is known
+    assert tared(known, IDLE._replace(period=0.0)) is known
     assert not Tare().is_known
 
 
 def test_caller_who_knows_of_air_at_feed_has_it_learnt() -> None:
-    assert tared(Tare(), replace(IDLE, can_override=True), has_chips=False).offset == 5.0
+    assert tared(Tare(), IDLE._replace(can_override=True), has_chips=False).offset == 5.0
 
 
 def test_what_was_learnt_counts_less_the_older_it_is() -> None:
@@ -79,18 +78,18 @@ def test_drift_is_followed_within_its_lag(seed: int, drift: float) -> None:
 
 
 def test_offset_is_subtracted_and_what_is_lost_stays_lost() -> None:
-    reading = replace(IDLE, force=np.array([15.0, nan]))
+    reading = IDLE._replace(force=np.array([15.0, nan]))
     shown = without_offset(reading, Tare(offset=5.0, seconds=1.0))
     np.testing.assert_array_equal(shown.force, [10.0, nan])
     np.testing.assert_array_equal(reading.force, [15.0, nan])
 
 
-CUT = replace(IDLE, can_override=True, power=1000.0, spindle_speed=35_000.0 / 60 / (pi * 18.0))
+CUT = IDLE._replace(can_override=True, power=1000.0, spindle_speed=35_000.0 / 60 / (pi * 18.0))
 """35 m/min with a cutter of 18 mm, the worked case of the paper"""
 
 
 def idle_at(spindle_speed: float, power: float = 710.0) -> IdlePower:
-    reading = replace(IDLE, spindle_speed=spindle_speed, power=power)
+    reading = IDLE._replace(spindle_speed=spindle_speed, power=power)
     return idled(IdlePower(), reading)
 
 
@@ -108,8 +107,8 @@ def test_power_of_the_papers_case_gives_its_force() -> None:
     [
         (CUT, IdlePower()),
         (CUT, idle_at(2.0 * CUT.spindle_speed)),
-        (replace(CUT, power=nan), idle_at(CUT.spindle_speed)),
-        (replace(CUT, spindle_speed=0.0), idle_at(0.0)),
+        (CUT._replace(power=nan), idle_at(CUT.spindle_speed)),
+        (CUT._replace(spindle_speed=0.0), idle_at(0.0)),
     ],
     ids=["never idled", "at another speed", "lost", "standing"],
 )
@@ -121,17 +120,17 @@ def test_force_is_not_known_without(reading: Reading, idle: IdlePower) -> None:
 
 def test_idle_power_is_learnt_anew_at_another_speed() -> None:
     slow = idle_at(50.0, power=300.0)
-    same = idled(slow, replace(IDLE, spindle_speed=50.2, power=320.0))
+    same = idled(slow, IDLE._replace(spindle_speed=50.2, power=320.0))
     assert same.tare.offset == pytest.approx(310.0)
     assert same.spindle_speed == 50.0
-    fast = idled(same, replace(IDLE, spindle_speed=100.0, power=700.0))
+    fast = idled(same, IDLE._replace(spindle_speed=100.0, power=700.0))
     assert (fast.spindle_speed, fast.tare.offset) == (100.0, 700.0)
 
 
 def test_power_in_a_cut_or_lost_is_no_idle_power() -> None:
     idle = idle_at(CUT.spindle_speed)
     assert idled(idle, CUT) is idle
-    assert idled(idle, replace(IDLE, power=nan)) is idle
+    assert idled(idle, IDLE._replace(power=nan)) is idle
 
 
 @every_case(("diameter", "efficiency"), [(0.0, 0.9), (18.0, 0.0), (18.0, 1.1)])

@@ -1,7 +1,5 @@
 """Axes that do not run what was commanded, and those that are only slow."""
 
-from dataclasses import replace
-
 import pytest
 
 from controller.following import PATIENCE, Following, followed
@@ -15,7 +13,7 @@ def after(overrides: list[float], commanded: float, begin: float = 1.0) -> Follo
     """State after the axes ran these overrides under one command."""
     now = Following(modelled=begin)
     for override in overrides:
-        told = replace(reading(100.0), period=PERIOD, override=override)
+        told = reading(100.0)._replace(period=PERIOD, override=override)
         now = followed(now, told, commanded, lag=LAG)
     return now
 

@@ -125,7 +125,7 @@ def test_too_many_holds_stop_the_program_for_good() -> None:
 
 def test_holds_of_one_workingstep_do_not_count_in_the_next() -> None:
     overload = [reading(700.0), *even(1, 100.0, override=0.0)]
-    second = [replace(each, workingstep=2) for each in [*even(3), *overload * 3]]
+    second = [each._replace(workingstep=2) for each in [*even(3), *overload * 3]]
     run = plugged([*even(3), *overload * 3, *second], steps=[step(), step()]).run()
     assert run.kinds.count(EventKind.HOLD) == 6
     assert not run.loop.state.is_stopped
@@ -252,7 +252,7 @@ def test_a_sensor_that_repeats_itself_is_silent() -> None:
 
 def test_teeth_that_never_make_a_revolution_are_silence_as_well() -> None:
     # Each reading begins where it should, but half of the time is missing between them.
-    every_other = [replace(each, period=0.4 * PERIOD) for each in even(100)]
+    every_other = [each._replace(period=0.4 * PERIOD) for each in even(100)]
     run = plugged([*even(5), *every_other]).run()
     assert holdings(run) >= {OverrideReason.SILENCE}
     assert run.loop.state.override == 0.5
@@ -337,3 +337,13 @@ def test_a_look_ahead_into_the_past_is_refused() -> None:
 def test_an_exponent_of_nothing_is_refused() -> None:
     with pytest.raises(ValueError, match="exponent"):
         LoopStep(reference=Reference(workingstep="x"), exponent=0.0)
+
+
+def test_no_force_is_compared_where_the_place_is_not_known() -> None:
+    """A recording knows its places less exactly than forces change at an entry."""
+    known = plugged(even(6)).run()
+    unknown = plugged(even(6, is_placed=False)).run()
+    assert any(cycle.ratio is not None for cycle in known.cycles)
+    assert all(cycle.ratio is None for cycle in unknown.cycles)
+    life = unknown.loop.state.monitor.life
+    assert life is None or life.readings == 0

@@ -86,14 +86,14 @@ def test_a_revolution_without_a_force_is_lost() -> None:
 
 
 def test_without_a_set_point_nothing_exceeds_it() -> None:
-    free = replace(cycle(1), set_point=inf)
+    free = cycle(1)._replace(set_point=inf)
     record = recorded(free)[1]
     assert (record.excess, record.over_time) == (0.0, 0.0)
     assert record.set_point == inf
 
 
 def test_cycles_without_a_revolution_take_time() -> None:
-    record = recorded(replace(cycle(3), revolution=None, ratio=None))[3]
+    record = recorded(cycle(3)._replace(revolution=None, ratio=None))[3]
     assert (record.time, record.cutting_time) == (0.02, 0.0)
 
 

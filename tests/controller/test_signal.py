@@ -1,6 +1,5 @@
 """Readings of tooth periods become revolutions."""
 
-from dataclasses import replace
 from itertools import pairwise
 from math import isnan, nan
 
@@ -66,8 +65,8 @@ def test_figures_are_those_of_all_samples(
 def test_means_are_taken_of_what_goes_with_the_force() -> None:
     first, second = turn(np.ones((2, 4)))
     found = one([
-        replace(first, power=nan, feed=10.0, override=0.5, progress=0.105, time=3.01),
-        replace(second, power=700.0, feed=20.0, override=1.0, progress=0.115, time=3.02),
+        first._replace(power=nan, feed=10.0, override=0.5, progress=0.105, time=3.01),
+        second._replace(power=700.0, feed=20.0, override=1.0, progress=0.115, time=3.02),
     ])
     assert (found.power, found.feed, found.override) == (700.0, 15.0, 0.75)
     assert (found.time, found.progress, found.teeth) == (3.02, 0.115, 2)
@@ -76,7 +75,7 @@ def test_means_are_taken_of_what_goes_with_the_force() -> None:
 
 
 def test_power_that_never_arrived_is_not_known() -> None:
-    assert isnan(one([replace(each, power=nan) for each in turn(np.ones((2, 4)))]).power)
+    assert isnan(one([each._replace(power=nan) for each in turn(np.ones((2, 4)))]).power)
 
 
 @given(seed=st.integers(0, 2**32 - 1), lost=st.floats(0.0, 1.0))
@@ -121,12 +120,12 @@ def test_samples_lost_where_the_revolution_closes_are_filled_across_it() -> None
 
 def test_reading_without_samples_is_a_tooth_that_was_lost() -> None:
     readings = turn(np.full((4, 8), 100.0))
-    readings[2] = replace(readings[2], force=np.empty(0))
+    readings[2] = readings[2]._replace(force=np.empty(0))
     found = one(readings)
     assert (found.force, found.coverage) == (100.0, 0.75)
     assert isnan(found.tooth_means[2])
     assert isnan(found.tooth_passing)
-    nothing = one([replace(each, force=np.empty(0)) for each in readings])
+    nothing = one([each._replace(force=np.empty(0)) for each in readings])
     assert nothing.coverage == 0.0
     assert isnan(nothing.force)
 
@@ -135,7 +134,7 @@ def test_unlike_numbers_of_samples_are_all_there() -> None:
     """A sampling rate that the tooth period is no multiple of."""
     readings = turn(np.ones((3, 1)))
     rows = [np.array([1.0, 2.0]), np.array([3.0]), np.array([4.0, 6.0])]
-    readings = [replace(each, force=row) for each, row in zip(readings, rows, strict=True)]
+    readings = [each._replace(force=row) for each, row in zip(readings, rows, strict=True)]
     found = one(readings)
     assert found.coverage == 1.0
     np.testing.assert_array_equal(found.tooth_means, [1.5, 3.0, 5.0])
@@ -158,10 +157,9 @@ NEXT = turn(np.arange(32.0).reshape(4, 8), start=0.02)
 )
 def test_revolution_begins_anew_at_a_change(change: dict[str, float]) -> None:
     """After the first tooth of the second revolution; four more complete the next one."""
-    odd = replace(NEXT[1], **change)  # type: ignore[arg-type]
+    odd = NEXT[1]._replace(**change)  # type: ignore[arg-type]
     later = [
-        replace(
-            odd,
+        odd._replace(
             tooth=(odd.tooth + row) % 4,
             time=odd.time + row * odd.period,
             progress=odd.progress + row * odd.period,
@@ -184,8 +182,8 @@ def test_revolution_begins_anew_at_a_change(change: dict[str, float]) -> None:
     ids=str,
 )
 def test_what_is_no_cut_belongs_to_no_revolution(change: dict[str, float]) -> None:
-    odd = replace(NEXT[0], **change)  # type: ignore[arg-type]
-    assert not any(collected([*FOUR[:3], replace(odd, tooth=3), *NEXT[:3]]))
+    odd = NEXT[0]._replace(**change)  # type: ignore[arg-type]
+    assert not any(collected([*FOUR[:3], odd._replace(tooth=3), *NEXT[:3]]))
     assert collected([*FOUR[:3], odd, *FOUR])[-1] is not None
 
 
@@ -201,8 +199,7 @@ def cut(reading: Reading, period: float, count: int) -> list[Reading]:
     """Readings of another period in place of the teeth; each with the mean of its time."""
     speed, teeth = reading.spindle_speed, reading.teeth
     return [
-        replace(
-            reading,
+        reading._replace(
             time=(row + 1) * period,
             progress=(row + 1) * period,
             period=period,

@@ -1,4 +1,3 @@
-from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -81,7 +80,7 @@ def test_power_over_idle_power_is_force_times_speed() -> None:
     found = source.conditioned(reading(0.0, power=200.0 + 1000.0), DIAMETER)
     expected = 1000.0 * 1000.0 * EFFICIENCY / (pi * DIAMETER * SPINDLE_SPEED)
     assert found.force == pytest.approx([expected])
-    other = replace(reading(0.0, power=1200.0), spindle_speed=2.0 * SPINDLE_SPEED)
+    other = reading(0.0, power=1200.0)._replace(spindle_speed=2.0 * SPINDLE_SPEED)
     assert np.isnan(source.conditioned(other, DIAMETER).force).all()
 
 

@@ -183,3 +183,54 @@ def test_share_of_the_land_is_what_it_adds() -> None:
 def test_watchfulness_is_positive(name: str) -> None:
     with pytest.raises(ValueError, match=f"{name} 0 must be greater"):
         WearMonitorSettings(**{name: 0})
+
+
+WRONG = {
+    "entry": np.linspace(3.2, 1.5, 25),
+    "exit": np.concatenate((np.full(300, 1.3), np.linspace(1.3, 0.4, 25))),
+}
+"""Ratios where a recording dates an entry or an exit wrongly."""
+
+
+@pytest.mark.parametrize("where", WRONG)
+def test_what_is_dated_wrongly_is_no_noise_and_is_left_behind(where: str) -> None:
+    ratios = np.concatenate((WRONG[where], np.full(60, 1.3)))
+    life = lifetime(noisy(ratios, 5, 0.005))[-1]
+    assert life.hardness == pytest.approx(1.3, rel=0.05)
+    assert life.flank_wear < 0.01
+
+
+@settings(max_examples=100)
+@given(
+    readings=st.lists(
+        st.tuples(st.floats(0.05, 20.0), st.floats(0.1, 20.0), st.floats(0.0, 5.0)),
+        min_size=1,
+        max_size=60,
+    )
+)
+def test_no_readings_make_work_or_wear_negative(
+    readings: list[tuple[float, float, float]],
+) -> None:
+    ratios, shares, normal = np.array(readings).T
+    for life in lifetime(ratios, share=shares, normal=normal):
+        assert life.hardness > 0.0
+        assert life.belief.mean[1:].min() >= 0.0
+        assert np.isfinite(life.belief.covariance).all()
+
+
+def test_the_factor_that_is_recorded_is_without_the_wear() -> None:
+    flank = np.linspace(0.0, 0.2, 4000)
+    life = lifetime(noisy(worn(flank), 3))[-1]
+    assert life.is_wear_sure
+    whole = log(float(worn(0.2)))
+    assert life.sharp(whole, LAND_SHARE) == pytest.approx(0.0, abs=0.05)
+    assert new_tool().sharp(whole, LAND_SHARE) == whole
+
+
+def test_a_wear_that_an_error_of_the_plan_may_be_is_not_sure() -> None:
+    """The force of 0.012 mm is two per cent: less than a plan knows, whatever the noise."""
+    shares = np.where(np.arange(6000) % 40 < 20, 1.0, 3.0)
+    life = lifetime(1.0 + 0.012 * shares, share=shares)[-1]
+    noise = float(np.sqrt(life.belief.covariance[2, 2]))
+    assert 3.0 * noise < life.flank_wear < 0.02
+    assert not life.is_wear_sure

@@ -20,7 +20,7 @@ USUAL = {
     "paper002": ("paper002", "paper002"),
     "shaft": ("lathe22", "42CrMo4"),
 }
-DEEP_INSERT = ("$,55.,(#412),3.,$)", "$,55.,(#412),5.,$)")
+DEEP_INSERT = ("$,55.,(#412),3.,$)", "$,55.,(#412),6.,$)")
 """Finishing insert of the shaft for the 4.1 mm that it meets at a shoulder."""
 
 ALL_FREE = frozenset(Free)

@@ -13,9 +13,12 @@ from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from simulator.removal.zmap import MOST_CELLS
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.program import Program, Stock
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
+
+BLOCK = Stock(low=(-3.0, -3.0, -40.0), high=(153.0, 93.0, 2.0))
+"""Raw part of the bracket."""
 
 
 def program(part: str, *change: str) -> Program:
@@ -79,6 +82,9 @@ def test_cells_suit_the_smallest_tool_within_reason() -> None:
     stock = ClampedStocks(part, load_machine("vmc15")).before(part.workingsteps[0])
     assert isinstance(stock, MillingStock)
     assert stock.map.cell <= 6.0 / 16.0
+    # Slivers thinner than a cell must be met alike by plan and run.
+    as_run = MillingStock(BLOCK, smallest_diameter=6.0)
+    assert stock.map.cell == as_run.map.cell
     assert stock.map.grid.heights.size < MOST_CELLS
 
 

@@ -8,7 +8,7 @@ import pytest
 from optimiser.cut import CutKind
 from optimiser.estimated import Estimates, estimated_cut
 from simulator.library import find_grade, load_machine, load_material
-from simulator.spec import CuttingMaterial, ToolKind
+from simulator.spec import CuttingMaterial, Machine, ToolKind
 from stepnc_model.program import Program
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
@@ -43,15 +43,23 @@ def test_no_workingstep_knows_of_another() -> None:
     assert cuts.cut(second)[0] == alone
 
 
-def helix_of(name: str, material: str) -> float:
+def helix_of(name: str, material: str, machine: Machine = MILL) -> float:
     program = Program.load(PARTS / "bracket.stpnc")
     (step,) = (each for each in program.workingsteps if each.id == name)
-    return estimated_cut(program, step, MILL, load_material(material))[0].helix_angle
+    return estimated_cut(program, step, machine, load_material(material))[0].helix_angle
 
 
 def test_the_helix_of_a_cutter_is_that_of_its_grade() -> None:
     grade = find_grade(ToolKind.ENDMILL, CuttingMaterial.CARBIDE, "P")
     assert helix_of("FINISH CONTOUR", "c45") == grade.helix_angle == radians(30.0)
+
+
+def test_the_helix_counts_wherever_the_tool_bends() -> None:
+    """A machine with stated limits takes the stiffness of a tool where the group is known."""
+    stated = load_machine("paper003")
+    assert stated.only_stated_limits
+    assert helix_of("FINISH CONTOUR", "c45", stated) == radians(30.0)
+    assert helix_of("FINISH CONTOUR", "paper002", stated) == 0.0
 
 
 def test_edges_of_a_face_mill_are_straight_whatever_the_material() -> None:

@@ -353,9 +353,11 @@ def test_weak_clamps_bound_the_bracket_and_a_note_tells_what_is_asked() -> None:
 
 
 def test_a_wiper_allows_twice_the_feed_for_the_same_roughness() -> None:
-    name, asked = "FINISHING TOOL, CARBIDE P15", 1.6e-3
+    name, asked = "FINISHING TOOL, CARBIDE P15", 0.8e-3
     plain, wiped = (
-        advice_of(shaft(task=OptimisationTask(wipers=wipers)), "FINISH CONTOUR")
+        advice_of(
+            shaft(task=OptimisationTask(wipers=wipers, roughness=asked)), "FINISH CONTOUR"
+        )
         for wipers in (frozenset[str](), frozenset({name}))
     )
     assert after(wiped).setting.feed == pytest.approx(2.0 * after(plain).setting.feed)

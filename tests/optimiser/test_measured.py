@@ -65,7 +65,9 @@ def test_what_the_workingsteps_remove_is_what_the_stock_lost(
     stock = source.stocks.before(source.program.workingsteps[-1])
     assert isinstance(stock, MillingStock)
     lost = 156.0 * 96.0 * 42.0 - stock.map.volume
-    assert sum(cut.volume or 0.0 for cut in cuts.values()) == pytest.approx(lost, rel=2e-3)
+    # Sections know walls better than the map, which loses whole cells: half a cell of 0.12 mm
+    # along walls of some 60 cm².
+    assert sum(cut.volume or 0.0 for cut in cuts.values()) == pytest.approx(lost, rel=4e-3)
 
 
 def test_what_turning_removes_is_what_the_bar_lost(

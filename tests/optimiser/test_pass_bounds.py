@@ -9,6 +9,7 @@ from optimiser.errors import Infeasible
 from optimiser.formulate import OptimisationTask, problem_of
 from optimiser.modes import Free, Mode
 from optimiser.pass_bounds import are_alike, bounds_of
+from simulator.spec import Kienzle
 from tests.optimiser.cuts import CARBIDE, CUT
 
 DEEP = replace(CUT, total_depth=12.0, rest_time=3.0, volume=36_000.0)
@@ -51,3 +52,13 @@ def test_levels_that_differ_in_length_or_volume_are_not_alike() -> None:
     assert are_alike([DEEP, replace(DEEP, length=0.95 * DEEP.length)])
     assert not are_alike([DEEP, replace(DEEP, length=0.8 * DEEP.length)])
     assert not are_alike([DEEP, replace(DEEP, volume=30_000.0)])
+
+
+def test_where_levels_are_not_alike_no_load_bounds_them() -> None:
+    """A wall that leans leaves less to some levels: they may be cut faster."""
+    hard = replace(
+        CARBIDE, material=replace(CARBIDE.material, kienzle=Kienzle(k_c11=9000.0, m_c=0.25))
+    )
+    bounds = bounds_of(DEEP, hard, OptimisationTask(), passes=2)
+    alike, unlike = (bounds.at_least(2, is_alike=each) for each in (True, False))
+    assert unlike < 0.9 * alike

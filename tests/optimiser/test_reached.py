@@ -9,13 +9,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from optimiser.cut import Cut, CutKind, ReachedLoads
+from optimiser.cut import CriticalPlace, Cut, CutKind, ReachedLoads
 from optimiser.hardest import KINDS, Bending, PathContacts
-from optimiser.reached import MachineRun, with_reached
+from optimiser.reached import MachineRun, thickened, with_reached
 from simulator.motion.control import ExactStop
+from simulator.motion.fir import FixedTimeFilter
 from simulator.motion.legs import Leg
-from simulator.motion.segments import AxisLimits, Segments, lines
+from simulator.motion.passing import motion_of
+from simulator.motion.segments import AxisLimits, ControlModel, Segments, lines
 from simulator.motion.tool_path import ToolPathRun
+from simulator.physics.engagement import full_immersion
 from simulator.removal.stations import Stations, stretch_lengths
 from tests.optimiser.cuts import CUT, DRILLED, TURNED
 
@@ -39,7 +42,8 @@ def ride(
         is_clockwise=True,
         legs=(Leg(first=0, last=len(path), wait=0.0),),
     )
-    return MachineRun(run=run, control=ExactStop(), limits=HELD, feed=feed, spindle=SPINDLE)
+    motion = motion_of(run, ExactStop(), HELD)
+    return MachineRun(motion=motion, feed=feed, spindle=SPINDLE)
 
 
 def met(
@@ -122,6 +126,15 @@ def test_each_load_has_a_place_of_its_own() -> None:
     assert found.reached.wall == pytest.approx(1.0)
 
 
+def test_slow_axes_brake_in_the_last_micrometres() -> None:
+    """A cone is met whole at its end: at 0.6 mm/s the way to brake is 2 µm."""
+    slow = 0.6
+    path = lines([(0, 0, 1), (0, 0, 0)], speed=slow)
+    cone = met(DRILLED, (0.7, 1.0), (1.0, 6.0), growth=(0.0, 6.0))
+    found = reached(DRILLED, cone, ride(path, feed=slow))
+    assert loads(found)[0] > 0.98
+
+
 def test_where_no_wall_bends_its_share_is_one() -> None:
     found = reached(CUT, met(CUT, (99.5, 0), (100, 6)), ride())
     assert found.reached.wall == 1.0
@@ -186,6 +199,16 @@ def test_a_turned_cut_learns_where_its_power_is_greatest() -> None:
 DOWN = lines([(0, 0, 0), (0, 0, -100)], speed=FEED)
 
 
+def test_a_spindle_that_slows_down_has_its_power_where_a_segment_begins() -> None:
+    """Between the middles of segments its speed changes evenly: 21 to 20 rev/s is 20.5."""
+    path = lines([(0, 0, 0), (0, 0, -50), (0, 0, -100)], speed=FEED)
+    both = met(TURNED, (50.0, 1e-6), (50.0, 4.0), segment=(0, 1), diameter=(40.0, 40.0))
+    even = reached(TURNED, both, ride(path, spindle=(20.0, 20.0)))
+    late = reached(TURNED, both, ride(path, spindle=(21.0, 20.0)))
+    assert even.power_diameter is not None
+    assert late.power_diameter == pytest.approx(even.power_diameter * 20.5 / 20.0)
+
+
 def test_a_drill_at_its_feed_has_the_chip_of_its_feed() -> None:
     found = reached(DRILLED, met(DRILLED, (50, 70)), ride(DOWN))
     assert found.thickest == pytest.approx(1.0)
@@ -229,3 +252,42 @@ def test_at_the_programmed_feed_no_share_is_above_one(
 def test_a_cut_keeps_all_else() -> None:
     found = reached(CUT, met(CUT, (99.5, 0), (100, 6)), ride())
     assert replace(found, reached=ReachedLoads()) == CUT
+
+
+def test_limits_bear_places_that_are_faster_than_their_feed() -> None:
+    """A control that rounds a change of the feed speeds up before it: 10 % more force."""
+    place = CriticalPlace(engagement=full_immersion(), depth_share=1.0, fill=0.5)
+    fast = ReachedLoads(force=1.1, power=1.1, wall=1.2)
+    cut = replace(CUT, shank=place, wall=place, fill=0.8, reached=fast)
+    borne = thickened(cut)
+    assert borne.fill == pytest.approx(0.88)
+    assert borne.shank is not None
+    assert borne.wall is not None
+    assert (borne.shank.fill, borne.wall.fill) == pytest.approx((0.55, 0.6))
+    assert borne.reached == ReachedLoads()
+    slow = replace(cut, reached=ReachedLoads(force=0.9, power=0.9, wall=0.9))
+    assert thickened(slow) is slow
+
+
+@pytest.mark.parametrize("control", [ExactStop(), FixedTimeFilter(first=0.1, second=0.05)])
+@pytest.mark.parametrize("seed", range(6))
+def test_stations_that_are_not_looked_at_change_nothing(
+    control: ControlModel, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    random = np.random.default_rng(seed)
+    corners = random.uniform(0.0, 8.0, (40, 3)) * [1.0, 1.0, 0.1]
+    path = lines(list(corners), speed=FEED)
+    path.speed[20:] *= random.uniform(0.3, 1.5)
+    rows = np.repeat(np.arange(len(path)), 5)
+    ends = (path.length[:, None] * np.linspace(0.2, 1.0, 5)).ravel()
+    section = random.uniform(0.5, 6.0, len(ends))
+    walls = random.uniform(0.0, 6.0, len(ends))
+    places = met(CUT, *zip(ends, section, strict=True), segment=rows)
+    how = replace(ride(path), motion=motion_of(ride(path).run, control, HELD))
+    found = []
+    for first in (1, 16, 10_000):
+        monkeypatch.setattr("optimiser.reached.FIRST", first)
+        found.append(loads(reached(CUT, places, how, bent(*walls))))
+    assert found[0] == pytest.approx(found[2], rel=1e-12)
+    assert found[1] == pytest.approx(found[2], rel=1e-12)
+    assert min(found[2]) > 0.0

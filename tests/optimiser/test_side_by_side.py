@@ -22,7 +22,7 @@ from simulator.matching import match_material
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program, ResolvedWorkingstep
 
-FEW = 8
+FEW = 5
 """workingsteps of a half that go to another process in a program that is really planned"""
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")

@@ -25,6 +25,7 @@ from optimiser.workingstep import (
     Solution,
     conflict,
     cost_function,
+    least_of_convex,
     limits_at,
     saving_of_one_more,
     solve,
@@ -202,6 +203,19 @@ def test_a_deeper_pass_may_cost_less_where_a_shallower_costs_more() -> None:
         for count, feed in ((1, 0.1), (2, 0.0375), (3, 0.0375), (4, 0.6))
     ]
     assert times[3] < times[0] < times[1] < times[2]
+
+
+@pytest.mark.parametrize("guess", [-3, 1, 2, 5, 6, 7, 12, 40, 10**6])
+@pytest.mark.parametrize("best", [2, 3, 6, 11, 12])
+def test_the_least_of_a_convex_cost_is_found_from_any_guess(best: int, guess: int) -> None:
+    least = least_of_convex(lambda passes: 1.0 + (passes - best) ** 2, 2, 12, guess=guess)
+    assert least == best
+
+
+@pytest.mark.parametrize("guess", [0, 3, 5, 6, 9])
+def test_of_equal_costs_the_fewest_passes_are_taken(guess: int) -> None:
+    costs = {1: float("inf"), 2: 9.0, 3: 4.0, 4: 4.0, 5: 4.0 * (1.0 + 1e-12), 6: 7.0}
+    assert least_of_convex(costs.__getitem__, 2, 6, guess=guess) == 3
 
 
 def test_deepest_pass_first_is_often_not_the_best_and_never_better() -> None:

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from service import usecases
 from service.contents import check
 from service.requests.given import ProgramRequest, Units
+from service.verbs.optimise import program as advising
 from stepnc_model.errors import StepNcError
 from tests.asking import asked_advice
 
@@ -44,7 +44,7 @@ Edit = st.one_of(
 )
 
 bounded = settings(
-    max_examples=120,
+    max_examples=60,
     deadline=None,
     derandomize=True,
     database=None,
@@ -91,7 +91,7 @@ def read_and_optimise(data: bytes, units: str = "iso") -> None:
         with suppress(StepNcError):
             check(path, ProgramRequest(units=Units(units)))
         with suppress(StepNcError):
-            usecases.optimise(*asked_advice(file=path, units=units, dry_run=True))
+            advising.advise_program(*asked_advice(file=path, units=units, dry_run=True))
         assert [each.name for each in Path(folder).iterdir()] == ["part.stpnc"]
 
 
@@ -128,7 +128,7 @@ def test_swapped_references_answer_or_are_refused(
     read_and_optimise(data)
 
 
-@settings(bounded, max_examples=60)
+@settings(bounded, max_examples=25)
 @given(data=st.binary(max_size=400), has_opening=st.booleans())
 def test_any_bytes_answer_or_are_refused(data: bytes, has_opening: bool) -> None:
     read_and_optimise(b"ISO-10303-21;HEADER;ENDSEC;DATA;" + data if has_opening else data)

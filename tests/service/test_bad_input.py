@@ -93,7 +93,7 @@ def damaged(old: str, new: str) -> str:
     [
         ("", "line 1, column 1: the file is empty"),
         (" \r\n\n", "line 1, column 1: the file is empty"),
-        ("G0 X0 Y0\n", "'G0 X0 Y0' found"),
+        ("a text\n", "'a text' found"),
         ("{}", "not an ISO 10303-21 file"),
         (PAPER[: PAPER.index("'ROUGH THE FACE',10.") + 4], "line 53, column 29"),
         (PAPER[: PAPER.index("#50,#41,#42")], "line 53, column 1"),

@@ -8,11 +8,12 @@ from typing import Any
 
 import pytest
 
-from service import usecases
 from service.cli.main import optimise_main
+from service.cli.verbs import print_result
 from service.confirmation import PASSED, Confirmation, ConfirmedStep, Figure
-from service.plan_output import plan_json, print_plan
-from service.usecases import OptimiseResult
+from service.rendering.records import dump
+from service.verbs.optimise import program as advising
+from service.verbs.optimise.plan_result import ProgramAdvice
 from simulator.errors import SimulationError
 from simulator.removal.difference import StockDifference
 from stepnc_model.errors import StepNcError
@@ -46,14 +47,14 @@ def part(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def outcome(part: Path) -> OptimiseResult:
-    return usecases.optimise(
+def outcome(part: Path) -> ProgramAdvice:
+    return advising.advise_program(
         *asked_advice(file=part, machine="vmc15", dry_run=True, confirm=True)
     )
 
 
 @pytest.fixture(scope="module")
-def confirmation(outcome: OptimiseResult) -> Confirmation:
+def confirmation(outcome: ProgramAdvice) -> Confirmation:
     assert outcome.confirmation is not None
     return outcome.confirmation
 
@@ -78,7 +79,7 @@ def test_every_workingstep_has_every_figure(confirmation: Confirmation) -> None:
 
 
 def test_what_was_promised_is_what_the_plan_says(
-    outcome: OptimiseResult, confirmation: Confirmation
+    outcome: ProgramAdvice, confirmation: Confirmation
 ) -> None:
     for advice, step in zip(outcome.plan.advices, confirmation.steps, strict=True):
         assert advice.after is not None
@@ -137,8 +138,8 @@ def test_the_ratio_of_nothing_is_none() -> None:
     assert figure(promised=0.0).ratio is None
 
 
-def test_json_holds_promise_finding_ratio_and_bound(outcome: OptimiseResult) -> None:
-    found: dict[str, Any] = json.loads(plan_json(outcome.plan, outcome.confirmation))
+def test_json_holds_promise_finding_ratio_and_bound(outcome: ProgramAdvice) -> None:
+    found: dict[str, Any] = json.loads(dump(outcome.record()))
     assert found["confirmation"]["passed"] == []
     for step in found["confirmation"]["workingsteps"]:
         assert list(step) == ["id", *KEYS, "stock_left"]
@@ -151,18 +152,20 @@ def test_json_holds_promise_finding_ratio_and_bound(outcome: OptimiseResult) -> 
     assert slot["deflection_um"]["bound"] == pytest.approx(25.0)
     assert face["deflection_um"]["ratio"] is None
     assert face["time_s"]["bound"] is None
-    assert "confirmation" not in json.loads(plan_json(outcome.plan))
+    assert "confirmation" not in json.loads(dump(replace(outcome, confirmation=None).record()))
 
 
 def test_a_bound_that_is_passed_is_said_and_is_the_exit_code(
-    outcome: OptimiseResult,
+    outcome: ProgramAdvice,
     part: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     step = ConfirmedStep(id="ROUGH FACE", figures=(figure(found=130.0, bound=110.0),))
     worse = replace(outcome, confirmation=Confirmation(steps=(step,)))
-    monkeypatch.setattr(usecases, "optimise", lambda request, files, tell: worse)
+    monkeypatch.setattr(
+        "service.verbs.optimise.run.advise_program", lambda request, files, tell: worse
+    )
     with pytest.raises(SystemExit) as stopped:
         optimise_main([str(part), "--confirm", "--dry-run"])
     assert stopped.value.code == LIMIT_EXCEEDED
@@ -201,7 +204,7 @@ def test_a_machine_without_axes_is_refused_before_anything_is_planned() -> None:
     )
     told: list[str] = []
     with pytest.raises(SimulationError, match="no data for its axes X, Y, Z"):
-        usecases.optimise(*asked, tell=told.append)
+        advising.advise_program(*asked, tell=told.append)
     assert told == []
 
 
@@ -212,9 +215,9 @@ def test_a_program_that_draws_no_raw_part_needs_one(part: Path, tmp_path: Path) 
     bare.write_text(text.replace(",0.05,$,$,#33,(", ",0.05,$,$,$,("), encoding="ascii")
     asked = asked_advice(file=bare, machine="vmc15", dry_run=True, confirm=True)
     with pytest.raises(StepNcError, match=r"cannot be confirmed.*--stock"):
-        usecases.optimise(*asked)
+        advising.advise_program(*asked)
     with pytest.raises(StepNcError, match="defines its own raw part"):
-        usecases.optimise(
+        advising.advise_program(
             *asked_advice(
                 part, machine="vmc15", dry_run=True, confirm=True, stock="0,0,0,1,1,1"
             )
@@ -231,11 +234,11 @@ def test_a_raw_part_that_is_named_is_the_one_that_the_file_would_draw(
     assert named is not None
     numbers = ",".join(map(str, (*named.low, *named.high)))
     asked = asked_advice(file=bare, machine="vmc15", dry_run=True, confirm=True, stock=numbers)
-    assert usecases.optimise(*asked).confirmation == confirmation
+    assert advising.advise_program(*asked).confirmation == confirmation
 
 
 def test_without_it_nothing_is_run(part: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    outcome = usecases.optimise(*asked_advice(file=part, machine="vmc15", dry_run=True))
+    outcome = advising.advise_program(*asked_advice(file=part, machine="vmc15", dry_run=True))
     assert outcome.confirmation is None
-    print_plan(outcome.plan, outcome.confirmation)
+    print_result(outcome)
     assert "promised" not in capsys.readouterr().out

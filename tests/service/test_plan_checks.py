@@ -1,6 +1,5 @@
 """What the outputs say of required limits that could not be looked at."""
 
-import json
 from dataclasses import replace
 
 import pytest
@@ -9,9 +8,10 @@ from optimiser.advice import Plan
 from optimiser.formulate import OptimisationTask
 from optimiser.optimise import optimise_program
 from optimiser.source import from_features
+from service.cli.verbs import print_result
 from service.plan_checks import unchecked_words
-from service.plan_output import plan_json, print_plan, report_page
 from service.records import changes_of
+from service.verbs.optimise.plan_result import ProgramAdvice
 from simulator.library import load_machine, load_material
 from simulator.spec import Certainty, MaterialMatch
 from tests.optimiser.plans import edited
@@ -32,13 +32,13 @@ def plan() -> Plan:
 def test_the_first_line_says_what_is_unchecked(
     plan: Plan, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    print_plan(plan)
+    print_result(ProgramAdvice(plan=plan))
     first = capsys.readouterr().out.splitlines()[0]
     assert first.endswith("2 required limits are unchecked in 1 workingstep")
 
 
 def test_the_json_lists_each_with_its_datum(plan: Plan) -> None:
-    found = json.loads(plan_json(plan))
+    found = ProgramAdvice(plan=plan).record()
     assert found["is_checked"] is False
     (step,) = found["workingsteps"]
     assert {each["name"] for each in step["unchecked"]} == {"feed_per_tooth", "axial_depth"}
@@ -47,7 +47,7 @@ def test_the_json_lists_each_with_its_datum(plan: Plan) -> None:
 
 
 def test_the_report_and_the_record_say_so_too(plan: Plan) -> None:
-    assert "Not fully checked" in report_page(plan)
+    assert "Not fully checked" in ProgramAdvice(plan=plan).page()
     (change,) = changes_of(plan)
     assert change.record is not None
     assert "unchecked: feed per tooth, give iso_group" in change.record.description
@@ -56,5 +56,5 @@ def test_the_report_and_the_record_say_so_too(plan: Plan) -> None:
 def test_a_checked_plan_says_nothing(plan: Plan) -> None:
     checked = replace(plan, advices=tuple(replace(each, unchecked=()) for each in plan.advices))
     assert unchecked_words(checked) == ""
-    assert json.loads(plan_json(checked))["is_checked"] is True
-    assert "Not fully checked" not in report_page(checked)
+    assert ProgramAdvice(plan=checked).record()["is_checked"] is True
+    assert "Not fully checked" not in ProgramAdvice(plan=checked).page()

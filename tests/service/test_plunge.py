@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from optimiser.advice import Advice
-from service import usecases
 from service.cli.main import main, optimise_main
 from service.confirmation import ConfirmedStep
 from service.paths.toolpaths import nc_lines, paths_of, with_feeds
 from service.reading import read_program
-from service.usecases import OptimiseResult
+from service.verbs.optimise import program as advising
+from service.verbs.optimise.plan_result import ProgramAdvice
 from stepnc_model import writeback
 from stepnc_model.file_profile import FileProfile, RecordChoice
 from stepnc_model.post.dialect import Dialect
@@ -44,21 +44,21 @@ def part(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def outcome(part: Path) -> OptimiseResult:
-    return usecases.optimise(*asked_advice(file=part, machine="vmc15", confirm=True))
+def outcome(part: Path) -> ProgramAdvice:
+    return advising.advise_program(*asked_advice(file=part, machine="vmc15", confirm=True))
 
 
-def written(outcome: OptimiseResult) -> Path:
+def written(outcome: ProgramAdvice) -> Path:
     assert outcome.written is not None
     return outcome.written
 
 
-def advices(outcome: OptimiseResult) -> dict[str, Advice]:
+def advices(outcome: ProgramAdvice) -> dict[str, Advice]:
     found = {each.workingstep.id: each for each in outcome.plan.advices}
     return {name: found[name] for name in STEPS}
 
 
-def advised(outcome: OptimiseResult) -> dict[str, float]:
+def advised(outcome: ProgramAdvice) -> dict[str, float]:
     """Feed per tooth straight down, mm."""
     found = {}
     for name, each in advices(outcome).items():
@@ -68,13 +68,13 @@ def advised(outcome: OptimiseResult) -> dict[str, float]:
     return found
 
 
-def pockets(outcome: OptimiseResult) -> list[ConfirmedStep]:
+def pockets(outcome: ProgramAdvice) -> list[ConfirmedStep]:
     assert outcome.confirmation is not None
     return [step for step in outcome.confirmation.steps if step.id in STEPS]
 
 
 def test_plan_and_run_agree_in_time_thrust_and_power_of_a_plunge(
-    outcome: OptimiseResult,
+    outcome: ProgramAdvice,
 ) -> None:
     for step in pockets(outcome):
         of = {each.key: each for each in step.figures}
@@ -87,7 +87,7 @@ def test_plan_and_run_agree_in_time_thrust_and_power_of_a_plunge(
 
 @pytest.mark.parametrize("profile", list(FileProfile))
 def test_the_record_carries_it_in_either_profile(
-    outcome: OptimiseResult, tmp_path: Path, profile: FileProfile
+    outcome: ProgramAdvice, tmp_path: Path, profile: FileProfile
 ) -> None:
     converted = tmp_path / "converted.stpnc"
     program = read_program(written(outcome), units="iso")
@@ -98,9 +98,9 @@ def test_the_record_carries_it_in_either_profile(
     assert told[2:] == pytest.approx(list(advised(outcome).values()))
 
 
-def test_advice_that_was_taken_is_given_again(outcome: OptimiseResult, tmp_path: Path) -> None:
+def test_advice_that_was_taken_is_given_again(outcome: ProgramAdvice, tmp_path: Path) -> None:
     output = tmp_path / "again.stpnc"
-    again = usecases.optimise(
+    again = advising.advise_program(
         *asked_advice(file=written(outcome), machine="vmc15", output=output)
     )
     for name, each in advices(again).items():
@@ -113,7 +113,7 @@ def test_advice_that_was_taken_is_given_again(outcome: OptimiseResult, tmp_path:
 
 @pytest.mark.parametrize("control", list(Dialect))
 def test_the_code_of_every_control_feeds_slower_down_and_as_the_cut_after_it(
-    outcome: OptimiseResult, control: Dialect
+    outcome: ProgramAdvice, control: Dialect
 ) -> None:
     program = read_program(written(outcome), units="iso")
     paths = with_feeds(paths_of(program, tell=lambda _: None), keep_going=False)
@@ -177,7 +177,7 @@ def test_a_tool_table_says_whether_a_tool_cuts_over_centre(
 
 
 def test_a_plunge_feed_that_is_not_positive_is_refused(
-    outcome: OptimiseResult, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    outcome: ProgramAdvice, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     text = written(outcome).read_text(encoding="ascii")
     wrong, output = tmp_path / "wrong.stpnc", tmp_path / "out.ngc"
@@ -195,7 +195,7 @@ def test_a_file_without_records_says_what_it_loses(part: Path, tmp_path: Path) -
     """The feed at which its NC code plunges is the one that is told."""
     told: list[str] = []
     request, files = asked_advice(file=part, machine="vmc15", output=tmp_path / "out.stpnc")
-    plain = usecases.optimise(
+    plain = advising.advise_program(
         replace(request, records=RecordChoice.NONE), files, tell=told.append
     )
     lost = [text for text in told if "the plunge feed of" in text]

@@ -8,15 +8,12 @@ from benchmarks.promised import Case, cases, confirmed, is_compared, off, summar
 from service.confirmation import Confirmation
 
 LOADS, TIME = 0.05, 0.01
-AT_SHOULDERS = 0.12
-"""Share of a torque that a plan may promise too much."""
-
 SAMPLE = (
-    "bracket vmc15 c45",
-    "bracket vmc15 free speed",
-    "shaft lathe22 c45",
-    "shaft lathe22 hardened_55hrc",
-    "paper003_pocket vmc15",
+    "bracket vmc15 feed only",
+    "bracket vmc15 inconel718",
+    "shaft lathe22 free speed",
+    "shaft lathe22 inconel718",
+    "paper003_pocket paper003",
     "ex1 vmc15 C45",
     "RanhuraPerfilVee vmc15",
 )
@@ -42,11 +39,6 @@ def test_every_figure_is_found_as_promised(name: str) -> None:
     for step in confirmation.steps:
         for figure in filter(is_compared, step.figures):
             tolerance = TIME if figure.key == "time_s" else LOADS
-            if figure.key == "torque_nm" and "shaft" in name:
-                # The axis brakes in the last tenth of a millimetre before a shoulder, where the
-                # depth is greatest; a plan does not count on that.
-                assert figure.found <= figure.promised * (1.0 + LOADS), (step.id, figure)
-                tolerance = AT_SHOULDERS
             assert off(figure) <= tolerance, (step.id, figure)
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from service.usecases import optimise
+from service.verbs.optimise.program import advise_program as optimise
 from stepnc_model import writeback
 from stepnc_model.entities.tools import MillingCuttingTool, MillingToolBody
 from stepnc_model.program import Program

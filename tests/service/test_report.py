@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from service.usecases import optimise
+from service.verbs.optimise.program import advise_program as optimise
 from tests.asking import asked_advice
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
@@ -16,9 +16,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> str:
     folder = tmp_path_factory.mktemp("report")
     source = folder / "a&b <i>.stpnc"
     source.write_bytes((PARTS / "bracket.stpnc").read_bytes())
-    report = folder / "page.html"
-    optimise(*asked_advice(file=source, report=report, pareto=True))
-    return report.read_text(encoding="utf-8")
+    return optimise(*asked_advice(file=source, pareto=True)).page()
 
 
 def own(page: str) -> str:

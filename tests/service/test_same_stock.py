@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from optimiser.advice import Advice
-from service import usecases
 from service.cli.main import optimise_main
+from service.verbs.optimise import program as advising
 from tests.asking import asked_advice
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
@@ -15,7 +15,7 @@ VEE = PARTS.parents[2] / "shared" / "corpus" / "iso14649" / "RanhuraPerfilVee.p2
 
 def advised(file: Path, *, units: str = "iso", free: str = "feed,depth") -> list[Advice]:
     asked = asked_advice(file=file, machine="vmc15", units=units, free=free, dry_run=True)
-    return list(usecases.optimise(*asked).plan.advices)
+    return list(advising.advise_program(*asked).plan.advices)
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +48,7 @@ def test_upright_walls_have_their_passes_chosen() -> None:
         workingsteps=("ROUGH POCKET",),
         dry_run=True,
     )
-    (rough,) = usecases.optimise(*asked).plan.advices
+    (rough,) = advising.advise_program(*asked).plan.advices
     assert rough.cut is not None
     assert rough.after is not None
     assert rough.after.setting.passes < rough.cut.programmed.passes

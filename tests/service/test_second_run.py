@@ -7,7 +7,8 @@ import pytest
 
 from optimiser.modes import Mode
 from service.requests.advice import AdviceRequest
-from service.usecases import AdviceFiles, optimise
+from service.verbs.optimise.program import advise_program as optimise
+from service.verbs.optimise.request import AdviceFiles
 
 ROOT = Path(__file__).parents[2]
 PARTS = ROOT / "examples" / "parts"

@@ -13,7 +13,9 @@ from service.requests.given import ProgramRequest
 from service.requests.runs import SimulationRequest
 from service.requests.stock import RawPart, StockFile
 from service.simulation.run import RunFiles, simulate
-from service.usecases import AdviceFiles, OptimiseResult, optimise
+from service.verbs.optimise.plan_result import ProgramAdvice
+from service.verbs.optimise.program import advise_program as optimise
+from service.verbs.optimise.request import AdviceFiles
 from simulator.library import load_machine
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
@@ -52,7 +54,7 @@ def half_cut(tmp_path: Path) -> StockFile:
     return StockFile(path=path)
 
 
-def advised(file: Path, stock: RawPart) -> OptimiseResult:
+def advised(file: Path, stock: RawPart) -> ProgramAdvice:
     request = AdviceRequest(stock=stock, is_along_path=True, **PLAN)  # type: ignore[arg-type]
     return optimise(request, AdviceFiles(file=file, dry_run=True))
 

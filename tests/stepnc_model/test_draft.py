@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from service.usecases import optimise
+from service.verbs.optimise.program import advise_program as optimise
 from stepnc_model import writeback
 from stepnc_model.draft import Draft
 from stepnc_model.file_profile import FileProfile

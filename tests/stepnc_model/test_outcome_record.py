@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.usecases import optimise
+from service.verbs.optimise.program import advise_program as optimise
 from stepnc_model import writeback
 from stepnc_model.errors import SchemaError
 from stepnc_model.file_profile import FileProfile

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from service.usecases import optimise
+from service.verbs.optimise.program import advise_program as optimise
 from stepnc_model.errors import SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.plausibility import RULE, implausible, refusal

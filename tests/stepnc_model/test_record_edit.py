@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from service.usecases import optimise
+from service.verbs.optimise.program import advise_program as optimise
 from stepnc_model import writeback
 from stepnc_model.draft import references
 from stepnc_model.file_profile import FileProfile

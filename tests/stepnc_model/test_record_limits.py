@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from service.usecases import OptimiseResult, optimise
+from service.verbs.optimise.plan_result import ProgramAdvice
+from service.verbs.optimise.program import advise_program as optimise
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.record import AdviceRecord
@@ -42,7 +43,7 @@ def record(data: bytes) -> AdviceRecord:
 
 def advised(
     file: Path, output: Path, *, ignore: bool = False, mode: str = "TC"
-) -> OptimiseResult:
+) -> ProgramAdvice:
     request, files = asked_advice(
         file=file, output=output, machine="vmc15", material="c45", mode=mode
     )

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from service.usecases import convert, optimise
+from service.verbs.optimise.program import advise_program as optimise
+from service.verbs.optimise.program import convert
 from stepnc_model import writeback
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File

@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from service.usecases import optimise
+from service.verbs.optimise.program import advise_program as optimise
 from stepnc_model import writeback
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File

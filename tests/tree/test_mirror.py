@@ -84,7 +84,6 @@ THROUGH = {
         "service/factory/sweep.py",
     ),
     "service/factory/test_live.py": ("service/factory/live_status.py",),
-    "service/folder_advice/test_cli.py": ("service/folder_advice/output.py",),
     "service/jobs/test_evaluate.py": ("service/jobs/review.py",),
     "service/jobs/test_runner.py": ("service/jobs/frozen.py",),
     "service/jobs/test_verify.py": ("service/jobs/logs.py",),
@@ -105,7 +104,7 @@ THROUGH = {
     "service/test_log_lines.py": ("service/fork_log.py",),
     "service/test_report.py": ("service/figures.py",),
     "service/test_run_file.py": ("service/growing_file.py",),
-    "service/verbs/test_verb.py": ("service/cli/verbs.py", "service/requests/files.py"),
+    "service/verbs/test_verb.py": ("service/requests/files.py",),
     "service/test_uses.py": ("service/paths/remarks.py",),
 }
 """tests, and the modules that they run through others"""

@@ -46,7 +46,7 @@ class CycleTimeFiles(Request):
 
     file: Annotated[
         Path,
-        About("a STEP-NC program (Part 21), or NC code", use=FileUse.INPUT, metavar="FILE"),
+        About("a STEP-NC program (Part 21), or NC code", use=FileUse.PROGRAM, metavar="FILE"),
     ]
     log: Annotated[
         str | None,

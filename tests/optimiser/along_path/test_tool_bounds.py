@@ -9,7 +9,8 @@ from optimiser.along_path.caps import CutBounds
 from optimiser.along_path.stretch import met_caps
 from optimiser.along_path.tool_bounds import bounds_of_tool, window_findings
 from simulator.library import load_machine, load_material
-from simulator.removal.cutter import Cutter
+from simulator.removal.cutter import Cutter, Insert
+from simulator.removal.stations import StationKind
 from simulator.spec import CuttingMaterial, ToolKind, WorkMaterial
 from simulator.tool_table import TableTool
 from stepnc_model.errors import Severity
@@ -40,6 +41,16 @@ def bounds(tool: TableTool, material: WorkMaterial, machine: str = "vmc15") -> C
     )
     assert found is not None
     return found
+
+
+TURNING = TableTool(
+    number=2,
+    id="insert",
+    kind=ToolKind.TURNING,
+    cutting_material=CuttingMaterial.CARBIDE,
+    teeth=1,
+    shape=Insert(nose_radius=0.8),
+)
 
 
 @every_case(
@@ -88,3 +99,24 @@ def test_windows_that_are_not_the_tool_s_own_are_told(
     assert found.severity is severity
     assert words in found.message
     assert list(window_findings([MILL], machine, C45)) == []
+
+
+def test_a_place_deeper_than_the_insert_may_cut_keeps_its_feed() -> None:
+    """At a shoulder the whole edge meets what is left on its face."""
+    of_library = bounds(TURNING, C45, "lathe22")
+    told = bounds(replace(TURNING, max_depth=3.0), C45, "lathe22")
+    assert (of_library.deepest, told.deepest) == (6.0, 3.0)
+    assert bounds(MILL, C45).deepest is None
+    met = half_cut([5.0, 10.0], [True, True])
+    met = replace(
+        met,
+        kind=np.full(2, int(StationKind.TURNING)),
+        axial_depth=np.array([0.5, 4.0]),
+        section=np.array([0.5, 4.0]),
+        diameter=np.full(2, 40.0),
+    )
+    path = replace(stretch_of(straight([10.0], speed=0.5)), met=met)
+    shallow, deep = met_caps(replace(path, bounds=told)).feed
+    assert shallow > 0.5
+    assert deep == 0.5
+    assert met_caps(replace(path, bounds=of_library)).feed[1] > 0.5

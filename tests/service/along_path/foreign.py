@@ -5,11 +5,13 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from service.along_path.of_code import CodeAdvice, CodeFiles, optimise_code
 from service.chosen import load_material_named
 from service.requests.advice import AdviceRequest
 from service.requests.stock import RawPart
 from service.simulation.code_paths import CodePaths
+from service.verbs.optimise.code import optimise_code
+from service.verbs.optimise.code_result import CodeAdvice
+from service.verbs.optimise.request import AdviceFiles
 from simulator.library import load_machine
 from simulator.tool_files.read import read_tools
 from stepnc_model.nc.program import read_program
@@ -49,7 +51,7 @@ def advised(text: str, request: AdviceRequest = MILL, *, tools: str = "") -> Cod
         file, table = Path(folder) / "part.nc", Path(folder) / "tools.csv"
         file.write_bytes(text.encode("latin-1"))
         table.write_text(tools or (INSERTS if request.machine == "lathe22" else TOOLS))
-        return optimise_code(request, CodeFiles(file=file, tools=table, dry_run=True))
+        return optimise_code(request, AdviceFiles(file=file, tools=table, dry_run=True))
 
 
 def rewritten(text: str, request: AdviceRequest = MILL) -> str:

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from service.along_path.of_code import CodeAdvice
 from service.requests.advice import AdviceRequest
+from service.verbs.optimise.code_result import CodeAdvice
 from tests.every_case import every_case
 from tests.service.along_path.foreign import MILL, advised
 

@@ -10,8 +10,10 @@ import pytest
 
 from kbe.store import open_store
 from optimiser.along_path.caps import CapName
-from service.along_path.of_code import CodeAdvice, CodeFiles, optimise_code
 from service.requests.advice import AdviceRequest
+from service.verbs.optimise.code import optimise_code
+from service.verbs.optimise.code_result import CodeAdvice
+from service.verbs.optimise.request import AdviceFiles
 from stepnc_model.errors import StepNcError
 from stepnc_model.outcome import Context, LearnedCorrection
 from tests.service.along_path.foreign import END, HEAD, INSERTS, LATHE, MILL, TOOLS
@@ -37,7 +39,7 @@ def advice(
     program, tools = folder / "part.nc", folder / "tools.csv"
     program.write_text(text)
     tools.write_text(INSERTS if request.machine == "lathe22" else TOOLS)
-    given = CodeFiles(file=program, tools=tools, dry_run=True)
+    given = AdviceFiles(file=program, tools=tools, dry_run=True)
     return optimise_code(request, replace(given, **files))  # type: ignore[arg-type]
 
 
@@ -90,7 +92,7 @@ def test_an_accepted_correction_slows_its_tool(tmp_path: Path) -> None:
         store.accept(store.propose(learned), by="Ann", at=now)
     request = replace(MILL, safety=0.5)
     plain = advice(tmp_path, SLOT, request)
-    found = advice(tmp_path, SLOT, request, knowledge=place)
+    found = advice(tmp_path, SLOT, request, kb=place)
     assert any("learned k_c × 1.600" in each.message for each in found.findings)
     assert share(plain, CapName.TOOL_DEFLECTION) > 50.0
     # The feed at a force is that at the nominal k_c over 1.6^(1/(1 − m_c)).
@@ -105,10 +107,10 @@ def test_an_accepted_correction_slows_its_tool(tmp_path: Path) -> None:
         for each in (found, plain)
     )
     assert np.isclose(slow / fast, 1.6 ** (-1.0 / (1.0 - m_c)), rtol=0.02)
-    ignored = advice(tmp_path, SLOT, replace(request, has_corrections=False), knowledge=place)
+    ignored = advice(tmp_path, SLOT, replace(request, has_corrections=False), kb=place)
     assert ignored.rewritten.data == plain.rewritten.data
 
 
 def test_a_knowledge_base_that_is_not_there_is_refused(tmp_path: Path) -> None:
     with pytest.raises(StepNcError, match="nonexistent"):
-        advice(tmp_path, SLOT, knowledge=str(tmp_path / "nonexistent.db"))
+        advice(tmp_path, SLOT, kb=str(tmp_path / "nonexistent.db"))

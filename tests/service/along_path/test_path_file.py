@@ -19,7 +19,9 @@ from service.requests.advice import AdviceRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, simulate
 from service.simulation.setup import PreparedRun, prepared_program
-from service.usecases import AdviceFiles, OptimiseResult, optimise
+from service.verbs.optimise.plan_result import ProgramAdvice
+from service.verbs.optimise.program import advise_program as optimise
+from service.verbs.optimise.request import AdviceFiles
 from simulator.motion.model_name import ControlModelName
 from stepnc_model.errors import StepNcError
 from stepnc_model.file_profile import FileProfile
@@ -43,7 +45,7 @@ def request_of(profile: FileProfile) -> AdviceRequest:
 
 
 @cache
-def planned(sample: Path, profile: FileProfile, folder: Path) -> OptimiseResult:
+def planned(sample: Path, profile: FileProfile, folder: Path) -> ProgramAdvice:
     """Optimise a sample, and write its feeds along the paths."""
     output = folder / f"{profile.value}_{sample.name}"
     request = replace(request_of(profile), nc_control=Dialect.LINUXCNC)
@@ -65,12 +67,12 @@ def run_again(sample: Path, profile: FileProfile, folder: Path) -> FeedsAlongPat
     return along_path(PathSource(prepare=prepare, bounds=lambda _: None), task)
 
 
-def written(result: OptimiseResult) -> Path:
+def written(result: ProgramAdvice) -> Path:
     assert result.written is not None
     return result.written
 
 
-def along_of(result: OptimiseResult) -> FeedsAlongPath:
+def along_of(result: ProgramAdvice) -> FeedsAlongPath:
     assert result.along is not None
     return result.along
 

@@ -10,7 +10,9 @@ from service.requests.advice import AdviceRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles, simulate
-from service.usecases import AdviceFiles, OptimiseResult, optimise
+from service.verbs.optimise.plan_result import ProgramAdvice
+from service.verbs.optimise.program import advise_program as optimise
+from service.verbs.optimise.request import AdviceFiles
 from simulator.motion.model_name import ControlModelName
 from stepnc_model.errors import StepNcError
 from stepnc_model.post.dialect import Dialect
@@ -21,7 +23,7 @@ WITHIN = 1.01
 
 
 @cache
-def planned(sample: Path, folder: Path, levels: int | None = None) -> OptimiseResult:
+def planned(sample: Path, folder: Path, levels: int | None = None) -> ProgramAdvice:
     """Optimise a sample along its paths, with nominal loads."""
     name = f"{sample.stem}{levels or ''}.stpnc"
     request = AdviceRequest(

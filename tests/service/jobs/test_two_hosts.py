@@ -35,8 +35,8 @@ folder = FolderAddress(root=sys.argv[1], files=sys.argv[2], database=sys.argv[3]
 runner.main(folder, 2, os.getppid())
 """
 
-JOBS = 1000
-KILLS = 30
+JOBS = 300
+KILLS = 12
 
 
 @dataclass(kw_only=True)

@@ -11,7 +11,7 @@ import pytest
 from kbe.store import open_store
 from optimiser.formulate import OptimisationTask
 from service.reading import read_program
-from service.usecases import optimise
+from service.verbs.optimise.program import advise_program as optimise
 from stepnc_model.errors import StepNcError
 from stepnc_model.outcome import Context, LearnedCorrection
 from stepnc_model.outcome_record import read_outcomes

@@ -36,7 +36,8 @@ def test_text_has_totals_and_leaves_out_what_was_told() -> None:
     lines = list(VIEW.lines(width=80))
     assert lines[0] == ("two parts <1>", "31")
     assert [text for text, _ in lines[1:]] == [
-        "part   time s", "-----  ------", "a      1.0", "b      2.0", "total  3.0", "note: a note",
+        "part   time s", "-----  ------", "a      1.0", "b      2.0", "total  3.0",
+        "note: a note",
     ]  # fmt: skip
     assert "warning: told before" in dict(VIEW.lines(width=80, is_told=False))
 

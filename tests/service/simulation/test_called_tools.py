@@ -5,8 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from service.along_path.code_output import print_code_advice
-from service.along_path.of_code import CodeAdvice, CodeFiles, optimise_code
+from service.cli.verbs import print_result
+from service.verbs.optimise.code import optimise_code
+from service.verbs.optimise.code_result import CodeAdvice
+from service.verbs.optimise.request import AdviceFiles
 from tests.service.along_path.foreign import MILL
 
 TABLE = "number,kind,id,diameter_mm,teeth\n"
@@ -22,7 +24,7 @@ def advised(folder: Path, code: str, table: str) -> CodeAdvice:
     file, tools = folder / "part.nc", folder / "tools.csv"
     file.write_text(code)
     tools.write_text(table)
-    return optimise_code(replace(MILL, dialect=None), CodeFiles(file=file, tools=tools))
+    return optimise_code(replace(MILL, dialect=None), AdviceFiles(file=file, tools=tools))
 
 
 def told(found: CodeAdvice) -> str:
@@ -56,6 +58,6 @@ def test_a_program_without_tools_is_printed_with_what_it_needs(
 ) -> None:
     found = advised(tmp_path, WITHOUT, TABLE + MILL_10 + DRILL)
     assert found.rewritten.data == WITHOUT.encode()
-    print_code_advice(found)
+    print_result(found)
     shown = capsys.readouterr()
     assert "the program calls no tool, and the table has 2" in shown.out + shown.err

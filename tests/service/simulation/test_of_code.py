@@ -5,20 +5,21 @@ from pathlib import Path
 
 import pytest
 
-from service.along_path.of_code import CodeFiles, optimise_code
 from service.reading import silent
 from service.requests.advice import AdviceRequest
 from service.requests.runs import RunRequest
 from service.simulation.of_code import IDLE, CodeRequest, from_code
 from service.simulation.run import simulate
 from service.simulation.setup import PreparedRun, from_program
+from service.verbs.optimise.code import optimise_code
+from service.verbs.optimise.request import AdviceFiles
 from simulator.removal.lathe import TurningStock
 from stepnc_model.errors import StepNcError
 from stepnc_model.post import blocks as post
 from tests.asking import asked_simulation
 from tests.service.along_path.foreign import BAR, BOX, END, HEAD, INSERTS, slot
 from tests.service.along_path.foreign import TOOLS as TABLE
-from tests.service.along_path.test_of_code import PROGRAMS
+from tests.service.verbs.optimise.test_code import PROGRAMS
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 BRACKET = EXAMPLES / "parts" / "bracket.stpnc"
@@ -124,7 +125,7 @@ def written(folder: Path, text: str, name: str = "part.nc") -> CodeRequest:
 def test_code_of_another_cam_runs_as_its_plan_says(tmp_path: Path) -> None:
     code = written(tmp_path, CAM)
     request = AdviceRequest(machine="vmc15", material="c45", stock=BOX)
-    files = CodeFiles(file=code.code, tools=code.tools, output=tmp_path / "out.nc")
+    files = AdviceFiles(file=code.code, tools=code.tools, output=tmp_path / "out.nc")
     advice = optimise_code(request, files)
     run = simulate(*asked_simulation(code=code, machine="vmc15", material="c45"))
     assert run.whole.duration == pytest.approx(advice.along.time_before, rel=1e-9)

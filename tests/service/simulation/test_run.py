@@ -9,10 +9,11 @@ import pytest
 from pyarrow import parquet
 
 from optimiser.problem import LimitName
-from service import progress, usecases
+from service import progress
 from service.paths import toolpaths
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import Simulation, simulate
+from service.verbs.optimise import program as advising
 from simulator.errors import SimulationError
 from simulator.machine.totals import Total
 from simulator.motion.segments import Floats
@@ -347,7 +348,7 @@ def test_what_is_advised_passes_no_limit_of_the_machine(
 ) -> None:
     output = tmp_path / "part.stpnc"
     file = EXAMPLES / "parts" / f"{part}.stpnc"
-    usecases.optimise(*asked_advice(file=file, machine=machine, output=output))
+    advising.advise_program(*asked_advice(file=file, machine=machine, output=output))
     found = simulate(*asked_simulation(file=output, machine=machine))
     assert found.whole.overload_time == 0.0
 
@@ -361,7 +362,7 @@ def test_the_tool_bends_in_the_run_as_far_as_the_plan_says(tmp_path: Path) -> No
         material="c45",
         output=output,
     )
-    (advice,) = usecases.optimise(*request).plan.advices
+    (advice,) = advising.advise_program(*request).plan.advices
     assert advice.active is LimitName.TOOL_DEFLECTION
     run = simulate(
         *asked_simulation(file=output, machine="vmc15", material="c45", output=samples)

@@ -8,7 +8,6 @@ import pytest
 
 from service import verbs as package
 from service.cli.main import main
-from service.verbs import verb as module
 from service.verbs.verb import Verb, verbs
 
 FOLDER = {
@@ -63,8 +62,8 @@ def say(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Verb]:
     for name, text in FOLDER.items():
         (folder / name).write_text(text, encoding="utf-8")
     monkeypatch.setattr(package, "__path__", [*package.__path__, str(tmp_path)])
-    monkeypatch.setattr(module, "verbs", lambda: {"say": Verb(folder="say")})
-    monkeypatch.setattr("service.cli.commands.verbs", module.verbs)
+    found = {**verbs(), "say": Verb(folder="say")}
+    monkeypatch.setattr("service.cli.commands.verbs", lambda: found)
     yield Verb(folder="say")
     for name in [each for each in sys.modules if each.startswith("service.verbs.say")]:
         del sys.modules[name]

@@ -11,7 +11,7 @@ from simulator.motion.control import ExactStop, control_model
 from simulator.motion.fir import FixedTimeFilter
 from simulator.motion.legs import Leg
 from simulator.motion.model_name import ControlModelName
-from simulator.motion.passing import reached_velocities
+from simulator.motion.passing import motion_of
 from simulator.motion.segments import (
     AxisLimits,
     ControlModel,
@@ -59,7 +59,7 @@ def reached_speeds(
     segment: Ints,
     station: Floats,
 ) -> Floats:
-    found = reached_velocities(of, control, limits, segment=segment, station=station)
+    found = motion_of(of, control, limits).velocities(segment, station)
     speeds: Floats = np.linalg.norm(found, axis=1)
     return speeds
 

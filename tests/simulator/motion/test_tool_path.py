@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from simulator.library import load_machine
 from simulator.motion.control import ExactStop
 from simulator.motion.fir import FilterWithinLimits
+from simulator.motion.passing import motion_of
 from simulator.motion.segments import AxisLimits, axis_limits
 from simulator.motion.tool_path import (
     LookUp,
     SpeedRatios,
     ToolPathRun,
-    duration,
     follows,
     paced,
     run_of,
@@ -89,7 +89,7 @@ def run(*steps: Step, look_up: LookUp = by_time, start: Point = (0.0, 0.0, 0.0))
 
 
 def time(ran: ToolPathRun) -> float:
-    return duration(ran, ExactStop(), STIFF)
+    return motion_of(ran, ExactStop(), STIFF).duration
 
 
 def test_moves_run_at_their_feed_and_rapids_in_no_time() -> None:
@@ -100,7 +100,7 @@ def test_ramps_count() -> None:
     limits = replace(STIFF, acceleration=np.full(3, 50.0))
     ran = run(cut(30, 0, 0), cut(30, 5, 0))
     expected = sum(move_time(way, speed=10.0, acceleration=50.0) for way in (30.0, 5.0))
-    assert duration(ran, ExactStop(), limits) == pytest.approx(expected)
+    assert motion_of(ran, ExactStop(), limits).duration == pytest.approx(expected)
 
 
 def test_a_move_that_only_changes_what_it_touches_is_one() -> None:
@@ -227,4 +227,4 @@ def test_usual_motion_is_a_filter_where_axes_are_known() -> None:
 def test_a_machine_without_axes_runs_at_commanded_speed() -> None:
     control, limits = usual_motion(load_machine("paper002"))
     ran = run(cut(30, 0, 0), cut(30, 40, 0), cut(0, 0, 0, feed=None))
-    assert duration(ran, control, limits) == pytest.approx(7.0, rel=1e-6)
+    assert motion_of(ran, control, limits).duration == pytest.approx(7.0, rel=1e-6)

@@ -1,4 +1,3 @@
-from dataclasses import replace
 from math import asin, atan, cos, pi
 
 import numpy as np
@@ -123,10 +122,10 @@ def test_no_mean_of_a_single_tooth_is_above_its_peak(
 
 def test_a_helix_evens_the_force_out() -> None:
     straight = EngagedTeeth(count=3, entry_angle=1.9, exit_angle=pi, exponent=0.78)
-    spread = [pattern(replace(straight, lag=lag)).std() for lag in (0.0, 0.8, 1.6)]
+    spread = [pattern(straight._replace(lag=lag)).std() for lag in (0.0, 0.8, 1.6)]
     assert spread == sorted(spread, reverse=True)
     # At the lag of a tooth pitch the force stays the same.
-    assert pattern(replace(straight, lag=2.0 * pi / 3.0)).std() < 1e-3
+    assert pattern(straight._replace(lag=2.0 * pi / 3.0)).std() < 1e-3
 
 
 def test_without_an_arc_the_peak_is_the_mean() -> None:

@@ -1,6 +1,6 @@
 """Recorded runs as machines of the loop."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from itertools import pairwise
 
 import numpy as np
@@ -75,6 +75,36 @@ def test_another_zero_point_is_no_other_path(offset: tuple[float, ...]) -> None:
     assert np.abs(found - np.interp(signals.time, *SLOWER)).max() < 0.1
 
 
+def test_a_recording_that_ends_early_has_no_offset() -> None:
+    """The way of the whole program is longer, so that all samples seem to lag."""
+    whole = shuttling()
+    signals = run(whole, *SLOWER, rate=50.0)
+    rows = slice(0, int(signals.time.searchsorted(5.5)))
+    early = RecordedSignals(**{
+        each.name: getattr(signals, each.name)[rows] for each in fields(RecordedSignals)
+    })
+    found = program_times(early, whole)
+    assert np.abs(found - np.interp(early.time, *SLOWER)).max() < 0.05
+
+
+def test_positions_in_steps_tell_no_override_that_wavers() -> None:
+    whole = shuttling()
+    signals = run(whole, *SLOWER, rate=29.0)
+    steps = 0.04 * np.round(signals.position / 0.04)
+    found = readings(RecordedMachine(whole, replace(signals, position=steps)))
+    for low, high, expected in ((2.5, 3.8, 0.5), (7.5, 8.5, 1.2)):
+        values = [each.override for each in found if low < each.time < high]
+        assert values == pytest.approx([expected] * len(values), rel=1e-3)
+
+
+def test_a_feed_in_other_units_is_not_believed() -> None:
+    whole = shuttling()
+    signals = run(whole, *SLOWER, rate=50.0)
+    machine = RecordedMachine(whole, replace(signals, feed=60.0 * signals.feed))
+    slow = [each.override for each in readings(machine) if 2.5 < each.time < 3.8]
+    assert slow == pytest.approx([0.5] * len(slow), abs=0.02)
+
+
 def test_readings_tell_times_forces_and_overrides() -> None:
     whole = shuttling()
     machine = RecordedMachine(whole, run(whole, *SLOWER, rate=50.0))
@@ -106,14 +136,16 @@ def test_a_feed_hold_is_an_override_of_nothing() -> None:
     assert sum(each.period for each in found) == pytest.approx(9.4, abs=0.05)
 
 
-def test_where_the_force_changes_places_are_not_steady() -> None:
+@pytest.mark.parametrize(("rate", "around"), [(50.0, 0.05), (10.0, 0.15)])
+def test_where_the_force_changes_places_are_not_steady(rate: float, around: float) -> None:
+    """A force between two samples knows of the time from one to the other."""
     whole = shuttling()
-    machine = RecordedMachine(whole, run(whole, *SLOWER, rate=50.0))
+    machine = RecordedMachine(whole, run(whole, *SLOWER, rate=rate))
     steady = {}
     while (reading := machine.read()) is not None:
-        steady[round(reading.progress, 2)] = machine.is_steady
-    assert not any(value for time, value in steady.items() if abs(time - 1.0) < 0.05)
-    assert all(value for time, value in steady.items() if 1.2 < time < 2.8)
+        steady[round(reading.progress, 2)] = reading.is_placed
+    assert not any(value for time, value in steady.items() if abs(time - 1.0) < around)
+    assert all(value for time, value in steady.items() if 1.25 < time < 2.75)
 
 
 def test_a_run_that_is_over_cannot_be_changed() -> None:

@@ -1,15 +1,18 @@
 """Volumes that moves remove, against solids and closed forms."""
 
 import itertools
-from math import pi, sqrt
+from math import isnan, nan, pi, sqrt
 
 import manifold3d
 import numpy as np
 import pytest
 
 from simulator.motion.segments import Floats, arc, lines
+from simulator.removal import carve
 from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
+from simulator.removal.profile import profile_of
+from simulator.removal.trial import rows_of
 from stepnc_model.program import Stock
 
 BOX = Stock(low=(0.0, 0.0, -12.0), high=(40.0, 30.0, 0.0))
@@ -97,3 +100,39 @@ def test_ball_on_a_slope_cuts_its_circle_across_the_slope() -> None:
     depth = np.maximum(-bottom, 0.0)
     expected = np.trapezoid(np.trapezoid(depth, v, axis=1), x)
     assert work.volume == pytest.approx(float(expected), rel=2e-3)
+
+
+@pytest.mark.parametrize("corner", [0.02, 0.2, 1.0, 2.9])
+@pytest.mark.parametrize("slope", [-0.9, -0.05, 0.003, 0.3])
+def test_an_expected_contact_spares_steps_and_changes_no_height(
+    corner: float, slope: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    profile = profile_of(Cutter(diameter=6.0, corner_radius=corner), reach=20.0)
+    random = np.random.default_rng(66)
+    cells = random.uniform((-3.0, -3.0), (9.0, 3.0), (1000, 2)).tolist()
+    found = [carve.lowest(profile, u, v, 6.0, slope) for u, v in cells]
+    expected = [carve.corner_contact(profile, v, slope) for _, v in cells]
+    assert corner > profile.flat or sum(map(isnan, expected)) < 900
+    monkeypatch.setattr(carve, "corner_contact", lambda *_: nan)
+    assert found == [carve.lowest(profile, u, v, 6.0, slope) for u, v in cells]
+
+
+@pytest.mark.parametrize("corner", [0.0, 0.2, 1.0])
+def test_cells_under_the_end_of_a_ramp_have_the_height_of_the_general_way(
+    corner: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cutter = Cutter(diameter=6.0, corner_radius=corner)
+    ramp = lines([(8.0, 8.0, 0.5), (30.0, 20.0, -1.0), (12.0, 21.0, -2.5)], speed=1.0)
+    heights = []
+    for under in (carve.UNDER, -1.0):
+        monkeypatch.setattr(carve, "UNDER", under)
+        stock = MillingStock(BOX, cell=0.5)
+        volume = sum(
+            carve.carve_part(
+                stock.map.grid, profile_of(cutter, reach=20.0), row, (0.0, 1.0), 0, on
+            )[0]
+            for row, on in zip(rows_of(ramp), (False, True), strict=True)
+        )
+        heights.append((volume, stock.map.grid.heights.tobytes()))
+    assert heights[0] == heights[1]
+    assert heights[0][0] > 100.0

@@ -31,6 +31,14 @@ def test_a_line_is_cut_at_whole_cells() -> None:
     np.testing.assert_allclose(cells, np.round(cells), atol=1e-9)
 
 
+@pytest.mark.parametrize("length", [20.3, 20.3 / 2, 20.3 / 3])
+def test_the_last_stretch_is_as_long_however_a_line_is_divided(length: float) -> None:
+    """At the end of a line lies the wall of a shoulder: its depth is found there."""
+    ends = [20.3 - row * length for row in range(round(20.3 / length) + 1)]
+    windows = windows_of(lines([(10.0, 0.0, end) for end in ends], speed=1.0), 0.01)
+    assert windows.length[-1] == pytest.approx(WINDOW * 0.01)
+
+
 def test_a_rapid_is_one_stretch() -> None:
     assert len(windows_of(lines([(0, 0, 0), (0, 0, 90)]), 0.01).segment) == 2
     assert len(windows_of(lines([(0, 0, 0)]), 0.01).segment) == 0

@@ -10,7 +10,7 @@ from stepnc_model.nc.program import read_program
 from stepnc_model.nc.unroll import unrolled
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
-from tests.service.along_path.test_of_code import PROGRAMS
+from tests.service.verbs.optimise.test_code import PROGRAMS
 from tests.stepnc_model.nc.conftest import Oracle
 
 FANUC = (

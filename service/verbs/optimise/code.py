@@ -4,9 +4,8 @@ Only F words change, and blocks are split.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 from optimiser.along_path.caps import CapName, CutBounds
 from optimiser.along_path.tool_bounds import bounds_of_tool, window_findings
@@ -14,6 +13,7 @@ from optimiser.modes import Mode
 from service.along_path.caution import CLEARANCE, Caution, rise_left
 from service.along_path.code_job import CodeJob, job_of
 from service.along_path.course import PathSource
+from service.along_path.output import profile_lines
 from service.along_path.run import FeedsAlongPath
 from service.along_path.task import least_feed, task_of
 from service.along_path.written_code import CodeSource, written_code
@@ -24,27 +24,20 @@ from service.chosen import (
     require_axes,
     with_holding,
 )
-from service.files import (
-    beside,
-    is_same,
-    read_bytes,
-    require_places,
-    write_atomically,
-)
+from service.files import read_bytes, write_atomically, write_lines
 from service.knowledge.place import named_place, require_apart
 from service.numbers import tool_numbers_in
-from service.program_kind import ProgramKind
 from service.reading import Tell, silent
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
-from service.requests.serves import require_served
 from service.simulation.called_tools import called_tool_findings, with_called_tools
 from service.simulation.code_paths import CodeBlocks, CodePaths
+from service.verbs.optimise.code_result import CodeAdvice
+from service.verbs.optimise.places import output_of
+from service.verbs.optimise.request import AdviceFiles
 from simulator.library import load_machine
-from simulator.spec import Machine, MaterialMatch
-from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.read import ToolLibrary, read_tools
-from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
+from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.nc.advice import RewrittenCode
 from stepnc_model.nc.program import NcProgram, read_program
 from stepnc_model.nc.unroll import unrolled
@@ -59,54 +52,8 @@ LEAST_COST = 0.05
 """Time from which the cost of the greatest rise is told, s."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CodeFiles:
-    """Files that ``optimise`` reads and writes for NC code."""
-
-    file: Path
-    name: str = ""
-    """Name of the program; empty: the name of its file."""
-    tools: Path | None = None
-    """Tool table or library."""
-    tools_unit: FileUnit | None = None
-    """Unit of a tool file that states none."""
-    output: Path | None = None
-    in_place: bool = False
-    dry_run: bool = False
-    report: Path | None = None
-    feeds: Path | None = None
-    """CSV table of the feeds along the paths, to be written."""
-    holding: Path | None = None
-    """Work-holding file that replaces the work-holding of the machine file."""
-    knowledge: str = ""
-    """Knowledge base with accepted corrections; empty: the one named by the environment."""
-    most_repeats: int | None = None
-    """Blocks and moves that may be executed beyond those of the file; None: as usual."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CodeAdvice:
-    """Feeds along the paths of NC code, and the rewritten code."""
-
-    program: str
-    machine: Machine
-    material: MaterialMatch
-    control: str
-    frame: str
-    """Frame in which the stock stands."""
-    along: FeedsAlongPath
-    rewritten: RewrittenCode
-    findings: tuple[Finding, ...]
-    written: Path | None
-    """File of the rewritten code; None when nothing was written."""
-    faults: tuple[Finding, ...] = ()
-    """Rapids through material, overloads, and bounds that the written code breaks."""
-    is_advised: bool = True
-    """Whether any feed could be chosen."""
-
-
 def optimise_code(
-    request: AdviceRequest, files: CodeFiles, *, tell: Tell = silent
+    request: AdviceRequest, files: AdviceFiles, *, tell: Tell = silent
 ) -> CodeAdvice:
     """Plan the feeds along the paths of NC code and write them into a copy of it.
 
@@ -116,8 +63,7 @@ def optimise_code(
         When a file, a name or a number is invalid, or the machine cannot run the program.
     """
     require_bounds(request)
-    require_served(request, ProgramKind.NC_CODE)
-    output = _output(files)
+    output = output_of(files, f".optimised{files.file.suffix}")
     name = files.name or files.file.name
     library = _tools(request, files)
     program = read_program(
@@ -134,7 +80,7 @@ def optimise_code(
     machine = load_machine(request.machine or (DEFAULT_LATHE if is_lathe else DEFAULT_MILL))
     require_axes(machine)
     machine = with_holding(machine, files.holding)
-    require_apart(named_place(files.knowledge), output, files.report, files.feeds)
+    require_apart(named_place(files.kb), output, files.report, files.feeds_csv)
     material = load_material_named(request.material)
     tell(f"material: {material.reason}")
 
@@ -149,7 +95,7 @@ def optimise_code(
         )
 
     code = paths_of(program)
-    job = job_of(code, request, knowledge=files.knowledge)
+    job = job_of(code, request, knowledge=files.kb)
     task = replace(
         task_of(request, machine), keeps_traces=files.report is not None, keeps_idle=True
     )
@@ -201,6 +147,9 @@ def optimise_code(
         tell(f"written: {output}")
     elif not is_advised:
         tell(NOTHING_WRITTEN)
+    if files.feeds_csv is not None:
+        lines = write_lines(files.feeds_csv, profile_lines(along))
+        tell(f"feeds: {files.feeds_csv} ({lines} lines)")
     return found
 
 
@@ -214,7 +163,7 @@ def _is_advised(along: FeedsAlongPath) -> bool:
     )
 
 
-def _tools(request: AdviceRequest, files: CodeFiles) -> ToolLibrary:
+def _tools(request: AdviceRequest, files: AdviceFiles) -> ToolLibrary:
     """Read the tools; what NC code itself does not name must be given."""
     if files.tools is None or not request.stock:
         raise StepNcError("NC code names no tools and no stock: add --tools and --stock")
@@ -239,21 +188,6 @@ def source_of(
         bounds=lambda part: bounds.get(part.name),
         numbered=lambda run: CodeBlocks(run.blocks, code),
     )
-
-
-def _output(files: CodeFiles) -> Path:
-    """Path of the rewritten code; the input file only if asked for."""
-    if files.in_place:
-        if files.output is not None:
-            raise StepNcError("--in-place and --output exclude each other")
-        require_places([files.report, files.feeds], apart_from=[files.file])
-        return files.file
-    output = files.output or beside(files.file, f".optimised{files.file.suffix}")
-    if is_same(files.file, output):
-        raise WriteError("is the input file; use --in-place to overwrite it", path=str(output))
-    if not files.dry_run:
-        require_places([output, files.report, files.feeds], apart_from=[files.file])
-    return output
 
 
 def _bounds(code: CodePaths, request: AdviceRequest, job: CodeJob) -> dict[str, CutBounds]:

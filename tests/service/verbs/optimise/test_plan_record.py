@@ -8,14 +8,16 @@ from typing import Any
 import pytest
 
 from optimiser.advice import tightest
-from service import chosen, usecases
+from service import chosen
 from service.contents import check
 from service.contents_output import contents_json
 from service.library_output import entries_json, entry_json
-from service.plan_output import plan_json
+from service.rendering.records import dump
+from service.verbs.optimise import program as advising
+from service.verbs.optimise.plan_result import ProgramAdvice
 from tests.asking import asked_advice
 
-PARTS = Path(__file__).parents[2] / "examples" / "parts"
+PARTS = Path(__file__).parents[4] / "examples" / "parts"
 
 LIMIT_KEYS = {"name", "value", "bound", "unit"}
 STATE_KEYS = {
@@ -32,7 +34,7 @@ TIMES = {"before", "after"}
 
 def advised(name: str, **wishes: Any) -> dict[str, Any]:
     request = asked_advice(file=PARTS / name, dry_run=True, **wishes)
-    text = plan_json(usecases.optimise(*request).plan)
+    text = dump(advising.advise_program(*request).record())
     return dict(json.loads(text, parse_constant=refused))
 
 
@@ -98,16 +100,20 @@ def test_totals_are_the_sum_of_the_workingsteps_that_were_timed() -> None:
 
 
 def test_a_number_that_is_no_number_is_no_json() -> None:
-    plan = usecases.optimise(*asked_advice(file=PARTS / "paper002.stpnc", dry_run=True)).plan
+    plan = advising.advise_program(
+        *asked_advice(file=PARTS / "paper002.stpnc", dry_run=True)
+    ).plan
     advice = plan.advices[0]
     assert advice.after is not None
     broken = replace(advice, after=replace(advice.after, time=float("nan")))
     with pytest.raises(ValueError, match="JSON compliant"):
-        plan_json(replace(plan, advices=(broken,)))
+        dump(ProgramAdvice(plan=replace(plan, advices=(broken,))).record())
 
 
 def test_each_limit_is_told_once_for_each_sense() -> None:
-    plan = usecases.optimise(*asked_advice(file=PARTS / "bracket.stpnc", dry_run=True)).plan
+    plan = advising.advise_program(
+        *asked_advice(file=PARTS / "bracket.stpnc", dry_run=True)
+    ).plan
     for advice in plan.advices:
         state = advice.after or advice.before
         assert state is not None

@@ -8,7 +8,7 @@ import pytest
 
 from service.cli.main import optimise_main
 
-PAPER = Path(__file__).parents[3] / "examples" / "parts" / "paper002.stpnc"
+PAPER = Path(__file__).parents[4] / "examples" / "parts" / "paper002.stpnc"
 
 
 def optimise(*words: object) -> int:

@@ -5,15 +5,17 @@ from pathlib import Path
 import pytest
 
 from optimiser.advice import AdviceStatus
-from service import usecases
 from service.contents import check
 from service.reading import read_program
+from service.verbs.optimise import program as advising
+from service.verbs.optimise.plan_result import ProgramAdvice
+from service.verbs.optimise.program import convert
 from simulator.errors import UnknownMachine, UnknownMaterial
 from stepnc_model.errors import SchemaError, Severity, StepNcError, WriteError
 from stepnc_model.file_profile import FileProfile
 from tests.asking import AskedAdvice, asked_advice
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[4]
 PARTS = ROOT / "examples" / "parts"
 VMC = (ROOT / "simulator" / "data" / "machines" / "vmc15.toml").read_text(encoding="utf-8")
 CORPUS = ROOT.parent / "shared" / "corpus" / "iso14649"
@@ -51,7 +53,7 @@ def names(folder: Path) -> list[str]:
 def test_the_result_lies_beside_the_program_and_the_program_stays(paper: Path) -> None:
     before = paper.read_bytes()
     told: list[str] = []
-    outcome = usecases.optimise(*asked_advice(file=paper), tell=told.append)
+    outcome = advising.advise_program(*asked_advice(file=paper), tell=told.append)
     assert outcome.written == paper.with_name("paper002.optimised.stpnc")
     assert paper.read_bytes() == before
     assert names(paper.parent) == ["paper002.optimised.stpnc", "paper002.stpnc"]
@@ -59,10 +61,10 @@ def test_the_result_lies_beside_the_program_and_the_program_stays(paper: Path) -
 
 
 def test_the_result_can_be_checked_and_optimised_again(paper: Path) -> None:
-    first = usecases.optimise(*asked_advice(file=paper, machine="paper002"))
+    first = advising.advise_program(*asked_advice(file=paper, machine="paper002"))
     assert first.written is not None
     assert check(first.written).is_usable
-    again = usecases.optimise(
+    again = advising.advise_program(
         *asked_advice(file=first.written, machine="paper002", dry_run=True)
     )
     one, other = first.plan.advices[0].after, again.plan.advices[0].after
@@ -73,7 +75,7 @@ def test_the_result_can_be_checked_and_optimised_again(paper: Path) -> None:
 
 def test_in_place_overwrites_the_program_only(paper: Path) -> None:
     before = paper.read_bytes()
-    outcome = usecases.optimise(*asked_advice(file=paper, in_place=True))
+    outcome = advising.advise_program(*asked_advice(file=paper, in_place=True))
     assert outcome.written == paper
     assert paper.read_bytes() != before
     assert names(paper.parent) == ["paper002.stpnc"]
@@ -82,7 +84,7 @@ def test_in_place_overwrites_the_program_only(paper: Path) -> None:
 def test_a_named_output_may_replace_an_older_result(paper: Path) -> None:
     output = paper.with_name("result.stpnc")
     output.write_bytes(b"older")
-    usecases.optimise(*asked_advice(file=paper, output=output))
+    advising.advise_program(*asked_advice(file=paper, output=output))
     assert output.read_bytes().startswith(b"ISO-10303-21;")
 
 
@@ -93,7 +95,7 @@ def test_a_dry_run_writes_nothing(paper: Path) -> None:
         asked_advice(file=paper, dry_run=True, in_place=True),
         asked_advice(file=paper, dry_run=True, output=paper.with_name("missing") / "x"),
     ):
-        outcome = usecases.optimise(*request)
+        outcome = advising.advise_program(*request)
         assert outcome.written is None
         assert outcome.plan.advices
     assert paper.read_bytes() == before
@@ -102,20 +104,22 @@ def test_a_dry_run_writes_nothing(paper: Path) -> None:
 
 def test_same_program_same_result(bracket: Path) -> None:
     one, other = bracket.with_name("one"), bracket.with_name("other")
-    usecases.optimise(*asked_advice(file=bracket, output=one))
-    usecases.optimise(*asked_advice(file=bracket, output=other))
+    advising.advise_program(*asked_advice(file=bracket, output=one))
+    advising.advise_program(*asked_advice(file=bracket, output=other))
     assert one.read_bytes() == other.read_bytes()
 
 
 @pytest.mark.parametrize("name", ["ROUGH POCKET", "#16"])
 def test_only_the_workingstep_that_is_named_is_advised(bracket: Path, name: str) -> None:
-    outcome = usecases.optimise(*asked_advice(file=bracket, workingsteps=(name,)))
+    outcome = advising.advise_program(*asked_advice(file=bracket, workingsteps=(name,)))
     assert [advice.workingstep.id for advice in outcome.plan.advices] == ["ROUGH POCKET"]
 
 
 def test_an_unknown_workingstep_lists_all_that_are_known(bracket: Path) -> None:
     with pytest.raises(StepNcError) as caught:
-        usecases.optimise(*asked_advice(file=bracket, workingsteps=("ROUGH POCKET", "nope")))
+        advising.advise_program(
+            *asked_advice(file=bracket, workingsteps=("ROUGH POCKET", "nope"))
+        )
     message = str(caught.value)
     assert message.startswith("no workingstep 'nope'; known: ")
     assert "'ROUGH FACE' (#10)" in message
@@ -126,7 +130,7 @@ def test_limits_that_conflict_are_told_with_their_numbers(bracket: Path) -> None
     """Under 139 N a drill makes no chip that its edges bite into."""
     machine = weak_machine(bracket.parent, force=139.0)
     asked = asked_advice(file=bracket, machine=machine, workingsteps=("DRILL HOLE 1",))
-    plan = usecases.optimise(*asked).plan
+    plan = advising.advise_program(*asked).plan
     assert plan.is_infeasible
     drilled = next(each for each in plan.advices if each.workingstep.id == "DRILL HOLE 1")
     assert drilled.status is AdviceStatus.INFEASIBLE
@@ -137,7 +141,7 @@ def test_limits_that_conflict_are_told_with_their_numbers(bracket: Path) -> None
 def test_a_chisel_edge_that_takes_more_than_the_bound_allows_no_feed(bracket: Path) -> None:
     machine = weak_machine(bracket.parent, force=30.0)
     asked = asked_advice(file=bracket, machine=machine, workingsteps=("DRILL HOLE 1",))
-    (drilled,) = usecases.optimise(*asked).plan.advices
+    (drilled,) = advising.advise_program(*asked).plan.advices
     assert drilled.status is AdviceStatus.INFEASIBLE
     for words in ("cutting force", "exceeds 30 N", "however small the feed"):
         assert words in drilled.reason
@@ -148,7 +152,9 @@ def test_an_infeasible_workingstep_stays_as_it_is_and_the_others_are_written(
 ) -> None:
     machine = weak_machine(bracket.parent, force=900.0)
     some = ("DRILL HOLE 1", "DRILL HOLE 2", "CENTRE HOLE 1", "FINISH CONTOUR")
-    outcome = usecases.optimise(*asked_advice(file=bracket, machine=machine, workingsteps=some))
+    outcome = advising.advise_program(
+        *asked_advice(file=bracket, machine=machine, workingsteps=some)
+    )
     assert outcome.written is not None
     before = bracket.read_text(encoding="ascii").splitlines()
     after = set(outcome.written.read_text(encoding="ascii").splitlines())
@@ -173,7 +179,7 @@ def test_nothing_is_written_when_no_workingstep_is_feasible(bracket: Path) -> No
     machine.write_text(text, encoding="utf-8")
     told: list[str] = []
     request = asked_advice(file=bracket, machine=str(machine))
-    outcome = usecases.optimise(*request, tell=told.append)
+    outcome = advising.advise_program(*request, tell=told.append)
     assert outcome.plan.is_infeasible
     assert outcome.written is None
     assert "nothing was written: no workingstep was advised" in told
@@ -183,27 +189,27 @@ def test_nothing_is_written_when_no_workingstep_is_feasible(bracket: Path) -> No
 
 def test_names_that_nobody_knows_have_errors_of_their_own(paper: Path) -> None:
     with pytest.raises(UnknownMachine) as machine:
-        usecases.optimise(*asked_advice(file=paper, machine="vmc51"))
+        advising.advise_program(*asked_advice(file=paper, machine="vmc51"))
     assert machine.value.known[0] == "vmc15"
     with pytest.raises(UnknownMaterial) as material:
-        usecases.optimise(*asked_advice(file=paper, material="unobtanium"))
+        advising.advise_program(*asked_advice(file=paper, material="unobtanium"))
     assert "titanium2" in material.value.near
 
 
 def test_a_turned_part_gets_a_lathe_and_a_milled_one_a_mill() -> None:
     for name, machine in (("shaft.stpnc", "lathe22"), ("bracket.stpnc", "vmc15")):
-        plan = usecases.optimise(*asked_advice(file=PARTS / name, dry_run=True)).plan
+        plan = advising.advise_program(*asked_advice(file=PARTS / name, dry_run=True)).plan
         assert plan.machine.name == machine
 
 
 @pytest.mark.parametrize("profile", FileProfile)
 def test_records_convert_there_and_back(paper: Path, profile: FileProfile) -> None:
-    written = usecases.optimise(*asked_advice(paper, profile=profile)).written
+    written = advising.advise_program(*asked_advice(paper, profile=profile)).written
     assert written is not None
     (other,) = set(FileProfile) - {profile}
     there, back = paper.with_name("there"), paper.with_name("back")
-    usecases.convert(written, profile=other, output=there)
-    usecases.convert(there, profile=profile, output=back)
+    convert(written, profile=other, output=there)
+    convert(there, profile=profile, output=back)
     assert check(there).is_usable
     assert check(back).is_usable
 
@@ -211,7 +217,7 @@ def test_records_convert_there_and_back(paper: Path, profile: FileProfile) -> No
 def test_a_program_is_not_converted_onto_itself(paper: Path) -> None:
     before = paper.read_bytes()
     with pytest.raises(WriteError, match="name another file"):
-        usecases.convert(paper, profile=FileProfile.STANDARD, output=paper)
+        convert(paper, profile=FileProfile.STANDARD, output=paper)
     assert paper.read_bytes() == before
 
 
@@ -239,10 +245,10 @@ def test_a_public_program_is_optimised_or_refused_with_its_place(path: Path) -> 
         assert answer.plan.advices
 
 
-def answer_to(request: AskedAdvice) -> usecases.OptimiseResult | StepNcError:
+def answer_to(request: AskedAdvice) -> ProgramAdvice | StepNcError:
     """What comes of a request: an error of the project is an answer too."""
     try:
-        return usecases.optimise(*request)
+        return advising.advise_program(*request)
     except StepNcError as error:
         return error
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.folder_advice.ledger import LEDGER, Ledger, ProgramRow, ProgramStatus, known_rows
+from service.verbs.optimise.ledger import LEDGER, Ledger, ProgramRow, ProgramStatus, known_rows
 from stepnc_model.errors import StepNcError, WriteError
 from tests.full_disk import files_of_at_most
 

@@ -12,13 +12,14 @@ import pytest
 from benchmarks.local_cluster import running_cluster
 from optimiser.modes import Mode
 from service.execution.pools import pools_of
-from service.folder_advice.ledger import LEDGER, ProgramStatus, known_rows
-from service.folder_advice.run import FolderFiles, optimise_folder
 from service.requests.advice import AdviceRequest
-from service.usecases import AdviceFiles, optimise
+from service.verbs.optimise.folder import FolderFiles, optimise_programs
+from service.verbs.optimise.ledger import LEDGER, ProgramStatus, known_rows
+from service.verbs.optimise.program import advise_program as optimise
+from service.verbs.optimise.request import AdviceFiles
 from stepnc_model.errors import StepNcError, WriteError
 
-PAPER = Path(__file__).parents[3] / "examples" / "parts" / "paper002.stpnc"
+PAPER = Path(__file__).parents[4] / "examples" / "parts" / "paper002.stpnc"
 REQUEST = AdviceRequest()
 
 
@@ -37,7 +38,7 @@ def folder_of(tmp_path: Path, count: int = 3) -> FolderFiles:
 def test_programs_are_those_of_one_by_one_and_bad_ones_have_a_row(tmp_path: Path) -> None:
     files = folder_of(tmp_path)
     (files.folder / "bad.stp").write_text("ISO-10303-21; nothing", encoding="utf-8")
-    found = optimise_folder(REQUEST, files)
+    found = optimise_programs(REQUEST, files)
     assert [row.status for row in found.rows] == [
         ProgramStatus.BAD,
         *3 * [ProgramStatus.ADVISED],
@@ -53,22 +54,22 @@ def test_programs_are_those_of_one_by_one_and_bad_ones_have_a_row(tmp_path: Path
 
 def test_only_what_changed_is_advised_again(tmp_path: Path) -> None:
     files = folder_of(tmp_path)
-    assert optimise_folder(REQUEST, files).made == 3
-    assert optimise_folder(REQUEST, files).made == 0
+    assert optimise_programs(REQUEST, files).made == 3
+    assert optimise_programs(REQUEST, files).made == 0
     (files.output / "part-0.stpnc").unlink()
     changed = files.folder / "part-1.stpnc"
     changed.write_text(changed.read_text(encoding="utf-8") + "\n", encoding="utf-8")
-    again = optimise_folder(REQUEST, files)
+    again = optimise_programs(REQUEST, files)
     assert again.made == 2
     assert len(again.rows) == 3
-    assert optimise_folder(AdviceRequest(mode=Mode.EC), files).made == 3
+    assert optimise_programs(AdviceRequest(mode=Mode.EC), files).made == 3
 
 
 def test_programs_that_are_gone_leave_the_ledger(tmp_path: Path) -> None:
     files = folder_of(tmp_path)
-    optimise_folder(REQUEST, files)
+    optimise_programs(REQUEST, files)
     (files.folder / "part-2.stpnc").unlink()
-    assert len(optimise_folder(REQUEST, files).rows) == 2
+    assert len(optimise_programs(REQUEST, files).rows) == 2
     assert set(known_rows(files.output)) == {"part-0.stpnc", "part-1.stpnc"}
 
 
@@ -88,7 +89,7 @@ def test_a_killed_run_goes_on_without_doing_a_program_twice(tmp_path: Path) -> N
         process.wait()
     rows = known_rows(files.output)
     assert all((files.output / name).is_file() for name in rows)
-    found = optimise_folder(REQUEST, files)
+    found = optimise_programs(REQUEST, files)
     assert found.made == 30 - len(rows)
     assert len(found.rows) == 30
     lines = (files.output / LEDGER).read_text(encoding="utf-8").splitlines()
@@ -97,12 +98,12 @@ def test_a_killed_run_goes_on_without_doing_a_program_twice(tmp_path: Path) -> N
 
 def test_a_cluster_gives_the_same(tmp_path: Path) -> None:
     files = folder_of(tmp_path)
-    optimise_folder(REQUEST, files)
+    optimise_programs(REQUEST, files)
     wanted = {name: row.time_after_s for name, row in known_rows(files.output).items()}
     data = (files.output / "part-1.stpnc").read_bytes()
     shutil.rmtree(files.output)
     with running_cluster(tmp_path, 1) as made:
-        found = optimise_folder(REQUEST, files, pools=pools_of(made.address))
+        found = optimise_programs(REQUEST, files, pools=pools_of(made.address))
     assert {row.program: row.time_after_s for row in found.rows} == wanted
     assert (files.output / "part-1.stpnc").read_bytes() == data
 
@@ -110,20 +111,20 @@ def test_a_cluster_gives_the_same(tmp_path: Path) -> None:
 def test_folders_that_are_not_usable_are_refused(tmp_path: Path) -> None:
     files = folder_of(tmp_path)
     with pytest.raises(WriteError, match="is the folder of the programs"):
-        optimise_folder(REQUEST, FolderFiles(folder=files.folder, output=files.folder))
+        optimise_programs(REQUEST, FolderFiles(folder=files.folder, output=files.folder))
     empty = tmp_path / "empty"
     empty.mkdir()
     with pytest.raises(StepNcError, match="has no program"):
-        optimise_folder(REQUEST, FolderFiles(folder=empty, output=files.output))
+        optimise_programs(REQUEST, FolderFiles(folder=empty, output=files.output))
     output = files.folder / "notes.txt"
     with pytest.raises(WriteError, match="is a file"):
-        optimise_folder(REQUEST, FolderFiles(folder=files.folder, output=output))
+        optimise_programs(REQUEST, FolderFiles(folder=files.folder, output=output))
     assert not files.output.exists()
 
 
 def test_a_dry_run_writes_the_ledger_only(tmp_path: Path) -> None:
     files = folder_of(tmp_path)
     dry = FolderFiles(folder=files.folder, output=files.output, dry_run=True)
-    assert optimise_folder(REQUEST, dry).made == 3
+    assert optimise_programs(REQUEST, dry).made == 3
     assert [each.name for each in files.output.iterdir()] == [LEDGER]
-    assert optimise_folder(REQUEST, files).made == 3
+    assert optimise_programs(REQUEST, files).made == 3

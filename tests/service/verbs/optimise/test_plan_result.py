@@ -6,19 +6,20 @@ from pathlib import Path
 
 import pytest
 
-from service import chosen, usecases
+from service import chosen
+from service.cli.verbs import print_result
 from service.contents import Contents, check
 from service.contents_output import print_contents
 from service.library_output import print_entries, print_entry
-from service.plan_output import print_plan
 from service.rendering.text import MOST_FINDINGS
+from service.verbs.optimise import program as advising
 from simulator.library import load_machine
 from simulator.machine_file import machine_toml
 from simulator.spec import ModeDirection, VibratingPart, VibrationMode
 from stepnc_model.errors import Finding, Severity
 from tests.asking import asked_advice
 
-PARTS = Path(__file__).parents[2] / "examples" / "parts"
+PARTS = Path(__file__).parents[4] / "examples" / "parts"
 ESCAPE = "\x1b"
 
 
@@ -47,7 +48,7 @@ def test_a_plan_shows_both_feeds_and_the_limit_that_binds(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     request = asked_advice(file=PARTS / "paper002.stpnc", machine="paper002", dry_run=True)
-    print_plan(usecases.optimise(*request).plan)
+    print_result(advising.advise_program(*request))
     shown, told = capsys.readouterr()
     assert "123.8 -> 290.0" in shown
     assert "618.9" in shown
@@ -57,7 +58,7 @@ def test_a_plan_shows_both_feeds_and_the_limit_that_binds(
 
 def test_columns_of_a_plan_are_aligned(capsys: pytest.CaptureFixture[str]) -> None:
     request = asked_advice(file=PARTS / "bracket.stpnc", dry_run=True)
-    print_plan(usecases.optimise(*request).plan)
+    print_result(advising.advise_program(*request))
     lines = capsys.readouterr().out.splitlines()
     header = next(line for line in lines if line.startswith("workingstep"))
     rule = lines[lines.index(header) + 1]
@@ -148,7 +149,7 @@ def test_a_plan_tells_what_is_stable_or_why_that_is_not_asked(
         workingsteps=("ROUGH CONTOUR", "FINISH CONTOUR", "MILL SLOT"),
         dry_run=True,
     )
-    print_plan(usecases.optimise(*request).plan)
+    print_result(advising.advise_program(*request))
     lines = capsys.readouterr().out.splitlines()
     (bounded,) = (line for line in lines if line.startswith("  ROUGH CONTOUR: "))
     (thin,) = (line for line in lines if line.startswith("  FINISH CONTOUR: "))

@@ -1,7 +1,7 @@
-"""One function per command; the command line and the REST API call these functions."""
+"""Optimisation of a STEP-NC program: read, plan, write back."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +14,6 @@ from service.chosen import machine_for, material_for, require_axes, with_holding
 from service.divided_depth import depth_notes
 from service.files import (
     beside,
-    is_same,
     require_place,
     require_places,
     write_atomically,
@@ -22,17 +21,19 @@ from service.files import (
 )
 from service.knowledge.corrected import factors_for, finding_of, with_corrections
 from service.knowledge.place import named_place, require_apart
-from service.program_kind import ProgramKind
 from service.progress import Progress
 from service.reading import Tell, read_given, read_program, selected, silent
 from service.records import changes_of, lost_plunge_feeds
 from service.refusals import Writable, advisable, apart_from
 from service.requests.advice import AdviceRequest
 from service.requests.fields import fields_of, require_bounds
-from service.requests.serves import OF_PATHS, given_values, require_served
+from service.requests.serves import OF_PATHS, given_values
+from service.verbs.optimise.places import output_of
+from service.verbs.optimise.plan_result import ProgramAdvice
+from service.verbs.optimise.request import AdviceFiles
 from simulator.spec import Certainty, Machine, MaterialMatch
 from stepnc_model import writeback
-from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
+from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.file_profile import FileProfile, RecordChoice
 from stepnc_model.given import Completed
 from stepnc_model.part21.reader import Part21File
@@ -54,49 +55,9 @@ if TYPE_CHECKING:
 NOTHING_WRITTEN = "nothing was written: no workingstep was advised"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AdviceFiles:
-    """Files that ``optimise`` reads and writes."""
-
-    file: Path
-    name: str = ""
-    """Name of the program; empty: the name of its file."""
-    output: Path | None = None
-    feeds: Path | None = None
-    """CSV table of the feeds along the paths, to be written."""
-    in_place: bool = False
-    """Whether the input file is overwritten."""
-    dry_run: bool = False
-    """Whether writing a STEP-NC file is suppressed."""
-    report: Path | None = None
-    holding: Path | None = None
-    """Work-holding file that replaces the work-holding of the machine file."""
-    tools: Path | None = None
-    """Tool table: which tools of the program cut over centre or have wipers."""
-    knowledge: str = ""
-    """Knowledge base with accepted corrections; empty: the one named by the environment."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OptimiseResult:
-    """Plan of a program, the file written, and the comparison with a simulated run."""
-
-    plan: Plan
-    written: Path | None
-    """The STEP-NC file, or None when nothing was written."""
-    confirmation: "Confirmation | None" = None
-    """Comparison with the simulated run; None if it was not requested."""
-    along: "FeedsAlongPath | None" = None
-    """Feeds along the paths; None if they were not requested."""
-    told: tuple[Finding, ...] = ()
-    """Warnings about the program that were told already."""
-    is_advised: bool = True
-    """Whether there is advice that is written, or would be without a dry run."""
-
-
-def optimise(
+def advise_program(
     request: AdviceRequest, files: AdviceFiles, *, tell: Tell = silent
-) -> OptimiseResult:
+) -> ProgramAdvice:
     """Read a program, optimise its feeds and write the optimised program.
 
     Raises
@@ -107,9 +68,9 @@ def optimise(
     _require_sense(request, files)
     task = _task(request, _table(files.tools))
     profile = None if request.records is RecordChoice.NONE else request.profile
-    output = _output(files)
+    output = output_of(files, ".optimised.stpnc")
     nc_place = _nc_place(request, files, output)
-    require_apart(named_place(files.knowledge), output, files.report, files.feeds, nc_place)
+    require_apart(named_place(files.kb), output, files.report, files.feeds_csv, nc_place)
     whole = read_given(files.file, request, name=files.name, tell=tell)
     program = whole.program
     profile = writeback.profile_for(program, profile)
@@ -168,9 +129,9 @@ def optimise(
         written = _write(output, kept, tell) if changes else None
         if written is None:
             tell(NOTHING_WRITTEN)
-    _write_views(files, plan, along, tell)
+    _write_feeds(files, along, tell)
     _tell_conflicts(plan, tell)
-    return OptimiseResult(
+    return ProgramAdvice(
         plan=plan,
         written=written,
         confirmation=confirmation,
@@ -244,7 +205,7 @@ def _factors(
     if not request.has_corrections:
         return ()
     return factors_for(
-        files.knowledge,
+        files.kb,
         program,
         chosen,
         machine=machine,
@@ -295,28 +256,21 @@ def _write(output: Path, data: bytes, tell: Tell) -> Path:
     return output
 
 
-def _write_views(
-    files: AdviceFiles, plan: Plan, along: "FeedsAlongPath | None", tell: Tell
-) -> None:
-    """Write the report and the table of feeds, where they were asked for."""
-    if files.report is not None:
-        from service.plan_output import report_page  # noqa: PLC0415 (plotly takes a second)
-
-        write_atomically(files.report, report_page(plan, along).encode())
-        tell(f"report: {files.report}")
-    if files.feeds is not None and along is not None:
+def _write_feeds(files: AdviceFiles, along: "FeedsAlongPath | None", tell: Tell) -> None:
+    """Write the table of feeds, where it was asked for."""
+    if files.feeds_csv is not None and along is not None:
         from service.along_path.output import profile_lines  # noqa: PLC0415 (numpy)
 
-        tell(f"feeds: {files.feeds} ({write_lines(files.feeds, profile_lines(along))} lines)")
+        lines = write_lines(files.feeds_csv, profile_lines(along))
+        tell(f"feeds: {files.feeds_csv} ({lines} lines)")
 
 
 def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
     """Refuse numbers out of bounds, and options that have no effect."""
     require_bounds(request)
-    require_served(request, ProgramKind.STEP_NC)
     if request.is_along_path:
         return
-    if request.levels is not None or files.feeds is not None:
+    if request.levels is not None or files.feeds_csv is not None:
         raise StepNcError("--levels and --feeds-csv need --along-path")
     if request.smooth_share is not None:
         raise StepNcError("--smooth needs --along-path")
@@ -355,23 +309,6 @@ def convert(path: Path, *, profile: FileProfile, output: Path) -> None:
     require_place(output, apart_from=path)
     program = read_program(path, units="iso")
     write_atomically(output, writeback.convert(program, profile))
-
-
-def _output(files: AdviceFiles) -> Path:
-    """Output path of the optimised program; the input file only if asked for."""
-    if files.in_place:
-        if files.output is not None:
-            raise StepNcError("--in-place and --output exclude each other")
-        output = files.file
-    else:
-        output = files.output or beside(files.file, ".optimised.stpnc")
-        if is_same(files.file, output):
-            message = "is the input file; use --in-place to overwrite it"
-            raise WriteError(message, path=str(output))
-        if not files.dry_run:
-            require_place(output, apart_from=files.file)
-    require_places([files.report, files.feeds], apart_from=[files.file, output])
-    return output
 
 
 def _task(request: AdviceRequest, tools: "tuple[TableTool, ...]") -> OptimisationTask:
@@ -422,7 +359,7 @@ def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path 
     if request.nc_control is None:
         return None
     place = beside(output, request.nc_control.suffix)
-    require_places([place], apart_from=[files.file, output, files.report, files.feeds])
+    require_places([place], apart_from=[files.file, output, files.report, files.feeds_csv])
     return place
 
 

@@ -12,13 +12,16 @@ from hypothesis import strategies as st
 
 from optimiser.along_path.caps import CapName
 from optimiser.along_path.tool_bounds import bounds_of_tool
-from service.along_path.code_output import code_advice_json, print_code_advice
-from service.along_path.of_code import CodeAdvice, CodeFiles, optimise_code, source_of
 from service.along_path.run import along_path
 from service.along_path.task import task_of
+from service.cli.verbs import print_result
+from service.rendering.records import dump
 from service.requests.advice import AdviceRequest
 from service.requests.stock import RawPart, StockFile
-from service.usecases import AdviceFiles, optimise
+from service.verbs.optimise.code import optimise_code, source_of
+from service.verbs.optimise.code_result import CodeAdvice
+from service.verbs.optimise.program import advise_program as optimise
+from service.verbs.optimise.request import AdviceFiles
 from simulator.removal.engage import MillingStock
 from simulator.removal.stock_file import stock_bytes
 from stepnc_model.errors import StepNcError
@@ -362,9 +365,9 @@ def test_within_the_margin_of_the_stock_nothing_is_air(kind: str, tmp_path: Path
 
 def test_the_frame_of_the_stock_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     found = advised(HEAD.replace("G54", "G56") + slot(10.0) + END)
-    print_code_advice(found)
+    print_result(found)
     assert "the stock stands in G56" in capsys.readouterr().out
-    assert '"frame": "G56"' in code_advice_json(found)
+    assert '"frame": "G56"' in dump(found.record())
 
 
 def test_messages_of_the_planned_run_name_lines_of_the_file() -> None:
@@ -383,7 +386,7 @@ def own(tmp_path_factory: pytest.TempPathFactory) -> CodeAdvice:
     tools = BRACKET.parents[1] / "tools" / "bracket.toml"
     return optimise_code(
         AdviceRequest(machine="vmc15", material="c45", stock="-3,-3,-40,153,93,2"),
-        CodeFiles(file=folder / "one.ngc", tools=tools, dry_run=True),
+        AdviceFiles(file=folder / "one.ngc", tools=tools, dry_run=True),
     )
 
 
@@ -393,7 +396,9 @@ def test_our_own_code_is_left_by_a_second_run(own: CodeAdvice, tmp_path: Path) -
     file.write_bytes(code.rewritten.data)
     again = optimise_code(
         AdviceRequest(machine="vmc15", material="c45", stock="-3,-3,-40,153,93,2"),
-        CodeFiles(file=file, tools=BRACKET.parents[1] / "tools" / "bracket.toml", dry_run=True),
+        AdviceFiles(
+            file=file, tools=BRACKET.parents[1] / "tools" / "bracket.toml", dry_run=True
+        ),
     )
     assert again.rewritten.changed == 0
     assert again.rewritten.data == code.rewritten.data

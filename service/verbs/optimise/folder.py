@@ -1,4 +1,4 @@
-"""Use case of ``optimise FOLDER``: every program of a folder, on executors.
+"""Optimisation of every program of a folder, on executors.
 
 Programs travel as bytes, so that workers of a cluster need no common folder. What is written is
 written here: the optimised program first, then its row of the ledger. A run that was broken off
@@ -15,19 +15,19 @@ from tempfile import TemporaryDirectory
 from optimiser.advice import Advice, AdviceStatus, Plan
 from optimiser.errors import OptimisationError
 from service.execution.executors import Pools, processes, results
+from service.execution.pools import pools_of
 from service.file_names import PROGRAMS, naming
 from service.files import is_same, write_atomically
-from service.folder_advice.ledger import (
-    Ledger,
-    ProgramRow,
-    ProgramStatus,
-    known_rows,
-)
+from service.program_kind import ProgramKind
 from service.progress import Ticker
 from service.reading import Tell, silent
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
-from service.usecases import AdviceFiles, optimise
+from service.requests.serves import require_served
+from service.verbs.optimise.folder_result import FolderAdvice
+from service.verbs.optimise.ledger import Ledger, ProgramRow, ProgramStatus, known_rows
+from service.verbs.optimise.program import advise_program
+from service.verbs.optimise.request import AdviceFiles
 from stepnc_model.errors import StepNcError, WriteError
 
 MOST_BYTES = 100_000_000
@@ -48,21 +48,35 @@ class FolderFiles:
     knowledge: str = ""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FolderAdvice:
-    """What became of the programs of a folder."""
-
-    rows: tuple[ProgramRow, ...]
-    """By name."""
-    made: int
-    """Number of programs that were optimised in this run; others had been before."""
-
-    def has(self, status: ProgramStatus) -> bool:
-        """Whether a program has a status."""
-        return any(row.status is status for row in self.rows)
-
-
 def optimise_folder(
+    request: AdviceRequest, files: AdviceFiles, *, tell: Tell = silent
+) -> FolderAdvice:
+    """Optimise every program of a folder, on a cluster if one is named.
+
+    Raises
+    ------
+    StepNcError
+        When the folders or an option are not usable.
+    """
+    require_served(request, ProgramKind.STEP_NC)
+    require_served(files, ProgramKind.STEP_NC)
+    if files.output is None or files.in_place or files.report is not None:
+        raise StepNcError(
+            f"{files.file}: is a folder: name another folder with -o, without --in-place and "
+            "--report"
+        )
+    places = FolderFiles(
+        folder=files.file,
+        output=files.output,
+        dry_run=files.dry_run,
+        holding=files.holding,
+        tools=files.tools,
+        knowledge=files.kb,
+    )
+    return optimise_programs(request, places, pools=pools_of(files.cluster), tell=tell)
+
+
+def optimise_programs(
     request: AdviceRequest,
     files: FolderFiles,
     *,
@@ -169,11 +183,11 @@ def advised(
         place.write_bytes(data)
         try:
             with naming({place: name}):
-                found = optimise(
+                found = advise_program(
                     request,
                     AdviceFiles(
                         file=place, name=name, output=output, holding=files.holding,
-                        tools=files.tools, knowledge=files.knowledge,
+                        tools=files.tools, kb=files.knowledge,
                     ),
                 )  # fmt: skip
         except OptimisationError as error:

@@ -1,0 +1,412 @@
+"""Kernel that fits the radial offsets of teeth to one revolution, by Gauss-Newton.
+
+It is the inner loop of :mod:`controller.offsets`, which explains the model and gives the source.
+The offsets are those that make ``e'·R⁻¹·e + a'·P⁻¹·a`` least, with e the error of the shares,
+R its covariance, a the distance from the offsets known before and P the covariance of these. A
+step that makes the fit worse is halved. Compiled, because a revolution takes a dozen small
+matrix products for each guess, which cost a hundred times their arithmetic in Python. Units mm.
+"""
+
+from functools import cache
+from math import inf, log, pi
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+
+from controller.ports import Floats
+from controller.tooth_shares import ToothShares, shares_into
+from simulator.kernels.kernel import entry, kernel
+from simulator.physics.tooth_means import LOST, Periods
+
+STEP = 1e-4
+"""Step of numerical derivatives, mm."""
+
+NEAR = 5e-4
+"""Change between iterations at which they have converged, mm."""
+
+ITERATIONS = 8
+
+
+START_RADII = (0.01, 0.025)
+"""Eccentricities tried as starting points, mm."""
+
+START_ANGLES = 8
+
+
+class Fit(NamedTuple):
+    """Offsets that fit a revolution best; a tuple, as kernels require."""
+
+    mean: Floats
+    """Offsets, (z,), mm."""
+    covariance: Floats
+    """Their covariance, (z, z), mm²."""
+    figures: Floats
+    """Misfit, ln of the determinant of the spread of the shares, (2,)."""
+
+    @property
+    def misfit(self) -> float:
+        """Squared distance of shares and offsets from what was known, in deviations."""
+        return float(self.figures[0])
+
+    @property
+    def log_determinant(self) -> float:
+        """Logarithm of the determinant of the covariance of the expected shares."""
+        return float(self.figures[1])
+
+
+class _Scratch(NamedTuple):
+    """Memory of the kernels, which allocate none."""
+
+    shown: Floats
+    rows: Floats
+    squares: Floats
+    figures: Floats
+
+
+def misfits(shares: ToothShares, mean: Floats, *, scale: float) -> Floats:
+    """Misfits of a revolution to known offsets, with all teeth and without each tooth.
+
+    Parameters
+    ----------
+    shares : ToothShares
+    mean : (z,) array, mm
+    scale : float
+        Relative standard deviation of a common change of the chip thickness.
+
+    Returns
+    -------
+    (z + 1,) array
+        The first entry is with all teeth.
+    """
+    found = np.empty(len(mean) + 1)
+    _misfits(shares.periods, _measured(shares), (mean, found), scale, _scratch(len(mean)))
+    return _checked(found, found)
+
+
+def fitted(
+    shares: ToothShares,
+    mean: Floats,
+    covariance: Floats,
+    *,
+    lost: int | None,
+    scale: float,
+    plain: float,
+) -> Fit:
+    """Fit the offsets of the teeth to their shares in a revolution.
+
+    Parameters
+    ----------
+    shares : ToothShares
+    mean : (z,) array, mm
+        Offsets known before.
+    covariance : (z, z) array, mm²
+    lost : int, optional
+        Number of the tooth that takes no chip; None: all teeth cut.
+    scale : float
+        Relative standard deviation of a common change of the chip thickness.
+    plain : float
+        Misfit above which the search is repeated from some eccentricities: from offsets that
+        keep teeth out of the work, the gradient cannot return.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If a covariance is singular.
+    """
+    teeth = len(mean)
+    found = Fit(np.empty(teeth), np.empty((teeth, teeth)), np.zeros(2))
+    known = mean, covariance, _starts(teeth)
+    settings = scale, plain, -1 if lost is None else lost
+    _search(shares.periods, _measured(shares), known, settings, found, _scratch(teeth))
+    return _checked(found, found.figures)
+
+
+def _measured(shares: ToothShares) -> tuple[Floats, Floats, Floats]:
+    return shares.taken, shares.expected, shares.noise
+
+
+Found = TypeVar("Found", Floats, Fit)
+
+
+def _checked(found: Found, figures: Floats) -> Found:
+    if not figures[0] < inf:
+        raise np.linalg.LinAlgError("the covariance of offsets or shares is singular")
+    return found
+
+
+@cache
+def _starts(teeth: int) -> Floats:
+    """Eccentricities at which to start, (S, z), mm; the first is none."""
+    angles = 2.0 * pi * np.arange(START_ANGLES) / START_ANGLES
+    eccentric = np.cos(angles[:, None] - 2.0 * pi / teeth * np.arange(teeth))
+    return np.vstack([np.zeros(teeth), *(radius * eccentric for radius in START_RADII)])
+
+
+def _scratch(teeth: int) -> _Scratch:
+    return _Scratch(
+        np.empty((teeth + 1, teeth)),
+        np.empty((7, teeth)),
+        np.empty((9, teeth, teeth)),
+        np.empty(2),
+    )
+
+
+@entry
+def _misfits(
+    at: Periods,
+    measured: tuple[Floats, Floats, Floats],
+    asked: tuple[Floats, Floats],
+    scale: float,
+    scratch: _Scratch,
+) -> None:
+    """Kernel of :func:`misfits`."""
+    taken, expected, noise = measured
+    mean, found = asked
+    guess, error, precision = scratch.rows[4], scratch.rows[1], scratch.squares[0]
+    _scale(at, measured, mean, scale, -1, scratch)
+    _invert(scratch.squares[7], precision)
+    for lost in range(-1, mean.shape[0]):
+        _guess(mean, lost, guess)
+        shares_into(at, expected, guess, error)
+        for each in range(mean.shape[0]):
+            error[each] = taken[each] - error[each]
+        found[lost + 1] = _square(error, precision)
+
+
+@entry
+def _search(
+    at: Periods,
+    measured: tuple[Floats, Floats, Floats],
+    known: tuple[Floats, Floats, Floats],
+    settings: tuple[float, float, int],
+    found: Fit,
+    scratch: _Scratch,
+) -> None:
+    """Kernel of :func:`fitted`; an infinite misfit tells of a singular covariance."""
+    taken, expected, noise = measured
+    mean, covariance, starts = known
+    scale, plain, lost = settings
+    start, noisier = scratch.rows[5], scratch.squares[7]
+    again = Fit(scratch.rows[6], scratch.squares[8], scratch.figures)
+    _copy(noise, noisier)
+    _fit(at, measured, known, mean, lost, found, scratch)
+    if found.figures[0] > plain:
+        _best_start(at, measured, known, lost, scratch)
+        _fit(at, measured, known, start, lost, again, scratch)
+        if again.figures[0] < found.figures[0]:
+            for each in range(mean.shape[0]):
+                found.mean[each] = again.mean[each]
+    for each in range(mean.shape[0]):
+        start[each] = found.mean[each]
+    _scale(at, measured, start, scale, lost, scratch)
+    _fit(at, measured, known, start, lost, found, scratch)
+
+
+@kernel
+def _guess(offsets: Floats, lost: int, guess: Floats) -> None:
+    """Write offsets, one tooth of which may be lost."""
+    for each in range(offsets.shape[0]):
+        guess[each] = LOST if each == lost else offsets[each]
+
+
+@kernel
+def _scale(
+    at: Periods,
+    measured: tuple[Floats, Floats, Floats],
+    offsets: Floats,
+    scale: float,
+    lost: int,
+    scratch: _Scratch,
+) -> None:
+    """Write the noise, and the error of a common change of the chip, into ``squares[7]``."""
+    expected, noise, noisier = measured[1], measured[2], scratch.squares[7]
+    guess, plain, other = scratch.rows[4], scratch.rows[0], scratch.rows[1]
+    _guess(offsets, lost, guess)
+    shares_into(at, expected, guess, plain)
+    for each in range(offsets.shape[0]):
+        guess[each] = LOST if each == lost else (1.0 + scale) * offsets[each]
+    shares_into(at, expected, guess, other)
+    for each in range(offsets.shape[0]):
+        other[each] -= plain[each]
+    for row in range(offsets.shape[0]):
+        for column in range(offsets.shape[0]):
+            noisier[row, column] = noise[row, column] + other[row] * other[column]
+
+
+@kernel
+def _best_start(
+    at: Periods,
+    measured: tuple[Floats, Floats, Floats],
+    known: tuple[Floats, Floats, Floats],
+    lost: int,
+    scratch: _Scratch,
+) -> None:
+    """Write the most likely of some eccentricities into ``rows[5]``."""
+    taken, expected, noise = measured
+    mean, covariance, starts = known
+    guess, error, start = scratch.rows[4], scratch.rows[1], scratch.rows[5]
+    precision, certainty, copy = scratch.squares[0], scratch.squares[1], scratch.squares[6]
+    _copy(noise, copy)
+    _invert(copy, precision)
+    _copy(covariance, copy)
+    _invert(copy, certainty)
+    least, best = inf, 0
+    for row in range(starts.shape[0]):
+        for each in range(mean.shape[0]):
+            guess[each] = LOST if each == lost else mean[each] + starts[row, each]
+        shares_into(at, expected, guess, error)
+        for each in range(mean.shape[0]):
+            error[each] = taken[each] - error[each]
+        cost = _square(error, precision) + _square(starts[row], certainty)
+        if cost < least:
+            least, best = cost, row
+    for each in range(mean.shape[0]):
+        start[each] = mean[each] + starts[best, each]
+
+
+@kernel
+def _fit(
+    at: Periods,
+    measured: tuple[Floats, Floats, Floats],
+    known: tuple[Floats, Floats, Floats],
+    start: Floats,
+    lost: int,
+    found: Fit,
+    scratch: _Scratch,
+) -> None:
+    """One search; the covariance of the shares is in ``squares[7]``."""
+    taken, expected, mean, covariance = measured[0], measured[1], known[0], known[1]
+    best, shown, guess = found.mean, scratch.shown, scratch.rows[4]
+    now, error, away, moved = (
+        scratch.rows[0], scratch.rows[1], scratch.rows[2], scratch.rows[3],
+    )  # fmt: skip
+    precision, certainty, slope = scratch.squares[0], scratch.squares[1], scratch.squares[2]
+    towards, inverse, gain = scratch.squares[3], scratch.squares[4], scratch.squares[5]
+    spread, noise = scratch.squares[6], scratch.squares[7]
+    teeth, least = mean.shape[0], inf
+    _copy(noise, spread)
+    _invert(spread, precision)
+    _copy(covariance, spread)
+    _invert(spread, certainty)
+    for each in range(teeth):
+        now[each] = best[each] = start[each]
+    for _ in range(ITERATIONS):
+        for row in range(teeth + 1):
+            _guess(now, lost, guess)
+            if row > 0 and row - 1 != lost:
+                guess[row - 1] += STEP
+            shares_into(at, expected, guess, shown[row])
+        for each in range(teeth):
+            error[each] = taken[each] - shown[0, each]
+            away[each] = now[each] - mean[each]
+        misfit = _square(error, precision) + _square(away, certainty)
+        if misfit >= least:
+            for each in range(teeth):
+                now[each] = 0.5 * (now[each] + best[each])
+            continue
+        least = misfit
+        for each in range(teeth):
+            best[each] = now[each]
+            for other in range(teeth):
+                slope[each, other] = (shown[1 + other, each] - shown[0, each]) / STEP
+        _times_transposed(covariance, slope, towards)
+        _times(slope, towards, spread)
+        for each in range(teeth):
+            for other in range(teeth):
+                spread[each, other] += noise[each, other]
+        found.figures[1] = _invert(spread, inverse)
+        _times(towards, inverse, gain)
+        farthest = 0.0
+        for each in range(teeth):
+            moved[each] = error[each]
+            for other in range(teeth):
+                moved[each] += slope[each, other] * away[other]
+        for each in range(teeth):
+            now[each] = mean[each]
+            for other in range(teeth):
+                now[each] += gain[each, other] * moved[other]
+            farthest = max(farthest, abs(now[each] - best[each]))
+        if farthest < NEAR:
+            for each in range(teeth):
+                best[each] = now[each]
+            break
+    found.figures[0] = least
+    # H·P anew, and not the transpose of P·H': rounding leaves P not quite symmetric, and an
+    # asymmetry would grow from revolution to revolution.
+    _times(slope, covariance, towards)
+    _times(gain, towards, found.covariance)
+    for each in range(teeth):
+        for other in range(teeth):
+            found.covariance[each, other] = (
+                covariance[each, other] - found.covariance[each, other]
+            )
+
+
+@kernel
+def _copy(source: Floats, into: Floats) -> None:
+    for row in range(source.shape[0]):
+        for column in range(source.shape[1]):
+            into[row, column] = source[row, column]
+
+
+@kernel
+def _square(row: Floats, matrix: Floats) -> float:
+    """Quadratic form ``x'·M·x``."""
+    total = 0.0
+    for each in range(row.shape[0]):
+        for other in range(row.shape[0]):
+            total += row[each] * matrix[each, other] * row[other]
+    return total
+
+
+@kernel
+def _times(left: Floats, right: Floats, into: Floats) -> None:
+    """Product of square matrices."""
+    for row in range(left.shape[0]):
+        for column in range(left.shape[0]):
+            total = 0.0
+            for each in range(left.shape[0]):
+                total += left[row, each] * right[each, column]
+            into[row, column] = total
+
+
+@kernel
+def _times_transposed(left: Floats, right: Floats, into: Floats) -> None:
+    """Product of a square matrix with the transpose of another."""
+    for row in range(left.shape[0]):
+        for column in range(left.shape[0]):
+            total = 0.0
+            for each in range(left.shape[0]):
+                total += left[row, each] * right[column, each]
+            into[row, column] = total
+
+
+@kernel
+def _invert(matrix: Floats, into: Floats) -> float:
+    """Invert by Gauss-Jordan with row pivots; ``matrix`` is lost. Return ln |determinant|."""
+    size, logarithm = matrix.shape[0], 0.0
+    for row in range(size):
+        for column in range(size):
+            into[row, column] = 1.0 if row == column else 0.0
+    for step in range(size):
+        pivot = step
+        for row in range(step + 1, size):
+            if abs(matrix[row, step]) > abs(matrix[pivot, step]):
+                pivot = row
+        for column in range(size):
+            held = matrix[step, column]
+            matrix[step, column], matrix[pivot, column] = matrix[pivot, column], held
+            held = into[step, column]
+            into[step, column], into[pivot, column] = into[pivot, column], held
+        scale = matrix[step, step]
+        logarithm += log(abs(scale)) if scale != 0.0 else -inf
+        for column in range(size):
+            matrix[step, column] /= scale
+            into[step, column] /= scale
+        for row in range(size):
+            factor = matrix[row, step]
+            if row != step and factor != 0.0:
+                for column in range(size):
+                    matrix[row, column] -= factor * matrix[step, column]
+                    into[row, column] -= factor * into[step, column]
+    return logarithm

@@ -1,1 +1,0 @@
-"""Advice for all programs of a folder."""

@@ -1,0 +1,72 @@
+"""Request of ``optimise``: the values are those of REST, the files are named by people."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+from service.requests.advice import AdviceRequest
+from service.requests.fields import About, FileUse, Request
+from service.requests.files import Knowledge, MostRepeats, Report, ToolsUnit
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AdviceFiles(Request):
+    """Files that ``optimise`` reads and writes."""
+
+    file: Annotated[
+        Path,
+        About(
+            "a STEP-NC program (Part 21), a folder of them, or NC code", use=FileUse.PROGRAM,
+            metavar="FILE",
+        ),
+    ]  # fmt: skip
+    name: str = ""
+    """Name of the program; empty: the name of its file."""
+    output: Annotated[
+        Path | None,
+        About(
+            "default: FILE.optimised.stpnc, or the suffix of NC code; of a folder: another "
+            "folder",
+            flag="--output", short="-o", use=FileUse.OUTPUT, metavar="FILE",
+        ),
+    ] = None  # fmt: skip
+    in_place: Annotated[bool, About("overwrite the input file", flag="--in-place")] = False
+    holding: Annotated[
+        Path | None,
+        About(
+            "work-holding: [[holding]] tables of chuck, vice or clamps, by setup",
+            flag="--holding", use=FileUse.INPUT, metavar="TOML",
+        ),
+    ] = None  # fmt: skip
+    tools: Annotated[
+        Path | None,
+        About(
+            "tool table: the tools of NC code; of a program, which cut over centre or have "
+            "wipers",
+            flag="--tools", use=FileUse.INPUT, metavar="TABLE",
+        ),
+    ] = None  # fmt: skip
+    tools_unit: ToolsUnit = None
+    most_repeats: MostRepeats = None
+    kb: Knowledge = ""
+    feeds_csv: Annotated[
+        Path | None,
+        About(
+            "write the feeds along the paths as a table", flag="--feeds-csv",
+            use=FileUse.OUTPUT, metavar="CSV",
+        ),
+    ] = None  # fmt: skip
+    dry_run: Annotated[bool, About("write no optimised program", flag="--dry-run")] = False
+    report: Report = None
+    cluster: Annotated[
+        str,
+        About(
+            "optimise the programs of a folder on the Dask cluster of this scheduler, "
+            "tcp://127.0.0.1:8786 or, beyond this machine, tls://HOST:PORT (default: on "
+            "processes of this machine)",
+            flag="--cluster", metavar="ADDRESS",
+        ),
+    ] = ""  # fmt: skip
+
+
+REQUEST, FILES = AdviceRequest, AdviceFiles
