@@ -9,6 +9,8 @@ from stepnc_model.errors import StepNcError as StepNcError
 
 from service.verbs.blockfit.result import BlockFitResult as BlockFitResult
 from service.verbs.blocktest.result import BlockTestResult as BlockTestResult
+from service.verbs.calibrate.result import CalibrationResult as CalibrationResult
+from service.verbs.calibrate.tool_life import ToolLifeResult as ToolLifeResult
 from service.verbs.cycletime.result import CycleTimeResult as CycleTimeResult
 from service.verbs.optimise.result import OptimiseResult as OptimiseResult
 from service.verbs.taptest.result import TapTestResult as TapTestResult
@@ -34,6 +36,30 @@ def blocktest(
     feed: float | None = ...,
     lines: int = ...,
 ) -> BlockTestResult: ...
+def calibrate(
+    runs: str | Path | Iterable[str | Path] = ...,
+    *,
+    tool_life: str | Path | None = ...,
+    program: str | Path | None = ...,
+    nc: str | Path | None = ...,
+    tools: str | Path | None = ...,
+    tools_unit: Literal['mm', 'inch'] | None = ...,
+    most_repeats: int | None = ...,
+    output: str | Path | None = ...,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    machine: str | Path = ...,
+    material: str | Path = ...,
+    control: Literal['exact-stop', 'junction', 'fir'] = ...,
+    filter_s: str | Path = ...,
+    deviation_mm: float = ...,
+    life: str | Path | Iterable[str | Path] = ...,
+    edge: Literal['hss', 'carbide', 'ceramic'] = ...,
+    dialect: str | Path = ...,
+) -> CalibrationResult | ToolLifeResult: ...
 def cycletime(
     file: str | Path,
     log: str | Path | None = ...,

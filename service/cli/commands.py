@@ -224,9 +224,12 @@ def _alternative(error: Exception, options: argparse.Namespace) -> str:
 
 
 def _exit_code(error: Exception) -> int:
-    """Return 4 for conflicting limits, 3 for all errors of the input."""
+    """Return 4 for conflicting limits, 2 for what is missing, 3 for all errors of the input."""
     from optimiser.errors import OptimisationError
+    from service.errors import MissingArgument
 
+    if isinstance(error, MissingArgument):
+        return USAGE
     return INFEASIBLE if isinstance(error, OptimisationError) else BAD_INPUT
 
 

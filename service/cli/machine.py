@@ -1,4 +1,4 @@
-"""Commands of the virtual machine: ``simulate`` and ``calibrate``."""
+"""Command of the virtual machine, ``simulate``."""
 
 import argparse
 from pathlib import Path
@@ -29,7 +29,6 @@ USUAL_RATE = 10.0
 def add_machine_commands(commands: Commands) -> None:
     """Add the commands of the virtual machine to ``stepnc``."""
     _add_simulate(commands)
-    _add_calibrate(commands)
 
 
 def add_code(parser: argparse.ArgumentParser) -> None:
@@ -46,54 +45,6 @@ def add_code(parser: argparse.ArgumentParser) -> None:
     )
     add("--tools-unit", default="", metavar="UNIT", help="unit of a tool.tbl: mm or inch")
     add_most_repeats(parser)
-
-
-def _add_calibrate(commands: Commands) -> None:
-    parser = commands.add_parser(
-        "calibrate",
-        help="fit a machine file to measured runs of a program, or tool life to measured lives",
-    )
-    parser.fill = _calibrate_options
-
-
-def _calibrate_options(parser: argparse.ArgumentParser) -> None:
-    from service.requests.fields import add_options
-    from service.requests.runs import RunRequest
-
-    add = parser.add_argument
-    add(
-        "runs",
-        type=Path,
-        nargs="*",
-        metavar="RUN.csv",
-        help="measured runs: time_s and powers in W, columns named as `simulate` writes them",
-    )
-    add(
-        "--life",
-        action="append",
-        default=[],
-        metavar="V:T",
-        help="tool life of T min at V m/min, as 120:25; two or more fit Taylor's law",
-    )
-    add(
-        "--tool-life",
-        type=Path,
-        metavar="CSV",
-        help="file with such pairs, columns speed_m_min and life_min",
-    )
-    add("--edge", default="carbide", help="edge material: hss, carbide (default), ceramic")
-    add("--program", type=Path, metavar="FILE", help="the STEP-NC program that was run")
-    add_options(parser, RunRequest)
-    add_code(parser)
-    add(
-        "-o",
-        "--output",
-        type=output_path,
-        metavar="TOML",
-        help="write the calibrated machine, or the [[tool_life]] table of a material",
-    )
-    add_json(parser)
-    parser.set_defaults(run=_calibrate, refuse=parser.error)
 
 
 def _add_simulate(commands: Commands) -> None:
@@ -251,62 +202,3 @@ def _simulate(options: argparse.Namespace) -> int:
         return BAD_INPUT
     is_exceeded = simulation.whole.overload_time > 0.0 or bool(simulation.collisions)
     return LIMIT_EXCEEDED if is_exceeded else OK
-
-
-def _calibrate(options: argparse.Namespace) -> int:
-    """Run the command ``stepnc calibrate``."""
-    if options.life or options.tool_life is not None:
-        return _calibrate_tool_life(options)
-    if not options.runs:
-        options.refuse("the following arguments are required: RUN.csv, or --life")
-    from dataclasses import replace
-
-    from service.calibration.run import CalibrationRequest, calibrate
-    from service.requests.runs import SimulationRequest
-    from service.terminal import tell
-
-    files = replace(run_files(options, options.program), output=None)
-    request = CalibrationRequest(
-        runs=tuple(options.runs),
-        simulation=run_request(SimulationRequest, options),
-        files=files,
-        output=options.output,
-    )
-    result = calibrate(request, tell=tell)
-    if options.json:
-        from service.calibration.output import calibration_json
-        from service.terminal import write_out
-
-        write_out(calibration_json(result))
-    else:
-        from service.calibration.output import print_calibration
-
-        print_calibration(result)
-    return OK
-
-
-def _calibrate_tool_life(options: argparse.Namespace) -> int:
-    """Run the command ``stepnc calibrate --life``."""
-    from service.calibration.tool_life import (
-        ToolLifeRequest,
-        calibrate_tool_life,
-        tool_life_json,
-        tool_life_text,
-    )
-    from service.terminal import tell, write_out
-    from stepnc_model.errors import StepNcError
-
-    if options.runs or options.program is not None:
-        raise StepNcError("calibrate measured runs and tool lives in separate calls")
-    result = calibrate_tool_life(
-        ToolLifeRequest(
-            pairs=tuple(options.life),
-            file=options.tool_life,
-            cutting_material=options.edge,
-            output=options.output,
-        )
-    )
-    if options.output is not None:
-        tell(f"tool life: {options.output}")
-    write_out(tool_life_json(result) if options.json else tool_life_text(result))
-    return OK
