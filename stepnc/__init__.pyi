@@ -14,6 +14,7 @@ from service.verbs.calibrate.tool_life import ToolLifeResult as ToolLifeResult
 from service.verbs.cycletime.result import CycleTimeResult as CycleTimeResult
 from service.verbs.optimise.result import OptimiseResult as OptimiseResult
 from service.verbs.taptest.result import TapTestResult as TapTestResult
+from service.verbs.verify.result import VerificationResult as VerificationResult
 
 def blockfit(
     log: str | Path,
@@ -144,3 +145,23 @@ def taptest(
     source: str | Path = ...,
     machine: str | Path = ...,
 ) -> TapTestResult: ...
+def verify(
+    log: str | Path,
+    *,
+    program: str | Path | None = ...,
+    tools: str | Path | None = ...,
+    required: str | Path = ...,
+    output: str | Path | None = ...,
+    report: str | Path | None = ...,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    machine: str | Path = ...,
+    material: str | Path = ...,
+    zero: str | Path = ...,
+    tolerance_mm: float = ...,
+    cell_mm: float | None = ...,
+    has_deflection: bool = ...,
+) -> VerificationResult: ...

@@ -32,7 +32,6 @@ from service.cli.paths import add_path_commands
 from service.cli.record import add_record_command
 from service.cli.serve import add_service_commands
 from service.cli.verbs import add_verb, verb_parser
-from service.cli.verify import add_verify_command
 from service.requests.fields import output_path
 from service.verbs.verb import verbs
 
@@ -75,7 +74,6 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     add_machine_commands(commands)
     add_agent_command(commands)
     add_record_command(commands)
-    add_verify_command(commands)
     add_knowledge_commands(commands)
     add_control_command(commands)
     add_factory_command(commands)

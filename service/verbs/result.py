@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     import plotly.graph_objects as go
     import pyarrow as pa
 
+OK, LIMIT_EXCEEDED = 0, 5
+"""Exit codes of results: all is well, and something is beyond its limits."""
+
 WIDE = 10_000
 """Characters per line of a text that no terminal limits."""
 
