@@ -28,10 +28,7 @@ import uvicorn
 import stepnc
 from service.agent.play import begun, play
 from service.agent.run import PublishedRun, listening, published_run
-from service.blocks.block_fit import BlockFitRequest, fit_blocks
-from service.blocks.block_program import write_test
 from service.requests.agent import AgentRequest
-from service.requests.blocks import BlockTestRequest
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles
 from simulator.agent.http import application
@@ -64,11 +61,6 @@ STEP = 0.0117
 """Angle of a line, rad: spacings of 0.35 to 0.06 mm."""
 DEPTH = 10.0
 """mm"""
-
-TEST = BlockTestRequest(
-    machine=LIBRARY, spacing=(0.001, 0.0025, 0.005, 0.0075, 0.01), radius=(1.0,), lines=600
-)
-"""Shortened test of the paper: a radius has no effect."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -144,11 +136,13 @@ def found_on(hidden: HiddenMachine, folder: Path) -> MachineResult:
     real = folder / "hidden.toml"
     real.write_text(machine_toml(hidden.machine), encoding="utf-8")
     test, found = folder / "test.ngc", folder / "found.toml"
-    write_test(TEST, test)
+    # A shortened test of the paper: a radius has no effect.
+    stepnc.blocktest(
+        output=test, machine=LIBRARY, spacing=(0.001, 0.0025, 0.005, 0.0075, 0.01), radius=1.0,
+        lines=600,
+    )  # fmt: skip
     with _served(_run(hidden, real, test)) as url:
-        fit = fit_blocks(
-            BlockFitRequest(log=url, program=test, machine=LIBRARY, output=found)
-        ).fit
+        fit = stepnc.blockfit(url, program=test, machine=LIBRARY, output=found).fit
     spirals = []
     for feed in FEEDS_IN_MIN:
         code = folder / "spiral.ngc"

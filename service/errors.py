@@ -12,7 +12,8 @@
     ├── Forbidden                 the API key lacks the role for this request
     ├── TooMany(wait)             more requests than the rate limit allows
     ├── StorageFull               the disk is full
-    └── Unavailable               something that the service depends on is missing
+    ├── Unavailable               something that the service depends on is missing
+    └── MissingArgument           a command was called without what it needs
 """
 
 from stepnc_model.errors import StepNcError
@@ -93,3 +94,7 @@ class StorageFull(ServiceError):
 
 class Unavailable(ServiceError):
     """Something that the service depends on is missing or does not answer."""
+
+
+class MissingArgument(ServiceError):
+    """A command was called without what it needs."""

@@ -7,6 +7,10 @@ from typing import Literal
 from service.verbs.result import Result as Result
 from stepnc_model.errors import StepNcError as StepNcError
 
+from service.verbs.blockfit.result import BlockFitResult as BlockFitResult
+from service.verbs.blocktest.result import BlockTestResult as BlockTestResult
+from service.verbs.calibrate.result import CalibrationResult as CalibrationResult
+from service.verbs.calibrate.tool_life import ToolLifeResult as ToolLifeResult
 from service.verbs.canonical.result import CanonicalResult as CanonicalResult
 from service.verbs.check.result import CodeContents as CodeContents
 from service.verbs.check.result import ProgramContents as ProgramContents
@@ -20,9 +24,56 @@ from service.verbs.library import ListingResult as ListingResult
 from service.verbs.optimise.result import OptimiseResult as OptimiseResult
 from service.verbs.post.result import PostResult as PostResult
 from service.verbs.simulate.result import SimulateResult as SimulateResult
+from service.verbs.taptest.result import TapTestResult as TapTestResult
 from service.verbs.toolpath.result import CodePathResult as CodePathResult
 from service.verbs.toolpath.result import ToolPathResult as ToolPathResult
+from service.verbs.verify.result import VerificationResult as VerificationResult
 
+def blockfit(
+    log: str | Path,
+    *,
+    program: str | Path | None = ...,
+    output: str | Path | None = ...,
+    report: str | Path | None = ...,
+    dialect: str | Path = ...,
+    zero: str | Path = ...,
+    machine: str | Path = ...,
+) -> BlockFitResult: ...
+def blocktest(
+    *,
+    output: str | Path,
+    machine: str | Path = ...,
+    dialect: str | Path = ...,
+    unit: Literal['in', 'mm'] = ...,
+    spacing: float | Iterable[float] | None = ...,
+    radius: float | Iterable[float] | None = ...,
+    feed: float | None = ...,
+    lines: int = ...,
+) -> BlockTestResult: ...
+def calibrate(
+    runs: str | Path | Iterable[str | Path] = ...,
+    *,
+    tool_life: str | Path | None = ...,
+    program: str | Path | None = ...,
+    nc: str | Path | None = ...,
+    tools: str | Path | None = ...,
+    tools_unit: Literal['mm', 'inch'] | None = ...,
+    most_repeats: int | None = ...,
+    output: str | Path | None = ...,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    machine: str | Path = ...,
+    material: str | Path = ...,
+    control: Literal['exact-stop', 'junction', 'fir'] = ...,
+    filter_s: str | Path = ...,
+    deviation_mm: float = ...,
+    life: str | Path | Iterable[str | Path] = ...,
+    edge: Literal['hss', 'carbide', 'ceramic'] = ...,
+    dialect: str | Path = ...,
+) -> CalibrationResult | ToolLifeResult: ...
 def canonical(
     file: str | Path,
     *,
@@ -69,13 +120,13 @@ def control(
     given: str | Path | Iterable[str | Path] = ...,
     teeth: str | Path | Iterable[str | Path] = ...,
     feed: str | Path = ...,
-    program_id: str | Path | None = ...,
-    advice_id: str | Path | None = ...,
     machine: str | Path = ...,
     material: str | Path = ...,
     control: Literal['exact-stop', 'junction', 'fir'] = ...,
     filter_s: str | Path = ...,
     deviation_mm: float = ...,
+    program_id: str | Path | None = ...,
+    advice_id: str | Path | None = ...,
     pace: float = ...,
     keep_going: bool = ...,
     seed: int = ...,
@@ -212,13 +263,13 @@ def simulate(
     given: str | Path | Iterable[str | Path] = ...,
     teeth: str | Path | Iterable[str | Path] = ...,
     feed: str | Path = ...,
-    program_id: str | Path | None = ...,
-    advice_id: str | Path | None = ...,
     machine: str | Path = ...,
     material: str | Path = ...,
     control: Literal['exact-stop', 'junction', 'fir'] = ...,
     filter_s: str | Path = ...,
     deviation_mm: float = ...,
+    program_id: str | Path | None = ...,
+    advice_id: str | Path | None = ...,
     pace: float = ...,
     keep_going: bool = ...,
     seed: int = ...,
@@ -233,6 +284,18 @@ def simulate(
     missing: float = ...,
     zero: str | Path = ...,
 ) -> SimulateResult: ...
+def taptest(
+    response: str | Path,
+    *,
+    output: str | Path | None = ...,
+    direction: Literal['x', 'y', 'z', 'xy'],
+    tool: str | Path = ...,
+    tool_diameter_mm: float | None = ...,
+    workpiece: bool = ...,
+    modes: int | None = ...,
+    source: str | Path = ...,
+    machine: str | Path = ...,
+) -> TapTestResult: ...
 def toolpath(
     file: str | Path,
     *,
@@ -246,3 +309,23 @@ def toolpath(
     dialect: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
     keep_going: bool = ...,
 ) -> ToolPathResult | CodePathResult: ...
+def verify(
+    log: str | Path,
+    *,
+    program: str | Path | None = ...,
+    tools: str | Path | None = ...,
+    required: str | Path = ...,
+    output: str | Path | None = ...,
+    report: str | Path | None = ...,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    machine: str | Path = ...,
+    material: str | Path = ...,
+    zero: str | Path = ...,
+    tolerance_mm: float = ...,
+    cell_mm: float | None = ...,
+    has_deflection: bool = ...,
+) -> VerificationResult: ...

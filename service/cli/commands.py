@@ -10,12 +10,10 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from service.cli.agent import add_agent_command
-from service.cli.blocks import add_block_commands
 from service.cli.dataset import add_dataset_command
 from service.cli.factory import add_factory_command
 from service.cli.kbe import USAGE, add_knowledge_commands
 from service.cli.learning import add_learning_commands
-from service.cli.machine import add_machine_commands
 from service.cli.options import (
     BAD_INPUT,
     INFEASIBLE,
@@ -26,7 +24,6 @@ from service.cli.options import (
 from service.cli.record import add_record_command
 from service.cli.serve import add_service_commands
 from service.cli.verbs import add_verb, verb_parser
-from service.cli.verify import add_verify_command
 from service.verbs.verb import verbs
 
 EXAMPLES = """examples:
@@ -62,11 +59,8 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     )
     commands = top.add_subparsers(dest="command", metavar="COMMAND", parser_class=CommandParser)
     add_verb(commands, verbs()["optimise"])
-    add_machine_commands(commands)
-    add_block_commands(commands)
     add_agent_command(commands)
     add_record_command(commands)
-    add_verify_command(commands)
     add_knowledge_commands(commands)
     add_factory_command(commands)
     add_dataset_command(commands)
@@ -165,7 +159,10 @@ def _alternative(error: Exception, options: argparse.Namespace) -> str:
 
 
 def _exit_code(error: Exception) -> int:
-    """Return 4 for conflicting limits, 3 for all errors of the input."""
+    """Return 4 for conflicting limits, 2 for what is missing, 3 for all errors of the input."""
     from optimiser.errors import OptimisationError
+    from service.errors import MissingArgument
 
+    if isinstance(error, MissingArgument):
+        return USAGE
     return INFEASIBLE if isinstance(error, OptimisationError) else BAD_INPUT

@@ -1,4 +1,4 @@
-"""Commands on measurements of machines: ``calibrate`` and ``taptest``."""
+"""Options of ``agent`` for runs on the virtual machine."""
 
 import argparse
 from pathlib import Path
@@ -6,12 +6,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 from service.cli.options import (
     CONTROLS,
-    OK,
-    Commands,
-    add_json,
     add_most_repeats,
 )
-from service.requests.fields import output_path
 
 if TYPE_CHECKING:
     from service.requests.runs import RunRequest
@@ -23,12 +19,6 @@ N = TypeVar("N", bound="RunRequest")
 
 USUAL_RATE = 10.0
 """Default number of samples per second in a file."""
-
-
-def add_machine_commands(commands: Commands) -> None:
-    """Add the commands of the virtual machine to ``stepnc``."""
-    _add_calibrate(commands)
-    _add_tap_test(commands)
 
 
 def add_code(parser: argparse.ArgumentParser) -> None:
@@ -45,88 +35,6 @@ def add_code(parser: argparse.ArgumentParser) -> None:
     )
     add("--tools-unit", default="", metavar="UNIT", help="unit of a tool.tbl: mm or inch")
     add_most_repeats(parser)
-
-
-def _add_calibrate(commands: Commands) -> None:
-    parser = commands.add_parser(
-        "calibrate",
-        help="fit a machine file to measured runs of a program, or tool life to measured lives",
-    )
-    parser.fill = _calibrate_options
-
-
-def _calibrate_options(parser: argparse.ArgumentParser) -> None:
-    from service.requests.fields import add_options
-    from service.requests.runs import RunRequest
-
-    add = parser.add_argument
-    add(
-        "runs",
-        type=Path,
-        nargs="*",
-        metavar="RUN.csv",
-        help="measured runs: time_s and powers in W, columns named as `simulate` writes them",
-    )
-    add(
-        "--life",
-        action="append",
-        default=[],
-        metavar="V:T",
-        help="tool life of T min at V m/min, as 120:25; two or more fit Taylor's law",
-    )
-    add(
-        "--tool-life",
-        type=Path,
-        metavar="CSV",
-        help="file with such pairs, columns speed_m_min and life_min",
-    )
-    add("--edge", default="carbide", help="edge material: hss, carbide (default), ceramic")
-    add("--program", type=Path, metavar="FILE", help="the STEP-NC program that was run")
-    add_options(parser, RunRequest)
-    add_code(parser)
-    add(
-        "-o",
-        "--output",
-        type=output_path,
-        metavar="TOML",
-        help="write the calibrated machine, or the [[tool_life]] table of a material",
-    )
-    add_json(parser)
-    parser.set_defaults(run=_calibrate, refuse=parser.error)
-
-
-def _add_tap_test(commands: Commands) -> None:
-    parser = commands.add_parser(
-        "taptest", help="fit modes, for chatter stability, to a measured frequency response"
-    )
-    add = parser.add_argument
-    add(
-        "response",
-        type=Path,
-        metavar="FRF.csv",
-        help="columns frequency_hz, and real and imaginary part: real_um_n, imag_um_n "
-        "(or m_n, mm_n; m_s2_n for an accelerometer)",
-    )
-    add(
-        "--direction",
-        required=True,
-        help="direction of the tap: x, y, z, or xy for a round tool",
-    )
-    add("--tool", default="", metavar="ID", help="tool that was tapped, as programs name it")
-    add("--tool-diameter-mm", type=float, metavar="MM", help="tool diameter, for round tools")
-    add("--workpiece", action="store_true", help="the workpiece was tapped")
-    add("--modes", type=int, metavar="N", help="number of modes (default: by peaks)")
-    add("--source", default="", help="who measured, with which holder and overhang")
-    add("--machine", default="", help="one of `stepnc machines`, or your own file")
-    add(
-        "-o",
-        "--output",
-        type=output_path,
-        metavar="TOML",
-        help="write the machine with its modes",
-    )
-    add_json(parser)
-    parser.set_defaults(run=_tap_test)
 
 
 def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
@@ -187,89 +95,3 @@ def length_unit(name: str) -> "FileUnit | None":
     from simulator.tool_files.file_unit import FileUnit
 
     return one_of(FileUnit, name, "unit") if name else None
-
-
-def _calibrate(options: argparse.Namespace) -> int:
-    """Run the command ``stepnc calibrate``."""
-    if options.life or options.tool_life is not None:
-        return _calibrate_tool_life(options)
-    if not options.runs:
-        options.refuse("the following arguments are required: RUN.csv, or --life")
-    from dataclasses import replace
-
-    from service.calibration.run import CalibrationRequest, calibrate
-    from service.requests.runs import SimulationRequest
-    from service.terminal import tell
-
-    files = replace(run_files(options, options.program), output=None)
-    request = CalibrationRequest(
-        runs=tuple(options.runs),
-        simulation=run_request(SimulationRequest, options),
-        files=files,
-        output=options.output,
-    )
-    result = calibrate(request, tell=tell)
-    if options.json:
-        from service.calibration.output import calibration_json
-        from service.terminal import write_out
-
-        write_out(calibration_json(result))
-    else:
-        from service.calibration.output import print_calibration
-
-        print_calibration(result)
-    return OK
-
-
-def _calibrate_tool_life(options: argparse.Namespace) -> int:
-    """Run the command ``stepnc calibrate --life``."""
-    from service.calibration.tool_life import (
-        ToolLifeRequest,
-        calibrate_tool_life,
-        tool_life_json,
-        tool_life_text,
-    )
-    from service.terminal import tell, write_out
-    from stepnc_model.errors import StepNcError
-
-    if options.runs or options.program is not None:
-        raise StepNcError("calibrate measured runs and tool lives in separate calls")
-    result = calibrate_tool_life(
-        ToolLifeRequest(
-            pairs=tuple(options.life),
-            file=options.tool_life,
-            cutting_material=options.edge,
-            output=options.output,
-        )
-    )
-    if options.output is not None:
-        tell(f"tool life: {options.output}")
-    write_out(tool_life_json(result) if options.json else tool_life_text(result))
-    return OK
-
-
-def _tap_test(options: argparse.Namespace) -> int:
-    """Run the command ``stepnc taptest``."""
-    from service.calibration.tap_output import print_tap_test, tap_test_json
-    from service.calibration.tap_test import TapTestRequest, tap_test
-    from service.terminal import tell, write_out
-
-    result = tap_test(
-        TapTestRequest(
-            response=options.response,
-            direction=options.direction,
-            tool=options.tool,
-            tool_diameter_mm=options.tool_diameter_mm,
-            workpiece=options.workpiece,
-            modes=options.modes,
-            source=options.source,
-            machine=options.machine,
-            output=options.output,
-        ),
-        tell=tell,
-    )
-    if options.json:
-        write_out(tap_test_json(result))
-    else:
-        print_tap_test(result)
-    return OK

@@ -1,6 +1,5 @@
 """Job ``verification``: the part that logged positions left, against the programmed one."""
 
-import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,8 +11,9 @@ from service.jobs.task import PLACES, REPORT, SURFACE, RunningJob
 from service.requests.stored_verification import QueuedVerification
 from service.storage import files
 from service.storage.files import FileKind
-from service.verification.output import verification_json, verification_page, write_places
-from service.verification.run import VerificationInputs, verify
+from service.verbs.verify import run as verify
+from service.verbs.verify.request import VerificationFiles
+from service.verbs.verify.result import VerificationResult
 from service.verification.surface_map import write_surface
 
 
@@ -23,7 +23,7 @@ def run(task: RunningJob) -> None:
     Raises
     ------
     StepNcError
-        As :func:`service.verification.run.verify`; and when an agent does not answer.
+        As :func:`service.verbs.verify.run.run`; and when an agent does not answer.
     """
     request = task.request(QueuedVerification)
     names: dict[Path, str] = {}
@@ -39,29 +39,31 @@ def run(task: RunningJob) -> None:
         raise NotFound("log of verification", task.job.id)
     names[log.path] = log.name
     with naming(names):
-        found = verify(
-            log.path,
-            program,
+        found = verify.run(
             request,
-            inputs=VerificationInputs(
-                tools=tools, required=required, solid=request.required_solid
+            VerificationFiles(
+                log=str(log.path),
+                program=program,
+                tools=tools,
+                required="" if required is None else f"{required}#{request.required_solid}",
             ),
             tell=lambda message: told(task, with_names(message, names)),
-        )
+        ).found
     findings = (
         replace(each, message=with_names(each.message, names)) for each in found.findings
     )
-    found = replace(
+    shown = replace(
         found,
         program=with_names(found.program, names),
         log=log.name,
         findings=(*log.findings, *findings),
     )
+    result = VerificationResult(found=shown)
     for suffix in (".csv", ".parquet"):
-        write_places(task.folder / f"{PLACES}{suffix}", found)
-    write_surface(task.folder / SURFACE, found)
-    write_atomically(task.folder / REPORT, verification_page(found).encode())
-    task.keep(json.loads(verification_json(found)))
+        result.write_places(task.folder / f"{PLACES}{suffix}")
+    write_surface(task.folder / SURFACE, shown)
+    write_atomically(task.folder / REPORT, result.page().encode())
+    task.keep(result.record())
 
 
 def _input(

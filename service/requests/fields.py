@@ -248,8 +248,12 @@ def _read(field: RequestField, typed: Any) -> Any:
     """Convert option text to a field value; sequences are split at commas, or repeated."""
     if field.is_sequence:
         words = typed if isinstance(typed, list) else typed.split(",")
-        return tuple(_member(field, word.strip()) for word in words)
+        return tuple(_member(field, _stripped(word)) for word in words)
     return _member(field, typed)
+
+
+def _stripped(word: str | Path) -> str | Path:
+    return word.strip() if isinstance(word, str) else word
 
 
 def _member(field: RequestField, typed: Any) -> Any:

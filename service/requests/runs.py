@@ -94,11 +94,9 @@ PACE = "simulated seconds per wall-clock second; 0: as fast as possible"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RunRequest(ProgramRequest):
-    """Run of an uploaded or an optimised program on the virtual machine."""
+class MotionRequest(ProgramRequest):
+    """Machine that runs a program, and how its control moves."""
 
-    program_id: Annotated[OptionalId, About("an uploaded program")] = None
-    advice_id: Annotated[OptionalId, About("or the program optimised by this advice")] = None
     machine: MachineName = ""
     material: MaterialName = ""
     control: Annotated[
@@ -125,6 +123,14 @@ class RunRequest(ProgramRequest):
             flag="--deviation-mm", metavar="MM",
         ),
     ] = JUNCTION_DEVIATION  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunRequest(MotionRequest):
+    """Run of an uploaded or an optimised program on the virtual machine."""
+
+    program_id: Annotated[OptionalId, About("an uploaded program")] = None
+    advice_id: Annotated[OptionalId, About("or the program optimised by this advice")] = None
     pace: Annotated[float, Interval(ge=0.0, le=MOST), PaceOrNone(), About(PACE)] = 0.0
 
 

@@ -1,4 +1,4 @@
-"""Verification of logged positions, for the command ``verify``."""
+"""Verification of logged positions against the programmed or the required part."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -54,7 +54,7 @@ MOST_SHOWN = 8
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Verification:
-    """Result of ``verify``."""
+    """Comparison of logged positions with a part."""
 
     program: str
     """Name of the program; of the required part without a program."""

@@ -10,11 +10,11 @@ import pytest
 
 from kbe.store import open_store
 from service.buckets import BucketedRun
-from service.calibration.run import CalibrationResult, CycleTime
 from service.control.run import ControlRun, control
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import Simulation
 from service.simulation.trace import TraceKeeper
+from service.verbs.calibrate.result import CalibrationResult, CycleTime
 from simulator.calibration.calibrated import Delay
 from simulator.calibration.features import Calibration, Estimate, Parameter
 from simulator.calibration.held_out import HeldOut

@@ -5,14 +5,13 @@ from pathlib import Path
 import pytest
 
 import stepnc
-from service.blocks.block_fit import paper_points
 from service.blocks.figures import MOST_POINTS, block_fit_figure, cycle_time_figure
-from simulator.calibration.block_fit import fitted_block_time
+from service.verbs.blockfit.result import paper_fit
 from tests.service.verbs.cycletime.test_run import code
 
 
 def test_the_fit_of_table_2_is_drawn_with_its_outlier() -> None:
-    fit = fitted_block_time(paper_points())
+    fit = paper_fit()
     figure = block_fit_figure(fit, fit, printed=14_847.0)
     drawn = {each.name: each for each in figure.data}
     assert len(drawn["held by: block rate"].x) == 8

@@ -13,7 +13,7 @@ from service.chosen import material_for
 from service.reading import read_program, silent
 from service.requests.verification import VerificationRequest
 from service.simulation.setup import prepared_program
-from service.verification.output import verification_json
+from service.verbs.verify.result import VerificationResult
 from service.verification.prepared import prepared
 from service.verification.run import Verification, verify
 from simulator.library import load_machine
@@ -98,7 +98,7 @@ def test_the_finished_part_of_a_program_is_its_required_part(
     path = log.write(tmp_path / "log.parquet", ready)
     found = verify(path, program, REQUEST)
     assert not found.has_errors
-    assert "in place of the features" in verification_json(found)
+    assert "in place of the features" in str(VerificationResult(found=found))
     # Excess is positive: the wall at greater Y lies 0.15 mm before that of the body.
     assert _nominal(found, 46.8) == pytest.approx(-0.15, abs=2e-3)
     assert _nominal(found, 54.8) == pytest.approx(0.15, abs=2e-3)

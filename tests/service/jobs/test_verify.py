@@ -7,15 +7,13 @@ from pathlib import Path
 import pytest
 from pyarrow import csv, parquet
 
+import stepnc
 from service.jobs.task import PLACES, REPORT, RESULT, SURFACE
 from service.requests.fields import dumped
 from service.requests.stored_verification import QueuedVerification
-from service.requests.verification import VerificationRequest
 from service.storage import jobs, programs
 from service.storage.files import FileKind, FileUpload
 from service.storage.jobs import Job, JobKind, JobRequest, JobState
-from service.verification.output import verification_json
-from service.verification.run import verify
 from tests.service.jobs.conftest import Shop
 from tests.service.rest.samples import SLOT
 from tests.service.verification.logs import SLOT_MACHINE, slot_log
@@ -44,8 +42,8 @@ def test_a_verification_is_that_of_the_command_line(shop: Shop, tmp_path: Path) 
     job = ordered(shop, log_id=stored(shop, log))
     assert (job.state, job.problem) == (JobState.SUCCEEDED, None)
     folder = shop.data_folder.job_folder(job.id)
-    request = VerificationRequest(machine=SLOT_MACHINE, cell_mm=CELL)
-    wanted = json.loads(verification_json(verify(log, SLOT, request)))
+    found = stepnc.verify(log, program=SLOT, machine=SLOT_MACHINE, cell_mm=CELL)
+    wanted = json.loads(json.dumps(found.record()))
     assert json.loads((folder / RESULT).read_bytes()) == wanted
     assert wanted["has_errors"]
     places = parquet.read_table(folder / f"{PLACES}.parquet")

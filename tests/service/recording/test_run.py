@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from pyarrow import csv, parquet
 
-from service.calibration.run import CalibrationRequest, calibrate
+import stepnc
 from service.recording.run import record
 from service.requests.recording import RecordingRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, simulate
+from service.verbs.calibrate.result import CalibrationResult
 from simulator.calibration.features import Parameter
 from stepnc_model.errors import StepNcError
 from tests.service.agent.test_run import PARTS, run_of, served
@@ -45,13 +46,10 @@ def test_a_recorded_run_calibrates_a_machine(tmp_path: Path) -> None:
     request, run = run_of("paper003_case1", "paper003", speed=0.0, rate_hz=10.0)
     with served(request, run) as url:
         record(f"{url}/paper003", tmp_path / "run.csv", WHOLE)
-    result = calibrate(
-        CalibrationRequest(
-            runs=(tmp_path / "run.csv",),
-            simulation=SimulationRequest(machine="paper003"),
-            files=RunFiles(file=PARTS / "paper003_case1.stpnc"),
-        )
+    result = stepnc.calibrate(
+        tmp_path / "run.csv", program=PARTS / "paper003_case1.stpnc", machine="paper003"
     )
+    assert isinstance(result, CalibrationResult)
     estimates = result.calibration.estimates
     base = next(each for each in estimates if each.parameter is Parameter.BASE)
     assert base.value == pytest.approx(370.0, abs=1.0)

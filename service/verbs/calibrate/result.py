@@ -1,22 +1,43 @@
-"""Results of ``calibrate`` as text and JSON; JSON keys carry their units and never change."""
+"""Result of ``calibrate``: parameters, cycle times, and errors on data that were not fitted."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import isfinite
 
-from service.calibration.run import CalibrationResult, CycleTime
 from service.rendering.columns import Cell, Column
-from service.rendering.records import dump, finding_record, record, records
-from service.rendering.text import print_findings, print_line, print_table
+from service.rendering.records import record
+from service.rendering.view import Fact, Findings, ResultView, Table, TextLine
+from service.verbs.result import Result
 from simulator.calibration.calibrated import Delay
-from simulator.calibration.features import Estimate
+from simulator.calibration.features import Calibration, Estimate, Parameter
+from simulator.calibration.held_out import HeldOut
 from simulator.calibration.measured_run import Component
 from simulator.calibration.skill import Skill
+from simulator.spec import Machine
+from stepnc_model.errors import Finding
 
 CUTS = {Component.SPINDLE, Component.TOTAL}
 """Power components that include the cutting power."""
 
 MOST_NET = 10.0
 """Relative error above which a net cutting energy is not shown, because noise dominates it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CycleTime:
+    """Time of one run, measured and simulated."""
+
+    name: str
+    measured: float
+    """Measured time, in s."""
+    simulated: float
+    """Simulated time, in s."""
+
+    @property
+    def error(self) -> float:
+        """Relative error of the simulated time; positive if it is longer."""
+        return self.simulated / self.measured - 1.0
+
 
 HeldSkill = tuple[str, Component, Skill]
 """Run, power component, and quality of its prediction."""
@@ -108,34 +129,61 @@ SKILLS: tuple[Column[HeldSkill], ...] = (
 )  # fmt: skip
 
 
-def _held(result: CalibrationResult) -> list[HeldSkill]:
-    return [
-        (held.name, part, skill)
-        for held in result.held_out
-        for part, skill in held.skills.items()
-    ]
+PREDICTION = (
+    "prediction error on data that were not fitted: each run with the others fitted, or the",
+    "end of a single run with its start fitted; baseline: mean fitted power times the time",
+)
 
 
-def print_calibration(result: CalibrationResult) -> None:
-    """Print parameters, cycle times, and prediction errors on data that were not fitted."""
-    print_line(f"machine {result.machine.name} ({result.machine.title})")
-    print_table(PARAMETERS, result.calibration.estimates, foot=_delay(result.delay))
-    print_line("")
-    print_table(TIMES, result.times)
-    print_line("")
-    print_line(
-        "prediction error on data that were not fitted: each run with the others fitted, or the"
-    )
-    print_line(
-        "end of a single run with its start fitted; baseline: mean fitted power times the time"
-    )
-    print_table(SKILLS, _held(result))
-    factor = result.kc_factor
-    if factor is not None:
-        print_line(
-            f"the k_c factor is not part of the machine: simulate with --kc-factor {factor:.3g}"
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CalibrationResult(Result):
+    """Result of ``calibrate``."""
+
+    machine: Machine
+    """Calibrated machine."""
+    calibration: Calibration
+    delay: Delay
+    """Delay of the main drive."""
+    held_out: tuple[HeldOut, ...]
+    times: tuple[CycleTime, ...]
+    findings: tuple[Finding, ...]
+
+    @property
+    def kc_factor(self) -> float | None:
+        """Factor on the specific cutting force; None if the runs do not determine it."""
+        (found,) = (
+            each for each in self.calibration.estimates if each.parameter is Parameter.CUTTING
         )
-    print_findings(result.findings)
+        return found.value if found.is_identified else None
+
+    def view(self) -> ResultView:
+        """Return parameters, cycle times, and prediction errors on unfitted data."""
+        machine = self.machine
+        held = [
+            (each.name, part, skill)
+            for each in self.held_out
+            for part, skill in each.skills.items()
+        ]
+        return ResultView([
+            TextLine(text=f"machine {machine.name} ({machine.title})"),
+            Fact(key="machine", value=machine.name),
+            Table(
+                key="parameters", columns=PARAMETERS, rows=self.calibration.estimates,
+                foot=_delay(self.delay),
+            ),
+            Fact(key="drive_delay", value=record(DELAY, self.delay)),
+            TextLine(text=""),
+            Table(key="cycle_times", columns=TIMES, rows=self.times),
+            TextLine(text=""),
+            *(TextLine(text=text) for text in PREDICTION),
+            Table(key="held_out", columns=SKILLS, rows=held),
+            *([] if self.kc_factor is None else [TextLine(text=_factor(self.kc_factor))]),
+            Findings(found=self.findings),
+        ])  # fmt: skip
+
+
+def _factor(factor: float) -> str:
+    return f"the k_c factor is not part of the machine: simulate with --kc-factor {factor:.3g}"
 
 
 def _delay(delay: Delay) -> dict[str, str]:
@@ -146,15 +194,3 @@ def _delay(delay: Delay) -> dict[str, str]:
         "95 % interval": f"{delay.low:.4g} to {delay.high:.4g}" if isfinite(delay.high) else "",
         "identified": f"no: {delay.reason}" if delay.reason else "yes",
     }
-
-
-def calibration_json(result: CalibrationResult) -> str:
-    """Return parameters, cycle times, and prediction errors on unfitted data as JSON."""
-    return dump({
-        "machine": result.machine.name,
-        "parameters": records(PARAMETERS, result.calibration.estimates),
-        "drive_delay": record(DELAY, result.delay),
-        "cycle_times": records(TIMES, result.times),
-        "held_out": records(SKILLS, _held(result)),
-        "findings": [finding_record(finding) for finding in result.findings],
-    })

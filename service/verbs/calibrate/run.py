@@ -1,16 +1,20 @@
-"""Calibration of a machine's parameters to measured runs, for the command ``calibrate``."""
+"""Calibration of a machine's parameters to measured runs, or of tool life to lives."""
 
-from dataclasses import dataclass
+from dataclasses import fields
 from pathlib import Path
 
+from service.errors import MissingArgument
 from service.files import require_place, write_atomically
 from service.reading import Tell, silent
-from service.requests.runs import SimulationRequest
+from service.requests.runs import MotionRequest, SimulationRequest
+from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles, waiting_machine
-from simulator.calibration.calibrated import Delay, calibrated, fitted_delay, notes, priors
-from simulator.calibration.features import Calibration, Parameter
+from service.verbs.calibrate.request import CalibrationFiles, CalibrationRequest
+from service.verbs.calibrate.result import CalibrationResult, CycleTime
+from service.verbs.calibrate.tool_life import ToolLifeResult, tool_life_fit
+from simulator.calibration.calibrated import calibrated, fitted_delay, notes, priors
 from simulator.calibration.fit import fitted
-from simulator.calibration.held_out import HeldOut, held_out
+from simulator.calibration.held_out import held_out
 from simulator.calibration.measured_run import TIME, MeasuredRun, read_run, thinned
 from simulator.calibration.simulated import features
 from simulator.machine.interpreter import interpret
@@ -30,70 +34,34 @@ MOST_TIME_ERROR = 0.05
 """Relative error of the cycle time above which a warning is given."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CalibrationRequest:
-    """Request of ``calibrate``."""
-
-    runs: tuple[Path, ...]
-    simulation: SimulationRequest
-    """Machine as far as it is known, and options of its runs."""
-    files: RunFiles
-    """Program or NC code that was run."""
-    output: Path | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CycleTime:
-    """Time of one run, measured and simulated."""
-
-    name: str
-    measured: float
-    """Measured time, in s."""
-    simulated: float
-    """Simulated time, in s."""
-
-    @property
-    def error(self) -> float:
-        """Relative error of the simulated time; positive if it is longer."""
-        return self.simulated / self.measured - 1.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CalibrationResult:
-    """Result of ``calibrate``."""
-
-    machine: Machine
-    """Calibrated machine."""
-    calibration: Calibration
-    delay: Delay
-    """Delay of the main drive."""
-    held_out: tuple[HeldOut, ...]
-    times: tuple[CycleTime, ...]
-    findings: tuple[Finding, ...]
-
-    @property
-    def kc_factor(self) -> float | None:
-        """Factor on the specific cutting force; None if the runs do not determine it."""
-        (found,) = (
-            each for each in self.calibration.estimates if each.parameter is Parameter.CUTTING
-        )
-        return found.value if found.is_identified else None
-
-
-def calibrate(request: CalibrationRequest, *, tell: Tell = silent) -> CalibrationResult:
-    """Fit a machine to measured runs and, if an output is named, write its machine file.
+def run(
+    request: CalibrationRequest, files: CalibrationFiles, *, tell: Tell = silent
+) -> CalibrationResult | ToolLifeResult:
+    """Fit a machine or a tool life and, if an output is named, write its file.
 
     Raises
     ------
     StepNcError
-        When the program, a run, a name or an output is invalid.
+        When the program, a run, a pair, a name or an output is invalid.
     """
-    if not request.runs:
-        raise StepNcError("name at least one measured run")
-    if request.output is not None:
-        _require_output(request, request.output)
-    runs = [thinned(read_run(path), most=MOST_SAMPLES) for path in request.runs]
-    samples, machine = _simulated(request, tell)
+    if not request.life and files.tool_life is None:
+        return _machine_fit(request, files, tell)
+    if files.runs or files.program is not None:
+        raise StepNcError("calibrate measured runs and tool lives in separate calls")
+    return tool_life_fit(request, files, tell)
+
+
+def _machine_fit(
+    request: CalibrationRequest, files: CalibrationFiles, tell: Tell
+) -> CalibrationResult:
+    """Fit a machine to measured runs and, if an output is named, write its machine file."""
+    if not files.runs:
+        raise MissingArgument("name the measured runs, or tool lives with --life")
+    of_run = _run_files(request, files)
+    if files.output is not None:
+        _require_output(request, files, files.output)
+    runs = [thinned(read_run(path), most=MOST_SAMPLES) for path in files.runs]
+    samples, machine = _simulated(_simulation(request, files), of_run, tell)
     known = [features(samples, run) for run in runs]
     efficiency = machine.spindle.efficiency
     before = priors(machine)
@@ -103,10 +71,10 @@ def calibrate(request: CalibrationRequest, *, tell: Tell = silent) -> Calibratio
     errors = held_out(known, before, efficiency=efficiency)
     delay = fitted_delay(known, calibration, efficiency=efficiency)
     found = calibrated(machine, calibration, delay)
-    if request.output is not None:
+    if files.output is not None:
         text = machine_toml(found, notes=(_origin(runs), *notes(calibration, delay)))
-        write_atomically(request.output, text.encode())
-        tell(f"machine file: {request.output}")
+        write_atomically(files.output, text.encode())
+        tell(f"machine file: {files.output}")
     times = tuple(_time(run, samples) for run in runs)
     return CalibrationResult(
         machine=found,
@@ -121,26 +89,49 @@ def calibrate(request: CalibrationRequest, *, tell: Tell = silent) -> Calibratio
     )
 
 
-def _require_output(request: CalibrationRequest, output: Path) -> None:
+def _run_files(request: CalibrationRequest, files: CalibrationFiles) -> RunFiles:
+    """Program or NC code that was run."""
+    if files.nc is None and (request.dialect or files.tools):
+        raise StepNcError("--dialect and --tools need NC code: name it with --nc")
+    if files.tools_unit is not None and files.tools is None:
+        raise StepNcError("--tools-unit needs a tool table: name it with --tools")
+    if files.nc is None:
+        return RunFiles(file=files.program)
+    code = CodeRequest(
+        code=files.nc,
+        dialect=request.dialect,
+        tools=files.tools,
+        tools_unit=files.tools_unit,
+        stock=request.stock,
+        most_repeats=files.most_repeats,
+    )
+    return RunFiles(file=files.program, code=code)
+
+
+def _simulation(request: CalibrationRequest, files: CalibrationFiles) -> SimulationRequest:
+    """Run to compare with; a stock that is named for NC code is not the program's."""
+    given = {each.name: getattr(request, each.name) for each in fields(MotionRequest)}
+    return SimulationRequest(**given | ({} if files.nc is None else {"stock": ""}))
+
+
+def _require_output(request: CalibrationRequest, files: CalibrationFiles, output: Path) -> None:
     """Refuse an output that is not writable, or is an input, before the long calculation."""
     if output.suffix.lower() != ".toml":
         raise WriteError("the name of a machine file must end with .toml", path=str(output))
-    asked, files = request.simulation, request.files
-    inputs: list[Path | None] = [*request.runs, files.file]
     # A plain name is a library entry; a name with a suffix is a file.
-    inputs += [Path(name) for name in (asked.machine, asked.material) if Path(name).suffix]
-    if files.code is not None:
-        inputs += [files.code.code, files.code.tools]
-    for other in inputs:
+    named = [Path(name) for name in (request.machine, request.material) if Path(name).suffix]
+    for other in (*files.runs, files.program, files.nc, files.tools, *named):
         if other is not None:
             require_place(output, apart_from=other)
     if output.exists() and not output.is_file():
         raise WriteError("is not a regular file", path=str(output))
 
 
-def _simulated(request: CalibrationRequest, tell: Tell) -> tuple[Samples, Machine]:
+def _simulated(
+    request: SimulationRequest, files: RunFiles, tell: Tell
+) -> tuple[Samples, Machine]:
     """Simulate the program on the uncalibrated machine."""
-    prepared, virtual = waiting_machine(request.simulation, request.files, tell=tell)
+    prepared, virtual = waiting_machine(request, files, tell=tell)
     sampler = Sampler(virtual.machine, rate=RATE)
     episodes = virtual.run(interpret(prepared.blocks, virtual.machine))
     parts = [part for episode in episodes for part in sampler.samples(episode)]

@@ -1,17 +1,17 @@
 """Tap test: modes of a tool or workpiece fitted to a measured frequency response."""
 
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
 
 from service.files import require_place, write_atomically
-from service.reading import Tell, one_of, silent
+from service.reading import Tell, silent
+from service.verbs.taptest.request import TapTestFiles, TapTestRequest
+from service.verbs.taptest.result import TapTestResult
 from simulator.calibration.modal_fit import ModalFit, fitted_modes, read_response
 from simulator.errors import CalibrationError
 from simulator.library import load_machine
 from simulator.machine_file import (
     Damping,
     Frequency,
-    ModeDiameter,
     Stiffness,
     machine_toml,
 )
@@ -24,33 +24,7 @@ MOST_UNEXPLAINED = 0.2
 """Unexplained share of the response above which a warning is given."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TapTestRequest:
-    """Request of ``taptest``, in the user's units."""
-
-    response: Path
-    direction: str
-    tool: str = ""
-    """Id of the tool as used in programs."""
-    tool_diameter_mm: float | None = None
-    workpiece: bool = False
-    """Whether the workpiece was tapped instead of a tool."""
-    modes: int | None = None
-    source: str = ""
-    machine: str = ""
-    output: Path | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TapTestResult:
-    """Result of ``taptest``."""
-
-    modes: tuple[VibrationMode, ...]
-    fit: ModalFit
-    findings: tuple[Finding, ...]
-
-
-def tap_test(request: TapTestRequest, *, tell: Tell = silent) -> TapTestResult:
+def run(request: TapTestRequest, files: TapTestFiles, *, tell: Tell = silent) -> TapTestResult:
     """Fit modes to a frequency response and, if an output is named, write a machine file.
 
     Existing modes of the same part in the same direction are replaced.
@@ -60,33 +34,32 @@ def tap_test(request: TapTestRequest, *, tell: Tell = silent) -> TapTestResult:
     StepNcError
         When the response, an option or the output is invalid; nothing is written.
     """
-    direction = one_of(ModeDirection, request.direction.lower(), "direction")
     _require_part(request)
-    machine = _machine(request)
-    path = str(request.response)
-    fit = fitted_modes(read_response(request.response), count=request.modes, path=path)
+    machine = _machine(request, files)
+    path = str(files.response)
+    fit = fitted_modes(read_response(files.response), count=request.modes, path=path)
     modes = tuple(
         VibrationMode(
             part=VibratingPart.WORKPIECE if request.workpiece else VibratingPart.TOOL,
             tool=request.tool.strip(),
             tool_diameter=request.tool_diameter_mm,
-            direction=direction,
+            direction=request.direction,
             natural_frequency=_rounded(mode.natural_frequency),
             damping_ratio=_rounded(mode.damping_ratio),
             stiffness=_rounded(mode.stiffness),
-            source=request.source or f"tap test {request.response.name}",
+            source=request.source or f"tap test {files.response.name}",
         )
         for mode in fit.modes
     )
     for mode in modes:
         _require_usual(mode, path)
-    if machine is not None and request.output is not None:
+    if machine is not None and files.output is not None:
         kept = tuple(
             left for old in machine.modes if (left := _left_of(old, modes[0])) is not None
         )
         text = machine_toml(replace(machine, modes=(*kept, *modes)))
-        write_atomically(request.output, text.encode())
-        tell(f"machine file: {request.output}")
+        write_atomically(files.output, text.encode())
+        tell(f"machine file: {files.output}")
     return TapTestResult(modes=modes, fit=fit, findings=tuple(_doubts(fit)))
 
 
@@ -97,21 +70,17 @@ def _require_part(request: TapTestRequest) -> None:
         raise StepNcError(
             "name what was tapped: --tool ID or --tool-diameter-mm MM, or --workpiece"
         )
-    if refused := complaint(request.tool_diameter_mm, ModeDiameter | None):
-        raise StepNcError(f"tool diameter: {refused}")
-    if request.modes is not None and request.modes < 1:
-        raise StepNcError(f"{request.modes} modes: at least 1 is needed")
 
 
-def _machine(request: TapTestRequest) -> Machine | None:
+def _machine(request: TapTestRequest, files: TapTestFiles) -> Machine | None:
     """Load the machine to be written; None without an output."""
-    if request.output is None:
+    if files.output is None:
         if request.machine:
             raise StepNcError("--machine is written with its new modes: name a file with -o")
         return None
     if not request.machine:
         raise StepNcError("-o writes a machine file: name the machine with --machine")
-    require_place(request.output, apart_from=request.response)
+    require_place(files.output, apart_from=files.response)
     return load_machine(request.machine)
 
 

@@ -1,20 +1,21 @@
-"""Block time of a control, fitted to a log of the test program or to a table: ``blockfit``."""
+"""Block time of a control, fitted to a log of the test program or to a table."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 
-from service.blocks.block_program import SPACINGS_IN
 from service.files import open_lines, require_place, write_atomically
 from service.numbers import numbers_in
 from service.reading import Tell, silent
 from service.recording.logged_run import read_logged_run
 from service.recording.table import TABLES, batches, headings
-from service.requests.blocks import LengthUnit
+from service.requests.length_unit import LengthUnit
 from service.simulation.of_code import dialect_of
+from service.verbs.blockfit.request import BlockFitFiles, BlockFitRequest
+from service.verbs.blockfit.result import BlockFitResult
 from simulator.calibration.block_circles import BlockCircle, circles_of
 from simulator.calibration.block_feed import (
     CircleFeed,
@@ -42,37 +43,10 @@ COLUMNS = {
 LEAST_IN_TABLE = 1e-6
 """Least number in such a table, far below any control; its square stays a number."""
 
-PAPER_FEEDS = (0.7, 3.6, 7.2, 10.5, 14.6, 35.6, 71.2, 106.7, 147.68)
-"""Feeds of Table 2 of paper 004 at its spacings, in/min."""
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BlockFitRequest:
-    """Request of ``blockfit``, as typed."""
-
-    log: str
-    """Table, recorded run, MTConnect document or address of an agent."""
-    program: Path | None = None
-    """Test program that was run; needed for positions."""
-    dialect: str = ""
-    zero: str = ""
-    """Position of the program's zero in the log, as x,y,z in mm; empty: 0,0,0 or searched."""
-    machine: str = ""
-    output: Path | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class BlockFitResult:
-    """Result of ``blockfit``."""
-
-    log: str
-    fit: BlockFit
-    circles: tuple[CircleFeed, ...]
-    """Circles found in a log, in order; empty for a table."""
-    findings: tuple[Finding, ...]
-
-
-def fit_blocks(request: BlockFitRequest, *, tell: Tell = silent) -> BlockFitResult:
+def run(
+    request: BlockFitRequest, files: BlockFitFiles, *, tell: Tell = silent
+) -> BlockFitResult:
     """Fit the block time, and write it into a copy of a machine file if an output is named.
 
     Raises
@@ -80,48 +54,37 @@ def fit_blocks(request: BlockFitRequest, *, tell: Tell = silent) -> BlockFitResu
     StepNcError
         When the log, the program or an option is invalid; nothing is written.
     """
-    _require_machine(request)
-    path = Path(request.log)
-    is_table = "://" not in request.log and path.suffix.lower() in TABLES
+    _require_machine(request, files)
+    path = Path(files.log)
+    is_table = "://" not in files.log and path.suffix.lower() in TABLES
     unit = _unit(headings(path)) if is_table else None
     feeds: tuple[CircleFeed, ...] = ()
     findings: tuple[Finding, ...] = ()
     if unit is not None:
         points = _table_points(path, unit)
     else:
-        feeds, findings = _logged_circles(request, tell)
+        feeds, findings = _logged_circles(request, files, tell)
         points = [_point(each) for each in feeds]
     try:
         fit = fitted_block_time(points)
     except CalibrationError as error:
-        raise CalibrationError(str(error), path=request.log) from error
-    if request.output is not None:
-        _write_machine(request, fit, request.output, tell)
-    return BlockFitResult(log=request.log, fit=fit, circles=feeds, findings=findings)
+        raise CalibrationError(str(error), path=files.log) from error
+    if files.output is not None:
+        _write_machine(request.machine, files.log, fit, files.output)
+        tell(f"machine file: {files.output}")
+    return BlockFitResult(log=files.log, fit=fit, circles=feeds, findings=findings)
 
 
-def paper_points() -> tuple[SpacingFeed, ...]:
-    """Greatest feeds of paper 004, Table 2."""
-    return tuple(
-        SpacingFeed(
-            spacing=mm_from_inches(spacing),
-            feed=speed_from_mm_min(mm_from_inches(feed)),
-            radius=mm_from_inches(1.0),
-        )
-        for spacing, feed in zip(SPACINGS_IN, PAPER_FEEDS, strict=True)
-    )
-
-
-def _require_machine(request: BlockFitRequest) -> None:
+def _require_machine(request: BlockFitRequest, files: BlockFitFiles) -> None:
     """Require a machine and a place for its file together."""
-    if request.output is None:
+    if files.output is None:
         if request.machine:
             raise StepNcError("--machine is written with its block time: name a file with -o")
         return
     if not request.machine:
         raise StepNcError("-o writes a machine file: name the machine with --machine")
-    if "://" not in request.log:
-        require_place(request.output, apart_from=Path(request.log))
+    if "://" not in files.log:
+        require_place(files.output, apart_from=Path(files.log))
 
 
 # Tables
@@ -165,22 +128,22 @@ def _table_points(path: Path, unit: LengthUnit) -> list[SpacingFeed]:
 
 
 def _logged_circles(
-    request: BlockFitRequest, tell: Tell
+    request: BlockFitRequest, files: BlockFitFiles, tell: Tell
 ) -> tuple[tuple[CircleFeed, ...], tuple[Finding, ...]]:
     """Circles of the test program with their feeds in the log, and what the log lacks."""
-    if request.program is None:
+    if files.program is None:
         raise StepNcError(
-            f"{request.log}: name the test program that was run with --program; a table needs "
+            f"{files.log}: name the test program that was run with --program; a table needs "
             f"the columns {' and '.join(COLUMNS[LengthUnit.INCH][:2])}, or "
             f"{' and '.join(COLUMNS[LengthUnit.MILLIMETRE][:2])}"
         )
-    circles = _circles(request.program, request.dialect)
-    run = read_logged_run(request.log, tell=tell)
+    circles = _circles(files.program, request.dialect)
+    run = read_logged_run(files.log, tell=tell)
     log = _from_zero(request, PositionLog(time=run.time, position=run.position), circles, tell)
     found = list(circle_feeds(log, circles))
     feeds = tuple(each for each in found if isinstance(each, CircleFeed))
     if not feeds:
-        raise StepNcError(_nothing(request, log, circles, found))
+        raise StepNcError(_nothing(files, log, circles, found))
     missed = [each for each in found if isinstance(each, MissedCircle)]
     return feeds, tuple(_missing(each) for each in missed)
 
@@ -223,7 +186,7 @@ def _circles(program: Path, dialect: str) -> tuple[BlockCircle, ...]:
 
 
 def _nothing(
-    request: BlockFitRequest,
+    files: BlockFitFiles,
     log: PositionLog,
     circles: Sequence[BlockCircle],
     found: Sequence[CircleFeed | MissedCircle],
@@ -231,14 +194,14 @@ def _nothing(
     """Why no circle was found, with a guess."""
     in_mm = replace(log, position=mm_from_inches(1.0) * log.position)
     if any(isinstance(each, CircleFeed) for each in circle_feeds(in_mm, circles)):
-        return f"{request.log}: its positions are in inches; they must be in mm"
+        return f"{files.log}: its positions are in inches; they must be in mm"
     reason = next((each.reason for each in found if isinstance(each, MissedCircle)), "")
     low, high = log.position.min(axis=0), log.position.max(axis=0)
     spans = ", ".join(
         f"{axis} {a:g} to {b:g}" for axis, a, b in zip("XYZ", low, high, strict=True)
     )
     return (
-        f"{request.log}: none of the {len(circles)} circles of {request.program} is in it "
+        f"{files.log}: none of the {len(circles)} circles of {files.program} is in it "
         f"({reason}); its positions are {spans} mm: was this program run, and where is its "
         "zero (--zero)?"
     )
@@ -266,16 +229,15 @@ def _point(found: CircleFeed) -> SpacingFeed:
 # Machine file
 
 
-def _write_machine(request: BlockFitRequest, fit: BlockFit, output: Path, tell: Tell) -> None:
+def _write_machine(machine: str, log: str, fit: BlockFit, output: Path) -> None:
     """Write a copy of the machine with the block time and its source."""
     time = fit.block_time
     value = float(f"{time.value:.4g}")
     if refused := complaint(value, BlockTime):
-        raise CalibrationError(f"block time: {refused}; check the unit", path=request.log)
+        raise CalibrationError(f"block time: {refused}; check the unit", path=log)
     source = (
-        f"stepnc blockfit of {Path(request.log).name}: {len(fit.points)} points, "
+        f"stepnc blockfit of {Path(log).name}: {len(fit.points)} points, "
         f"{1e3 * time.low:.4g} to {1e3 * time.high:.4g} ms (95 %)"
     )
-    machine = replace(load_machine(request.machine), block_time=value, block_time_source=source)
-    write_atomically(output, machine_toml(machine).encode())
-    tell(f"machine file: {output}")
+    found = replace(load_machine(machine), block_time=value, block_time_source=source)
+    write_atomically(output, machine_toml(found).encode())

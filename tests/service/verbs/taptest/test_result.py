@@ -2,10 +2,7 @@
 
 import json
 
-import pytest
-
-from service.calibration.tap_output import print_tap_test, tap_test_json
-from service.calibration.tap_test import TapTestResult
+from service.verbs.taptest.result import TapTestResult
 from simulator.calibration.modal_fit import FittedMode, ModalFit
 from simulator.spec import ModeDirection, VibratingPart, VibrationMode
 from stepnc_model.errors import Finding, Severity
@@ -31,9 +28,8 @@ RESULT = TapTestResult(
 )
 
 
-def test_modes_and_what_they_leave_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
-    print_tap_test(RESULT)
-    printed = capsys.readouterr().out
+def test_modes_and_what_they_leave_are_printed() -> None:
+    printed = str(RESULT)
     assert "x          922           0.011          1.34" in printed
     assert "unexplained: 25.0% of the response, 1.1% after adding residues" in printed
     assert 'stiffness_n_um = 1.34\nsource = "bench"' in printed
@@ -41,7 +37,7 @@ def test_modes_and_what_they_leave_are_printed(capsys: pytest.CaptureFixture[str
 
 
 def test_json_says_the_same() -> None:
-    found = json.loads(tap_test_json(RESULT))
+    found = json.loads(json.dumps(RESULT.record()))
     assert found["modes"][0]["frequency_hz"] == 922.0
     assert (found["residual"], found["unexplained"]) == (0.011, 0.25)
     assert found["findings"][0]["message"] == "look at it"

@@ -3,12 +3,14 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from service.calibration.tap_test import TapTestRequest, tap_test
+import stepnc
 from service.cli.main import main
+from service.verbs.taptest.result import TapTestResult
 from simulator.library import load_machine
 from simulator.machine_file import machine_toml
 from simulator.spec import ModeDirection, VibratingPart, VibrationMode
@@ -30,13 +32,12 @@ def response(tmp_path: Path) -> Path:
     return path
 
 
-def request(response: Path, **changes: object) -> TapTestRequest:
-    asked = TapTestRequest(response=response, direction="x", tool="MILL")
-    return replace(asked, **changes)  # type: ignore[arg-type]
+def tapped(response: Path, **changes: Any) -> TapTestResult:
+    return stepnc.taptest(response, **{"direction": "x", "tool": "MILL"} | changes)
 
 
 def test_the_mode_is_found_and_named(response: Path) -> None:
-    (mode,) = tap_test(request(response)).modes
+    (mode,) = tapped(response).modes
     assert mode == VibrationMode(
         part=VibratingPart.TOOL,
         tool="MILL",
@@ -51,32 +52,32 @@ def test_the_mode_is_found_and_named(response: Path) -> None:
 def test_a_machine_file_keeps_what_was_measured_elsewhere(
     response: Path, tmp_path: Path
 ) -> None:
-    (mode,) = tap_test(request(response)).modes
+    (mode,) = tapped(response).modes
     other = replace(mode, tool="DRILL")
     along_y = replace(mode, direction=ModeDirection.Y, natural_frequency=800.0)
     old = replace(mode, natural_frequency=700.0)
     machine = replace(load_machine("vmc15"), modes=(other, along_y, old))
     mine = tmp_path / "mine.toml"
     mine.write_text(machine_toml(machine), encoding="utf-8")
-    tap_test(request(response, machine=str(mine), output=mine))
+    tapped(response, machine=mine, output=mine)
     assert load_machine(str(mine)).modes == (other, along_y, mode)
 
 
 def test_a_round_tool_that_is_tapped_again_along_x_keeps_its_y(
     response: Path, tmp_path: Path
 ) -> None:
-    (mode,) = tap_test(request(response)).modes
+    (mode,) = tapped(response).modes
     old = replace(mode, direction=ModeDirection.XY, natural_frequency=700.0)
     mine = tmp_path / "mine.toml"
     mine.write_text(
         machine_toml(replace(load_machine("vmc15"), modes=(old,))), encoding="utf-8"
     )
-    tap_test(request(response, machine=str(mine), output=mine))
+    tapped(response, machine=mine, output=mine)
     assert load_machine(str(mine)).modes == (replace(old, direction=ModeDirection.Y), mode)
 
 
 def test_a_workpiece_belongs_to_no_tool(response: Path) -> None:
-    (mode,) = tap_test(request(response, tool="", workpiece=True, source="by hand")).modes
+    (mode,) = tapped(response, tool="", workpiece=True, source="by hand").modes
     assert (mode.part, mode.tool, mode.source) == (VibratingPart.WORKPIECE, "", "by hand")
 
 
@@ -86,18 +87,18 @@ def test_a_workpiece_belongs_to_no_tool(response: Path) -> None:
         ({"tool": ""}, "what was tapped"),
         ({"workpiece": True}, "what was tapped"),
         ({"direction": "w"}, "direction 'w'"),
-        ({"tool_diameter_mm": -1.0}, "tool diameter: -1 mm is below 0.01 mm"),
-        ({"modes": 0}, "0 modes"),
+        ({"tool_diameter_mm": -1.0}, "tool diameter -1 mm: it must be 0.01 to 2000 mm"),
+        ({"modes": 0}, "modes 0: it must be 1"),
         ({"modes": 4}, "1 peaks found"),
         ({"machine": "vmc15"}, "name a file with -o"),
         ({"output": Path("mine.toml")}, "name the machine with --machine"),
     ],
 )
 def test_what_cannot_be_done_is_told(
-    changes: dict[str, object], message: str, response: Path
+    changes: dict[str, Any], message: str, response: Path
 ) -> None:
     with pytest.raises(StepNcError, match=message):
-        tap_test(request(response, **changes))
+        tapped(response, **changes)
 
 
 def test_another_unit_is_noticed(response: Path) -> None:
@@ -106,7 +107,7 @@ def test_another_unit_is_noticed(response: Path) -> None:
     with pytest.raises(
         StepNcError, match=r"stiffness: 1\.2e-05 N/µm is below .*check the unit"
     ):
-        tap_test(request(response))
+        tapped(response)
 
 
 def test_modes_that_explain_little_are_doubted(response: Path) -> None:
@@ -117,7 +118,7 @@ def test_modes_that_explain_little_are_doubted(response: Path) -> None:
         f, real, imag = map(float, line.split(","))
         noisy.append(f"{f},{real + 0.3 * random.normal()},{imag + 0.03 * random.normal()}")
     response.write_text("\n".join(noisy))
-    (finding,) = tap_test(request(response, modes=1)).findings
+    (finding,) = tapped(response, modes=1).findings
     assert "of the response unexplained" in finding.message
 
 

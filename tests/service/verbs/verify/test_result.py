@@ -1,4 +1,4 @@
-"""Text and JSON of a verification."""
+"""Text, JSON, page and places of ``verify``."""
 
 import json
 from dataclasses import replace
@@ -8,23 +8,17 @@ import numpy as np
 import pytest
 
 from service.recording.table import headings
-from service.verification.output import (
-    print_verification,
-    verification_json,
-    verification_page,
-    write_places,
-)
+from service.verbs.verify.result import VerificationResult
 from tests.service.verification.runs import clean
 
 
-def test_text_and_json_say_the_same(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    found = clean(tmp_path)
-    print_verification(found)
-    text = capsys.readouterr().out
+def test_text_and_json_say_the_same(tmp_path: Path) -> None:
+    result = VerificationResult(found=clean(tmp_path))
+    text = str(result)
     assert "verdict: nothing beyond the uncertainty of the log" in text
     assert "position feedback does not see" in text
     assert "at 10 Hz" in text
-    body = json.loads(verification_json(found))
+    body = json.loads(json.dumps(result.record()))
     assert body["verdict"] == "nothing beyond the uncertainty of the log"
     assert not body["has_errors"]
     assert {"gouge_mm", "excess_mm", "gouge_at_mm"} <= set(body["surfaces"][0])
@@ -34,13 +28,13 @@ def test_text_and_json_say_the_same(tmp_path: Path, capsys: pytest.CaptureFixtur
 def test_no_number_is_a_negative_zero(tmp_path: Path) -> None:
     whole = clean(tmp_path)
     found = replace(whole, nominal=np.where(np.isfinite(whole.nominal), -1e-6, np.nan))
-    page = verification_page(found)
+    page = VerificationResult(found=found).page()
     assert "+0.0000 to +0.0000" in page
     assert "-0.0000" not in page
 
 
 def test_the_page_has_both_pictures_and_loads_nothing(tmp_path: Path) -> None:
-    page = verification_page(clean(tmp_path))
+    page = VerificationResult(found=clean(tmp_path)).page()
     assert 'id="plan"' in page
     assert 'id="space"' in page
     assert "nothing beyond the uncertainty of the log" in page
@@ -49,7 +43,7 @@ def test_the_page_has_both_pictures_and_loads_nothing(tmp_path: Path) -> None:
 
 def test_places_are_written_with_their_units(tmp_path: Path) -> None:
     found = clean(tmp_path)
-    count = write_places(tmp_path / "places.csv", found)
+    count = VerificationResult(found=found).write_places(tmp_path / "places.csv")
     assert count == int(found.places.is_wall.sum())
     names = headings(tmp_path / "places.csv")
     assert names[:5] == ["x_mm", "y_mm", "z_mm", "deviation_mm", "uncertainty_mm"]

@@ -4,14 +4,12 @@ import re
 
 import pytest
 
-from service.calibration.output import print_calibration
-from service.calibration.run import CalibrationResult
+from service.verbs.calibrate.result import CalibrationResult
 
 
 @pytest.fixture
-def shown(calibration: CalibrationResult, capsys: pytest.CaptureFixture[str]) -> str:
-    print_calibration(calibration)
-    return capsys.readouterr().out
+def shown(calibration: CalibrationResult) -> str:
+    return str(calibration)
 
 
 def test_values_come_with_unit_and_interval(shown: str) -> None:

@@ -5,13 +5,12 @@ from typing import Any
 
 import pytest
 
-from service.calibration.output import calibration_json
-from service.calibration.run import CalibrationResult
+from service.verbs.calibrate.result import CalibrationResult
 
 
 @pytest.fixture(scope="module")
 def wire(calibration: CalibrationResult) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(calibration_json(calibration))
+    found: dict[str, Any] = json.loads(json.dumps(calibration.record()))
     return found
 
 

@@ -1,14 +1,13 @@
-"""NC program that tests the block rate of a control, for the command ``blocktest``."""
+"""NC program that tests the block rate of a control."""
 
-from dataclasses import dataclass
 from math import isfinite
-from pathlib import Path
 
 from service.files import write_lines
 from service.reading import Tell, silent
-from service.requests.blocks import BlockTestRequest, LengthUnit
-from service.requests.fields import require_bounds
+from service.requests.length_unit import LengthUnit
 from service.simulation.of_code import dialect_of
+from service.verbs.blocktest.request import BlockTestFiles, BlockTestRequest
+from service.verbs.blocktest.result import BlockTestResult
 from simulator.calibration.block_circles import (
     DWELL,
     LEAST_INCREMENTS,
@@ -34,20 +33,9 @@ MOST_RADIUS = 1_000.0
 MOST_CIRCLES = 500
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WrittenTest:
-    """Test program as it was written."""
-
-    test: BlockTest
-    left_out: tuple[float, ...]
-    """Spacings that the control cannot write evenly, mm."""
-    lines: int
-    """Number of lines of the file."""
-    duration: float | None
-    """Time of the program by the machine's block time, s; None without one."""
-
-
-def write_test(request: BlockTestRequest, output: Path, *, tell: Tell = silent) -> WrittenTest:
+def run(
+    request: BlockTestRequest, files: BlockTestFiles, *, tell: Tell = silent
+) -> BlockTestResult:
     """Write the test program for a control, and tell which spacings it leaves out.
 
     Raises
@@ -55,10 +43,10 @@ def write_test(request: BlockTestRequest, output: Path, *, tell: Tell = silent) 
     StepNcError
         When a number is out of its bounds, no spacing is left, or the file cannot be written.
     """
-    require_bounds(request)
     if not request.machine:
         raise StepNcError("name the machine with --machine: its kind and greatest feed count")
     machine = load_machine(request.machine)
+    output = files.output
     dialect = dialect_of(output, request.dialect)
     increment = coordinate_increment(dialect)
     test, left_out = _test(request, machine, increment)
@@ -71,11 +59,13 @@ def write_test(request: BlockTestRequest, output: Path, *, tell: Tell = silent) 
         )
     blocks = program_blocks(test, name=output.stem)
     count = write_lines(output, write(blocks, dialect))
-    written = WrittenTest(
-        test=test, left_out=left_out, lines=count, duration=_duration(test, machine)
+    duration = _duration(test, machine)
+    took = "" if duration is None else f", about {duration:.0f} s"
+    circles = len(test.radii) * len(test.spacings)
+    tell(f"written: {output} ({count} lines, {circles} circles{took})")
+    return BlockTestResult(
+        file=output, test=test, left_out=left_out, lines=count, duration=duration
     )
-    tell(_written(written, output))
-    return written
 
 
 def _test(
@@ -144,10 +134,3 @@ def _left_out(spacing: float, dialect: Dialect, increment: float) -> str:
         f"left out: spacing {um_from_mm(spacing):g} µm: {dialect.value} writes steps of "
         f"{um_from_mm(increment):g} µm, and {LEAST_INCREMENTS} of them are the least"
     )
-
-
-def _written(written: WrittenTest, output: Path) -> str:
-    test = written.test
-    count = len(test.radii) * len(test.spacings)
-    took = "" if written.duration is None else f", about {written.duration:.0f} s"
-    return f"written: {output} ({written.lines} lines, {count} circles{took})"

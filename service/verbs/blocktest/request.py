@@ -1,28 +1,13 @@
-"""Requests of the commands on block rate and cycle time."""
+"""Request of ``blocktest``."""
 
 from dataclasses import dataclass
-from enum import StrEnum
+from pathlib import Path
 from typing import Annotated
 
 from annotated_types import Interval
 
-from service.requests.fields import About, Request
-from stepnc_model.units import inches_from_mm, mm_from_inches
-
-
-class LengthUnit(StrEnum):
-    """Unit of lengths that a user enters."""
-
-    INCH = "in"
-    MILLIMETRE = "mm"
-
-    def to_mm(self, length: float) -> float:
-        """Length in mm."""
-        return mm_from_inches(length) if self is LengthUnit.INCH else length
-
-    def from_mm(self, length: float) -> float:
-        """Length in this unit from mm."""
-        return inches_from_mm(length) if self is LengthUnit.INCH else length
+from service.requests.fields import About, FileUse, Request
+from service.requests.length_unit import LengthUnit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,3 +48,17 @@ class BlockTestRequest(Request):
         Interval(ge=50, le=100_000),
         About("lines of each circle", flag="--lines", metavar="N"),
     ] = 1000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BlockTestFiles(Request):
+    """Files of ``blocktest``."""
+
+    output: Annotated[
+        Path,
+        About("NC code to write", flag="--output", short="-o", use=FileUse.OUTPUT,
+              metavar="FILE"),
+    ]  # fmt: skip
+
+
+REQUEST, FILES = BlockTestRequest, BlockTestFiles

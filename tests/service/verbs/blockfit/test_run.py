@@ -1,5 +1,6 @@
-"""The command ``blockfit``: from tables, runs of the virtual machine and its agent."""
+"""``blockfit``: from tables, runs of the virtual machine and its agent."""
 
+import logging
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,9 +8,7 @@ import pyarrow as pa
 import pytest
 from pyarrow import csv
 
-from service.blocks.block_fit import BlockFitRequest, BlockFitResult, fit_blocks
-from service.blocks.block_program import write_test
-from service.requests.blocks import BlockTestRequest, LengthUnit
+import stepnc
 from service.requests.runs import SimulationRequest
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles, simulate
@@ -30,7 +29,7 @@ BLOCK_TIME = 0.0063
 def test_paper_s_table_gives_its_fits(tmp_path: Path) -> None:
     log = tmp_path / "table.csv"
     log.write_text(TABLE_2, encoding="utf-8")
-    fit = fit_blocks(BlockFitRequest(log=str(log))).fit
+    fit = stepnc.blockfit(log).fit
     assert [round(60.0 * each.slope.value) for each in fit.fits[:2]] == [14_516, 14_600]
 
 
@@ -40,7 +39,7 @@ def test_millimetres_are_read_as_inches_are(tmp_path: Path) -> None:
         "spacing_mm;feed_mm_min;radius_mm\n0,1;1500;25\n0,2;3000;25\n0,4;6000;25\n",
         encoding="utf-8",
     )
-    fit = fit_blocks(BlockFitRequest(log=str(log))).fit
+    fit = stepnc.blockfit(log).fit
     assert fit.block_time.value == pytest.approx(0.004)
     assert fit.points[0].radius == 25.0
 
@@ -63,11 +62,10 @@ def run(
 ) -> tuple[Path, Path]:
     """Test program and its log on a machine with a hidden block time."""
     code, log = folder / program, folder / "log.csv"
-    request = BlockTestRequest(
-        machine=machine, unit=LengthUnit.MILLIMETRE, spacing=(0.03, 0.1, 0.3),
+    stepnc.blocktest(
+        output=code, machine=machine, unit="mm", spacing=(0.03, 0.1, 0.3),
         radius=(20.0, 40.0), lines=400,
     )  # fmt: skip
-    write_test(request, code)
     simulate(
         SimulationRequest(machine=str(hidden(folder, machine)), rate_hz=rate, control=control),
         RunFiles(code=CodeRequest(code=code), output=log),
@@ -82,9 +80,7 @@ def test_the_block_time_of_a_hidden_machine_is_found(
 ) -> None:
     code, log = run(tmp_path, program, machine=machine, control=control)
     output = tmp_path / "found.toml"
-    result = fit_blocks(
-        BlockFitRequest(log=str(log), program=code, machine=machine, output=output)
-    )
+    result = stepnc.blockfit(log, program=code, machine=machine, output=output)
     assert result.findings == ()
     assert set(result.fit.causes) == {FeedCause.BLOCK_RATE}
     assert result.fit.block_time.value == pytest.approx(BLOCK_TIME, rel=0.01)
@@ -94,12 +90,14 @@ def test_the_block_time_of_a_hidden_machine_is_found(
     assert found.source == load_machine(machine).source
 
 
-def test_the_zero_of_machine_coordinates_is_searched_and_told(tmp_path: Path) -> None:
+def test_the_zero_of_machine_coordinates_is_searched_and_told(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     code, log = run(tmp_path, "a.ngc")
     _moved(log, scale=1.0, shift={"x": 312.5, "y": -40.0, "z": 88.25})
-    told: list[str] = []
-    result = fit_blocks(BlockFitRequest(log=str(log), program=code), tell=told.append)
-    assert told == ["zero of the program found at 312.500, -40.000, 88.250 mm"]
+    with caplog.at_level(logging.INFO, logger="stepnc"):
+        result = stepnc.blockfit(log, program=code)
+    assert caplog.messages == ["zero of the program found at 312.500, -40.000, 88.250 mm"]
     assert result.findings == ()
     assert result.fit.block_time.value == pytest.approx(BLOCK_TIME, rel=0.01)
 
@@ -115,18 +113,17 @@ def _moved(log: Path, *, scale: float, shift: dict[str, float]) -> None:
 
 def test_another_zero_and_inches_are_told(tmp_path: Path) -> None:
     code, log = run(tmp_path, "a.ngc")
-    request = BlockFitRequest(log=str(log), program=code)
     with pytest.raises(StepNcError, match=r"none of the 6 circles .* where is its zero"):
-        fit_blocks(replace(request, zero="100,0,0"))
+        stepnc.blockfit(log, program=code, zero="100,0,0")
     _moved(log, scale=1.0 / 25.4, shift={"x": 0.0, "y": 0.0, "z": 0.0})
     with pytest.raises(StepNcError, match="its positions are in inches"):
-        fit_blocks(request)
+        stepnc.blockfit(log, program=code)
 
 
-def failed(folder: Path, text: str, **rest: object) -> BlockFitResult:
+def failed(folder: Path, text: str, **rest: object) -> None:
     log = folder / "log.csv"
     log.write_text(text, encoding="utf-8")
-    return fit_blocks(BlockFitRequest(log=str(log), **rest))  # type: ignore[arg-type]
+    stepnc.blockfit(log, **rest)  # type: ignore[arg-type]
 
 
 @every_case(

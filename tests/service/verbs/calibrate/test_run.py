@@ -3,22 +3,24 @@
 import csv
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from service.calibration.run import CalibrationRequest, CalibrationResult, calibrate
+import stepnc
 from service.cli.main import main
+from service.errors import MissingArgument
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import simulate
+from service.verbs.calibrate.result import CalibrationResult
 from simulator.calibration.features import Parameter
 from simulator.library import load_machine
 from simulator.machine.transients import USUAL_DELAY
 from simulator.machine_file import machine_toml
-from stepnc_model.errors import StepNcError, WriteError
+from stepnc_model.errors import WriteError
 from tests.asking import AskedSimulation, asked_simulation
 from tests.every_case import every_case
 
@@ -83,12 +85,16 @@ def asked(folder: Path, machine: str, **more: Any) -> AskedSimulation:
     )
 
 
-def calibration(
-    runs: tuple[Path, ...], folder: Path, machine: str, output: Path | None = None
-) -> CalibrationRequest:
-    """Runs of the slots on a machine."""
-    simulation, files = asked(folder, machine)
-    return CalibrationRequest(runs=runs, simulation=simulation, files=files, output=output)
+def calibrated(
+    runs: Sequence[Path], folder: Path, machine: str, output: Path | None = None
+) -> CalibrationResult:
+    """Calibration to runs of the slots on a machine."""
+    result = stepnc.calibrate(
+        runs, nc=folder / "slots.ngc", tools=folder / "tools.toml", stock="0,0,-20,50,50,0",
+        material="c45", machine=machine, output=output,
+    )  # fmt: skip
+    assert isinstance(result, CalibrationResult)
+    return result
 
 
 @pytest.fixture(scope="module")
@@ -123,7 +129,7 @@ def write(path: Path, rows: Rows, *, separator: str = ",") -> Path:
 
 @pytest.fixture(scope="module")
 def found(folder: Path, measured: Path) -> CalibrationResult:
-    return calibrate(calibration((measured,), folder, "vmc15", folder / "mine.toml"))
+    return calibrated((measured,), folder, "vmc15", folder / "mine.toml")
 
 
 @pytest.mark.parametrize(
@@ -336,15 +342,15 @@ def test_an_output_that_cannot_be_is_refused_first(
     folder: Path, measured: Path, output: str, words: str
 ) -> None:
     before = {path: path.read_bytes() for path in folder.iterdir()}
-    request = calibration((measured,), folder, str(folder / "truth.toml"), folder / output)
+    machine = str(folder / "truth.toml")
     with pytest.raises(WriteError, match=re.escape(words)):
-        calibrate(request)
+        calibrated((measured,), folder, machine, folder / output)
     assert {path: path.read_bytes() for path in folder.iterdir()} == before
 
 
 def test_without_a_run_there_is_nothing_to_do(folder: Path) -> None:
-    with pytest.raises(StepNcError, match="name at least one measured run"):
-        calibrate(calibration((), folder, "vmc15"))
+    with pytest.raises(MissingArgument, match="name the measured runs"):
+        calibrated((), folder, "vmc15")
 
 
 def test_a_run_of_something_else_gaps_and_constants_are_said(

@@ -1,1 +1,0 @@
-"""Calibration of machine files and tool life to measurements."""

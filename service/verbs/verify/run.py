@@ -1,0 +1,37 @@
+"""Verification of logged positions with the files that people name."""
+
+from pathlib import Path
+
+from service.files import require_places
+from service.part_file import part_place
+from service.reading import Tell, silent
+from service.requests.verification import VerificationRequest
+from service.run_file import require_suffix
+from service.verbs.verify.request import VerificationFiles
+from service.verbs.verify.result import VerificationResult
+from service.verification.run import VerificationInputs, verify
+
+
+def run(
+    request: VerificationRequest, files: VerificationFiles, *, tell: Tell = silent
+) -> VerificationResult:
+    """Verify a log, and write the deviations of places if an output is named.
+
+    Raises
+    ------
+    StepNcError
+        As :func:`service.verification.run.verify`; and when an output is not writable.
+    """
+    required: tuple[Path | None, str] = (None, "")
+    if files.required:
+        required = part_place(files.required)
+    require_places([files.output, files.report])
+    if files.output is not None:
+        require_suffix(files.output)
+    inputs = VerificationInputs(tools=files.tools, required=required[0], solid=required[1])
+    result = VerificationResult(
+        found=verify(files.log, files.program, request, inputs=inputs, tell=tell)
+    )
+    if files.output is not None:
+        tell(f"written: {files.output} ({result.write_places(files.output)} places)")
+    return result
