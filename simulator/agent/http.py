@@ -123,7 +123,8 @@ def _request(scope: Mapping[str, Any]) -> HttpRequest:
         uri=uri[:LONGEST_URI],
         values=values,
         is_json=wanted == "json" or ("application/json" in accept and wanted != "xml"),
-        is_page=wanted == "html" or ("html" in accept and _kinds(accept) >= BROWSER and not wanted),
+        is_page=wanted == "html"
+        or ("html" in accept and _kinds(accept) >= BROWSER and not wanted),
         takes_gzip=b"gzip" in headers.get(b"accept-encoding", b""),
         origin=headers.get(b"origin", b"").decode("latin-1"),
         host=headers.get(b"host", b"").decode("latin-1"),

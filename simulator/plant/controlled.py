@@ -342,7 +342,9 @@ class ControlledMachine:
             gone = 1.0 - np.exp(-period * steps / lag)
             self._lagged = _Lagged(period=period, steps=steps, gone=gone)
         known = self._lagged
-        ways: Floats = aim * period * known.steps + (self._now.override - aim) * lag * known.gone
+        ways: Floats = (
+            aim * period * known.steps + (self._now.override - aim) * lag * known.gone
+        )
         return ways
 
     def _feed_end(self, cell: int, end: float) -> float:
@@ -375,7 +377,7 @@ class ControlledMachine:
         runout = self.hidden.eccentricity / per_tooth if per_tooth > 0.0 else 0.0
         return pattern(
             EngagedTeeth(
-                count=teeth,
+                number=teeth,
                 entry_angle=_rounded(float(course.entry_angle[cell])),
                 exit_angle=_rounded(float(course.exit_angle[cell])),
                 exponent=round(float(course.exponent[cell]), 4),

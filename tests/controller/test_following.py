@@ -1,6 +1,5 @@
 """Axes that do not run what was commanded, and those that are only slow."""
 
-
 import pytest
 
 from controller.following import PATIENCE, Following, followed

@@ -7,8 +7,8 @@ import pytest
 
 from simulator.physics import known_places
 from simulator.physics.flutes import CuttingEdges, ForceLaw
-from simulator.physics.known_places import DIGITS, Floats, peak_at, wall_at
-from simulator.physics.tooth_forces import Places, peak_resultant, wall_force
+from simulator.physics.known_places import DIGITS, peak_at, wall_at
+from simulator.physics.tooth_forces import Floats, Places, peak_resultant, wall_force
 
 EDGES = CuttingEdges(teeth=3, diameter=8.0, helix_angle=0.5, corner_radius=1.0)
 LAW = ForceLaw(exponent=0.75)
@@ -40,7 +40,9 @@ def test_known_and_new_places_have_the_forces_of_the_model() -> None:
 def test_another_cutter_or_law_has_other_forces() -> None:
     met = arcs(0)
     flat = CuttingEdges(teeth=3, diameter=8.0)
-    np.testing.assert_array_equal(peak_at(flat, LAW, met), peak_resultant(flat, places(met), LAW))
+    np.testing.assert_array_equal(
+        peak_at(flat, LAW, met), peak_resultant(flat, places(met), LAW)
+    )
     hard = ForceLaw(exponent=0.6)
     np.testing.assert_array_equal(
         peak_at(EDGES, hard, met), peak_resultant(EDGES, places(met), hard)
