@@ -62,6 +62,7 @@ STEP = 0.0117
 DEPTH = 10.0
 """mm"""
 
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HiddenMachine:
     """Machine whose numbers the prediction does not see."""

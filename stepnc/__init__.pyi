@@ -12,7 +12,10 @@ from service.verbs.blocktest.result import BlockTestResult as BlockTestResult
 from service.verbs.calibrate.result import CalibrationResult as CalibrationResult
 from service.verbs.calibrate.tool_life import ToolLifeResult as ToolLifeResult
 from service.verbs.cycletime.result import CycleTimeResult as CycleTimeResult
+from service.verbs.learn.result import LearnResult as LearnResult
 from service.verbs.optimise.result import OptimiseResult as OptimiseResult
+from service.verbs.predict.result import PredictResult as PredictResult
+from service.verbs.score.result import ScoreResult as ScoreResult
 from service.verbs.taptest.result import TapTestResult as TapTestResult
 from service.verbs.verify.result import VerificationResult as VerificationResult
 
@@ -78,6 +81,21 @@ def cycletime(
     control: Literal['exact-stop', 'junction', 'fir'] = ...,
     deviation_mm: float = ...,
 ) -> CycleTimeResult: ...
+def learn(
+    dataset: str | Path,
+    *,
+    output: str | Path | None = ...,
+    outcome: str | Path | None = ...,
+    program: str | Path | None = ...,
+    report: str | Path | None = ...,
+    target: str | Path = ...,
+    model: str | Path = ...,
+    train: int = ...,
+    test: int = ...,
+    seed: int = ...,
+    is_on_physics: bool = ...,
+    has_curve: bool = ...,
+) -> LearnResult: ...
 def optimise(
     file: str | Path,
     *,
@@ -133,6 +151,28 @@ def optimise(
     dialect: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
     is_marked: bool = ...,
 ) -> OptimiseResult: ...
+def predict(
+    model: str | Path,
+    table: str | Path | None = ...,
+    *,
+    feed_mm_s: float | None = ...,
+    spindle_rad_s: float | None = ...,
+    depth_mm: float | None = ...,
+    tool_diameter_mm: float | None = ...,
+    flank_wear_mm: float | None = ...,
+    total_power_exact_w: float | None = ...,
+    energy_exact_j: float | None = ...,
+    part: str | Path | None = ...,
+    machine: str | Path | None = ...,
+    material: str | Path | None = ...,
+) -> PredictResult: ...
+def score(
+    model: str | Path,
+    runs: str | Path,
+    *,
+    false_alarm: float = ...,
+    seed: int = ...,
+) -> ScoreResult: ...
 def taptest(
     response: str | Path,
     *,

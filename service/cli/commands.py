@@ -15,7 +15,6 @@ from service.cli.control import add_control_command
 from service.cli.dataset import add_dataset_command
 from service.cli.factory import add_factory_command
 from service.cli.kbe import USAGE, add_knowledge_commands
-from service.cli.learning import add_learning_commands
 from service.cli.machine import add_machine_commands
 from service.cli.options import (
     BAD_INPUT,
@@ -78,7 +77,6 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     add_control_command(commands)
     add_factory_command(commands)
     add_dataset_command(commands)
-    add_learning_commands(commands)
     for verb in verbs().values():
         if verb.name not in commands.choices:
             add_verb(commands, verb)
