@@ -22,12 +22,11 @@ import numpy as np
 import pyarrow as pa
 from pyarrow import parquet
 
+import stepnc
 from service.dataset.rows import SCHEMA
 from service.dataset.run import make_dataset
 from service.execution.executors import processes
-from service.learning.learn import learn
 from service.reading import silent
-from service.requests.learning import LearnRequest
 
 PARTS, ROWS = 300, 1_000_000
 TEST = 10_000
@@ -104,7 +103,7 @@ def learned_alone(path: Path, model: str, rows: int) -> dict[str, float]:
 def learn_here(path: Path, model: str, rows: int) -> None:
     """Learn, and print time, peak memory and scores as JSON."""
     begin = time.perf_counter()
-    result = learn(path, LearnRequest(model=model, train=rows, test=TEST))
+    result = stepnc.learn(path, model=model, train=rows, test=TEST)
     seconds = time.perf_counter() - begin
     r2, best = result.scored[0].scores.r2, result.ceiling
     print(json.dumps({

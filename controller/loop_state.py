@@ -276,10 +276,8 @@ def _loaded(
     shares = state.shares
     if len(shares.usual) != reading.teeth:
         shares = overload.fresh(reading.teeth)
-    if not state.by_teeth:
-        # Means of other periods do not show runout.
-        level = force
-    else:
+    level = force  # Means of other periods than a tooth's do not show runout.
+    if state.by_teeth:
         # Noise in air and the entry into the work do not show runout.
         see = overload.seen if state.has_chips else overload.noted
         shares = see(shares, reading.tooth, force)

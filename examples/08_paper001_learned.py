@@ -8,10 +8,9 @@ later paper, within the ranges of Table 1. 500 rows train, the next 300 test.
 import sys
 from pathlib import Path
 
+import stepnc
 from service.dataset.run import make_dataset
-from service.learning.learn import learn
 from service.learning.models import ModelKind
-from service.requests.learning import LearnRequest
 
 PARTS = Path(__file__).resolve().parent / "parts"
 DESIGN = f"""program = "{PARTS / "paper003_pocket.stpnc"}"
@@ -34,7 +33,7 @@ def main(folder: Path) -> None:
         print(f"{target:20}      R2  (95 %)              MAE W  RMSE W  MAPE %")
         shown = set()
         for kind in ModelKind:
-            result = learn(data, LearnRequest(target=target, model=kind.value))
+            result = stepnc.learn(data, target=target, model=kind.value)
             for each in result.scored:
                 if each.name in shown:
                     continue

@@ -12,9 +12,10 @@ from pathlib import Path
 import pyarrow as pa
 from pyarrow import compute, parquet
 
+import stepnc
 from service.dataset.run import make_dataset
-from service.learning import learn, output, source
-from service.requests.learning import LearnRequest
+from service.learning import source
+from service.verbs.learn.result import factor_text
 
 DESIGN = f"""program = "{Path(__file__).resolve().parent}/parts/paper003_pocket.stpnc"
 machine = "paper003"
@@ -45,14 +46,13 @@ def main(folder: Path) -> None:
         errors: dict[str, list[str]] = {}
         for count, (kind, on) in ((count, model) for count in COUNTS for model in MODELS):
             parquet.write_table(pa.concat_tables([measured[:count], measured[100:]]), table)
-            asked = LearnRequest(model=kind, train=count, test=300, is_on_physics=on)
-            found = learn.learn(table, asked)
+            found = stepnc.learn(table, model=kind, train=count, test=300, is_on_physics=on)
             for each in found.scored[: None if (kind, on) == MODELS[-1] else 1]:
                 name = f"{kind} on the physics" if on and each.name == kind else each.name
                 errors.setdefault(name, []).append(f"{each.scores.rmse.value:9.2f}")
         print(f"machine {title}, RMSE W".ljust(36), *(f"{each:4} runs" for each in COUNTS))
         print(*(" ".join((name.ljust(36), *row)) for name, row in errors.items()), sep="\n")
-    print(output.factor_text(found))
+    print(factor_text(found))
 
 
 if __name__ == "__main__":

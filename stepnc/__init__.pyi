@@ -17,12 +17,15 @@ from service.verbs.check.result import ProgramContents as ProgramContents
 from service.verbs.control.result import ControlResult as ControlResult
 from service.verbs.convert.result import ConvertResult as ConvertResult
 from service.verbs.cycletime.result import CycleTimeResult as CycleTimeResult
+from service.verbs.learn.result import LearnResult as LearnResult
 from service.verbs.library import EntryResult as EntryResult
 from service.verbs.library import EntryResult as EntryResult
 from service.verbs.library import ListingResult as ListingResult
 from service.verbs.library import ListingResult as ListingResult
 from service.verbs.optimise.result import OptimiseResult as OptimiseResult
 from service.verbs.post.result import PostResult as PostResult
+from service.verbs.predict.result import PredictResult as PredictResult
+from service.verbs.score.result import ScoreResult as ScoreResult
 from service.verbs.simulate.result import SimulateResult as SimulateResult
 from service.verbs.taptest.result import TapTestResult as TapTestResult
 from service.verbs.toolpath.result import CodePathResult as CodePathResult
@@ -166,6 +169,21 @@ def cycletime(
     control: Literal['exact-stop', 'junction', 'fir'] = ...,
     deviation_mm: float = ...,
 ) -> CycleTimeResult: ...
+def learn(
+    dataset: str | Path,
+    *,
+    output: str | Path | None = ...,
+    outcome: str | Path | None = ...,
+    program: str | Path | None = ...,
+    report: str | Path | None = ...,
+    target: str | Path = ...,
+    model: str | Path = ...,
+    train: int = ...,
+    test: int = ...,
+    seed: int = ...,
+    is_on_physics: bool = ...,
+    has_curve: bool = ...,
+) -> LearnResult: ...
 def machines(
     name: str | Path | None = ...,
 ) -> ListingResult | EntryResult: ...
@@ -241,6 +259,28 @@ def post(
     exact_path: bool = ...,
     keep_going: bool = ...,
 ) -> PostResult: ...
+def predict(
+    model: str | Path,
+    table: str | Path | None = ...,
+    *,
+    feed_mm_s: float | None = ...,
+    spindle_rad_s: float | None = ...,
+    depth_mm: float | None = ...,
+    tool_diameter_mm: float | None = ...,
+    flank_wear_mm: float | None = ...,
+    total_power_exact_w: float | None = ...,
+    energy_exact_j: float | None = ...,
+    part: str | Path | None = ...,
+    machine: str | Path | None = ...,
+    material: str | Path | None = ...,
+) -> PredictResult: ...
+def score(
+    model: str | Path,
+    runs: str | Path,
+    *,
+    false_alarm: float = ...,
+    seed: int = ...,
+) -> ScoreResult: ...
 def simulate(
     file: str | Path | None = ...,
     *,

@@ -13,7 +13,6 @@ from service.cli.agent import add_agent_command
 from service.cli.dataset import add_dataset_command
 from service.cli.factory import add_factory_command
 from service.cli.kbe import USAGE, add_knowledge_commands
-from service.cli.learning import add_learning_commands
 from service.cli.options import (
     BAD_INPUT,
     INFEASIBLE,
@@ -64,7 +63,6 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     add_knowledge_commands(commands)
     add_factory_command(commands)
     add_dataset_command(commands)
-    add_learning_commands(commands)
     for verb in verbs().values():
         if verb.name not in commands.choices:
             add_verb(commands, verb)

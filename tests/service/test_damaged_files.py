@@ -12,9 +12,8 @@ import pyarrow as pa
 import pytest
 from pyarrow import parquet
 
-from service.learning.learn import learn
+import stepnc
 from service.learning.model_file import save_model
-from service.requests.learning import LearnRequest
 from tests.service.damage import EXPECTED, PARTS, damaged, programs, run
 from tests.service.learning.tables import law_table, written
 
@@ -128,7 +127,7 @@ def test_damaged_files_of_each_kind_end_with_an_exit_code(tmp_path: Path) -> Non
     aim = programs(tmp_path)["ap238.stpnc"]
     table = written(tmp_path, law_table(200, machines=("a", "b")))
     model = tmp_path / "model.skops"
-    save_model(learn(table, LearnRequest(model="forest", train=100, test=60)).model, model)
+    save_model(stepnc.learn(table, model="forest", train=100, test=60).model, model)
     spacings = tmp_path / "b.parquet"
     columns = {
         "spacing_mm": [0.01, 0.1, 0.2, 0.5],

@@ -69,11 +69,6 @@ THROUGH = {
     "service/along_path/test_output.py": ("service/along_path/figures.py",),
     "service/along_path/test_run.py": ("service/along_path/of_program.py",),
     "service/cli/test_agent.py": ("service/cli/record.py",),
-    "service/cli/test_learning.py": (
-        "service/cli/dataset.py",
-        "service/learning/figures.py",
-        "service/learning/output.py",
-    ),
     "service/test_confirm.py": ("service/confirmed_run.py",),
     "service/test_same_stock.py": ("optimiser/stock_left.py", "service/divided_depth.py"),
     "service/factory/test_factory.py": (

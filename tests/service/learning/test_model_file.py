@@ -11,11 +11,10 @@ import skops.io
 from sklearn.linear_model import Ridge
 from sklearn.preprocessing import FunctionTransformer
 
-from service.learning.learn import learn
+import stepnc
 from service.learning.learned import LearnedModel
 from service.learning.model_file import HEADER, load_model, save_model
 from service.learning.models import ModelKind
-from service.requests.learning import LearnRequest
 from stepnc_model.errors import StepNcError
 from tests.every_case import every_case
 from tests.service.learning.tables import law_table, written
@@ -23,7 +22,7 @@ from tests.service.learning.tables import law_table, written
 
 def learned(folder: Path, model: str = "power-law") -> LearnedModel:
     path = written(folder, law_table(60, machines=("a", "b")))
-    return learn(path, LearnRequest(model=model, train=40, test=20)).model
+    return stepnc.learn(path, model=model, train=40, test=20).model
 
 
 def with_header(data: bytes, values: dict[str, object]) -> bytes:

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import plotly.graph_objects as go
 
-from service.learning.learn import CurvePoint, LearnResult
 from service.learning.table import unit_of
 from service.panels import BLUE, GREY
+from service.verbs.learn.result import CurvePoint, LearnResult
 
 
 def scatter_figure(result: LearnResult) -> go.Figure:

@@ -1,4 +1,4 @@
-"""Use case of ``stepnc learn``: a model, its scores, and those of what is simpler.
+"""Learning: a model, its scores, and those of what is simpler.
 
 Rows are read in pieces. Trees, Gaussian processes and networks of few rows hold them all; power
 laws and other networks only sums and the piece at hand.
@@ -13,8 +13,10 @@ import numpy as np
 import pyarrow as pa
 
 from service.dataset.folder import IN_METADATA
+from service.files import require_places
 from service.learning.force_factor import ForceFactor, force_factor_of
 from service.learning.learned import Baseline, LearnedModel, quantiles_of
+from service.learning.model_file import save_model
 from service.learning.models import (
     IN_MEMORY,
     ModelKind,
@@ -23,7 +25,8 @@ from service.learning.models import (
     trained,
 )
 from service.learning.power_law import fitted_law
-from service.learning.scores import Score, Scores, scores_of
+from service.learning.score_table import FITTED, MEAN, PHYSICS_ALONE, ScoredModel
+from service.learning.scores import scores_of
 from service.learning.source import RowSource
 from service.learning.table import (
     CUTTING,
@@ -37,57 +40,15 @@ from service.learning.table import (
     learning_table,
     require_columns,
 )
-from service.requests.fields import member_of, require_bounds
-from service.requests.learning import LearnRequest
+from service.reading import Tell, silent
+from service.requests.fields import member_of
+from service.verbs.learn.outcome import write_outcome
+from service.verbs.learn.request import LearnFiles, LearnRequest
+from service.verbs.learn.result import CurvePoint, LearnResult
 from stepnc_model.errors import StepNcError
-
-MEAN, PHYSICS_ALONE, FITTED = "mean", "physics", "k_c and idle power"
-"""Baselines: the mean of the training rows; the virtual machine without deviation, and with a
-factor on k_c and an offset of the idle power that fit the training rows."""
 
 FEWEST_OF_CURVE = 20
 """Rows from which a learning curve begins."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScoredModel:
-    """Scores of one way to predict."""
-
-    name: str
-    scores: Scores
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CurvePoint:
-    """Scores of the model after some training rows."""
-
-    rows: int
-    scores: Scores
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class LearnResult:
-    """A learned model with its test."""
-
-    model: LearnedModel
-    test: int
-    """Rows of the test."""
-    scored: tuple[ScoredModel, ...]
-    """The model first, then its baselines."""
-    ceiling: Score | None
-    """R² of the physics without deviation: no model of the settings can expect more. None where
-    the table has no physics, or the model stands on it."""
-    curve: tuple[CurvePoint, ...]
-    """Learning curve, by rising rows; empty if it was not asked for."""
-    warnings: tuple[str, ...]
-    factor: ForceFactor | None
-    """Factor on k_c of the training rows; None unless the model stands on the physics, and the
-    rows tell how much power is that of the cut."""
-    names: Mapping[str, tuple[str, ...]]
-    """Parts, machines and materials of all rows."""
-    actual: Floats
-    """Target of the test rows, (M,)."""
-    predicted: Floats
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,15 +97,43 @@ class TrainingFacts:
     """Mean of the target."""
 
 
-def learn(path: Path, request: LearnRequest) -> LearnResult:
+def run(request: LearnRequest, files: LearnFiles, *, tell: Tell = silent) -> LearnResult:
     """Train a model on the first rows of a data set and test it on the next ones.
 
     Raises
     ------
     StepNcError
-        When the request, the data set or its target is not usable.
+        When the request, the data set or its target is not usable, or a file not writable.
     """
-    require_bounds(request)
+    require_places([files.output, files.report, files.outcome])
+    if (files.outcome is None) is not (files.program is None):
+        raise StepNcError("--outcome and --program belong together")
+    if files.outcome is not None and not request.is_on_physics:
+        raise StepNcError("--outcome: a factor on k_c needs --on-physics")
+    result = _learned(files.dataset, request)
+    if files.outcome is not None and files.program is not None:
+        _write_factor(result, files.outcome, files, files.program)
+        tell(f"outcome: {files.outcome}; `stepnc kbe add {files.outcome}` takes it")
+    for text in result.warnings:
+        tell(f"scikit-learn: {text}")
+    if files.output is not None:
+        save_model(result.model, files.output)
+        tell(f"model: {files.output}")
+    return result
+
+
+def _write_factor(result: LearnResult, outcome: Path, files: LearnFiles, program: Path) -> None:
+    """Write the factor on k_c for the knowledge base."""
+    if result.factor is None:
+        raise StepNcError(
+            f"{files.dataset}: no factor on k_c: it needs the target total_power_w and a "
+            "column cutting_power_w that varies"
+        )
+    write_outcome(outcome, result.factor, program=program, names=result.names)
+
+
+def _learned(path: Path, request: LearnRequest) -> LearnResult:
+    """Model with its scores, and those of what is simpler."""
     kind = member_of(ModelKind, request.model, "model")
     target = request.target
     if target not in TARGETS:

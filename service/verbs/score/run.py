@@ -1,22 +1,20 @@
-"""Use case of ``stepnc score``: a model on measured runs, beside what is simpler, and drift."""
-
-from dataclasses import dataclass
-from pathlib import Path
+"""Scoring: a model on measured runs, beside what is simpler, and drift."""
 
 import numpy as np
 import pyarrow as pa
 
-from service.learning.drift import Drift, drift_of
-from service.learning.learn import MEAN, PHYSICS_ALONE, ScoredModel
+from service.learning.drift import drift_of
 from service.learning.learned import LearnedModel
 from service.learning.model_file import load_model
 from service.learning.models import ModelKind
 from service.learning.recorded import with_recorded
+from service.learning.score_table import MEAN, PHYSICS_ALONE, ScoredModel
 from service.learning.scores import scores_of
 from service.learning.source import RowSource
 from service.learning.table import PHYSICS, Floats, feature_values, positive_of
-from service.requests.fields import require_bounds
-from service.requests.learning import ScoreRequest
+from service.reading import Tell, silent
+from service.verbs.score.request import ScoreFiles, ScoreRequest
+from service.verbs.score.result import ScoreResult
 from stepnc_model.errors import StepNcError
 
 FEWEST, MOST = 5, 100_000
@@ -25,39 +23,16 @@ FEWEST, MOST = 5, 100_000
 ORDER = "order of the runs"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ScoreResult:
-    """Scores of a model on measured runs."""
-
-    model: LearnedModel
-    rows: tuple[int, ...]
-    """Numbers of the runs in their table, from 1; those outside the trained box are not in."""
-    left_out: tuple[tuple[int, str], ...]
-    """Numbers of runs outside the trained box, with the reasons."""
-    scored: tuple[ScoredModel, ...]
-    """The model first, then what is simpler."""
-    drift: Drift
-
-
-def score(path: Path, runs: Path, request: ScoreRequest) -> ScoreResult:
+def run(request: ScoreRequest, files: ScoreFiles, *, tell: Tell = silent) -> ScoreResult:
     """Score a model on measured runs.
-
-    Parameters
-    ----------
-    path : Path
-        Model.
-    runs : Path
-        Table of runs in the order in which they were made, with settings and measured target,
-        or with recordings that tell it.
-    request : ScoreRequest
 
     Raises
     ------
     StepNcError
         When the model or the table is not usable.
     """
-    require_bounds(request)
-    model = load_model(path)
+    runs = files.runs
+    model = load_model(files.model)
     place, table = str(runs), RowSource(runs).table(0, MOST + 1)
     table = with_recorded(table, model.target, folder=runs.parent)
     if table.num_rows > MOST:

@@ -9,12 +9,12 @@ from service.knowledge.added import add_outcomes
 from service.knowledge.review import review
 from service.knowledge.verbs import accept, accepted_factors
 from service.learning.force_factor import ForceFactor
-from service.learning.outcome import write_outcome
 from service.requests.knowledge import ReviewRequest
+from service.verbs.learn.outcome import write_outcome
 from stepnc_model.errors import StepNcError
 from tests.every_case import every_case
 
-PARTS = Path(__file__).parents[3] / "examples" / "parts"
+PARTS = Path(__file__).parents[4] / "examples" / "parts"
 PART = PARTS / "paper003_pocket.stpnc"
 FOUND = ForceFactor(factor=1.15, factor_error=0.004, offset=60.0, offset_error=4.0, runs=100)
 NAMES = {"part": ("one",), "machine": ("paper003",), "material": ("aisi1018",)}

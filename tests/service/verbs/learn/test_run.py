@@ -1,6 +1,6 @@
 """Learning: trained on the first rows, tested on the next, beside what is simpler."""
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 from hashlib import sha256
 from pathlib import Path
 
@@ -8,13 +8,18 @@ import pyarrow as pa
 import pytest
 from pyarrow import csv
 
-from service.learning.learn import LearnResult, learn
-from service.requests.learning import LearnRequest
+import stepnc
+from service.verbs.learn.request import LearnRequest
+from service.verbs.learn.result import LearnResult
 from stepnc_model.errors import StepNcError
 from tests.every_case import every_case
 from tests.service.learning.tables import changed, law_table, written
 
 ASKED = LearnRequest(model="power-law", train=100, test=60)
+
+
+def learn(path: Path, request: LearnRequest) -> LearnResult:
+    return stepnc.learn(path, **asdict(request))
 
 
 def test_the_first_rows_train_and_the_next_ones_test(tmp_path: Path) -> None:

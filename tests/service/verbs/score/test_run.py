@@ -7,11 +7,10 @@ import pyarrow as pa
 import pytest
 from pyarrow import csv, parquet
 
+import stepnc
 from service.cli.main import main
-from service.learning.learn import learn
 from service.learning.model_file import save_model
-from service.learning.score import score
-from service.requests.learning import LearnRequest, ScoreRequest
+from service.learning.score_table import MEAN, PHYSICS_ALONE
 from stepnc_model.errors import StepNcError
 from tests.service.learning.tables import changed, law_table, written
 
@@ -21,8 +20,8 @@ NOISE = 0.02
 @pytest.fixture
 def model(tmp_path: Path) -> Path:
     path = written(tmp_path, law_table(400, noise=NOISE))
-    request = LearnRequest(model="mlp", train=200, test=200)
-    save_model(learn(path, request).model, tmp_path / "model.skops")
+    found = stepnc.learn(path, model="mlp", train=200, test=200)
+    save_model(found.model, tmp_path / "model.skops")
     return tmp_path / "model.skops"
 
 
@@ -35,8 +34,8 @@ def runs(folder: Path, *, factor: float = 1.0, rows: slice = slice(400, 460)) ->
 
 
 def test_runs_as_the_model_was_trained_raise_no_alarm(model: Path, tmp_path: Path) -> None:
-    result = score(model, runs(tmp_path), ScoreRequest())
-    assert [each.name for each in result.scored] == ["mlp", "mean", "power-law", "physics"]
+    result = stepnc.score(model, runs(tmp_path))
+    assert [each.name for each in result.scored] == ["mlp", MEAN, "power-law", PHYSICS_ALONE]
     assert len(result.rows) + len(result.left_out) == 60
     assert result.drift.alarm is None
     rmse = {each.name: each.scores.rmse.value for each in result.scored}
@@ -44,7 +43,7 @@ def test_runs_as_the_model_was_trained_raise_no_alarm(model: Path, tmp_path: Pat
 
 
 def test_a_factor_on_all_runs_raises_an_alarm(model: Path, tmp_path: Path) -> None:
-    drift = score(model, runs(tmp_path, factor=1.1), ScoreRequest()).drift
+    drift = stepnc.score(model, runs(tmp_path, factor=1.1)).drift
     assert drift.alarm is not None
     assert drift.alarm < 10
     assert drift.after.low < 0.1 < drift.after.high
@@ -57,19 +56,19 @@ def test_runs_outside_the_trained_box_are_left_out_and_told(
     feeds = table["feed_mm_s"].to_pylist()
     path = tmp_path / "runs.csv"
     csv.write_csv(changed(table, "feed_mm_s", [*feeds[:3], 120.0, *feeds[4:]]), path)
-    result = score(model, path, ScoreRequest())
+    result = stepnc.score(model, path)
     assert 4 not in result.rows
     assert (
         result.left_out[0][0], result.left_out[0][1][:26]
     ) == (4, "feed_mm_s 120 mm/s exceeds")  # fmt: skip
     csv.write_csv(changed(table, "feed_mm_s", [120.0] * 20), path)
     with pytest.raises(StepNcError, match=r"0 runs in the trained box: .* 5; row 1: f"):
-        score(model, path, ScoreRequest())
+        stepnc.score(model, path)
 
 
 def test_equal_settings_have_no_r2(model: Path, tmp_path: Path) -> None:
     table = pa.concat_tables([law_table(1)] * 6)
-    result = score(model, written(tmp_path, table), ScoreRequest())
+    result = stepnc.score(model, written(tmp_path, table))
     assert result.scored[0].scores.r2 is None
 
 
@@ -87,13 +86,13 @@ def test_recordings_tell_what_was_measured(model: Path, tmp_path: Path) -> None:
     names = pa.array([f"run{row}.parquet" for row in range(6)])
     path = tmp_path / "runs.parquet"
     parquet.write_table(table.append_column("recording", names), path)
-    result = score(model, path, ScoreRequest())
+    result = stepnc.score(model, path)
     mean = (0.25 * 1 + 1.25 * 4 + 1.0 * 4) / 9
     found = next(each for each in result.scored if each.name == "physics")
     assert found.scores.mape.value == pytest.approx(100 * abs(1 / mean - 1))
     (tmp_path / "run3.parquet").unlink()
     with pytest.raises(StepNcError, match=r"run3\.parquet: no such file"):
-        score(model, path, ScoreRequest())
+        stepnc.score(model, path)
 
 
 @pytest.mark.parametrize(
@@ -114,9 +113,9 @@ def test_a_bad_table_is_refused(
     table = change(law_table(60))  # type: ignore[operator]
     parquet.write_table(table, tmp_path / "runs.parquet")
     with pytest.raises(StepNcError, match=message):
-        score(model, tmp_path / "runs.parquet", ScoreRequest())
+        stepnc.score(model, tmp_path / "runs.parquet")
     with pytest.raises(StepNcError, match=r"false alarm 0: it must be 0\.001 to 0\.5"):
-        score(model, tmp_path / "runs.parquet", ScoreRequest(false_alarm=0.0))
+        stepnc.score(model, tmp_path / "runs.parquet", false_alarm=0.0)
 
 
 def test_an_alarm_is_an_exit_code(

@@ -1,28 +1,18 @@
-"""Use case of ``stepnc predict``: the target of one part, or of the rows of a table."""
+"""Prediction: the target of one part, or of the rows of a table."""
 
-from dataclasses import dataclass, fields
-from pathlib import Path
+from dataclasses import fields
 
 import pyarrow as pa
 
-from service.learning.learned import LearnedModel
 from service.learning.model_file import load_model
 from service.learning.source import read_table
-from service.learning.table import Floats
-from service.requests.learning import PredictRequest
+from service.reading import Tell, silent
+from service.verbs.predict.request import PredictFiles, PredictRequest
+from service.verbs.predict.result import PredictResult
 from stepnc_model.errors import StepNcError
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PredictResult:
-    """Predictions of a model."""
-
-    model: LearnedModel
-    values: Floats
-    """(N,), in the unit of the target's name"""
-
-
-def predict(path: Path, request: PredictRequest, *, table: Path | None = None) -> PredictResult:
+def run(request: PredictRequest, files: PredictFiles, *, tell: Tell = silent) -> PredictResult:
     """Predict the target of one part, or of each row of a table.
 
     Raises
@@ -30,6 +20,7 @@ def predict(path: Path, request: PredictRequest, *, table: Path | None = None) -
     StepNcError
         When the model or the table is not usable, or settings lie outside the trained box.
     """
+    path, table = files.model, files.table
     model = load_model(path)
     given = {
         field.name: value
