@@ -107,14 +107,3 @@ def add_cluster(parser: argparse.ArgumentParser) -> None:
         help="run on the Dask cluster of this scheduler, tcp://127.0.0.1:8786 or, beyond this "
         "machine, tls://HOST:PORT (default: on processes of this machine)",
     )
-
-
-def add_knowledge(parser: argparse.ArgumentParser, why: str) -> None:
-    """Add the option that names the knowledge base."""
-    parser.add_argument(
-        "--kb",
-        type=text,
-        default="",
-        metavar="PLACE",
-        help=f"knowledge base, a file or postgresql://…: {why} (default: $STEPNC_KB)",
-    )
