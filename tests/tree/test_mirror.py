@@ -101,7 +101,7 @@ THROUGH = {
     "service/test_report.py": ("service/figures.py",),
     "service/test_run_file.py": ("service/growing_file.py",),
     "service/verbs/test_verb.py": ("service/requests/files.py",),
-    "service/verbs/simulate/test_run.py": ("service/requests/run_files.py",),
+    "service/verbs/simulate/test_run.py": ("service/simulation/run_files.py",),
     "service/test_uses.py": ("service/paths/remarks.py",),
 }
 """tests, and the modules that they run through others"""

@@ -6,8 +6,8 @@ from typing import Annotated
 
 from service.requests.fields import About, FileUse
 from service.requests.files import Knowledge
-from service.requests.run_files import RunOutputs
 from service.requests.runs import ControlRequest
+from service.simulation.run_files import RunOutputs
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

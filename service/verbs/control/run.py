@@ -6,8 +6,8 @@ from pathlib import Path
 from service.control.record import control_recorded
 from service.numbers import numbers_in
 from service.reading import Tell, silent
-from service.requests.run_files import run_files, run_request
 from service.requests.runs import ControlRequest
+from service.simulation.run_files import run_files, run_request
 from service.verbs.control.request import ControlFiles
 from service.verbs.control.result import ControlResult
 from stepnc_model.errors import StepNcError

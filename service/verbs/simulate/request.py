@@ -7,8 +7,8 @@ from typing import Annotated
 from annotated_types import Interval
 
 from service.requests.fields import About, FileUse
-from service.requests.run_files import RunOutputs
 from service.requests.runs import SimulationRequest
+from service.simulation.run_files import RunOutputs
 from simulator.agent.names import NameSet, SchemaVersion
 
 

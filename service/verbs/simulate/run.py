@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 from service.reading import Tell, silent
-from service.requests.run_files import run_files, run_request
 from service.requests.runs import SimulationRequest
 from service.simulation.carbon import WORLD, stated
 from service.simulation.run import simulate
+from service.simulation.run_files import run_files, run_request
 from service.verbs.simulate.request import SimulateFiles
 from service.verbs.simulate.result import SimulateResult
 
