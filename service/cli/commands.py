@@ -10,10 +10,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
-from service.cli.agent import add_agent_command
 from service.cli.control import add_control_command
-from service.cli.dataset import add_dataset_command
-from service.cli.factory import add_factory_command
 from service.cli.kbe import USAGE, add_knowledge_commands
 from service.cli.machine import add_machine_commands
 from service.cli.options import (
@@ -28,7 +25,6 @@ from service.cli.options import (
     program_request,
 )
 from service.cli.paths import add_path_commands
-from service.cli.record import add_record_command
 from service.cli.serve import add_service_commands
 from service.cli.verbs import add_verb, verb_parser
 from service.requests.fields import output_path
@@ -71,12 +67,8 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     _add_convert(commands)
     add_path_commands(commands)
     add_machine_commands(commands)
-    add_agent_command(commands)
-    add_record_command(commands)
     add_knowledge_commands(commands)
     add_control_command(commands)
-    add_factory_command(commands)
-    add_dataset_command(commands)
     for verb in verbs().values():
         if verb.name not in commands.choices:
             add_verb(commands, verb)

@@ -7,7 +7,7 @@ from service.errors import MissingArgument
 from service.files import require_place, write_atomically
 from service.reading import Tell, silent
 from service.requests.runs import MotionRequest, SimulationRequest
-from service.simulation.of_code import CodeRequest
+from service.simulation.code_files import run_files
 from service.simulation.run import RunFiles, waiting_machine
 from service.verbs.calibrate.request import CalibrationFiles, CalibrationRequest
 from service.verbs.calibrate.result import CalibrationResult, CycleTime
@@ -57,7 +57,7 @@ def _machine_fit(
     """Fit a machine to measured runs and, if an output is named, write its machine file."""
     if not files.runs:
         raise MissingArgument("name the measured runs, or tool lives with --life")
-    of_run = _run_files(request, files)
+    of_run = run_files(files, files.program, stock=request.stock)
     if files.output is not None:
         _require_output(request, files, files.output)
     runs = [thinned(read_run(path), most=MOST_SAMPLES) for path in files.runs]
@@ -87,25 +87,6 @@ def _machine_fit(
             *(_off(time) for time in times if abs(time.error) > MOST_TIME_ERROR),
         ),
     )
-
-
-def _run_files(request: CalibrationRequest, files: CalibrationFiles) -> RunFiles:
-    """Program or NC code that was run."""
-    if files.nc is None and (request.dialect or files.tools):
-        raise StepNcError("--dialect and --tools need NC code: name it with --nc")
-    if files.tools_unit is not None and files.tools is None:
-        raise StepNcError("--tools-unit needs a tool table: name it with --tools")
-    if files.nc is None:
-        return RunFiles(file=files.program)
-    code = CodeRequest(
-        code=files.nc,
-        dialect=request.dialect,
-        tools=files.tools,
-        tools_unit=files.tools_unit,
-        stock=request.stock,
-        most_repeats=files.most_repeats,
-    )
-    return RunFiles(file=files.program, code=code)
 
 
 def _simulation(request: CalibrationRequest, files: CalibrationFiles) -> SimulationRequest:
