@@ -79,7 +79,7 @@ THROUGH = {
     "service/jobs/test_evaluate.py": ("service/jobs/review.py",),
     "service/jobs/test_runner.py": ("service/jobs/frozen.py",),
     "service/jobs/test_verify.py": ("service/jobs/logs.py",),
-    "service/learning/test_score.py": ("service/learning/recorded.py",),
+    "service/verbs/score/test_run.py": ("service/learning/recorded.py",),
     "service/rest/test_agent.py": ("service/agent/shop.py",),
     "service/rest/test_factories.py": ("service/rest/factory_views.py",),
     "service/rest/test_monitors.py": ("service/rest/monitor_views.py",),
