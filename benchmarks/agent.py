@@ -15,7 +15,7 @@ import multiprocessing
 import resource
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from datetime import UTC, datetime, timedelta
 from multiprocessing.connection import Connection
 from statistics import median
@@ -68,12 +68,13 @@ def current_ratio(arrivals: float = 20.0, rounds: int = 7, seconds: float = 1.0)
 
 async def _current_ratio(arrivals: float, rounds: int, seconds: float) -> float:
     found: list[float] = []
-    with _process(_agent, arrivals) as ours:
-        with _process(_bare, await _once(ours, "/current")) as peer:
-            for _ in range(rounds):
-                rate, _ = await _load(ours, "/current", seconds)
-                bare, _ = await _load(peer, "/", seconds)
-                found.append(rate / bare)
+    with ExitStack() as servers:
+        ours = servers.enter_context(_process(_agent, arrivals))
+        peer = servers.enter_context(_process(_bare, await _once(ours, "/current")))
+        for _ in range(rounds):
+            rate, _ = await _load(ours, "/current", seconds)
+            bare, _ = await _load(peer, "/", seconds)
+            found.append(rate / bare)
     return median(found)
 
 

@@ -143,7 +143,7 @@ def bare_speed(machines: int, events: int) -> float:
 
 
 def event_ratio(hours: float = HOURS, rounds: int = 3) -> float:
-    """Speed of the shop over that of bare SimPy by its events, of the fastest of some rounds."""
+    """Speed of the shop over that of bare SimPy by its events, each the best of some rounds."""
     seconds, parts = min(shop_speed(MACHINES, hours) for _ in range(rounds))
     bare = min(bare_speed(MACHINES, int(EVENTS * parts)) for _ in range(rounds))
     return bare / seconds

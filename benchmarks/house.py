@@ -20,6 +20,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from service.verbs.verb import verbs as all_verbs
+
 ROOT = Path(__file__).parents[1]
 
 PRODUCT = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service", "stepnc")
@@ -66,6 +68,9 @@ MIGRATIONS = (
     ("kbe.migrations.versions.0002_identity", ""),
 )
 """found by their folder"""
+
+PYTHON = ("stepnc", "__getattr__")
+"""makes every verb a function"""
 
 Name = tuple[str, str]
 """a module and what it defines; the empty name is its module-level code"""
@@ -173,7 +178,12 @@ def entries(root: Path) -> list[Name]:
     """Console scripts of the project."""
     project = tomllib.loads((root / "pyproject.toml").read_text("utf-8"))["project"]
     scripts = (script.partition(":") for script in project["scripts"].values())
-    return [*((module, name) for module, _, name in scripts), *MIGRATIONS]
+    verbs = [
+        (f"service.verbs.{name}.{module}", item)
+        for name in all_verbs()
+        for module, item in (("run", "run"), ("request", ""))
+    ]
+    return [*((module, name) for module, _, name in scripts), *verbs, PYTHON, *MIGRATIONS]
 
 
 def unreached(house: House, found: set[Name]) -> list[Name]:

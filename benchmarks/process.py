@@ -19,6 +19,8 @@ from statistics import median
 from benchmarks.plates import plate
 
 BRACKET = Path(__file__).parents[1] / "examples" / "parts" / "bracket.stpnc"
+OPTIMISE = str(Path(sys.executable).with_name("optimise"))
+PEER = [sys.executable, "-c", "import numpy, lxml.etree"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,21 +41,34 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--runs", type=int, default=7)
     parser.add_argument("--pockets", type=int, nargs="*", default=[10, 100, 1000])
     options = parser.parse_args(arguments)
-    command = str(Path(sys.executable).with_name("optimise"))
-    peer = [sys.executable, "-c", "import numpy, lxml.etree"]
+    pairs = bracket_and_peer(options.runs)
+    helps = [usage([OPTIMISE, "--help"]) for _ in range(options.runs)]
     with tempfile.TemporaryDirectory() as folder:
-        ours = [command, str(BRACKET), "--machine", "vmc15"]
-        ours += ["-o", str(Path(folder) / "bracket.stpnc")]
-        _usage(ours), _usage(peer)  # warm the disk, the bytecode and the kernels
-        pairs = [(_usage(ours), _usage(peer)) for _ in range(options.runs)]
-        helps = [_usage([command, "--help"]) for _ in range(options.runs)]
         print(f"{'process':30}{'CPU s':>9}{'wall s':>9}{'MB':>7}")
         _print("import numpy, lxml.etree", [other for _, other in pairs])
         _print("optimise --help", helps)
         _print("optimise bracket.stpnc", [one for one, _ in pairs])
-        ratio = median(one.cpu / other.cpu for one, other in pairs)
-        print(f"ratio of CPU seconds, median of {len(pairs)} pairs: {ratio:.2f}")
-        _print_growth(command, options.pockets, Path(folder))
+        cpu = median(one.cpu / other.cpu for one, other in pairs)
+        wall = median(one.wall / other.wall for one, other in pairs)
+        print(f"ratios of CPU and wall, median of {len(pairs)} pairs: {cpu:.2f}, {wall:.2f}")
+        _print_growth(options.pockets, Path(folder))
+
+
+def bracket_and_peer(runs: int) -> list[tuple[Usage, Usage]]:
+    """Usages of the bracket and of its peer, in turn, after one run that warms the caches."""
+    with tempfile.TemporaryDirectory() as folder:
+        output = str(Path(folder) / "bracket.stpnc")
+        ours = [OPTIMISE, str(BRACKET), "--mode", "TC", "--machine", "vmc15", "-o", output]
+        usage(ours), usage(PEER)  # warm the disk, the bytecode and the kernels
+        return [(usage(ours), usage(PEER)) for _ in range(runs)]
+
+
+def plate_usage(pockets: int, folder: Path) -> Usage:
+    """Usage of a plate with some pockets."""
+    file = folder / "plate.stpnc"
+    file.write_text(plate(pockets), encoding="utf-8")
+    output = str(folder / "plate.out.stpnc")
+    return usage([OPTIMISE, str(file), "--machine", "vmc15", "-o", output])
 
 
 def _print(name: str, usages: list[Usage]) -> None:
@@ -63,27 +78,24 @@ def _print(name: str, usages: list[Usage]) -> None:
     print(f"{name:30}{cpu:9.2f}{wall:9.2f}{memory:7.0f}")
 
 
-def _print_growth(command: str, counts: list[int], folder: Path) -> None:
+def _print_growth(counts: list[int], folder: Path) -> None:
     """One line a plate."""
-    file = folder / "plate.stpnc"
-    ours = [command, str(file), "--machine", "vmc15", "-o", str(folder / "plate.out.stpnc")]
     print(
         f"\n{'pockets':>8}{'CPU s':>9}{'wall s':>9}{'MB':>7}{'ms more each':>14}{'growth':>8}"
     )
     before, first = None, 0.0
     for count in counts:
-        file.write_text(plate(count), encoding="utf-8")
-        usage = _usage(ours)
-        line = f"{count:8}{usage.cpu:9.2f}{usage.wall:9.2f}{usage.memory:7.0f}"
+        used = plate_usage(count, folder)
+        line = f"{count:8}{used.cpu:9.2f}{used.wall:9.2f}{used.memory:7.0f}"
         if before is not None:
-            each = (usage.cpu - before[1]) / (count - before[0])
+            each = (used.cpu - before[1]) / (count - before[0])
             first = first or each
             line += f"{each * 1e3:14.1f}{each / first:8.2f}"
         print(line)
-        before = count, usage.cpu
+        before = count, used.cpu
 
 
-def _usage(command: list[str]) -> Usage:
+def usage(command: list[str]) -> Usage:
     """Time and memory of one run."""
     start = time.perf_counter()
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

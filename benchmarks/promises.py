@@ -10,6 +10,7 @@ To add a row, write a function without arguments, which imports what it measures
 
 import argparse
 import json
+import os
 import resource
 import subprocess
 import sys
@@ -53,6 +54,32 @@ def _closed_form() -> float:
     from benchmarks.workingsteps import microseconds_each  # noqa: PLC0415
 
     return microseconds_each()
+
+
+def _pocket() -> float:
+    from benchmarks.process import plate_usage  # noqa: PLC0415
+
+    with TemporaryDirectory() as folder:
+        few, many = (plate_usage(count, Path(folder)).cpu for count in (10, 40))
+    return (many - few) / 30
+
+
+def _bracket_cpu() -> float:
+    from benchmarks.process import bracket_and_peer  # noqa: PLC0415
+
+    return median(ours.cpu / peer.cpu for ours, peer in bracket_and_peer(5))
+
+
+def _bracket_wall() -> float:
+    from benchmarks.process import bracket_and_peer  # noqa: PLC0415
+
+    return median(ours.wall / peer.wall for ours, peer in bracket_and_peer(5))
+
+
+def _help() -> float:
+    from benchmarks.process import OPTIMISE, usage  # noqa: PLC0415
+
+    return min(usage([OPTIMISE, "--help"]).wall for _ in range(3))
 
 
 def _control() -> float:
@@ -99,6 +126,28 @@ ROWS = (
         unit="µs of CPU",
         goal=20.0,
     ),
+    Row(
+        name="pocket",
+        work="each more pocket of a plate, along its real path",
+        measure=_pocket,
+        unit="s of CPU",
+        goal=0.15,
+    ),
+    Row(
+        name="bracket-cpu",
+        work="optimise bracket over import numpy, lxml: CPU",
+        measure=_bracket_cpu,
+        unit="times",
+        goal=10.0,
+    ),
+    Row(
+        name="bracket-wall",
+        work="optimise bracket over import numpy, lxml: wall",
+        measure=_bracket_wall,
+        unit="times",
+        goal=10.0,
+    ),
+    Row(name="help", work="optimise --help", measure=_help, unit="s", goal=0.3),
     Row(
         name="control",
         work="bracket, optimised, under control with preview",
@@ -150,9 +199,16 @@ def measured(row: Row) -> Measurement:
     """Measure a row once in a new process."""
     answer = subprocess.run(
         [sys.executable, "-m", "benchmarks.promises", "--measure", row.name],
-        cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True,
+        cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True, env=_environment(),
     )  # fmt: skip
     return Measurement(**json.loads(answer.stdout.splitlines()[-1]))
+
+
+def _environment() -> dict[str, str]:
+    """Environment in which Python keeps its bytecode, as installed commands find it."""
+    return {
+        name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"
+    }
 
 
 def table_line(row: Row, runs: list[Measurement]) -> str:

@@ -13,8 +13,8 @@ from dataclasses import fields, is_dataclass
 from math import dist
 from pathlib import Path
 
+import stepnc
 from benchmarks.corpus import CORPUS
-from service.contents import check
 from service.reading import read_program
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import SchemaError
@@ -167,8 +167,7 @@ def _shown(value: object) -> str:
 
 def _findings(file: Path) -> Iterator[str]:
     """Findings and warnings of ``stepnc check``, without their places."""
-    found = check(file)
-    for each in (*found.findings, *found.remarks):
+    for each in stepnc.check(file).findings:
         yield PLACE.sub("", str(each))
 
 

@@ -276,10 +276,8 @@ def _loaded(
     shares = state.shares
     if len(shares.usual) != reading.teeth:
         shares = overload.fresh(reading.teeth)
-    if not state.by_teeth:
-        # Means of other periods do not show runout.
-        level = force
-    else:
+    level = force  # Means of other periods than a tooth's do not show runout.
+    if state.by_teeth:
         # Noise in air and the entry into the work do not show runout.
         see = overload.seen if state.has_chips else overload.noted
         shares = see(shares, reading.tooth, force)
@@ -448,7 +446,7 @@ def _tuned(
 ) -> tuple[ControlLaw[Any], Any]:
     """Tune the law for the cut that begins, and return it with its initial state."""
     # Rounded, so that equal cuts reuse a cached law.
-    lag = state.settings.servo_lag * revolution.spindle_speed / _turns(revolution)
+    lag = state.settings.servo_lag * revolution.spindle_speed / revolution.decision_turns
     lag = round(max(lag, 0.1), 1)
     exponent = state.keep.exponent
     law = law_for(Plant(exponent=round(exponent, 2) or exponent, lag=lag))
@@ -458,7 +456,7 @@ def _tuned(
 def _situation(state: LoopState, revolution: Revolution) -> Situation:
     """Input for the control law from the state and a revolution."""
     keep, preview = state.keep, state.preview
-    look_ahead = ceil(state.settings.look_ahead / _turns(revolution))
+    look_ahead = ceil(state.settings.look_ahead / revolution.decision_turns)
     way = revolution.period * max(revolution.override, LEAST_WAY)
     begin, end = revolution.progress_before, revolution.progress
     return Situation(
@@ -471,11 +469,6 @@ def _situation(state: LoopState, revolution: Revolution) -> Situation:
         expected=preview.mean(begin, end) if look_ahead else 0.0,
         ahead=preview.ahead(end, revolution=way, count=look_ahead) if look_ahead else (),
     )
-
-
-def _turns(revolution: Revolution) -> float:
-    """Turns between two decisions of the law."""
-    return 1.0 if revolution.by_teeth else max(revolution.turns, 1.0)
 
 
 def with_bounds(state: LoopState, *, cap: float) -> LoopState:

@@ -1,10 +1,10 @@
 """Kernel that fits the radial offsets of teeth to one revolution, by Gauss-Newton.
 
-It is the inner loop of :mod:`controller.offsets`, which explains the model and gives the source.
-The offsets are those that make ``e'·R⁻¹·e + a'·P⁻¹·a`` least, with e the error of the shares,
+It is the inner loop of :mod:`controller.offsets`, which explains the model and its source. The
+offsets are those that make ``e'·R⁻¹·e + a'·P⁻¹·a`` least, with e the error of the shares,
 R its covariance, a the distance from the offsets known before and P the covariance of these. A
-step that makes the fit worse is halved. Compiled, because a revolution takes a dozen small
-matrix products for each guess, which cost a hundred times their arithmetic in Python. Units mm.
+step that makes the fit worse is halved. Compiled, because each guess takes a dozen products of
+small matrices, whose calls from Python cost far more than their arithmetic. Units mm.
 """
 
 from functools import cache
@@ -160,10 +160,12 @@ def _misfits(
     scratch: _Scratch,
 ) -> None:
     """Kernel of :func:`misfits`."""
-    taken, expected, noise = measured
+    taken, expected = measured[0], measured[1]
     mean, found = asked
     guess, error, precision = scratch.rows[4], scratch.rows[1], scratch.squares[0]
-    _scale(at, measured, mean, scale, -1, scratch)
+    for each in range(mean.shape[0]):
+        scratch.rows[5, each] = mean[each]
+    _scale(at, measured, (scale, -1), scratch)
     _invert(scratch.squares[7], precision)
     for lost in range(-1, mean.shape[0]):
         _guess(mean, lost, guess)
@@ -183,23 +185,23 @@ def _search(
     scratch: _Scratch,
 ) -> None:
     """Kernel of :func:`fitted`; an infinite misfit tells of a singular covariance."""
-    taken, expected, noise = measured
-    mean, covariance, starts = known
     scale, plain, lost = settings
-    start, noisier = scratch.rows[5], scratch.squares[7]
+    start = scratch.rows[5]
     again = Fit(scratch.rows[6], scratch.squares[8], scratch.figures)
-    _copy(noise, noisier)
-    _fit(at, measured, known, mean, lost, found, scratch)
+    _copy(measured[2], scratch.squares[7])
+    for each in range(start.shape[0]):
+        start[each] = known[0][each]
+    _fit(at, measured, known, lost, found, scratch)
     if found.figures[0] > plain:
         _best_start(at, measured, known, lost, scratch)
-        _fit(at, measured, known, start, lost, again, scratch)
+        _fit(at, measured, known, lost, again, scratch)
         if again.figures[0] < found.figures[0]:
-            for each in range(mean.shape[0]):
+            for each in range(start.shape[0]):
                 found.mean[each] = again.mean[each]
-    for each in range(mean.shape[0]):
+    for each in range(start.shape[0]):
         start[each] = found.mean[each]
-    _scale(at, measured, start, scale, lost, scratch)
-    _fit(at, measured, known, start, lost, found, scratch)
+    _scale(at, measured, (scale, lost), scratch)
+    _fit(at, measured, known, lost, found, scratch)
 
 
 @kernel
@@ -213,13 +215,12 @@ def _guess(offsets: Floats, lost: int, guess: Floats) -> None:
 def _scale(
     at: Periods,
     measured: tuple[Floats, Floats, Floats],
-    offsets: Floats,
-    scale: float,
-    lost: int,
+    settings: tuple[float, int],
     scratch: _Scratch,
 ) -> None:
     """Write the noise, and the error of a common change of the chip, into ``squares[7]``."""
     expected, noise, noisier = measured[1], measured[2], scratch.squares[7]
+    offsets, (scale, lost) = scratch.rows[5], settings
     guess, plain, other = scratch.rows[4], scratch.rows[0], scratch.rows[1]
     _guess(offsets, lost, guess)
     shares_into(at, expected, guess, plain)
@@ -269,33 +270,24 @@ def _fit(
     at: Periods,
     measured: tuple[Floats, Floats, Floats],
     known: tuple[Floats, Floats, Floats],
-    start: Floats,
     lost: int,
     found: Fit,
     scratch: _Scratch,
 ) -> None:
-    """One search; the covariance of the shares is in ``squares[7]``."""
-    taken, expected, mean, covariance = measured[0], measured[1], known[0], known[1]
-    best, shown, guess = found.mean, scratch.shown, scratch.rows[4]
-    now, error, away, moved = (
-        scratch.rows[0], scratch.rows[1], scratch.rows[2], scratch.rows[3],
-    )  # fmt: skip
-    precision, certainty, slope = scratch.squares[0], scratch.squares[1], scratch.squares[2]
-    towards, inverse, gain = scratch.squares[3], scratch.squares[4], scratch.squares[5]
-    spread, noise = scratch.squares[6], scratch.squares[7]
+    """One search from ``rows[5]``; the covariance of the shares is in ``squares[7]``."""
+    taken, mean, covariance = measured[0], known[0], known[1]
+    best, shown, spread = found.mean, scratch.shown, scratch.squares[6]
+    now, error, away = scratch.rows[0], scratch.rows[1], scratch.rows[2]
+    precision, certainty = scratch.squares[0], scratch.squares[1]
     teeth, least = mean.shape[0], inf
-    _copy(noise, spread)
+    _copy(scratch.squares[7], spread)
     _invert(spread, precision)
     _copy(covariance, spread)
     _invert(spread, certainty)
     for each in range(teeth):
-        now[each] = best[each] = start[each]
+        now[each] = best[each] = scratch.rows[5, each]
     for _ in range(ITERATIONS):
-        for row in range(teeth + 1):
-            _guess(now, lost, guess)
-            if row > 0 and row - 1 != lost:
-                guess[row - 1] += STEP
-            shares_into(at, expected, guess, shown[row])
+        _show(at, measured[1], lost, scratch)
         for each in range(teeth):
             error[each] = taken[each] - shown[0, each]
             away[each] = now[each] - mean[each]
@@ -307,36 +299,73 @@ def _fit(
         least = misfit
         for each in range(teeth):
             best[each] = now[each]
-            for other in range(teeth):
-                slope[each, other] = (shown[1 + other, each] - shown[0, each]) / STEP
-        _times_transposed(covariance, slope, towards)
-        _times(slope, towards, spread)
-        for each in range(teeth):
-            for other in range(teeth):
-                spread[each, other] += noise[each, other]
-        found.figures[1] = _invert(spread, inverse)
-        _times(towards, inverse, gain)
-        farthest = 0.0
-        for each in range(teeth):
-            moved[each] = error[each]
-            for other in range(teeth):
-                moved[each] += slope[each, other] * away[other]
-        for each in range(teeth):
-            now[each] = mean[each]
-            for other in range(teeth):
-                now[each] += gain[each, other] * moved[other]
-            farthest = max(farthest, abs(now[each] - best[each]))
-        if farthest < NEAR:
+        found.figures[1] = _linearise(covariance, scratch)
+        if _step(mean, best, scratch) < NEAR:
             for each in range(teeth):
                 best[each] = now[each]
             break
     found.figures[0] = least
-    # H·P anew, and not the transpose of P·H': rounding leaves P not quite symmetric, and an
-    # asymmetry would grow from revolution to revolution.
-    _times(slope, covariance, towards)
-    _times(gain, towards, found.covariance)
+    _learn(covariance, found, scratch)
+
+
+@kernel
+def _show(at: Periods, expected: Floats, lost: int, scratch: _Scratch) -> None:
+    """Write the shares at ``rows[0]``, and with each offset a step larger, into ``shown``."""
+    now, guess = scratch.rows[0], scratch.rows[4]
+    for row in range(now.shape[0] + 1):
+        _guess(now, lost, guess)
+        if row > 0 and row - 1 != lost:
+            guess[row - 1] += STEP
+        shares_into(at, expected, guess, scratch.shown[row])
+
+
+@kernel
+def _linearise(covariance: Floats, scratch: _Scratch) -> float:
+    """Write slope H and gain of a step; return ln |determinant| of the spread."""
+    shown, slope, towards = scratch.shown, scratch.squares[2], scratch.squares[3]
+    inverse, gain = scratch.squares[4], scratch.squares[5]
+    spread, noise = scratch.squares[6], scratch.squares[7]
+    teeth = shown.shape[1]
     for each in range(teeth):
         for other in range(teeth):
+            slope[each, other] = (shown[1 + other, each] - shown[0, each]) / STEP
+    _times_transposed(covariance, slope, towards)
+    _times(slope, towards, spread)
+    for each in range(teeth):
+        for other in range(teeth):
+            spread[each, other] += noise[each, other]
+    logarithm = _invert(spread, inverse)
+    _times(towards, inverse, gain)
+    return logarithm
+
+
+@kernel
+def _step(mean: Floats, best: Floats, scratch: _Scratch) -> float:
+    """Write the offsets after a step into ``rows[0]``; return the greatest change, mm."""
+    now, error, away, moved = scratch.rows[0], scratch.rows[1], scratch.rows[2], scratch.rows[3]
+    slope, gain, farthest = scratch.squares[2], scratch.squares[5], 0.0
+    for each in range(mean.shape[0]):
+        moved[each] = error[each]
+        for other in range(mean.shape[0]):
+            moved[each] += slope[each, other] * away[other]
+    for each in range(mean.shape[0]):
+        now[each] = mean[each]
+        for other in range(mean.shape[0]):
+            now[each] += gain[each, other] * moved[other]
+        farthest = max(farthest, abs(now[each] - best[each]))
+    return farthest
+
+
+@kernel
+def _learn(covariance: Floats, found: Fit, scratch: _Scratch) -> None:
+    """Write the covariance after the revolution."""
+    slope, product, gain = scratch.squares[2], scratch.squares[3], scratch.squares[5]
+    # H·P anew, and not the transpose of P·H': rounding leaves P not quite symmetric, and an
+    # asymmetry would grow from revolution to revolution.
+    _times(slope, covariance, product)
+    _times(gain, product, found.covariance)
+    for each in range(slope.shape[0]):
+        for other in range(slope.shape[0]):
             found.covariance[each, other] = (
                 covariance[each, other] - found.covariance[each, other]
             )

@@ -5,29 +5,15 @@ from pathlib import Path
 
 from simulator.errors import SimulationError
 from simulator.holding_file import read_holding_file
-from simulator.library import load_machine, load_material, machine_names, material_names
+from simulator.library import load_machine, load_material, material_names
 from simulator.matching import match_material
-from simulator.spec import Certainty, Machine, MachineKind, MaterialMatch, WorkMaterial
+from simulator.spec import Certainty, Machine, MachineKind, MaterialMatch
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import SchemaError, StepNcError
 from stepnc_model.program import Program
 
 DEFAULT_MILL, DEFAULT_LATHE = "vmc15", "lathe22"
 """Names of the machines used when the user names none."""
-
-
-def library_entries(kind: str) -> tuple[Machine | WorkMaterial, ...]:
-    """Return all machines or all materials of the library."""
-    if kind == "machines":
-        return tuple(load_machine(name) for name in machine_names())
-    return tuple(load_material(name) for name in material_names())
-
-
-def library_entry(kind: str, name: str) -> Machine | WorkMaterial:
-    """Load a machine or material by its library name or file path."""
-    if kind == "machines":
-        return load_machine(name)
-    return load_material_named(name).material
 
 
 def machine_for(name: str, program: Program) -> Machine:

@@ -9,9 +9,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-from service.code_contents import check_code
-from service.code_contents_output import code_json
 from service.process_limits import GIB, ProcessLimits, limit_process
+from service.rendering.records import dump
+from service.verbs.check.request import CheckFiles, CheckRequest
+from service.verbs.check.run import run
 from stepnc_model.errors import StepNcError
 
 LONGEST = 120.0
@@ -38,7 +39,7 @@ def checked_code(file: Path, *, name: str, longest: float = LONGEST) -> bytes:
     Raises
     ------
     StepNcError
-        As :func:`service.code_contents.check_code`, or when the time limit is exceeded.
+        As :func:`service.verbs.check.run.run`, or when the time limit is exceeded.
     """
     words = [sys.executable, "-m", "service.code_check", str(file), name]
     try:
@@ -61,7 +62,7 @@ def main() -> int:
     file, name = sys.argv[1:]
     limit_process(ProcessLimits(memory=MOST_MEMORY, processor=int(LONGEST) + 1))
     try:
-        text = code_json(check_code(Path(file), name=name))
+        text = dump(run(CheckRequest(), CheckFiles(file=Path(file), name=name)).record())
     except StepNcError as error:
         sys.stderr.write(str(error))
         return REFUSED

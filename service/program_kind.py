@@ -10,6 +10,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from service.files import read_head
+from stepnc_model.errors import StepNcError
 from stepnc_model.nc.recognise import COMMENTS, LOOKED_AT, recognise
 
 PART21 = re.compile(
@@ -46,6 +47,31 @@ def kind_of_file(path: Path) -> ProgramKind:
         When the file cannot be read.
     """
     return kind_of(read_head(path, LOOKED_AT))
+
+
+def require_step_nc(path: Path, why: str) -> None:
+    """Refuse NC code where only a STEP-NC program will do.
+
+    Raises
+    ------
+    StepNcError
+        With the reason, or when the file cannot be read.
+    """
+    if kind_of_file(path) is ProgramKind.NC_CODE:
+        raise StepNcError(f"{path}: is NC code: {why}")
+
+
+def kind_for(path: Path, control: str) -> ProgramKind:
+    """Tell the kind of a program by its content; with a control, what is neither is NC code.
+
+    Raises
+    ------
+    StepNcError
+        When the file cannot be read.
+    """
+    head = read_head(path, LOOKED_AT)
+    is_code = bool(control) and not PART21.search(head)
+    return ProgramKind.NC_CODE if is_code else kind_of(head)
 
 
 def kind_of(data: bytes) -> ProgramKind:

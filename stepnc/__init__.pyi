@@ -11,17 +11,30 @@ from service.verbs.blockfit.result import BlockFitResult as BlockFitResult
 from service.verbs.blocktest.result import BlockTestResult as BlockTestResult
 from service.verbs.calibrate.result import CalibrationResult as CalibrationResult
 from service.verbs.calibrate.tool_life import ToolLifeResult as ToolLifeResult
+from service.verbs.canonical.result import CanonicalResult as CanonicalResult
+from service.verbs.check.result import CodeContents as CodeContents
+from service.verbs.check.result import ProgramContents as ProgramContents
+from service.verbs.control.result import ControlResult as ControlResult
+from service.verbs.convert.result import ConvertResult as ConvertResult
 from service.verbs.cycletime.result import CycleTimeResult as CycleTimeResult
 from service.verbs.dataset.result import DatasetReport as DatasetReport
 from service.verbs.factory.result import ShopResult as ShopResult
 from service.verbs.learn.result import LearnResult as LearnResult
+from service.verbs.library import EntryResult as EntryResult
+from service.verbs.library import EntryResult as EntryResult
+from service.verbs.library import ListingResult as ListingResult
+from service.verbs.library import ListingResult as ListingResult
 from service.verbs.optimise.result import OptimiseResult as OptimiseResult
+from service.verbs.post.result import PostResult as PostResult
 from service.verbs.predict.result import PredictResult as PredictResult
 from service.verbs.record.result import RecordingResult as RecordingResult
 from service.verbs.result import ServedResult as ServedResult
 from service.verbs.result import ServedResult as ServedResult
 from service.verbs.score.result import ScoreResult as ScoreResult
+from service.verbs.simulate.result import SimulateResult as SimulateResult
 from service.verbs.taptest.result import TapTestResult as TapTestResult
+from service.verbs.toolpath.result import CodePathResult as CodePathResult
+from service.verbs.toolpath.result import ToolPathResult as ToolPathResult
 from service.verbs.verify.result import VerificationResult as VerificationResult
 
 def agent(
@@ -99,13 +112,13 @@ def blocktest(
 def calibrate(
     runs: str | Path | Iterable[str | Path] = ...,
     *,
+    file: str | Path | None = ...,
     nc: str | Path | None = ...,
     dialect: str | Path = ...,
     tools: str | Path | None = ...,
     tools_unit: Literal['mm', 'inch'] | None = ...,
     most_repeats: int | None = ...,
     tool_life: str | Path | None = ...,
-    program: str | Path | None = ...,
     output: str | Path | None = ...,
     units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
     stock: str | Path | None = ...,
@@ -120,6 +133,81 @@ def calibrate(
     life: str | Path | Iterable[str | Path] = ...,
     edge: Literal['hss', 'carbide', 'ceramic'] = ...,
 ) -> CalibrationResult | ToolLifeResult: ...
+def canonical(
+    file: str | Path,
+    *,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    dialect: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
+    is_lathe: bool = ...,
+    keep_going: bool = ...,
+) -> CanonicalResult: ...
+def check(
+    file: str | Path,
+    *,
+    name: str | Path = ...,
+    most_repeats: int | None = ...,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    dialect: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
+) -> ProgramContents | CodeContents: ...
+def control(
+    file: str | Path | None = ...,
+    *,
+    nc: str | Path | None = ...,
+    dialect: str | Path = ...,
+    tools: str | Path | None = ...,
+    tools_unit: Literal['mm', 'inch'] | None = ...,
+    most_repeats: int | None = ...,
+    output: str | Path | None = ...,
+    report: str | Path | None = ...,
+    band: str | Path = ...,
+    recorded: str | Path | None = ...,
+    loads: str | Path | None = ...,
+    teach: bool = ...,
+    cut_log: str | Path | None = ...,
+    kb: str | Path = ...,
+    by: str | Path = ...,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    machine: str | Path = ...,
+    material: str | Path = ...,
+    control: Literal['exact-stop', 'junction', 'fir'] = ...,
+    filter_s: str | Path = ...,
+    deviation_mm: float = ...,
+    program_id: str | Path | None = ...,
+    advice_id: str | Path | None = ...,
+    pace: float = ...,
+    keep_going: bool = ...,
+    seed: int = ...,
+    mode: Literal['TC', 'QC'] = ...,
+    law: Literal['pi', 'log-pi', 'fuzzy', 'self-tuning', 'mrac', 'mpc', 'none'] = ...,
+    has_preview: bool = ...,
+    look_ahead: int = ...,
+    disturbances: str | Path | Iterable[str | Path] = ...,
+    force_set_point_n: float | None = ...,
+    override_low_percent: float = ...,
+    override_high_percent: float = ...,
+    sensor: Literal['dynamometer', 'components', 'power'] = ...,
+    has_corrections: bool = ...,
+    is_recorded: bool = ...,
+) -> ControlResult: ...
+def convert(
+    file: str | Path,
+    *,
+    output: str | Path,
+    to: Literal['iso14649', 'ap238'] | None = ...,
+    profile: Literal['optimisation', 'standard'] | None = ...,
+) -> ConvertResult: ...
 def cycletime(
     file: str | Path,
     log: str | Path | None = ...,
@@ -181,6 +269,12 @@ def learn(
     is_on_physics: bool = ...,
     has_curve: bool = ...,
 ) -> LearnResult: ...
+def machines(
+    name: str | Path | None = ...,
+) -> ListingResult | EntryResult: ...
+def materials(
+    name: str | Path | None = ...,
+) -> ListingResult | EntryResult: ...
 def optimise(
     file: str | Path,
     *,
@@ -236,6 +330,20 @@ def optimise(
     dialect: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
     is_marked: bool = ...,
 ) -> OptimiseResult: ...
+def post(
+    file: str | Path,
+    *,
+    output: str | Path | None = ...,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    control: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'],
+    cycles: bool = ...,
+    exact_path: bool = ...,
+    keep_going: bool = ...,
+) -> PostResult: ...
 def predict(
     model: str | Path,
     table: str | Path | None = ...,
@@ -267,6 +375,49 @@ def score(
     false_alarm: float = ...,
     seed: int = ...,
 ) -> ScoreResult: ...
+def simulate(
+    file: str | Path | None = ...,
+    *,
+    nc: str | Path | None = ...,
+    dialect: str | Path = ...,
+    tools: str | Path | None = ...,
+    tools_unit: Literal['mm', 'inch'] | None = ...,
+    most_repeats: int | None = ...,
+    output: str | Path | None = ...,
+    report: str | Path | None = ...,
+    carbon_g_kwh: float | None = ...,
+    keep_stock: str | Path | None = ...,
+    mtconnect: str | Path | None = ...,
+    schema: Literal['1.3', '2.0', '2.7'] = ...,
+    names: Literal['modern', 'papers'] = ...,
+    part: str | Path = ...,
+    batch: str | Path = ...,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    machine: str | Path = ...,
+    material: str | Path = ...,
+    control: Literal['exact-stop', 'junction', 'fir'] = ...,
+    filter_s: str | Path = ...,
+    deviation_mm: float = ...,
+    program_id: str | Path | None = ...,
+    advice_id: str | Path | None = ...,
+    pace: float = ...,
+    keep_going: bool = ...,
+    seed: int = ...,
+    rate_hz: float = ...,
+    force: Literal['mean', 'tooth'] = ...,
+    kc_factor: float = ...,
+    runout_um: float = ...,
+    has_wear: bool = ...,
+    has_lag: bool = ...,
+    has_power_deviation: bool = ...,
+    noise: Literal['none', 'normal', 'uniform'] = ...,
+    missing: float = ...,
+    zero: str | Path = ...,
+) -> SimulateResult: ...
 def taptest(
     response: str | Path,
     *,
@@ -279,6 +430,19 @@ def taptest(
     source: str | Path = ...,
     machine: str | Path = ...,
 ) -> TapTestResult: ...
+def toolpath(
+    file: str | Path,
+    *,
+    most_repeats: int | None = ...,
+    plot: str | Path | None = ...,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    dialect: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
+    keep_going: bool = ...,
+) -> ToolPathResult | CodePathResult: ...
 def verify(
     log: str | Path,
     *,

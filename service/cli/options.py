@@ -1,21 +1,16 @@
-"""Exit codes and options that several commands share. Imports nothing slow."""
+"""Options that several commands share. Imports nothing slow."""
 
 import argparse
 import re
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from service.exit_codes import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED, OK
 from service.requests.fields import output_path
 
-OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED = 0, 3, 4, 5, 6
-"""Exit codes; with ``NOTHING_ADVISED`` ``optimise`` says that it wrote no program."""
-
-CONTROLS = "linuxcnc, fanuc, haas, sinumerik, heidenhain or canonical"
+__all__ = ["BAD_INPUT", "INFEASIBLE", "LIMIT_EXCEEDED", "NOTHING_ADVISED", "OK"]
 
 if TYPE_CHECKING:
-    from service.requests.given import ProgramRequest
-
     Commands = argparse._SubParsersAction["CommandParser"]
 else:
     Commands = object
@@ -55,61 +50,6 @@ def output_names(parser: argparse.ArgumentParser) -> tuple[str, ...]:
     return tuple(each.dest for each in parser._actions if each.type is output_path)
 
 
-def add_program(parser: argparse.ArgumentParser) -> None:
-    """Add the program file, and the options for what is given beyond it."""
-    parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
-    add_program_options(parser)
-
-
-def add_program_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options for what is given about a program beyond its file."""
-    from service.requests.fields import add_options
-    from service.requests.given import ProgramRequest
-
-    add_options(parser, ProgramRequest)
-
-
-def program_request(options: argparse.Namespace) -> "ProgramRequest":
-    """Return what the options give about a program beyond its file.
-
-    Raises
-    ------
-    StepNcError
-        When an option is not valid.
-    """
-    from service.requests.fields import from_options, require_bounds
-    from service.requests.given import ProgramRequest
-
-    request = from_options(ProgramRequest, options)
-    require_bounds(request)
-    return request
-
-
-def add_most_repeats(parser: argparse.ArgumentParser) -> None:
-    """Add the option that bounds how much NC code may repeat."""
-    parser.add_argument(
-        "--most-repeats",
-        type=repeats,
-        default=None,
-        metavar="N",
-        help="blocks, and moves, that NC code may execute beyond those of its file, by calls, "
-        "loops and repeated cycles (default: 1000000, which take about 100 MB and 10 s)",
-    )
-
-
-def repeats(word: str) -> int:
-    """Return a number of repeats.
-
-    Raises
-    ------
-    ArgumentTypeError
-        When the argument is no number of at most nine digits.
-    """
-    if not (word.isascii() and word.isdigit() and len(word) <= 9):
-        raise argparse.ArgumentTypeError(f"{word[:20]!r}: expected a number up to 999999999")
-    return int(word)
-
-
 def add_json(parser: argparse.ArgumentParser) -> None:
     """Add the option for JSON output."""
     parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
@@ -128,26 +68,3 @@ def text(word: str) -> str:
     except UnicodeEncodeError as error:
         raise argparse.ArgumentTypeError(f"{word!r} is not valid text") from error
     return word
-
-
-def add_cluster(parser: argparse.ArgumentParser) -> None:
-    """Add the option that names a Dask cluster."""
-    parser.add_argument(
-        "--cluster",
-        type=text,
-        default="",
-        metavar="ADDRESS",
-        help="run on the Dask cluster of this scheduler, tcp://127.0.0.1:8786 or, beyond this "
-        "machine, tls://HOST:PORT (default: on processes of this machine)",
-    )
-
-
-def add_knowledge(parser: argparse.ArgumentParser, why: str) -> None:
-    """Add the option that names the knowledge base."""
-    parser.add_argument(
-        "--kb",
-        type=text,
-        default="",
-        metavar="PLACE",
-        help=f"knowledge base, a file or postgresql://…: {why} (default: $STEPNC_KB)",
-    )

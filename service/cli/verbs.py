@@ -36,7 +36,7 @@ def _fill(verb: Verb, parser: argparse.ArgumentParser) -> None:
     from service.requests.fields import add_options
 
     add_options(parser, verb.files)
-    add_options(parser, verb.request)
+    add_options(parser, verb.request, usual=verb.usual)
     parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
     parser.set_defaults(run=partial(_run, verb))
 
@@ -47,7 +47,7 @@ def _run(verb: Verb, options: argparse.Namespace) -> int:
     from service.terminal import tell
     from service.verbs.call import ran
 
-    request = from_options(verb.request, options)
+    request = from_options(verb.request, options, **verb.usual)
     require_bounds(request)
     files = from_options(verb.files, options)
     typed = {name: value for name, value in vars(options).items() if value or value == 0}

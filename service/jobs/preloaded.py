@@ -13,7 +13,7 @@ for name in (
     "service.jobs.steer",
     "service.jobs.verify",
     "service.paths.toolpaths",
-    "service.plan_output",
-    "service.simulation.output",
+    "service.verbs.optimise.plan_result",
+    "service.verbs.simulate.result",
 ):
     import_module(name)

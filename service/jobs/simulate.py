@@ -1,6 +1,5 @@
 """Job ``simulation``: run a program on the virtual machine, watched while it runs."""
 
-import json
 from math import inf
 
 from service.files import write_atomically
@@ -8,8 +7,8 @@ from service.jobs.task import REPORT, RunningJob, samples_place
 from service.live.playback import PlaybackClock
 from service.requests.runs import SimulationRequest
 from service.simulation.live import LiveSamples
-from service.simulation.output import simulation_json, simulation_page
 from service.simulation.run import RunFiles, simulate
+from service.verbs.simulate.result import SimulateResult
 
 SHOWN = 0.1
 """Wall-clock time between two updates of a paced run, in s."""
@@ -32,8 +31,8 @@ def run(task: RunningJob) -> None:
     )
     with live.writer:
         simulation = simulate(request, files, tell=task.tell, watchers=(live,))
+    found = SimulateResult(simulation=simulation)
     if simulation.trace is not None:
-        page = simulation_page(simulation, simulation.trace, material=simulation.material)
-        write_atomically(task.folder / REPORT, page.encode(errors="replace"))
+        write_atomically(task.folder / REPORT, found.page().encode(errors="replace"))
     # The result names the program as its owner does, not its stored file.
-    task.keep(json.loads(simulation_json(simulation)))
+    task.keep(found.record())

@@ -1,12 +1,10 @@
 """Jobs ``trial`` and ``control-run``: runs that people watch and change as they go on."""
 
-import json
 from collections.abc import Mapping
 from typing import Any
 
 from service.control.facts import exceeded, rows
 from service.control.live import LiveControl
-from service.control.output import control_json, control_page
 from service.control.record import keep
 from service.control.run import prepare
 from service.files import write_atomically
@@ -16,6 +14,7 @@ from service.session.runner import LiveRunner
 from service.simulation.run import RunFiles
 from service.trial.request import TrialRequest
 from service.trial.run import TrialRun
+from service.verbs.control.result import ControlResult
 
 
 def run_trial(task: RunningJob) -> None:
@@ -55,12 +54,10 @@ def run_control(task: RunningJob) -> None:
         LiveRunner(run=live, folder=task.live, pace=request.pace, tell=tell).go()
     finally:
         run = live.finish()
+    found = ControlResult(run=run)
     if run.trace is not None:
-        write_atomically(
-            task.folder / REPORT, control_page(run, run.trace).encode(errors="replace")
-        )
+        write_atomically(task.folder / REPORT, found.page().encode(errors="replace"))
     if request.is_recorded:
         trace = f"/v1/control-runs/{task.job.id}/samples"
         keep(run, task.data_folder.knowledge, by=task.job.owner, trace=trace, tell=task.tell)
-    found = json.loads(control_json(run))
-    task.keep({**found, "is_good": not exceeded(run, rows(run))})
+    task.keep({**found.record(), "is_good": not exceeded(run, rows(run))})

@@ -1,28 +1,20 @@
-"""Tool paths and NC code of a program: commands ``toolpath``, ``post`` and ``canonical``."""
+"""Tool paths of a program, and the NC code that is made of them."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from service.files import (
-    beside,
-    read_bytes,
-    require_place,
-    write_atomically,
-    write_lines,
-)
 from service.paths.remarks import tell_check, tell_remarks
 from service.progress import Progress
-from service.reading import Tell, one_of, read_given, silent
-from service.requests.given import ProgramRequest
+from service.reading import Tell, silent
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import Setup
-from stepnc_model.errors import Finding, PostError, SchemaError, StepNcError, WriteError
+from stepnc_model.errors import Finding, SchemaError
 from stepnc_model.part21.values import Ref
 from stepnc_model.plausibility import refusal
-from stepnc_model.post.blocks import Cycles, MachineType
+from stepnc_model.post.blocks import Cycles
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.dialects import read, with_exact_stops, write
+from stepnc_model.post.dialects import with_exact_stops, write
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program, ProgramLine, ResolvedWorkingstep, Stock
 from stepnc_model.technology import programmed
@@ -75,49 +67,6 @@ class Paths:
         return (*of_paths, *(each for each in self.told if each not in of_paths))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PostRequest:
-    """Request to write NC code for a control."""
-
-    file: Path
-    control: str
-    program: ProgramRequest = field(default_factory=ProgramRequest)
-    """What is given about the program beyond its file."""
-    output: Path | None = None
-    cycles: bool = False
-    exact_path: bool = False
-    """Whether the control stops at corners instead of rounding them."""
-    keep_going: bool = False
-
-
-def tool_paths(
-    path: Path,
-    request: ProgramRequest | None = None,
-    *,
-    keep_going: bool = False,
-    tell: Tell = silent,
-) -> Paths:
-    """Read a program and generate its tool paths, or take those that it contains.
-
-    Parameters
-    ----------
-    path : Path
-    request : ProgramRequest, optional
-        What is given about the program beyond its file.
-    keep_going : bool
-        Whether executables without a path are left out.
-    tell : callable
-        Receives messages.
-
-    Raises
-    ------
-    StepNcError
-        At the first executable for which no path can be generated, unless it keeps going.
-    """
-    program = read_given(path, request or ProgramRequest(), tell=tell).program
-    return with_remarks(paths_of(program, keep_going=keep_going, tell=tell), tell)
-
-
 def with_remarks(paths: Paths, tell: Tell) -> Paths:
     """Tell the warnings about a program, and keep them with its paths."""
     told = paths.remarks
@@ -144,40 +93,28 @@ def paths_of(program: Program, *, keep_going: bool = False, tell: Tell = silent)
     return Paths(program=program, items=tuple(items), faults=tuple(faults))
 
 
-def plot(paths: Paths, file: Path, picture: Path) -> None:
-    """Draw the tool paths of a file into a PNG file."""
-    from service.paths.plot import path_png  # noqa: PLC0415 (matplotlib takes a second)
+def paths_for_code(program: Program, *, keep_going: bool = False, tell: Tell = silent) -> Paths:
+    """Tool paths that a control can run; tell all that ``check`` would.
 
-    if picture.suffix.lower() != ".png":
-        raise WriteError("the name of a picture must end with .png", path=str(picture))
-    require_place(picture, apart_from=file)
-    data = path_png(paths.paths, paths.stock, paths.clamps, title=paths.program.name)
-    write_atomically(picture, data)
-
-
-def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
-    """Write NC code for a control.
+    Parameters
+    ----------
+    program : Program
+    keep_going : bool
+        Whether workingsteps without a usable path are left out.
+    tell : callable
+        Receives messages.
 
     Raises
     ------
     StepNcError
-        When the control is unknown, a path cannot be generated, or the file cannot be written.
+        When a path cannot be generated or run, unless it keeps going.
     """
-    control = one_of(Dialect, request.control.lower(), "control")
-    output = request.output or beside(request.file, control.suffix)
-    require_place(output, apart_from=request.file)
-    program = read_given(request.file, request.program, tell=tell).program
     error = refusal(program, program.workingsteps)
-    if error is not None and not request.keep_going:
+    if error is not None and not keep_going:
         raise error
-    paths = with_remarks(paths_of(program, keep_going=request.keep_going, tell=tell), tell)
+    paths = with_remarks(paths_of(program, keep_going=keep_going, tell=tell), tell)
     tell_check(program, paths.told, tell)
-    paths = with_feeds(paths, keep_going=request.keep_going, tell=tell)
-    cycles = Cycles.OWN if request.cycles else Cycles.EXPANDED
-    lines = nc_lines(paths, control, cycles, is_exact=request.exact_path)
-    count = write_lines(output, lines)
-    tell(f"written: {output} ({count} lines)")
-    return paths
+    return with_feeds(paths, keep_going=keep_going, tell=tell)
 
 
 def no_more(_step: ResolvedWorkingstep) -> None:
@@ -267,23 +204,3 @@ def nc_lines(
     if is_exact:
         blocks = with_exact_stops(blocks, control)
     return write(blocks, control, cycles=cycles)
-
-
-def canonical_of(path: Path, *, control: str, is_lathe: bool) -> Iterator[str]:
-    """Convert NC code to canonical commands, one per line.
-
-    Raises
-    ------
-    StepNcError
-        When the control is unknown, or a line cannot be read.
-    """
-    dialect = one_of(Dialect, control.lower(), "control")
-    machine = MachineType.LATHE if is_lathe else MachineType.MILL
-    lines = read_bytes(path).decode("utf-8", errors="replace").splitlines()
-    try:
-        commands = read(lines, dialect, machine=machine)
-    except PostError as error:
-        may_be_lathe = dialect in {Dialect.FANUC, Dialect.HAAS} and not is_lathe
-        hint = " (use --lathe for lathe code)" if may_be_lathe else ""
-        raise StepNcError(f"{path.name}: {error}{hint}") from error
-    return (str(command) for command in commands)

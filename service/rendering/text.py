@@ -102,12 +102,6 @@ def print_line(text: str, colour: str = "") -> None:
     sys.stdout.write(coloured(clean(text), colour if wants_colours() else "") + "\n")
 
 
-def print_findings(findings: Sequence[Finding], *, told: Sequence[Finding] = ()) -> None:
-    """Print findings without duplicates, errors first; not those that were told already."""
-    for text, colour in finding_lines(findings, told=told):
-        print_line(text, colour)
-
-
 def finding_lines(
     findings: Sequence[Finding], *, told: Sequence[Finding] = ()
 ) -> Iterator[tuple[str, str]]:

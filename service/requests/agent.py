@@ -7,7 +7,7 @@ from annotated_types import Interval, MaxLen
 
 from service.requests.fields import About
 from service.requests.given import Name
-from service.requests.runs import SampleRate, SimulationRequest
+from service.requests.runs import SimulationRequest
 from simulator.agent.names import NameSet, SchemaVersion
 
 AGENT = "options of the agent"
@@ -18,7 +18,6 @@ AGENT = "options of the agent"
 class AgentRequest(SimulationRequest):
     """Request of an agent that publishes a run of the virtual machine."""
 
-    rate_hz: SampleRate = 10.0
     schema: Annotated[
         SchemaVersion,
         About("schema version of the documents: 1.3, 2.0 or 2.7", group=AGENT, flag="--schema"),

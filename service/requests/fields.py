@@ -61,6 +61,8 @@ class About:
     """How a file or folder is used; None: the value is none."""
     group: str = ""
     """Heading in the help under which the option stands; empty: the general ones."""
+    one_of: str = ""
+    """Name of a set of options of which exactly one must be given; empty: of none."""
     metavar: str | None = None
     examples: tuple[object, ...] = ()
     read: Callable[[str], object] | None = None
@@ -165,7 +167,14 @@ def add_options(
             continue
         if about.group not in groups:
             groups[about.group] = _group(parser, about.group)
-        _add_option(groups[about.group], field)
+        place = groups[about.group]
+        if about.one_of:
+            way = f"one of {about.one_of}"
+            place = groups.setdefault(way, None) or place.add_mutually_exclusive_group(
+                required=True
+            )
+            groups[way] = place
+        _add_option(place, field)
 
 
 def _group(parser: argparse.ArgumentParser, title: str) -> Any:
@@ -281,8 +290,10 @@ def require_bounds(request: Request) -> None:
     Raises
     ------
     StepNcError
-        With name, value, bound and unit of the first value out of bounds.
+        With name, value, bound and unit of the first value out of bounds; or with options of
+        which not exactly one is given.
     """
+    _require_one_of_each_set(request)
     for field in fields_of(type(request)):
         value = getattr(request, field.name)
         unit = f" {field.about.unit}" if field.about.unit else ""
@@ -290,6 +301,18 @@ def require_bounds(request: Request) -> None:
             if value is not None and (words := _broken(value, bound)):
                 shown = f"{value:g}" if isinstance(value, int | float) else f"of {len(value)}"
                 raise StepNcError(f"{field.label} {shown}{unit}: it must be {words}{unit}")
+
+
+def _require_one_of_each_set(request: Request) -> None:
+    ways: dict[str, list[RequestField]] = {}
+    for field in fields_of(type(request)):
+        if field.about.one_of:
+            ways.setdefault(field.about.one_of, []).append(field)
+    for fields_of_way in ways.values():
+        given = [each for each in fields_of_way if getattr(request, each.name) != each.default]
+        if len(given) != 1:
+            names = " and ".join(each.name for each in fields_of_way)
+            raise StepNcError(f"give one of {names}; given: {len(given)}")
 
 
 def _broken(value: Any, bound: Any) -> str:

@@ -7,6 +7,29 @@ from annotated_types import Interval
 
 from service.requests.fields import About, FileUse
 from simulator.tool_files.file_unit import FileUnit
+from stepnc_model.post.dialect import Dialect
+
+ProgramFile = Annotated[
+    Path,
+    About("a STEP-NC program (Part 21), or NC code", use=FileUse.INPUT, metavar="FILE"),
+]
+
+CodeControl = Annotated[
+    Dialect | None,
+    About(
+        "control of NC code: linuxcnc, fanuc, haas, sinumerik or heidenhain (default: guessed "
+        "from the code)",
+        name="control", flag="--control", metavar="NAME",
+    ),
+]  # fmt: skip
+
+KeepsGoing = Annotated[
+    bool,
+    About(
+        "skip workingsteps for which no path can be generated; exit code 3 remains",
+        flag="--keep-going",
+    ),
+]
 
 MostRepeats = Annotated[
     int | None,
@@ -46,5 +69,13 @@ Cluster = Annotated[
         "run on the Dask cluster of this scheduler, tcp://127.0.0.1:8786 or, beyond this "
         "machine, tls://HOST:PORT (default: on processes of this machine)",
         flag="--cluster", metavar="ADDRESS",
+    ),
+]  # fmt: skip
+
+EntryName = Annotated[
+    str | None,
+    About(
+        "show only this one, in full: its name or the path of its file",
+        use=FileUse.INPUT, metavar="NAME",
     ),
 ]  # fmt: skip

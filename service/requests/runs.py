@@ -90,14 +90,6 @@ KeepGoing = Annotated[
     ),
 ]
 
-SampleRate = Annotated[
-    float,
-    Interval(ge=1.0, le=10_000.0),
-    About(
-        "samples per second, 1 to 10000", unit="Hz", name="rate", flag="--rate", metavar="HZ"
-    ),
-]
-
 PACE = "simulated seconds per wall-clock second; 0: as fast as possible"
 
 
@@ -148,7 +140,12 @@ class SimulationRequest(RunRequest):
 
     keep_going: KeepGoing = False
     seed: Seed = 0
-    rate_hz: SampleRate = 20.0
+    rate_hz: Annotated[
+        float,
+        Interval(ge=1.0, le=10_000.0),
+        About("samples per second, 1 to 10000", unit="Hz", name="rate", flag="--rate",
+              metavar="HZ"),
+    ] = 20.0  # fmt: skip
     force: Annotated[
         ForceView,
         About("force: mean over a revolution (mean), or of each tooth (tooth)", flag="--force"),

@@ -49,7 +49,7 @@ SERVES: Mapping[str, Serves] = {
             "tool_change_s": "the spindle speeds of NC code stay",
             "centre_cutting": "the tool table tells it of NC code's tools",
             "ignore_record": "NC code has no records",
-            "keep_going": "what cannot be advised in NC code is left as it is without it",
+            "keep_going": "what cannot be used of NC code is left out, or as it is, without it",
             "is_confirmed": _ALWAYS_RUN,
             "writes_toolpaths": "tool paths are written into STEP-NC programs",
         }.items()
@@ -65,7 +65,7 @@ SERVES: Mapping[str, Serves] = {
             "finish": _OWN_TOOLS,
             "keep": _OWN_TOOLS,
             "is_unrolled": "a STEP-NC program has no calls and repeats",
-            "dialect": "a STEP-NC program is for no control; --nc names one",
+            "dialect": "a STEP-NC program is for no control",
             "is_marked": "a STEP-NC program has records instead",
             "greatest_rise": "advice for a STEP-NC program follows from its own limits",
             "tools_unit": "of a STEP-NC program, the tool table tells edges and wipers alone",

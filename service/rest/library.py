@@ -8,7 +8,7 @@ from fastapi import APIRouter, Path, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from service.errors import Unreadable
-from service.library_output import entry_json
+from service.rendering.records import dump
 from service.rest.context import InDataFolder
 from service.rest.replies import json_reply, matches, tag_of, tagged
 from service.rest.views import EntryView
@@ -21,6 +21,7 @@ from service.storage.library import (
     LibraryListing,
     LibrarySection,
 )
+from service.verbs.library import entry_record
 
 MACHINES = APIRouter(prefix="/v1/machines", tags=["library"])
 MATERIALS = APIRouter(prefix="/v1/materials", tags=["library"])
@@ -109,7 +110,7 @@ async def _one(
     request: Request, data_folder: DataFolder, section: LibrarySection, name: str
 ) -> Response:
     held = await run_in_threadpool(library.one, data_folder, section, name)
-    entry = json.loads(entry_json(held.entry))
+    entry = json.loads(dump(entry_record(held.entry)))
     shown = orjson.dumps({**entry, "name": name, "is_own": held.is_own})
     if not held.is_own:
         return json_reply(request, shown)

@@ -8,14 +8,13 @@ from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from service.code_check import checked_code
-from service.contents import check
-from service.contents_output import contents_json
 from service.errors import Unreadable
 from service.files import read_bytes
 from service.numbers import tool_numbers_in
 from service.program_kind import ProgramKind, kind_of
+from service.rendering.records import dump
 from service.requests.fields import dumped, loaded
-from service.requests.given import ISO, Name, ProgramRequest, Units
+from service.requests.given import ISO, Name, Units
 from service.requests.serves import OF_PATHS, given_values, require_options_served
 from service.requests.stored_advice import StoredAdviceRequest
 from service.rest.advice_views import CodeContentsView
@@ -50,6 +49,8 @@ from service.storage.folder import DataFolder
 from service.storage.jobs import JobKind, JobRequest
 from service.storage.pages import Page
 from service.storage.programs import StoredProgram
+from service.verbs.check.request import CheckFiles, CheckRequest
+from service.verbs.check.run import run as check
 from stepnc_model.errors import StepNcError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.post.dialect import Dialect
@@ -281,9 +282,8 @@ def _contents(data_folder: DataFolder, stored: StoredProgram, units: Units) -> b
     try:
         if stored.kind is ProgramKind.NC_CODE:
             return checked_code(file, name=stored.name)
-        return contents_json(
-            check(file, ProgramRequest(units=units), name=stored.name)
-        ).encode()
+        found = check(CheckRequest(units=units), CheckFiles(file=file, name=stored.name))
+        return dump(found.record()).encode()
     except StepNcError:
         programs.require_file(data_folder, stored.id)
         raise

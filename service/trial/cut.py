@@ -278,7 +278,7 @@ def _peak(trial: TrialCut, arc: Engagement | None) -> float:
     if arc is None:
         return 1.0
     teeth = EngagedTeeth(
-        count=trial.cut.teeth,
+        number=trial.cut.teeth,
         entry_angle=arc.entry_angle,
         exit_angle=arc.exit_angle,
         exponent=exponent_of(trial),

@@ -60,7 +60,7 @@ def call(
             near = get_close_matches(name, known, n=3)
             hint = f"; near to it: {', '.join(near)}" if near else ""
             raise TypeError(f"{verb.folder}() has no argument '{name}'{hint}")
-    request = _built(verb.request, of_request, given)
+    request = _built(verb.request, of_request, {**verb.usual, **given})
     require_bounds(request)
     files = _built(verb.files, of_files, given)
     require_bounds(files)

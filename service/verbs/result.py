@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     import plotly.graph_objects as go
     import pyarrow as pa
 
-OK, LIMIT_EXCEEDED = 0, 5
-"""Exit codes of results: all is well, and something is beyond its limits."""
+OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED = 0, 3, 4, 5, 6
+"""Exit codes of the command line; with ``NOTHING_ADVISED`` no program is written."""
 
 WIDE = 10_000
 """Characters per line of a text that no terminal limits."""
@@ -26,8 +26,8 @@ class Result:
 
     @property
     def exit_code(self) -> int:
-        """Exit code of the command line; 0: all is well."""
-        return 0
+        """Exit code of the command line."""
+        return OK
 
     def view(self) -> ResultView:
         """Return what the result says."""

@@ -4,7 +4,8 @@ A folder holds
 
 - ``__init__.py``, whose docstring is the help: a sentence, then examples and details;
 - ``request.py`` with ``REQUEST``, the type of the values that every door takes, and ``FILES``,
-  that of the files that command line and Python name;
+  that of the files that command line and Python name (``USUAL``: values that differ from those
+  of REST where nothing is asked for);
 - ``run.py`` with ``run(request, files, *, tell)``, which returns a
 - :class:`~service.verbs.result.Result`, declared in ``result.py``.
 
@@ -12,7 +13,7 @@ A folder is all that a verb needs: doors find it by its name. In a name of two w
 ``kbe review``, the folder has an underscore.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
@@ -65,6 +66,12 @@ class Verb:
     def files(self) -> type[Request]:
         """Type of its files."""
         found: type[Request] = self._part("request").FILES
+        return found
+
+    @property
+    def usual(self) -> Mapping[str, object]:
+        """Values of the request that are usual on the command line and in Python."""
+        found: Mapping[str, object] = getattr(self._part("request"), "USUAL", {})
         return found
 
     @property

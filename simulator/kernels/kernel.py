@@ -136,7 +136,7 @@ def _address(array: NDArray[Any]) -> int:
     flags = array.flags
     # An eighth of the time of numpy's own ``ctypes.data``, which small kernels would feel.
     if flags.writeable and flags.c_contiguous and array.size:
-        return addressof(c_char.from_buffer(array))
+        return addressof(c_char.from_buffer(array.data))
     return int(array.ctypes.data)
 
 

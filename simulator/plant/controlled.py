@@ -377,7 +377,7 @@ class ControlledMachine:
         runout = self.hidden.eccentricity / per_tooth if per_tooth > 0.0 else 0.0
         return pattern(
             EngagedTeeth(
-                count=teeth,
+                number=teeth,
                 entry_angle=_rounded(float(course.entry_angle[cell])),
                 exit_angle=_rounded(float(course.exit_angle[cell])),
                 exponent=round(float(course.exponent[cell]), 4),

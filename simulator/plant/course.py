@@ -48,7 +48,7 @@ SUNKEN = 10.0
 class EngagedTeeth(NamedTuple):
     """Teeth of a cutter on one contact arc; a tuple, as one is looked up for each tooth."""
 
-    count: int
+    number: int
     entry_angle: float
     exit_angle: float
     exponent: float
@@ -75,17 +75,17 @@ def pattern(teeth: EngagedTeeth) -> Floats:
         broken tooth it is less, because one double chip needs less force than two.
     """
     if not teeth.exit_angle > teeth.entry_angle:
-        return np.ones((teeth.count, SAMPLES))
-    runout = eccentric_runout(teeth.runout, teeth.count)
+        return np.ones((teeth.number, SAMPLES))
+    runout = eccentric_runout(teeth.runout, teeth.number)
     force = _force(teeth, runout)
     mean = force.mean()
     if not mean > 0.0:
-        return np.ones((teeth.count, SAMPLES))
-    if teeth.broken is not None and teeth.count > 1:
+        return np.ones((teeth.number, SAMPLES))
+    if teeth.broken is not None and teeth.number > 1:
         sunken = runout.copy()
-        sunken[teeth.broken % teeth.count] -= SUNKEN
+        sunken[teeth.broken % teeth.number] -= SUNKEN
         force = _force(teeth, sunken)
-    shape: Floats = (force / mean).reshape(teeth.count, SAMPLES, PLACES).mean(axis=2)
+    shape: Floats = (force / mean).reshape(teeth.number, SAMPLES, PLACES).mean(axis=2)
     shape.setflags(write=False)
     return shape
 
@@ -116,12 +116,12 @@ def wall_over_mean(teeth: EngagedTeeth) -> float:
 def _mean(teeth: EngagedTeeth) -> float:
     contact = teeth.exit_angle - teeth.entry_angle
     chip = (cos(teeth.entry_angle) - cos(teeth.exit_angle)) / contact
-    return float(teeth.count * contact / (2.0 * pi) * chip**teeth.exponent)
+    return float(teeth.number * contact / (2.0 * pi) * chip**teeth.exponent)
 
 
 def _edges(teeth: EngagedTeeth) -> CuttingEdges:
     """Edges of a cutter of radius 1 with the given lag over a depth of 1."""
-    return CuttingEdges(teeth=teeth.count, diameter=2.0, helix_angle=atan(teeth.lag))
+    return CuttingEdges(teeth=teeth.number, diameter=2.0, helix_angle=atan(teeth.lag))
 
 
 def _place(teeth: EngagedTeeth) -> Places:
@@ -130,9 +130,9 @@ def _place(teeth: EngagedTeeth) -> Places:
 
 def _force(teeth: EngagedTeeth, runout: Floats) -> Floats:
     """Sum of tangential forces through a revolution that begins where tooth 0 enters."""
-    pitch = 2.0 * pi / teeth.count
+    pitch = 2.0 * pi / teeth.number
     each = SAMPLES * PLACES
-    middle = (np.arange(teeth.count * each) + 0.5) / each
+    middle = (np.arange(teeth.number * each) + 0.5) / each
     found = forces(
         _edges(teeth),
         _place(teeth),
@@ -321,7 +321,7 @@ def _ratios(
     arcs, row = np.unique(keys, axis=1, return_inverse=True)
     teeth = [
         EngagedTeeth(
-            count=edge.teeth,
+            number=edge.teeth,
             entry_angle=begin,
             exit_angle=end,
             exponent=_exponent(edge),

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
+import stepnc
 from benchmarks.twins import ONE, OTHER, comparison, main
-from service.conversion import Standard, convert_to
 
 PART = Path("examples/parts/bracket.stpnc")
 SLOT = PART.with_name("paper003_case1.stpnc")
@@ -13,7 +13,7 @@ SLOT = PART.with_name("paper003_case1.stpnc")
 
 def test_a_program_and_its_conversion_have_the_same_paths(tmp_path: Path) -> None:
     other = tmp_path / "slot.238"
-    convert_to(SLOT, standard=Standard.AP238, output=other)
+    stepnc.convert(SLOT, to="ap238", output=other)
     lines = list(comparison(SLOT, other))
     steps = lines[2 : lines.index("")]
     assert len(steps) == 1

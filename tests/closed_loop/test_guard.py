@@ -72,7 +72,7 @@ class Danger:
     def share(self) -> float:
         """Of the tooth that takes most in the mean, at override 1."""
         teeth = EngagedTeeth(
-            count=self.teeth,
+            number=self.teeth,
             entry_angle=0.0,
             exit_angle=pi,
             exponent=EXPONENT,

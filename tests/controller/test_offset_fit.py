@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 from controller import offset_fit
 from controller.offsets import PLAIN, SCALE, unknown
 from controller.tooth_shares import ToothShares
-from simulator.physics.tooth_means import LOST, Arcs, Floats, periods, tooth_means
+from simulator.physics.tooth_means import LOST, Arcs, Floats, periods
 from tests.controller import plain_offsets
+from tests.oracles.tooth_means import tooth_means
 
 
 def shares(teeth: int, seed: int, lost: int | None) -> ToothShares:

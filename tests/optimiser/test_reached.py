@@ -282,7 +282,7 @@ def test_stations_that_are_not_looked_at_change_nothing(
     ends = (path.length[:, None] * np.linspace(0.2, 1.0, 5)).ravel()
     section = random.uniform(0.5, 6.0, len(ends))
     walls = random.uniform(0.0, 6.0, len(ends))
-    places = met(CUT, *zip(ends, section, strict=True), segment=rows)
+    places = met(CUT, *zip(ends, section, strict=True), segment=rows.tolist())
     how = replace(ride(path), motion=motion_of(ride(path).run, control, HELD))
     found = []
     for first in (1, 16, 10_000):

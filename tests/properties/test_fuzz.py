@@ -9,11 +9,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from service.contents import check
-from service.requests.given import ProgramRequest, Units
 from service.verbs.optimise import program as advising
 from stepnc_model.errors import StepNcError
 from tests.asking import asked_advice
+from tests.checked import check
 
 ROOT = Path(__file__).parents[2]
 SAMPLES = sorted((ROOT / "examples" / "parts").glob("*.stpnc"))
@@ -89,7 +88,7 @@ def read_and_optimise(data: bytes, units: str = "iso") -> None:
         path = Path(folder) / "part.stpnc"
         path.write_bytes(data)
         with suppress(StepNcError):
-            check(path, ProgramRequest(units=Units(units)))
+            check(path, units=units)
         with suppress(StepNcError):
             advising.advise_program(*asked_advice(file=path, units=units, dry_run=True))
         assert [each.name for each in Path(folder).iterdir()] == ["part.stpnc"]

@@ -14,7 +14,6 @@ import pytest
 
 from kbe.selection import Selection
 from kbe.store import open_store
-from service.contents import check
 from service.flat_file import Format
 from service.knowledge.added import add_outcomes
 from service.knowledge.export import export_outcomes
@@ -28,6 +27,7 @@ from simulator.machine_xml import read_machine_xml
 from simulator.material_file import read_material
 from simulator.spec import MachineKind, ToolKind
 from stepnc_model.errors import StepNcError
+from tests.checked import check
 from tests.service.shop import shop
 
 SEEDED = int(os.environ.get("STEPNC_SEEDED", "40"))

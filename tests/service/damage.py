@@ -6,8 +6,8 @@ from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from random import Random
 
+import stepnc
 from service.cli.main import main
-from service.conversion import Standard, convert_to
 from stepnc_model.part21.reader import Part21File
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
@@ -55,7 +55,7 @@ def without_each(data: bytes) -> dict[int, bytes]:
 def programs(folder: Path) -> dict[str, bytes]:
     """Sample programs, and one of them in AP238."""
     aim = folder / "ap238.stpnc"
-    convert_to(PARTS / "paper002.stpnc", standard=Standard.AP238, output=aim)
+    stepnc.convert(PARTS / "paper002.stpnc", to="ap238", output=aim)
     samples = {path.name: path.read_bytes() for path in sorted(PARTS.glob("*.stpnc"))}
     return samples | {aim.name: aim.read_bytes()}
 

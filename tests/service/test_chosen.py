@@ -3,8 +3,6 @@ from pathlib import Path
 import pytest
 
 from service.chosen import (
-    library_entries,
-    library_entry,
     load_material_named,
     machine_for,
     material_for,
@@ -39,12 +37,6 @@ def test_unknown_names_are_refused() -> None:
         machine_for("none", program)
     with pytest.raises(UnknownMaterial):
         load_material_named("none")
-
-
-def test_entries_of_the_library_are_found_one_by_one() -> None:
-    for kind in ("machines", "materials"):
-        for entry in library_entries(kind):
-            assert library_entry(kind, entry.name) == entry
 
 
 def test_a_program_without_a_usable_workingstep_suits_no_machine() -> None:

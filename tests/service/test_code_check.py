@@ -5,9 +5,8 @@ from pathlib import Path
 
 import pytest
 
+import stepnc
 from service.code_check import checked_code
-from service.code_contents import check_code
-from service.code_contents_output import code_json
 from stepnc_model.errors import StepNcError
 from tests.service.rest.samples import CODE
 
@@ -25,7 +24,7 @@ def stored(folder: Path, data: bytes) -> Path:
 def test_the_check_is_that_of_the_command_line(tmp_path: Path) -> None:
     file = stored(tmp_path, CODE)
     found = json.loads(checked_code(file, name="plate ü.nc"))
-    assert found == json.loads(code_json(check_code(file, name="plate ü.nc")))
+    assert found == stepnc.check(file, name="plate ü.nc").record()
     assert found["program"] == "plate ü.nc"
 
 

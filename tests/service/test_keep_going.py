@@ -1,12 +1,13 @@
 """One bad workingstep does not keep the others from advice, nor from NC code."""
 
 import json
+import logging
 from pathlib import Path
 
 import pytest
 
+import stepnc
 from service.cli.main import main, optimise_main
-from service.paths.toolpaths import PostRequest, post
 from stepnc_model.ap238.export import to_ap238
 from stepnc_model.errors import SchemaError
 from stepnc_model.given import GivenData, GivenFeed, completed
@@ -143,23 +144,23 @@ def test_a_program_without_faults_is_advised_alike(part: Path) -> None:
 class TestNcCode:
     def test_only_what_depends_by_geometry_is_left_out(self, part: Path) -> None:
         part.write_bytes(program(**NO_FEED))
-        paths = post(PostRequest(file=part, control="linuxcnc", keep_going=True))
+        paths = stepnc.post(part, control="linuxcnc", keep_going=True).paths
         assert [path.id for path in paths.paths] == ["GOOD", "AFTER"]
 
-    def test_a_hole_in_the_same_place_is_left_out_too(self, part: Path) -> None:
+    def test_a_hole_in_the_same_place_is_left_out_too(
+        self, part: Path, caplog: pytest.LogCaptureFixture
+    ) -> None:
         """Another feature, but in the material that the first hole would have removed."""
         data = program(**NO_FEED).replace(b"(50.,30.,30.)", b"(82.,30.,30.)")
         part.write_bytes(data)
-        told: list[str] = []
-        paths = post(
-            PostRequest(file=part, control="linuxcnc", keep_going=True), tell=told.append
-        )
+        with caplog.at_level(logging.INFO, logger="stepnc"):
+            paths = stepnc.post(part, control="linuxcnc", keep_going=True).paths
         assert [path.id for path in paths.paths] == ["GOOD"]
-        assert any("'BAD' was left out" in text for text in told)
+        assert any("'BAD' was left out" in text for text in caplog.messages)
 
     def test_numbers_that_cannot_be_meant_leave_out_their_workingstep(self, part: Path) -> None:
         part.write_bytes(program(**FAULTS["spindle in rpm"]))
-        paths = post(PostRequest(file=part, control="linuxcnc", keep_going=True))
+        paths = stepnc.post(part, control="linuxcnc", keep_going=True).paths
         assert [path.id for path in paths.paths] == ["GOOD", "AFTER"]
 
 

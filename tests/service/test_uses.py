@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from service.cli.main import main
-from service.contents import check
 from service.uses import UseName
 from stepnc_model.errors import Severity
+from tests.checked import check
 from tests.service.test_keep_going import FAULTS, NO_FEED, program
 
 CORPUS = Path(__file__).parents[3] / "shared" / "corpus" / "iso14649"

@@ -11,7 +11,6 @@ from random import Random
 
 import pytest
 
-from service.contents import check
 from service.reading import read_program
 from stepnc_model.errors import SchemaError, StepNcError
 from stepnc_model.part21.reader import Part21File
@@ -20,6 +19,7 @@ from stepnc_model.program import Program
 from stepnc_model.technology import programmed
 from stepnc_model.tool import tool_of
 from stepnc_model.units import ISO, PROFILES, FeedUnit, UnitProfile
+from tests.checked import check
 
 SEEDED = int(os.environ.get("STEPNC_SEEDED", "25"))
 CORPUS = Path(__file__).parents[3] / "shared" / "corpus" / "iso14649"

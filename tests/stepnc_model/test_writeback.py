@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+import stepnc
 from service.verbs.optimise.program import advise_program as optimise
-from service.verbs.optimise.program import convert
 from stepnc_model import writeback
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
@@ -101,7 +101,7 @@ class TestConversion:
         data = optimised(part("paper002"), FileProfile.OPTIMISATION)
         source, target = tmp_path / "in.stpnc", tmp_path / "standard.stpnc"
         source.write_bytes(data)
-        convert(source, profile=FileProfile.STANDARD, output=target)
+        stepnc.convert(source, profile="standard", output=target)
         assert target.read_bytes() == converted(data, FileProfile.STANDARD)
 
 

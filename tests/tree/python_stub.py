@@ -46,10 +46,11 @@ def _function(verb: Verb) -> Iterator[str]:
     yield f"def {verb.folder}("
     for field in places:
         yield f"    {_argument(field)},"
-    yield "    *,"
-    for field in (*files, *request):
-        if field not in places:
-            yield f"    {_argument(field)},"
+    keywords = [field for field in (*files, *request) if field not in places]
+    if keywords:
+        yield "    *,"
+    for field in keywords:
+        yield f"    {_argument(field)},"
     returned = " | ".join(name for _, name in _results(verb))
     yield f") -> {returned}: ..."
 

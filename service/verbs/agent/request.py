@@ -5,18 +5,18 @@ from pathlib import Path
 from typing import Annotated
 
 from service.requests.agent import AGENT, AgentRequest
-from service.requests.code_files import CodeFiles
 from service.requests.fields import About, FileUse
+from service.requests.run_files import CodeOfRun
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AgentPlaces(CodeFiles):
+class AgentPlaces(CodeOfRun):
     """Files of ``agent``."""
 
     file: Annotated[
         Path | None,
         About(
-            "a STEP-NC program or a recorded run (.parquet, .csv, .xml, .shdr, .log)",
+            "a STEP-NC program, NC code, or a recorded run (.parquet, .csv, .xml, .shdr, .log)",
             use=FileUse.INPUT, metavar="FILE",
         ),
     ] = None  # fmt: skip
@@ -44,3 +44,6 @@ class AgentPlaces(CodeFiles):
 
 
 REQUEST, FILES = AgentRequest, AgentPlaces
+
+USUAL = {"rate_hz": 10.0}
+"""Values of the request that differ from those of REST, where nothing else is asked for."""

@@ -3,9 +3,10 @@
 from dataclasses import replace
 
 from service.agent.run import AgentFiles, serve_agent
+from service.file_names import LOGS
 from service.reading import Tell, silent
 from service.requests.agent import AgentRequest
-from service.simulation.code_files import run_files
+from service.requests.run_files import run_files, run_request
 from service.verbs.agent.request import AgentPlaces
 from service.verbs.result import ServedResult
 from stepnc_model.errors import StepNcError
@@ -21,13 +22,16 @@ def run(request: AgentRequest, files: AgentPlaces, *, tell: Tell = silent) -> Se
     """
     if request.program_id or request.advice_id or request.pace:
         raise StepNcError("program_id, advice_id and pace are of the service: name a file")
+    file = files.file
+    is_log = file is not None and file.suffix.lower() in LOGS
+    # A recorded run is neither a program nor NC code.
+    named = replace(files, file=None) if is_log else files
+    run_places = run_files(named, request)
     places = AgentFiles(
-        run=run_files(files, files.file, stock=request.stock),
+        run=replace(run_places, file=file) if is_log else run_places,
         device=files.device,
         schemas=files.schema_files,
         runs=files.runs,
     )
-    if files.nc is not None:
-        request = replace(request, stock="")
-    serve_agent(request, places, tell=tell)
+    serve_agent(run_request(request, named), places, tell=tell)
     return ServedResult()

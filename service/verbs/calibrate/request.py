@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from service.requests.code_files import CodeFiles
 from service.requests.fields import About, FileUse
+from service.requests.run_files import CodeOfRun
 from service.requests.runs import MotionRequest
 from simulator.spec import CuttingMaterial
 
@@ -31,7 +31,7 @@ class CalibrationRequest(MotionRequest):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CalibrationFiles(CodeFiles):
+class CalibrationFiles(CodeOfRun):
     """Files of ``calibrate``."""
 
     runs: Annotated[
@@ -45,10 +45,10 @@ class CalibrationFiles(CodeFiles):
             flag="--tool-life", use=FileUse.INPUT, metavar="CSV",
         ),
     ] = None  # fmt: skip
-    program: Annotated[
+    file: Annotated[
         Path | None,
         About(
-            "the STEP-NC program that was run", flag="--program", use=FileUse.INPUT,
+            "the program that was run, STEP-NC or NC code", flag="--program", use=FileUse.INPUT,
             metavar="FILE",
         ),
     ] = None  # fmt: skip

@@ -1,7 +1,6 @@
 """Optimise the feeds of a program and write them back.
 
-Examples
---------
+examples:
   optimise part.stpnc --mode TC --machine vmc15
   optimise part.stpnc --mode QC --roughness 1.6 --report part.html
   optimise part.stpnc --mode EC --free feed,depth,speed --dry-run --json

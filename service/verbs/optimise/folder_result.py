@@ -5,13 +5,8 @@ from dataclasses import dataclass
 from service.rendering.columns import Change, Column
 from service.rendering.view import Fact, ResultView, Table, TextLine
 from service.verbs.optimise.ledger import ProgramRow, ProgramStatus
-from service.verbs.optimise.result import (
-    BAD_INPUT,
-    INFEASIBLE,
-    LIMIT_EXCEEDED,
-    OK,
-    OptimiseResult,
-)
+from service.verbs.optimise.result import OptimiseResult
+from service.verbs.result import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, OK
 
 ROWS: tuple[Column[ProgramRow], ...] = (
     Column(key="program", heading="program", is_key=True, kind=str,

@@ -21,14 +21,8 @@ from service.rendering.records import finding_record
 from service.rendering.text import RED
 from service.rendering.view import Fact, Findings, Item, ResultView, Table, TextLine
 from service.verbs.optimise.plan_record import FRONT, advice_record, plunge_feed_mm_min
-from service.verbs.optimise.result import (
-    BAD_INPUT,
-    INFEASIBLE,
-    LIMIT_EXCEEDED,
-    NOTHING_ADVISED,
-    OK,
-    OptimiseResult,
-)
+from service.verbs.optimise.result import OptimiseResult
+from service.verbs.result import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED, OK
 from stepnc_model.errors import Finding
 from stepnc_model.units import kw_from_watts, mm_min_from_speed, rpm_from_rev_s
 

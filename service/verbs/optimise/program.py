@@ -14,7 +14,6 @@ from service.chosen import machine_for, material_for, require_axes, with_holding
 from service.divided_depth import depth_notes
 from service.files import (
     beside,
-    require_place,
     require_places,
     write_atomically,
     write_lines,
@@ -22,7 +21,7 @@ from service.files import (
 from service.knowledge.corrected import factors_for, finding_of, with_corrections
 from service.knowledge.place import named_place, require_apart
 from service.progress import Progress
-from service.reading import Tell, read_given, read_program, selected, silent
+from service.reading import Tell, read_given, selected, silent
 from service.records import changes_of, lost_plunge_feeds
 from service.refusals import Writable, advisable, apart_from
 from service.requests.advice import AdviceRequest
@@ -302,13 +301,6 @@ def _tell_conflicts(plan: Plan, tell: Tell) -> None:
             f"'{each.workingstep.id}' ({each.workingstep.ref})" for each in conflicts
         )
         tell(f"infeasible, left as programmed: {names}")
-
-
-def convert(path: Path, *, profile: FileProfile, output: Path) -> None:
-    """Convert the optimisation records of a file into another file profile."""
-    require_place(output, apart_from=path)
-    program = read_program(path, units="iso")
-    write_atomically(output, writeback.convert(program, profile))
 
 
 def _task(request: AdviceRequest, tools: "tuple[TableTool, ...]") -> OptimisationTask:

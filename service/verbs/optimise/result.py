@@ -9,9 +9,6 @@ from service.verbs.result import Result
 if TYPE_CHECKING:
     from service.along_path.run import FeedsAlongPath
 
-OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED = 0, 3, 4, 5, 6
-"""Exit codes; with ``NOTHING_ADVISED`` no program is written."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OptimiseResult(Result):

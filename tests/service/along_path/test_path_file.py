@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
+import stepnc
 from service.along_path.course import PathSource
 from service.along_path.run import FeedsAlongPath, along_path
 from service.along_path.task import task_of
 from service.cli.main import optimise_main
 from service.cli.options import BAD_INPUT
 from service.files import beside
-from service.paths.toolpaths import PostRequest, post
 from service.reading import read_program, silent
 from service.requests.advice import AdviceRequest
 from service.requests.runs import SimulationRequest
@@ -132,7 +132,7 @@ def test_nc_code_of_the_file_has_the_planned_feeds(
     result = planned(sample, profile, folder)
     code = beside(written(result), Dialect.LINUXCNC.suffix)
     again = tmp_path / "again.ngc"
-    post(PostRequest(file=written(result), control="linuxcnc", output=again))
+    stepnc.post(written(result), control="linuxcnc", output=again)
     lines, others = code.read_text().splitlines(), again.read_text().splitlines()
     assert len(lines) == len(others)
     feeds = 0

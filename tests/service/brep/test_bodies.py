@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import stepnc
 from benchmarks.verification import FAST, SHAFT_REQUEST, run_log
 from service.brep.bodies import ProgramBodies, body_triangles
 from service.chosen import material_for
-from service.conversion import Standard, convert_to
 from service.reading import read_program, silent
 from service.requests.verification import VerificationRequest
 from service.simulation.setup import prepared_program
@@ -65,7 +65,7 @@ def cast(folder: Path, shape: object, program: Path, old: str, new: str) -> Path
 @pytest.mark.parametrize("is_related", [False, True])
 def test_a_body_in_an_ap238_program_is_read(is_related: bool, tmp_path: Path) -> None:
     path = tmp_path / "bracket.238"
-    convert_to(PARTS / "bracket.stpnc", standard=Standard.AP238, output=path)
+    stepnc.convert(PARTS / "bracket.stpnc", to="ap238", output=path)
     text = path.read_text("utf-8")
     workpiece = text.partition("=PRODUCT_DEFINITION('BRACKET'")[0].rpartition("#")[2]
     solid, root = solid_instances(write_step(tmp_path / "p.step", stepped(), unit="INCH"))
@@ -200,7 +200,7 @@ def test_a_program_without_bodies_asks_for_nothing() -> None:
 def both_ways(path: Path, folder: Path) -> tuple[Path, Path]:
     """A program by AP238, and back by ISO 14649, with nothing left out of its geometry."""
     there, back = folder / "there.238", folder / "back.stpnc"
-    told = convert_to(path, standard=Standard.AP238, output=there)
+    told = stepnc.convert(path, to="ap238", output=there).findings
     # Products around the solid, to which the program does not refer.
     assert {each.message for each in told} <= {
         "nothing that AP238 expresses refers to it",
@@ -209,7 +209,7 @@ def both_ways(path: Path, folder: Path) -> tuple[Path, Path]:
     assert (
         list(deviations(Part21File.from_bytes(there.read_bytes()), schema(long_form()))) == []
     )
-    assert convert_to(there, standard=Standard.ISO14649, output=back) == ()
+    assert stepnc.convert(there, to="iso14649", output=back).findings == ()
     return there, back
 
 
@@ -254,7 +254,7 @@ def test_a_body_that_cannot_be_carried_is_told(
     text = path.read_text("utf-8")
     assert old in text
     path.write_text(text.replace(old, new), "utf-8")
-    found = convert_to(path, standard=Standard.AP238, output=output)
+    found = stepnc.convert(path, to="ap238", output=output).findings
     [reason] = [each for each in found if "faces of the body are left out" in each.message]
     assert told in reason.message
     assert reason.entity.endswith("ADVANCED_BREP_SHAPE_REPRESENTATION")

@@ -1,14 +1,9 @@
 """What the commands share."""
 
-import argparse
-from pathlib import Path
-
-import pytest
-
 from service.cli import options as cli_options
 from service.cli.interrupts import INTERRUPTED
-from service.cli.options import add_json, add_program, program_request
-from service.requests.given import ProgramRequest
+from service.requests.fields import fields_of
+from service.requests.run_files import CodeOfRun
 from stepnc_model.post.dialect import Dialect
 
 
@@ -20,16 +15,5 @@ def test_exit_codes_can_be_told_apart_and_none_is_that_of_usage() -> None:
 
 
 def test_every_control_is_named() -> None:
-    assert all(control.value in cli_options.CONTROLS for control in Dialect)
-
-
-def test_a_file_is_asked_for_and_units_and_json_need_not_be_given() -> None:
-    parser = argparse.ArgumentParser()
-    add_program(parser)
-    add_json(parser)
-    options = parser.parse_args(["part.stpnc"])
-    assert (options.file, options.json) == (Path("part.stpnc"), False)
-    assert program_request(options) == ProgramRequest()
-    assert parser.parse_args(["part.stpnc", "--units", "rpm-mmin", "--json"]).json
-    with pytest.raises(SystemExit):
-        parser.parse_args([])
+    (field,) = (each for each in fields_of(CodeOfRun) if each.name == "dialect")
+    assert all(control.value in field.about.text for control in Dialect)

@@ -5,13 +5,14 @@ from typing import Any
 
 import pytest
 
-from service.control.output import control_json
 from service.control.run import ControlRun
+from service.rendering.records import dump
+from service.verbs.control.result import ControlResult
 
 
 @pytest.fixture(scope="module")
 def wire(control_run: ControlRun) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(control_json(control_run))
+    found: dict[str, Any] = json.loads(dump(ControlResult(run=control_run).record()))
     return found
 
 

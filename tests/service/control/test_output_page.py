@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from controller.orders import EventKind, LoopEvent
-from service.control.output import MOST_EVENTS, control_page
 from service.control.run import ControlRun, control
+from service.verbs.control.result import MOST_EVENTS, ControlResult
 from stepnc_model.errors import Finding, Severity
 from tests.asking import AskedControl
 
@@ -20,7 +20,7 @@ Controlled = Callable[..., AskedControl]
 def own(run: ControlRun) -> str:
     """The page without the plotting library."""
     assert run.trace is not None
-    page = control_page(run, run.trace)
+    page = ControlResult(run=run).page()
     return re.sub(r"<script>.*?</script>", "", page, count=1, flags=re.DOTALL)
 
 

@@ -163,7 +163,7 @@ def test_all_are_ended_though_one_of_them_is_gone_already(own_shop: Shop) -> Non
 def test_what_is_preloaded_is_loaded() -> None:
     assert preloaded.__doc__ is not None
     assert preloaded_common.__doc__ is not None
-    assert {"service.simulation.output", "pydantic.type_adapter"} <= set(sys.modules)
+    assert {"service.verbs.simulate.result", "pydantic.type_adapter"} <= set(sys.modules)
 
 
 def test_a_killed_runner_leaves_nobody_and_the_next_one_finishes_its_job(

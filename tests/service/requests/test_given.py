@@ -87,7 +87,7 @@ def test_nc_code_is_given_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[
     code.write_text("G21 G90\nG1 X1 F100\nM2\n")
     assert run("check", code) == OK
     assert run("check", code, "--feed", "240") == BAD_INPUT
-    assert "are for STEP-NC programs" in capsys.readouterr().err
+    assert "--feed cannot be used with NC code" in capsys.readouterr().err
 
 
 class TestFeed:

@@ -11,11 +11,12 @@ from pathlib import Path
 import httpx
 import pytest
 
-from service.contents import Contents, check
-from service.requests.given import ProgramRequest
 from service.rest.app import application
 from service.rest.settings import Settings
 from service.storage import programs
+from service.verbs.check.request import CheckFiles, CheckRequest
+from service.verbs.check.run import run as check
+from service.verbs.result import Result
 from tests.every_case import every_case
 from tests.service.rest.conftest import Done
 from tests.service.rest.samples import SAMPLE
@@ -174,9 +175,9 @@ def test_who_has_the_findings_needs_no_check(
 ) -> None:
     checks: list[str] = []
 
-    def counted(file: Path, request: ProgramRequest, *, name: str) -> Contents:
+    def counted(request: CheckRequest, files: CheckFiles) -> Result:
         checks.append(request.units)
-        return check(file, request, name=name)
+        return check(request, files)
 
     monkeypatch.setattr("service.rest.programs.check", counted)
     app = application(Settings(data=str(tmp_path)))

@@ -5,15 +5,18 @@ from typing import Any
 
 import pytest
 
+from service.rendering.records import dump
 from service.simulation.carbon import CarbonFactor
-from service.simulation.output import simulation_json
 from service.simulation.run import Simulation
+from service.verbs.simulate.result import SimulateResult
 
 
 @pytest.fixture(scope="module")
 def wire(simulation: Simulation) -> dict[str, Any]:
     factor = CarbonFactor(grams_per_kwh=36.0, source="our roof")
-    found: dict[str, Any] = json.loads(simulation_json(simulation, carbon=factor))
+    found: dict[str, Any] = json.loads(
+        dump(SimulateResult(simulation=simulation, carbon=factor).record())
+    )
     return found
 
 

@@ -9,9 +9,9 @@ import pytest
 
 from service.buckets import BucketedRun
 from service.simulation.carbon import CarbonFactor
-from service.simulation.output import simulation_page
 from service.simulation.run import Simulation
 from service.simulation.trace import TraceKeeper
+from service.verbs.simulate.result import SimulateResult
 from simulator.library import load_material
 from simulator.machine.totals import Total
 from simulator.spec import Certainty, MaterialMatch
@@ -49,7 +49,7 @@ class Reader(HTMLParser):
 
 @pytest.fixture(scope="module")
 def page(simulation: Simulation, trace: BucketedRun) -> str:
-    return simulation_page(simulation, trace)
+    return SimulateResult(simulation=replace(simulation, trace=trace)).page()
 
 
 @pytest.fixture(scope="module")
@@ -98,7 +98,7 @@ def test_names_cannot_become_markup(page: str, read: Reader) -> None:
 def test_the_same_run_has_the_same_page(
     page: str, simulation: Simulation, trace: BucketedRun
 ) -> None:
-    assert simulation_page(simulation, trace) == page
+    assert SimulateResult(simulation=replace(simulation, trace=trace)).page() == page
 
 
 def test_times_add_up(read: Reader) -> None:
@@ -127,7 +127,7 @@ def test_energies_add_up(read: Reader, simulation: Simulation) -> None:
 
 def test_carbon_follows_from_the_factor(simulation: Simulation, trace: BucketedRun) -> None:
     factor = CarbonFactor(grams_per_kwh=36.0, source="our <own> roof")
-    text = simulation_page(simulation, trace, carbon=factor)
+    text = SimulateResult(simulation=replace(simulation, trace=trace), carbon=factor).page()
     assert "carbon by 36 g CO₂/kWh: our &lt;own&gt; roof" in text
     # 311.8 kJ and 36 g in 3600 kJ.
     assert "<td>3.12</td>" in text
@@ -158,10 +158,13 @@ def test_the_material_is_named_when_known(
     match = MaterialMatch(
         material=load_material("c45"), certainty=Certainty.EXACT, reason="read as <C45>"
     )
-    assert "read as &lt;C45&gt;" in simulation_page(simulation, trace, material=match)
+    assert (
+        "read as &lt;C45&gt;"
+        in SimulateResult(simulation=replace(simulation, trace=trace, material=match)).page()
+    )
 
 
 def test_an_empty_run_has_a_page(simulation: Simulation) -> None:
     nothing = replace(simulation, totals=(("", Total()),), findings=())
-    text = simulation_page(nothing, TraceKeeper().trace())
+    text = SimulateResult(simulation=replace(nothing, trace=TraceKeeper().trace())).page()
     assert text.count("<p>none</p>") == 2

@@ -1,6 +1,5 @@
 """``simulate --power-deviation``: seeded, in file and totals alike, milling and turning."""
 
-import json
 import re
 from pathlib import Path
 
@@ -10,8 +9,9 @@ from numpy.typing import NDArray
 from pyarrow import parquet
 
 from service.agent.run import DocumentChoice, simulated_with_document
-from service.simulation.output import print_simulation, simulation_json
+from service.cli.verbs import print_result
 from service.simulation.run import Simulation, simulate
+from service.verbs.simulate.result import SimulateResult
 from simulator.agent.names import NameSet, SchemaVersion
 from stepnc_model.errors import StepNcError
 from tests.asking import asked_simulation
@@ -97,12 +97,12 @@ def test_the_result_tells_the_deviation_and_its_seed(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     simulation = run("paper003_case2", "paper003", seed=7)
-    print_simulation(simulation)
+    print_result(SimulateResult(simulation=simulation))
     shown = capsys.readouterr().out
     assert "deviates by up to ±10 % in feed and ±5 % in rapid, seed 7" in shown
-    said = json.loads(simulation_json(simulation))["power_deviation"]
+    said = SimulateResult(simulation=simulation).record()["power_deviation"]
     assert said == {"feed": 0.1, "traverse": 0.05, "seed": 7}
-    plain = json.loads(simulation_json(run("paper003_case2", "paper003", seed=None)))
+    plain = SimulateResult(simulation=run("paper003_case2", "paper003", seed=None)).record()
     assert plain["power_deviation"] is None
 
 

@@ -8,9 +8,9 @@ import pyarrow as pa
 import pytest
 from pyarrow import parquet
 
+import stepnc
 from optimiser.problem import LimitName
 from service import progress
-from service.paths import toolpaths
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import Simulation, simulate
 from service.verbs.optimise import program as advising
@@ -71,7 +71,7 @@ def face(part: Path) -> Path:
 def posted(file: Path, control: Dialect, folder: Path) -> CodeRequest:
     """NC code of a program."""
     code = folder / f"code{control.suffix}"
-    toolpaths.post(toolpaths.PostRequest(file=file, control=control.value, output=code))
+    stepnc.post(file, control=control.value, output=code)
     return CodeRequest(code=code, dialect=control.value)
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from simulator.physics import known_places
 from simulator.physics.flutes import CuttingEdges, ForceLaw
-from simulator.physics.known_places import DIGITS, Floats, peak_at, wall_at
-from simulator.physics.tooth_forces import Places, peak_resultant, wall_force
+from simulator.physics.known_places import DIGITS, peak_at, wall_at
+from simulator.physics.tooth_forces import Floats, Places, peak_resultant, wall_force
 
 EDGES = CuttingEdges(teeth=3, diameter=8.0, helix_angle=0.5, corner_radius=1.0)
 LAW = ForceLaw(exponent=0.75)

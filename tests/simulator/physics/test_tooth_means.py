@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from simulator.physics.flutes import CuttingEdges, ForceLaw
 from simulator.physics.tooth_forces import forces, one_place
-from simulator.physics.tooth_means import LOST, Arcs, Floats, periods, tooth_means
+from simulator.physics.tooth_means import LOST, Arcs, Floats, periods
 from simulator.physics.uneven_teeth import Runout, eccentric_runout
+from tests.oracles.tooth_means import tooth_means
 
 EXPONENT = 0.75
 FEED = 0.04

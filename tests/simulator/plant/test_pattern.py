@@ -17,7 +17,7 @@ from simulator.plant.course import (
 from simulator.spec import Kienzle
 from tests.simulator.physics.discs import Mill
 
-SLOT = EngagedTeeth(count=2, entry_angle=0.0, exit_angle=pi, exponent=1.0)
+SLOT = EngagedTeeth(number=2, entry_angle=0.0, exit_angle=pi, exponent=1.0)
 
 
 @given(
@@ -32,7 +32,7 @@ def test_the_mean_of_a_revolution_is_one(
     count: int, entry: float, contact: float, exponent: float, runout: float, lag: float
 ) -> None:
     teeth = EngagedTeeth(
-        count=count,
+        number=count,
         entry_angle=entry,
         exit_angle=min(entry + contact, pi),
         exponent=exponent,
@@ -53,13 +53,13 @@ def test_one_tooth_of_two_in_a_slot_takes_the_sine() -> None:
 
 
 def test_four_teeth_in_a_half_immersion_never_take_nothing() -> None:
-    half = EngagedTeeth(count=4, entry_angle=pi / 2.0, exit_angle=pi, exponent=1.0)
+    half = EngagedTeeth(number=4, entry_angle=pi / 2.0, exit_angle=pi, exponent=1.0)
     assert pattern(half).min() > 0.0
 
 
 def test_runout_loads_the_highest_tooth() -> None:
     shape = pattern(
-        EngagedTeeth(count=2, entry_angle=0.0, exit_angle=pi, exponent=1.0, runout=0.2)
+        EngagedTeeth(number=2, entry_angle=0.0, exit_angle=pi, exponent=1.0, runout=0.2)
     )
     high, low = shape.mean(axis=1)
     # Chips min(sin φ + 0.4, 2·sin φ) and max(sin φ − 0.4, 0), integrated over the arc.
@@ -69,27 +69,27 @@ def test_runout_loads_the_highest_tooth() -> None:
 
 
 def test_a_broken_tooth_leaves_its_chip_to_the_next() -> None:
-    broken = EngagedTeeth(count=2, entry_angle=0.0, exit_angle=pi, exponent=1.0, broken=0)
+    broken = EngagedTeeth(number=2, entry_angle=0.0, exit_angle=pi, exponent=1.0, broken=0)
     none, double = pattern(broken).mean(axis=1)
     assert none == 0.0
     assert double == pytest.approx(2.0)
 
 
 def test_a_revolution_with_a_broken_tooth_takes_less_by_the_law_of_the_chip() -> None:
-    broken = EngagedTeeth(count=2, entry_angle=0.0, exit_angle=pi, exponent=0.75, broken=1)
+    broken = EngagedTeeth(number=2, entry_angle=0.0, exit_angle=pi, exponent=0.75, broken=1)
     assert pattern(broken).mean() == pytest.approx(0.5 * 2.0**0.75)
 
 
 def test_without_an_arc_the_force_is_even() -> None:
     assert (
-        pattern(EngagedTeeth(count=3, entry_angle=0.0, exit_angle=0.0, exponent=0.8)) == 1.0
+        pattern(EngagedTeeth(number=3, entry_angle=0.0, exit_angle=0.0, exponent=0.8)) == 1.0
     ).all()
 
 
 def test_the_peak_of_a_slot_with_four_teeth_is_that_of_two_at_45_degrees() -> None:
     # Two teeth at 45° and 135°: 1 towards the side and 0.3 against the feed at any rotation,
     # over the mean 4/π of four teeth in a slot.
-    slot = EngagedTeeth(count=4, entry_angle=0.0, exit_angle=pi, exponent=1.0)
+    slot = EngagedTeeth(number=4, entry_angle=0.0, exit_angle=pi, exponent=1.0)
     assert peak_over_mean(slot) == pytest.approx((1.0 + 0.3**2) ** 0.5 * pi / 4.0, rel=1e-3)
 
 
@@ -97,7 +97,7 @@ def test_peak_over_mean_is_that_of_the_plan() -> None:
     """Thin discs over the mean force of the physics, D = 12 mm and a_p = 9 mm."""
     law, arc = Kienzle(k_c11=1.0, m_c=0.22), Engagement(entry_angle=1.9, exit_angle=pi)
     cut = MillingCut(feed_per_tooth=1.0, teeth=3, axial_depth=9.0, engagement=arc)
-    teeth = EngagedTeeth(count=3, entry_angle=1.9, exit_angle=pi, exponent=0.78, lag=0.8)
+    teeth = EngagedTeeth(number=3, entry_angle=1.9, exit_angle=pi, exponent=0.78, lag=0.8)
     mill = Mill(
         teeth=3,
         diameter=12.0,
@@ -116,12 +116,14 @@ def test_peak_over_mean_is_that_of_the_plan() -> None:
 def test_no_mean_of_a_single_tooth_is_above_its_peak(
     contact: float, exponent: float, lag: float
 ) -> None:
-    arc = EngagedTeeth(count=1, entry_angle=0.0, exit_angle=contact, exponent=exponent, lag=lag)
+    arc = EngagedTeeth(
+        number=1, entry_angle=0.0, exit_angle=contact, exponent=exponent, lag=lag
+    )
     assert peak_over_mean(arc) >= 1.0
 
 
 def test_a_helix_evens_the_force_out() -> None:
-    straight = EngagedTeeth(count=3, entry_angle=1.9, exit_angle=pi, exponent=0.78)
+    straight = EngagedTeeth(number=3, entry_angle=1.9, exit_angle=pi, exponent=0.78)
     spread = [pattern(straight._replace(lag=lag)).std() for lag in (0.0, 0.8, 1.6)]
     assert spread == sorted(spread, reverse=True)
     # At the lag of a tooth pitch the force stays the same.
@@ -129,6 +131,6 @@ def test_a_helix_evens_the_force_out() -> None:
 
 
 def test_without_an_arc_the_peak_is_the_mean() -> None:
-    nothing = EngagedTeeth(count=2, entry_angle=0.0, exit_angle=0.0, exponent=0.8)
+    nothing = EngagedTeeth(number=2, entry_angle=0.0, exit_angle=0.0, exponent=0.8)
     assert peak_over_mean(nothing) == 1.0
     assert wall_over_mean(nothing) == 0.0

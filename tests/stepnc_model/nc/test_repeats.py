@@ -75,9 +75,9 @@ def test_the_usual_bound_costs_little_memory_and_time(tmp_path: Path) -> None:
     file = tmp_path / "repeats.nc"
     file.write_text(HEAD + CYCLE * 200 + "M30\n")
     (text,) = refusals(
-        "check_code(path)",
+        "stepnc.check(path)",
         [file],
-        imports="from service.code_contents import check_code",
+        imports="import stepnc, service.verbs.check.run",
         memory=1000,
         seconds=25,
     )

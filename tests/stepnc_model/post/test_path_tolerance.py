@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from service.paths.toolpaths import nc_lines, tool_paths
+from service.paths.toolpaths import nc_lines, paths_of
 from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import Linear, MachineType
 from stepnc_model.post.dialect import Dialect
@@ -18,7 +18,7 @@ MODE = re.compile(r"^(?:N\d+ )?(G6[014].*)$")
 
 
 def modes(part: str, control: Dialect, *, is_exact: bool = False) -> list[str]:
-    lines = nc_lines(tool_paths(PARTS / part), control, is_exact=is_exact)
+    lines = nc_lines(paths_of(Program.load(PARTS / part)), control, is_exact=is_exact)
     return [found[1] for line in lines if (found := MODE.match(line))]
 
 
@@ -37,7 +37,7 @@ def test_each_workingstep_has_a_tolerance_within_its_bounds() -> None:
 
 
 def test_linuxcnc_code_names_its_path_mode_before_the_first_move() -> None:
-    lines = list(nc_lines(tool_paths(PARTS / "bracket.stpnc"), Dialect.LINUXCNC))
+    lines = list(nc_lines(paths_of(Program.load(PARTS / "bracket.stpnc")), Dialect.LINUXCNC))
     first_move = next(row for row, line in enumerate(lines) if re.search(r"\bG[0123]\b", line))
     first_mode = next(row for row, line in enumerate(lines) if "G64" in line)
     assert first_mode < first_move
@@ -57,7 +57,7 @@ def test_exact_stops_are_written_where_a_control_has_them() -> None:
 
 
 def test_code_with_a_path_mode_is_read_back() -> None:
-    paths = tool_paths(PARTS / "paper002.stpnc")
+    paths = paths_of(Program.load(PARTS / "paper002.stpnc"))
     for control in (Dialect.LINUXCNC, Dialect.FANUC, Dialect.SINUMERIK):
         ends = []
         for is_exact in (False, True):

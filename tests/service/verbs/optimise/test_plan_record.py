@@ -8,10 +8,6 @@ from typing import Any
 import pytest
 
 from optimiser.advice import tightest
-from service import chosen
-from service.contents import check
-from service.contents_output import contents_json
-from service.library_output import entries_json, entry_json
 from service.rendering.records import dump
 from service.verbs.optimise import program as advising
 from service.verbs.optimise.plan_result import ProgramAdvice
@@ -123,31 +119,6 @@ def test_each_limit_is_told_once_for_each_sense() -> None:
         for load in state.loads:
             worst = told[pairs.index((load.limit.name, load.limit.sense))]
             assert worst.margin <= load.margin
-
-
-def test_contents_tell_the_workingsteps_in_order() -> None:
-    contents = json.loads(contents_json(check(PARTS / "bracket.stpnc")))
-    assert contents["is_usable"] is True
-    assert contents["schemas"] == ["MACHINING_SCHEMA", "MILLING_SCHEMA"]
-    assert [step["id"] for step in contents["workingsteps"]][:3] == [
-        "ROUGH FACE", "FINISH FACE", "ROUGH CONTOUR",
-    ]  # fmt: skip
-
-
-@pytest.mark.parametrize("kind", ["machines", "materials"])
-def test_a_library_is_json(kind: str) -> None:
-    entries = chosen.library_entries(kind)
-    listed = json.loads(entries_json(entries), parse_constant=refused)
-    assert [each["name"] for each in listed] == [entry.name for entry in entries]
-
-
-@pytest.mark.parametrize(
-    ("kind", "name"),
-    [("machines", "vmc15"), ("machines", "lathe22"), ("materials", "c45")],
-)
-def test_an_entry_is_json(kind: str, name: str) -> None:
-    entry = chosen.library_entry(kind, name)
-    assert json.loads(entry_json(entry), parse_constant=refused)["name"] == name
 
 
 def test_an_estimated_stability_is_told_with_its_band() -> None:

@@ -4,16 +4,16 @@ from pathlib import Path
 
 import pytest
 
+import stepnc
 from optimiser.advice import AdviceStatus
-from service.contents import check
 from service.reading import read_program
 from service.verbs.optimise import program as advising
 from service.verbs.optimise.plan_result import ProgramAdvice
-from service.verbs.optimise.program import convert
 from simulator.errors import UnknownMachine, UnknownMaterial
 from stepnc_model.errors import SchemaError, Severity, StepNcError, WriteError
 from stepnc_model.file_profile import FileProfile
 from tests.asking import AskedAdvice, asked_advice
+from tests.checked import check
 
 ROOT = Path(__file__).parents[4]
 PARTS = ROOT / "examples" / "parts"
@@ -208,8 +208,8 @@ def test_records_convert_there_and_back(paper: Path, profile: FileProfile) -> No
     assert written is not None
     (other,) = set(FileProfile) - {profile}
     there, back = paper.with_name("there"), paper.with_name("back")
-    convert(written, profile=other, output=there)
-    convert(there, profile=profile, output=back)
+    stepnc.convert(written, profile=other.value, output=there)
+    stepnc.convert(there, profile=profile.value, output=back)
     assert check(there).is_usable
     assert check(back).is_usable
 
@@ -217,7 +217,7 @@ def test_records_convert_there_and_back(paper: Path, profile: FileProfile) -> No
 def test_a_program_is_not_converted_onto_itself(paper: Path) -> None:
     before = paper.read_bytes()
     with pytest.raises(WriteError, match="name another file"):
-        convert(paper, profile=FileProfile.STANDARD, output=paper)
+        stepnc.convert(paper, profile="standard", output=paper)
     assert paper.read_bytes() == before
 
 

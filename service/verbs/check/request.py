@@ -1,0 +1,29 @@
+"""Request of ``check``."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from service.requests.fields import About, Request
+from service.requests.files import CodeControl, MostRepeats, ProgramFile
+from service.requests.given import Name, ProgramRequest
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CheckRequest(ProgramRequest):
+    """Request to check a program."""
+
+    dialect: CodeControl = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CheckFiles(Request):
+    """Files of ``check``."""
+
+    file: ProgramFile
+    name: Annotated[Name, About("name of the program in messages; empty: that of its file")] = (
+        ""
+    )
+    most_repeats: MostRepeats = None
+
+
+REQUEST, FILES = CheckRequest, CheckFiles

@@ -1,0 +1,136 @@
+"""Check of a STEP-NC program or of NC code: its contents, its errors, and its uses."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from service.files import read_bytes
+from service.paths.remarks import all_findings, program_remarks, tell_remarks
+from service.paths.toolpaths import Paths, paths_of
+from service.program_kind import ProgramKind, kind_for
+from service.reading import (
+    Tell,
+    given_data,
+    program_in,
+    read_stock,
+    require_no_other_stock,
+    silent,
+)
+from service.requests.serves import require_served
+from service.uses import uses_of
+from service.verbs.check.request import CheckFiles, CheckRequest
+from service.verbs.check.result import CodeContents, MoveCount, ProgramContents
+from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError
+from stepnc_model.given import completed
+from stepnc_model.nc.moves import MoveKind, NcMoves
+from stepnc_model.nc.program import read_program
+from stepnc_model.nc.rewrite import rewrite
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.program import Program
+
+
+def run(
+    request: CheckRequest, files: CheckFiles, *, tell: Tell = silent
+) -> ProgramContents | CodeContents:
+    """Read a program and check it; return its contents and findings.
+
+    Raises
+    ------
+    StepNcError
+        When the file is neither NC code nor one of Part 21, an option is not valid or does not
+        serve the program, or NC code repeats blocks without end.
+    """
+    kind = kind_for(files.file, request.dialect or "")
+    require_served(request, kind)
+    require_served(files, kind)
+    name = files.name or files.file.name
+    if kind is ProgramKind.NC_CODE:
+        if request.stock:
+            raise StepNcError("--stock cannot be used with NC code: its check cuts nothing")
+        return _code(request, files, name)
+    found = _program(request, files.file, name, tell)
+    tell_remarks(found.remarks, tell)
+    return found
+
+
+def _program(request: CheckRequest, path: Path, called: str, tell: Tell) -> ProgramContents:
+    """Contents and findings of a STEP-NC file."""
+    file = Part21File.from_bytes(read_bytes(path), name=called)
+    raw = read_stock(request.stock)
+    try:
+        program = program_in(file, units=request.units, name=called, stock=raw, tell=tell)
+    except SchemaError as error:
+        fault = Finding(
+            severity=Severity.ERROR,
+            message=str(error),
+        )
+        return ProgramContents(
+            name=called,
+            schemas=file.schemas,
+            instances=len(file),
+            program=None,
+            findings=(*file.findings, fault),
+        )
+    require_no_other_stock(program)
+    program = completed(program, given_data(request)).program
+    made = _paths(program)
+    found = program_remarks(program) if isinstance(made, StepNcError) else made.remarks
+    return ProgramContents(
+        name=called,
+        schemas=file.schemas,
+        instances=len(file),
+        program=program,
+        findings=(*all_findings(program), *found),
+        uses=uses_of(program, made),
+        remarks=found,
+    )
+
+
+def _paths(program: Program) -> Paths | StepNcError:
+    """Return the tool paths of a program, or the reason why they cannot be made."""
+    try:
+        return paths_of(program)
+    except StepNcError as error:
+        return error
+
+
+def _code(request: CheckRequest, files: CheckFiles, name: str) -> CodeContents:
+    """Contents and findings of NC code, which is executed."""
+    data = read_bytes(files.file)
+    program = read_program(data, dialect=request.dialect, most_repeats=files.most_repeats)
+    return CodeContents(
+        name=name,
+        control=program.dialect.value,
+        hints=program.hints,
+        machine=program.machine.value,
+        is_inch=program.unit > 1.0,
+        blocks=len(program.text),
+        executed=len(program.moves),
+        frames=program.moves.frames,
+        counts=tuple(_counts(program.moves)),
+        is_lossless=rewrite(program, ()).data == program.text.data,
+        findings=program.findings,
+    )
+
+
+def _counts(moves: NcMoves) -> Iterator[MoveCount]:
+    """Count the moves by tool, in the order of first use, and by kind."""
+    numbers, firsts = np.unique(moves.tool, return_index=True)
+    for number in numbers[np.argsort(firsts)]:
+        for kind in MoveKind:
+            chosen = (moves.tool == number) & (moves.kind == kind)
+            if not chosen.any():
+                continue
+            feeds = moves.feed[chosen]
+            known = feeds[~np.isnan(feeds)]
+            yield MoveCount(
+                tool=int(number),
+                kind=kind.name.lower(),
+                count=int(chosen.sum()),
+                length=float(np.nansum(moves.length[chosen])),
+                least_feed=float(known.min()) if len(known) else np.nan,
+                greatest_feed=float(known.max()) if len(known) else np.nan,
+                advisable=int(moves.is_advisable[chosen].sum()),
+                splittable=int(moves.is_splittable[chosen].sum()),
+            )

@@ -1,0 +1,55 @@
+"""Run of a program under force control, or evaluation of a recorded run."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from service.control.record import control_recorded
+from service.numbers import numbers_in
+from service.reading import Tell, silent
+from service.requests.run_files import run_files, run_request
+from service.requests.runs import ControlRequest
+from service.verbs.control.request import ControlFiles
+from service.verbs.control.result import ControlResult
+from stepnc_model.errors import StepNcError
+
+
+def run(request: ControlRequest, files: ControlFiles, *, tell: Tell = silent) -> ControlResult:
+    """Run a program under control, and record its outcomes if a knowledge base is named.
+
+    Raises
+    ------
+    StepNcError
+        When a file, a name, a number or an output is not valid.
+    """
+    if files.band:
+        low, high = numbers_in(files.band, "override band", counts=(2,))
+        request = replace(request, override_low_percent=low, override_high_percent=high)
+    places = replace(
+        run_files(files, request),
+        recorded=_recorded(files, tell),
+        loads=files.loads,
+        is_teaching=files.teach,
+        cut_log=files.cut_log,
+    )
+    found = control_recorded(
+        run_request(request, files), places, knowledge=files.kb, by=files.by, tell=tell
+    )
+    return ControlResult(run=found)
+
+
+def _recorded(files: ControlFiles, tell: Tell) -> Path | None:
+    """Return the file of the recorded run; the next run of an agent is recorded first."""
+    if files.recorded is None:
+        return None
+    if "://" not in files.recorded:
+        return Path(files.recorded)
+    from service.recording.run import record  # noqa: PLC0415 (the client of agents)
+    from service.requests.recording import RecordingRequest  # noqa: PLC0415
+
+    if files.file is None:
+        raise StepNcError("--recorded needs a STEP-NC program: it is compared with its plan")
+    file = Path(f"{files.file.stem}.recorded.parquet")
+    tell(f"{files.recorded}: waiting for the next run of the program")
+    record(files.recorded, file, RecordingRequest(is_next_run=True), tell=tell)
+    tell(f"recorded: {file}")
+    return file

@@ -1,0 +1,1 @@
+"""List the machines, or show one."""

@@ -1,0 +1,1 @@
+"""List the materials, or show one."""

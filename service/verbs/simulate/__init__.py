@@ -1,0 +1,1 @@
+"""Run a program on a virtual machine: time, force, power and energy."""

@@ -1,0 +1,36 @@
+"""Run of a program of any kind on the virtual machine."""
+
+from dataclasses import replace
+
+from service.reading import Tell, silent
+from service.requests.run_files import run_files, run_request
+from service.requests.runs import SimulationRequest
+from service.simulation.carbon import WORLD, stated
+from service.simulation.run import simulate
+from service.verbs.simulate.request import SimulateFiles
+from service.verbs.simulate.result import SimulateResult
+
+
+def run(
+    request: SimulationRequest, files: SimulateFiles, *, tell: Tell = silent
+) -> SimulateResult:
+    """Simulate a program.
+
+    Raises
+    ------
+    StepNcError
+        When a file, a name, a number or an output is not valid.
+    """
+    carbon = WORLD if files.carbon_g_kwh is None else stated(files.carbon_g_kwh)
+    places = replace(run_files(files, request), kept=files.keep_stock)
+    request = run_request(request, files)
+    if files.mtconnect is None:
+        found = simulate(request, places, tell=tell)
+    else:
+        from service.agent.run import DocumentChoice, simulated_with_document  # noqa: PLC0415 (lxml)
+
+        choice = DocumentChoice(
+            version=files.schema, names=files.names, part=files.part, batch=files.batch
+        )
+        found = simulated_with_document(request, places, files.mtconnect, choice, tell=tell)
+    return SimulateResult(simulation=found, carbon=carbon)

@@ -1,0 +1,35 @@
+"""Request of ``toolpath``."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+from service.requests.fields import About, FileUse, Request
+from service.requests.files import CodeControl, KeepsGoing, MostRepeats, ProgramFile
+from service.requests.given import ProgramRequest
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ToolPathRequest(ProgramRequest):
+    """Request of the tool paths of a program."""
+
+    dialect: CodeControl = None
+    keep_going: KeepsGoing = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ToolPathFiles(Request):
+    """Files of ``toolpath``."""
+
+    file: ProgramFile
+    most_repeats: MostRepeats = None
+    plot: Annotated[
+        Path | None,
+        About(
+            "draw the paths, coloured by type",
+            flag="--plot", use=FileUse.OUTPUT, metavar="PNG",
+        ),
+    ] = None  # fmt: skip
+
+
+REQUEST, FILES = ToolPathRequest, ToolPathFiles
