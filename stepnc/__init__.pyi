@@ -17,6 +17,8 @@ from service.verbs.check.result import ProgramContents as ProgramContents
 from service.verbs.control.result import ControlResult as ControlResult
 from service.verbs.convert.result import ConvertResult as ConvertResult
 from service.verbs.cycletime.result import CycleTimeResult as CycleTimeResult
+from service.verbs.dataset.result import DatasetReport as DatasetReport
+from service.verbs.factory.result import ShopResult as ShopResult
 from service.verbs.learn.result import LearnResult as LearnResult
 from service.verbs.library import EntryResult as EntryResult
 from service.verbs.library import EntryResult as EntryResult
@@ -25,6 +27,9 @@ from service.verbs.library import ListingResult as ListingResult
 from service.verbs.optimise.result import OptimiseResult as OptimiseResult
 from service.verbs.post.result import PostResult as PostResult
 from service.verbs.predict.result import PredictResult as PredictResult
+from service.verbs.record.result import RecordingResult as RecordingResult
+from service.verbs.result import ServedResult as ServedResult
+from service.verbs.result import ServedResult as ServedResult
 from service.verbs.score.result import ScoreResult as ScoreResult
 from service.verbs.simulate.result import SimulateResult as SimulateResult
 from service.verbs.taptest.result import TapTestResult as TapTestResult
@@ -32,6 +37,57 @@ from service.verbs.toolpath.result import CodePathResult as CodePathResult
 from service.verbs.toolpath.result import ToolPathResult as ToolPathResult
 from service.verbs.verify.result import VerificationResult as VerificationResult
 
+def agent(
+    file: str | Path | None = ...,
+    *,
+    nc: str | Path | None = ...,
+    dialect: str | Path = ...,
+    tools: str | Path | None = ...,
+    tools_unit: Literal['mm', 'inch'] | None = ...,
+    most_repeats: int | None = ...,
+    device: str | Path | None = ...,
+    schema_files: str | Path | None = ...,
+    runs: str | Path | None = ...,
+    units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
+    stock: str | Path | None = ...,
+    given: str | Path | Iterable[str | Path] = ...,
+    teeth: str | Path | Iterable[str | Path] = ...,
+    feed: str | Path = ...,
+    machine: str | Path = ...,
+    material: str | Path = ...,
+    control: Literal['exact-stop', 'junction', 'fir'] = ...,
+    filter_s: str | Path = ...,
+    deviation_mm: float = ...,
+    program_id: str | Path | None = ...,
+    advice_id: str | Path | None = ...,
+    pace: float = ...,
+    keep_going: bool = ...,
+    seed: int = ...,
+    rate_hz: float = ...,
+    force: Literal['mean', 'tooth'] = ...,
+    kc_factor: float = ...,
+    runout_um: float = ...,
+    has_wear: bool = ...,
+    has_lag: bool = ...,
+    has_power_deviation: bool = ...,
+    noise: Literal['none', 'normal', 'uniform'] = ...,
+    missing: float = ...,
+    zero: str | Path = ...,
+    schema: Literal['1.3', '2.0', '2.7'] = ...,
+    names: Literal['modern', 'papers'] = ...,
+    part: str | Path = ...,
+    batch: str | Path = ...,
+    speed: float = ...,
+    is_looped: bool = ...,
+    buffer: int = ...,
+    port: int = ...,
+    host: str | Path = ...,
+    host_names: str | Path | Iterable[str | Path] = ...,
+    shdr_port: int | None = ...,
+    allows_put: bool = ...,
+    mqtt: str | Path | None = ...,
+    adapters: str | Path | Iterable[str | Path] = ...,
+) -> ServedResult: ...
 def blockfit(
     log: str | Path,
     *,
@@ -56,12 +112,13 @@ def blocktest(
 def calibrate(
     runs: str | Path | Iterable[str | Path] = ...,
     *,
-    tool_life: str | Path | None = ...,
-    program: str | Path | None = ...,
+    file: str | Path | None = ...,
     nc: str | Path | None = ...,
+    dialect: str | Path = ...,
     tools: str | Path | None = ...,
     tools_unit: Literal['mm', 'inch'] | None = ...,
     most_repeats: int | None = ...,
+    tool_life: str | Path | None = ...,
     output: str | Path | None = ...,
     units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
     stock: str | Path | None = ...,
@@ -75,7 +132,6 @@ def calibrate(
     deviation_mm: float = ...,
     life: str | Path | Iterable[str | Path] = ...,
     edge: Literal['hss', 'carbide', 'ceramic'] = ...,
-    dialect: str | Path = ...,
 ) -> CalibrationResult | ToolLifeResult: ...
 def canonical(
     file: str | Path,
@@ -169,6 +225,35 @@ def cycletime(
     control: Literal['exact-stop', 'junction', 'fir'] = ...,
     deviation_mm: float = ...,
 ) -> CycleTimeResult: ...
+def dataset(
+    design: str | Path,
+    *,
+    output: str | Path,
+    cluster: str | Path = ...,
+    rows: int | None = ...,
+    has_csv: bool = ...,
+    has_programs: bool = ...,
+) -> DatasetReport: ...
+def factory(
+    shop: str | Path,
+    *,
+    output: str | Path | None = ...,
+    has_report: bool = ...,
+    cluster: str | Path = ...,
+    hours: float | None = ...,
+    warm_up_hours: float | None = ...,
+    seed: int = ...,
+    replications: int = ...,
+    sweep: str | Path | Iterable[str | Path] = ...,
+    has_energy: bool = ...,
+    documents: int = ...,
+    is_live: bool = ...,
+    speed: float = ...,
+    port: int = ...,
+    host: str | Path = ...,
+    host_names: str | Path | Iterable[str | Path] = ...,
+    buffer: int = ...,
+) -> ShopResult | ServedResult: ...
 def learn(
     dataset: str | Path,
     *,
@@ -274,6 +359,15 @@ def predict(
     machine: str | Path | None = ...,
     material: str | Path | None = ...,
 ) -> PredictResult: ...
+def record(
+    url: str | Path,
+    *,
+    output: str | Path,
+    duration_s: float | None = ...,
+    is_until_completed: bool = ...,
+    is_buffered: bool = ...,
+    is_next_run: bool = ...,
+) -> RecordingResult: ...
 def score(
     model: str | Path,
     runs: str | Path,

@@ -9,9 +9,6 @@ import sys
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from service.cli.agent import add_agent_command
-from service.cli.dataset import add_dataset_command
-from service.cli.factory import add_factory_command
 from service.cli.kbe import USAGE, add_knowledge_commands
 from service.cli.options import (
     BAD_INPUT,
@@ -20,7 +17,6 @@ from service.cli.options import (
     CommandParser,
     Commands,
 )
-from service.cli.record import add_record_command
 from service.cli.serve import add_service_commands
 from service.cli.verbs import add_verb, verb_parser
 from service.verbs.verb import verbs
@@ -58,11 +54,7 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     )
     commands = top.add_subparsers(dest="command", metavar="COMMAND", parser_class=CommandParser)
     add_verb(commands, verbs()["optimise"])
-    add_agent_command(commands)
-    add_record_command(commands)
     add_knowledge_commands(commands)
-    add_factory_command(commands)
-    add_dataset_command(commands)
     for verb in verbs().values():
         if verb.name not in commands.choices:
             add_verb(commands, verb)

@@ -10,8 +10,6 @@ from service.requests.fields import output_path
 
 __all__ = ["BAD_INPUT", "INFEASIBLE", "LIMIT_EXCEEDED", "NOTHING_ADVISED", "OK"]
 
-CONTROLS = "linuxcnc, fanuc, haas, sinumerik, heidenhain or canonical"
-
 if TYPE_CHECKING:
     Commands = argparse._SubParsersAction["CommandParser"]
 else:
@@ -52,31 +50,6 @@ def output_names(parser: argparse.ArgumentParser) -> tuple[str, ...]:
     return tuple(each.dest for each in parser._actions if each.type is output_path)
 
 
-def add_most_repeats(parser: argparse.ArgumentParser) -> None:
-    """Add the option that bounds how much NC code may repeat."""
-    parser.add_argument(
-        "--most-repeats",
-        type=repeats,
-        default=None,
-        metavar="N",
-        help="blocks, and moves, that NC code may execute beyond those of its file, by calls, "
-        "loops and repeated cycles (default: 1000000, which take about 100 MB and 10 s)",
-    )
-
-
-def repeats(word: str) -> int:
-    """Return a number of repeats.
-
-    Raises
-    ------
-    ArgumentTypeError
-        When the argument is no number of at most nine digits.
-    """
-    if not (word.isascii() and word.isdigit() and len(word) <= 9):
-        raise argparse.ArgumentTypeError(f"{word[:20]!r}: expected a number up to 999999999")
-    return int(word)
-
-
 def add_json(parser: argparse.ArgumentParser) -> None:
     """Add the option for JSON output."""
     parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
@@ -95,15 +68,3 @@ def text(word: str) -> str:
     except UnicodeEncodeError as error:
         raise argparse.ArgumentTypeError(f"{word!r} is not valid text") from error
     return word
-
-
-def add_cluster(parser: argparse.ArgumentParser) -> None:
-    """Add the option that names a Dask cluster."""
-    parser.add_argument(
-        "--cluster",
-        type=text,
-        default="",
-        metavar="ADDRESS",
-        help="run on the Dask cluster of this scheduler, tcp://127.0.0.1:8786 or, beyond this "
-        "machine, tls://HOST:PORT (default: on processes of this machine)",
-    )

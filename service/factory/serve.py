@@ -33,9 +33,7 @@ UPDATES = 10.0
 MOST_DEVICES = 200
 
 
-def serve_shop(
-    file: Path, request: FactoryRequest, live: LiveFactoryRequest, *, tell: Tell = silent
-) -> None:
+def serve_shop(file: Path, request: LiveFactoryRequest, *, tell: Tell = silent) -> None:
     """Serve a running shop until told to stop; after its end it shows the last values.
 
     Raises
@@ -44,7 +42,6 @@ def serve_shop(
         When the file, a program or an option is invalid, or the port is not free.
     """
     require_bounds(request)
-    require_bounds(live)
     require_live(request)
     shop = chosen_shop(source_of_file(file), request)
     if len(shop.machines) > MOST_DEVICES:
@@ -52,9 +49,9 @@ def serve_shop(
             f"{file.name}: {len(shop.machines)} machines: one agent serves at most "
             f"{MOST_DEVICES}"
         )
-    with listening(live.host, live.port) as listener:
+    with listening(request.host, request.port) as listener:
         plan = machining_plan(shop, PartCycles(tell=tell), place=file.name)
-        rate = min(FASTEST, UPDATES / live.speed)
+        rate = min(FASTEST, UPDATES / request.speed)
         timelines = part_timelines(shop, plan, rate=rate, tell=tell)
         devices = shop_devices(shop)
         publisher = ShopPublisher(shop, plan, devices, timelines)
@@ -62,20 +59,20 @@ def serve_shop(
             shop, plan, seed=request.seed, programs={}, listeners=publisher.listeners
         )
         publisher.watch(running.view)
-        anchor = begin_of(shop.duration, live.speed)
+        anchor = begin_of(shop.duration, request.speed)
         agent = Agent(
             model=devices.model,
             clock=now,
-            size=live.buffer,
+            size=request.buffer,
             begin=anchor,
-            is_scaled=live.speed != 1.0,
+            is_scaled=request.speed != 1.0,
         )
-        work = ShopPlayer(running, publisher, agent, speed=live.speed, tell=tell)
+        work = ShopPlayer(running, publisher, agent, speed=request.speed, tell=tell)
         for machine, name in zip(shop.machines, devices.names, strict=True):
             renamed = "" if name == machine.name else f", device {name}"
             tell(f"machine {machine.name}{renamed}: http://{place_of(listener)}/{name}/current")
         tell(f"MTConnect agent: http://{place_of(listener)}/current")
-        hosts = known_hosts(live.host, live.host_names)
+        hosts = known_hosts(request.host, request.host_names)
         run_server(agent, for_known_hosts(application(agent), hosts), [work.run], listener)
 
 

@@ -1,6 +1,5 @@
 """Job ``factory``: run a shop, live at a pace or as fast as possible with replications."""
 
-import json
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
@@ -9,7 +8,6 @@ from typing import Any
 from service.factory.asked import MOST_PARTS, asked_source, require_asked, require_small
 from service.factory.cycles import PartCycles
 from service.factory.live import LiveShop
-from service.factory.output import factory_csv, factory_json, factory_page
 from service.factory.parts_file import PartTables
 from service.factory.plan import machining_plan
 from service.factory.replications import PartBound, ShopRun
@@ -22,6 +20,7 @@ from service.jobs.task import REPORT, RunningJob
 from service.live.series import SeriesWriter
 from service.requests.factory import FactoryOrder, FactoryRequest
 from service.session.runner import LiveRunner
+from service.verbs.factory.result import ShopResult
 from simulator.factory.measured import measures_of
 from simulator.factory.measures import over_replications
 from simulator.factory.records import Listeners
@@ -66,9 +65,10 @@ def run(task: RunningJob) -> None:
             most_parts=MOST_PARTS,
             require=require_small,
         )
-    write_atomically(task.folder / REPORT, factory_page(result).encode(errors="replace"))
-    write_atomically(task.folder / FIGURES, factory_csv(result).encode())
-    task.keep(json.loads(factory_json(result)))
+    shown = ShopResult(found=result)
+    write_atomically(task.folder / REPORT, shown.page().encode(errors="replace"))
+    write_atomically(task.folder / FIGURES, shown.csv().encode())
+    task.keep(shown.record())
 
 
 def _live(task: RunningJob, order: FactoryOrder, source: ShopSource) -> FactoryResult:

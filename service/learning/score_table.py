@@ -20,6 +20,14 @@ class ScoredModel:
     scores: Scores
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CurvePoint:
+    """Scores of the model after some training rows."""
+
+    rows: int
+    scores: Scores
+
+
 def score_columns(unit: str) -> tuple[Column[ScoredModel], ...]:
     """Columns of the scores; errors in the unit of the target."""
     name: Column[ScoredModel] = Column(

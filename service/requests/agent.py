@@ -10,6 +10,9 @@ from service.requests.given import Name
 from service.requests.runs import SimulationRequest
 from simulator.agent.names import NameSet, SchemaVersion
 
+AGENT = "options of the agent"
+"""Heading in the help."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AgentRequest(SimulationRequest):
@@ -17,64 +20,77 @@ class AgentRequest(SimulationRequest):
 
     schema: Annotated[
         SchemaVersion,
-        About("schema version of the documents: 1.3, 2.0 or 2.7", flag="--schema"),
+        About("schema version of the documents: 1.3, 2.0 or 2.7", group=AGENT, flag="--schema"),
     ] = SchemaVersion.V2_7
     names: Annotated[
         NameSet,
-        About("ids of the data items: modern, or those of the papers", flag="--names"),
+        About(
+            "ids of the data items: modern, or those of the papers", group=AGENT, flag="--names"
+        ),
     ] = NameSet.MODERN
-    part: Annotated[Name, About("id of the part", flag="--part", metavar="ID")] = ""
+    part: Annotated[Name, About("id of the part", group=AGENT, flag="--part", metavar="ID")] = (
+        ""
+    )
     batch: Annotated[
         Name,
-        About("id of the batch; its parts are ID-0, ID-1, …", flag="--batch", metavar="ID"),
+        About(
+            "id of the batch; its parts are ID-0, ID-1, …",
+            group=AGENT,
+            flag="--batch",
+            metavar="ID",
+        ),
     ] = ""
     speed: Annotated[
         float,
         Interval(ge=0.0, le=100_000.0),
         About("simulated seconds per wall-clock second; 0: the whole run at once",
-              name="speed", flag="--speed", metavar="X"),
+              name="speed", group=AGENT, flag="--speed", metavar="X"),
     ] = 1.0  # fmt: skip
     is_looped: Annotated[
-        bool, About("start the program again when it is over", flag="--loop")
+        bool, About("start the program again when it is over", group=AGENT, flag="--loop")
     ] = False
     buffer: Annotated[
         int,
         Interval(ge=1000, le=1 << 22),
-        About("observations that are kept", flag="--buffer", metavar="N"),
+        About("observations that are kept", group=AGENT, flag="--buffer", metavar="N"),
     ] = 1 << 17  # fmt: skip
     port: Annotated[
         int,
         Interval(ge=0, le=65535),
-        About("port to listen on; 0: any that is free", flag="--port", metavar="N"),
+        About("port to listen on; 0: any that is free", group=AGENT, flag="--port",
+              metavar="N"),
     ] = 5000  # fmt: skip
-    host: Annotated[str, About("address to listen on", flag="--host")] = "127.0.0.1"
+    host: Annotated[str, About("address to listen on", group=AGENT, flag="--host")] = (
+        "127.0.0.1"
+    )
     host_names: Annotated[
         tuple[Name, ...],
         MaxLen(100),
         About(
             "a host name by which clients reach this computer, beside its addresses; "
             "repeatable",
-            flag="--name", metavar="HOST",
+            group=AGENT, flag="--name", metavar="HOST",
         ),
     ] = ()  # fmt: skip
     shdr_port: Annotated[
         int | None,
         Interval(ge=0, le=65535),
         About("port of an SHDR adapter that feeds other agents", name="SHDR port",
-              flag="--shdr", metavar="N"),
+              group=AGENT, flag="--shdr", metavar="N"),
     ] = None  # fmt: skip
     allows_put: Annotated[
-        bool, About("let clients write assets and observations", flag="--allow-put")
+        bool,
+        About("let clients write assets and observations", group=AGENT, flag="--allow-put"),
     ] = False
     mqtt: Annotated[
         str | None,
         MaxLen(300),
-        About("MQTT broker to publish to (extra: mqtt)", name="MQTT broker", flag="--mqtt",
-              metavar="HOST:PORT"),
+        About("MQTT broker to publish to (extra: mqtt)", name="MQTT broker", group=AGENT,
+              flag="--mqtt", metavar="HOST:PORT"),
     ] = None  # fmt: skip
     adapters: Annotated[
         tuple[Annotated[str, MaxLen(300)], ...],
         MaxLen(20),
-        About("SHDR adapter to listen to, with --device; repeatable", flag="--adapter",
-              metavar="HOST:PORT"),
+        About("SHDR adapter to listen to, with --device; repeatable", group=AGENT,
+              flag="--adapter", metavar="HOST:PORT"),
     ] = ()  # fmt: skip

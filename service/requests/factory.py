@@ -13,6 +13,9 @@ from service.requests.runs import PaceOrNone, Seed
 MOST_REPLICATIONS = 500
 """Most replications that the service runs."""
 
+LIVE = "a shop that runs live"
+"""Heading in the help."""
+
 SHORTEST_REPAIR, LONGEST_REPAIR = 0.0, 10_000.0
 """Bounds of the repair time of an ordered failure, in min."""
 
@@ -73,37 +76,43 @@ class FactoryRequest(ShopTimes):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LiveFactoryRequest(Request):
-    """Request of a shop that runs live, for clients of its MTConnect agent."""
+class LiveFactoryRequest(FactoryRequest):
+    """Request of a shop that may run live, for clients of its MTConnect agent."""
+
+    is_live: Annotated[
+        bool,
+        About(
+            "run the shop at a pace, each machine as a device of one MTConnect agent",
+            group=LIVE, flag="--live",
+        ),
+    ] = False  # fmt: skip
 
     speed: Annotated[
         float,
         Interval(ge=0.01, le=10_000.0),
-        About("with --live: simulated seconds per wall-clock second", name="speed",
-              flag="--speed", metavar="X"),
+        About("simulated seconds per wall-clock second", name="speed",
+              group=LIVE, flag="--speed", metavar="X"),
     ] = 60.0  # fmt: skip
     port: Annotated[
         int,
         Interval(ge=0, le=65535),
-        About("with --live: port to listen on; 0: any that is free", flag="--port",
+        About("port to listen on; 0: any that is free", group=LIVE, flag="--port",
               metavar="N"),
     ] = 5000  # fmt: skip
-    host: Annotated[str, About("with --live: address to listen on", flag="--host")] = (
-        "127.0.0.1"
-    )
+    host: Annotated[str, About("address to listen on", group=LIVE, flag="--host")] = "127.0.0.1"
     host_names: Annotated[
         tuple[Name, ...],
         MaxLen(100),
         About(
-            "with --live: a host name by which clients reach this computer, beside its "
+            "a host name by which clients reach this computer, beside its "
             "addresses; repeatable",
-            flag="--name", metavar="HOST",
+            group=LIVE, flag="--name", metavar="HOST",
         ),
     ] = ()  # fmt: skip
     buffer: Annotated[
         int,
         Interval(ge=1000, le=1 << 22),
-        About("with --live: observations that are kept", flag="--buffer", metavar="N"),
+        About("observations that are kept", group=LIVE, flag="--buffer", metavar="N"),
     ] = 1 << 17  # fmt: skip
 
 

@@ -63,6 +63,15 @@ Knowledge = Annotated[
     ),
 ]  # fmt: skip
 
+Cluster = Annotated[
+    str,
+    About(
+        "run on the Dask cluster of this scheduler, tcp://127.0.0.1:8786 or, beyond this "
+        "machine, tls://HOST:PORT (default: on processes of this machine)",
+        flag="--cluster", metavar="ADDRESS",
+    ),
+]  # fmt: skip
+
 EntryName = Annotated[
     str | None,
     About(

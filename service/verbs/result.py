@@ -126,6 +126,16 @@ class Result:
         return self.view().html()
 
 
+class ServedResult(Result):
+    """Result of a verb that serves clients until it is stopped: it has no more to say."""
+
+    __slots__ = ()
+
+    def view(self) -> ResultView:
+        """Return a view without items."""
+        return ResultView()
+
+
 def _columns(
     columns: Sequence[Column[Any]], rows: Sequence[Any]
 ) -> Iterator[tuple[str, list[Any]]]:

@@ -13,7 +13,7 @@ from service.errors import Forbidden, Unreadable
 from service.factory import serve
 from service.known_hosts import Application, host_in, known_hosts
 from service.requests.agent import AgentRequest
-from service.requests.factory import FactoryRequest, LiveFactoryRequest
+from service.requests.factory import LiveFactoryRequest
 from service.simulation.run import RunFiles
 from tests.every_case import every_case
 from tests.service.factory.shops import TIMED
@@ -127,5 +127,5 @@ def test_the_agent_of_a_live_shop_answers_for_its_names(
     served: list[Application] = []
     monkeypatch.setattr(serve, "run_server", lambda _, app, *__, **___: served.append(app))
     live = LiveFactoryRequest(port=0, host_names=("planner.shop",))
-    serve.serve_shop(shop, FactoryRequest(), live)
+    serve.serve_shop(shop, live)
     require_guarded(served[0])

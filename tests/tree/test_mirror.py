@@ -68,12 +68,9 @@ THROUGH = {
     "service/cli/test_code.py": ("service/overload_bounds.py",),
     "service/along_path/test_output.py": ("service/along_path/figures.py",),
     "service/along_path/test_run.py": ("service/along_path/of_program.py",),
-    "service/cli/test_agent.py": ("service/cli/record.py",),
     "service/test_confirm.py": ("service/confirmed_run.py",),
     "service/test_same_stock.py": ("optimiser/stock_left.py", "service/divided_depth.py"),
     "service/factory/test_factory.py": (
-        "service/cli/factory.py",
-        "service/factory/output.py",
         "service/factory/parts_file.py",
         "service/factory/states_file.py",
         "service/factory/sweep.py",

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from service.requests.fields import About, FileUse, Request
-from service.requests.files import MostRepeats, ToolsUnit
-from service.requests.given import Name
+from service.requests.fields import About, FileUse
+from service.requests.run_files import CodeOfRun
 from service.requests.runs import MotionRequest
 from simulator.spec import CuttingMaterial
 
@@ -29,17 +28,10 @@ class CalibrationRequest(MotionRequest):
             flag="--edge",
         ),
     ] = CuttingMaterial.CARBIDE  # fmt: skip
-    dialect: Annotated[
-        Name,
-        About(
-            "dialect of the NC code: linuxcnc, fanuc, haas, sinumerik, heidenhain or canonical",
-            flag="--dialect", metavar="NAME",
-        ),
-    ] = ""  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CalibrationFiles(Request):
+class CalibrationFiles(CodeOfRun):
     """Files of ``calibrate``."""
 
     runs: Annotated[
@@ -53,30 +45,13 @@ class CalibrationFiles(Request):
             flag="--tool-life", use=FileUse.INPUT, metavar="CSV",
         ),
     ] = None  # fmt: skip
-    program: Annotated[
+    file: Annotated[
         Path | None,
         About(
-            "the STEP-NC program that was run", flag="--program", use=FileUse.INPUT,
+            "the program that was run, STEP-NC or NC code", flag="--program", use=FileUse.INPUT,
             metavar="FILE",
         ),
     ] = None  # fmt: skip
-    nc: Annotated[
-        Path | None,
-        About(
-            "the NC code that was run, instead of the program's own", flag="--nc",
-            use=FileUse.INPUT, metavar="CODE",
-        ),
-    ] = None  # fmt: skip
-    tools: Annotated[
-        Path | None,
-        About(
-            "tool table, for NC code without a program: TOML or CSV, LinuxCNC's tool.tbl, a "
-            "library of Fusion (.json, .tools), HSMWorks (.hsmlib) or FreeCAD (.fctl)",
-            flag="--tools", use=FileUse.INPUT, metavar="TABLE",
-        ),
-    ] = None  # fmt: skip
-    tools_unit: ToolsUnit = None
-    most_repeats: MostRepeats = None
     output: Annotated[
         Path | None,
         About(

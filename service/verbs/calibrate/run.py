@@ -1,13 +1,13 @@
 """Calibration of a machine's parameters to measured runs, or of tool life to lives."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 from service.errors import MissingArgument
 from service.files import require_place, write_atomically
 from service.reading import Tell, silent
+from service.requests.run_files import run_files, run_request
 from service.requests.runs import MotionRequest, SimulationRequest
-from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles, waiting_machine
 from service.verbs.calibrate.request import CalibrationFiles, CalibrationRequest
 from service.verbs.calibrate.result import CalibrationResult, CycleTime
@@ -46,7 +46,7 @@ def run(
     """
     if not request.life and files.tool_life is None:
         return _machine_fit(request, files, tell)
-    if files.runs or files.program is not None:
+    if files.runs or files.file is not None:
         raise StepNcError("calibrate measured runs and tool lives in separate calls")
     return tool_life_fit(request, files, tell)
 
@@ -57,11 +57,12 @@ def _machine_fit(
     """Fit a machine to measured runs and, if an output is named, write its machine file."""
     if not files.runs:
         raise MissingArgument("name the measured runs, or tool lives with --life")
-    of_run = _run_files(request, files)
+    simulation = _simulation(request)
+    of_run = replace(run_files(files, simulation), output=None)
     if files.output is not None:
         _require_output(request, files, files.output)
     runs = [thinned(read_run(path), most=MOST_SAMPLES) for path in files.runs]
-    samples, machine = _simulated(_simulation(request, files), of_run, tell)
+    samples, machine = _simulated(run_request(simulation, files), of_run, tell)
     known = [features(samples, run) for run in runs]
     efficiency = machine.spindle.efficiency
     before = priors(machine)
@@ -89,29 +90,11 @@ def _machine_fit(
     )
 
 
-def _run_files(request: CalibrationRequest, files: CalibrationFiles) -> RunFiles:
-    """Program or NC code that was run."""
-    if files.nc is None and (request.dialect or files.tools):
-        raise StepNcError("--dialect and --tools need NC code: name it with --nc")
-    if files.tools_unit is not None and files.tools is None:
-        raise StepNcError("--tools-unit needs a tool table: name it with --tools")
-    if files.nc is None:
-        return RunFiles(file=files.program)
-    code = CodeRequest(
-        code=files.nc,
-        dialect=request.dialect,
-        tools=files.tools,
-        tools_unit=files.tools_unit,
-        stock=request.stock,
-        most_repeats=files.most_repeats,
-    )
-    return RunFiles(file=files.program, code=code)
-
-
-def _simulation(request: CalibrationRequest, files: CalibrationFiles) -> SimulationRequest:
-    """Run to compare with; a stock that is named for NC code is not the program's."""
-    given = {each.name: getattr(request, each.name) for each in fields(MotionRequest)}
-    return SimulationRequest(**given | ({} if files.nc is None else {"stock": ""}))
+def _simulation(request: CalibrationRequest) -> SimulationRequest:
+    """Run to compare with."""
+    return SimulationRequest(**{
+        each.name: getattr(request, each.name) for each in fields(MotionRequest)
+    })
 
 
 def _require_output(request: CalibrationRequest, files: CalibrationFiles, output: Path) -> None:
@@ -120,7 +103,7 @@ def _require_output(request: CalibrationRequest, files: CalibrationFiles, output
         raise WriteError("the name of a machine file must end with .toml", path=str(output))
     # A plain name is a library entry; a name with a suffix is a file.
     named = [Path(name) for name in (request.machine, request.material) if Path(name).suffix]
-    for other in (*files.runs, files.program, files.nc, files.tools, *named):
+    for other in (*files.runs, files.file, files.nc, files.tools, *named):
         if other is not None:
             require_place(output, apart_from=other)
     if output.exists() and not output.is_file():

@@ -4,32 +4,40 @@ from collections.abc import Sequence
 
 import plotly.graph_objects as go
 
-from service.learning.table import unit_of
+from service.learning.learned import LearnedModel
+from service.learning.score_table import CurvePoint
+from service.learning.table import Floats, unit_of
 from service.panels import BLUE, GREY
-from service.verbs.learn.result import CurvePoint, LearnResult
 
 
-def scatter_figure(result: LearnResult) -> go.Figure:
-    """Predicted over simulated target of the test rows, with the line on which both agree."""
-    target = result.model.target
+def scatter_figure(model: LearnedModel, actual: Floats, predicted: Floats) -> go.Figure:
+    """Predicted over actual target of the test rows, with the line on which both agree.
+
+    Parameters
+    ----------
+    model : LearnedModel
+    actual, predicted : (M,) array
+        In the unit of the target's name.
+    """
+    target = model.target
     unit = unit_of(target)
     ends = [
-        float(min(result.actual.min(), result.predicted.min())),
-        float(max(result.actual.max(), result.predicted.max())),
+        float(min(actual.min(), predicted.min())),
+        float(max(actual.max(), predicted.max())),
     ]
     figure = go.Figure()
     figure.add_scatter(
         x=ends, y=ends, mode="lines", line={"color": GREY}, name="equal", hoverinfo="skip"
     )
     figure.add_scatter(
-        x=result.actual.tolist(),
-        y=result.predicted.tolist(),
+        x=actual.tolist(),
+        y=predicted.tolist(),
         mode="markers",
         marker={"color": BLUE, "size": 5},
-        name=result.model.kind.value,
+        name=model.kind.value,
     )
     figure.update_layout(template="plotly_white", height=520, margin={"t": 20})
-    word = "measured" if result.model.physics else "simulated"
+    word = "measured" if model.physics else "simulated"
     figure.update_xaxes(title=f"{word} {target}, {unit}")
     figure.update_yaxes(title=f"predicted {target}, {unit}")
     return figure

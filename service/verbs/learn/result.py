@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 from service.learning.force_factor import ForceFactor
 from service.learning.learned import LearnedModel
 from service.learning.score_table import (
+    CurvePoint,
     ScoredModel,
     error_columns,
     model_name,
     score_columns,
 )
-from service.learning.scores import Score, Scores
+from service.learning.scores import Score
 from service.learning.table import Floats, unit_of
 from service.rendering.columns import Column
 from service.rendering.view import Fact, Item, ResultView, Table, TextLine
@@ -22,14 +23,6 @@ if TYPE_CHECKING:
     import plotly.graph_objects as go
 
 CURVE = "learning curve, of the same test rows"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CurvePoint:
-    """Scores of the model after some training rows."""
-
-    rows: int
-    scores: Scores
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -107,7 +100,7 @@ class LearnResult(Result):
 
         unit = unit_of(self.model.target)
         curve = [curve_figure(self.curve, unit)] if self.curve else []
-        return (scatter_figure(self), *curve)
+        return (scatter_figure(self.model, self.actual, self.predicted), *curve)
 
     def page(self) -> str:
         """Return a self-contained page with the scatter of the test rows."""

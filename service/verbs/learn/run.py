@@ -25,7 +25,7 @@ from service.learning.models import (
     trained,
 )
 from service.learning.power_law import fitted_law
-from service.learning.score_table import FITTED, MEAN, PHYSICS_ALONE, ScoredModel
+from service.learning.score_table import FITTED, MEAN, PHYSICS_ALONE, CurvePoint, ScoredModel
 from service.learning.scores import scores_of
 from service.learning.source import RowSource
 from service.learning.table import (
@@ -44,7 +44,7 @@ from service.reading import Tell, silent
 from service.requests.fields import member_of
 from service.verbs.learn.outcome import write_outcome
 from service.verbs.learn.request import LearnFiles, LearnRequest
-from service.verbs.learn.result import CurvePoint, LearnResult
+from service.verbs.learn.result import LearnResult
 from stepnc_model.errors import StepNcError
 
 FEWEST_OF_CURVE = 20

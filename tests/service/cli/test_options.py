@@ -2,6 +2,8 @@
 
 from service.cli import options as cli_options
 from service.cli.interrupts import INTERRUPTED
+from service.requests.fields import fields_of
+from service.requests.run_files import CodeOfRun
 from stepnc_model.post.dialect import Dialect
 
 
@@ -13,4 +15,5 @@ def test_exit_codes_can_be_told_apart_and_none_is_that_of_usage() -> None:
 
 
 def test_every_control_is_named() -> None:
-    assert all(control.value in cli_options.CONTROLS for control in Dialect)
+    (field,) = (each for each in fields_of(CodeOfRun) if each.name == "dialect")
+    assert all(control.value in field.about.text for control in Dialect)

@@ -47,7 +47,7 @@ def test_a_recorded_run_calibrates_a_machine(tmp_path: Path) -> None:
     with served(request, run) as url:
         record(f"{url}/paper003", tmp_path / "run.csv", WHOLE)
     result = stepnc.calibrate(
-        tmp_path / "run.csv", program=PARTS / "paper003_case1.stpnc", machine="paper003"
+        tmp_path / "run.csv", file=PARTS / "paper003_case1.stpnc", machine="paper003"
     )
     assert isinstance(result, CalibrationResult)
     estimates = result.calibration.estimates

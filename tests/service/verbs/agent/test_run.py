@@ -14,7 +14,7 @@ from service.cli.main import main
 from service.cli.options import BAD_INPUT, OK
 from tests.service.waiting import ended
 
-PART = Path(__file__).parents[3] / "examples" / "parts" / "paper000.stpnc"
+PART = Path(__file__).parents[4] / "examples" / "parts" / "paper000.stpnc"
 STEPNC = [sys.executable, "-c", "from service.cli.main import main; main()", "agent"]
 
 

@@ -1,0 +1,37 @@
+"""An agent that serves clients until it is stopped."""
+
+from dataclasses import replace
+
+from service.agent.run import AgentFiles, serve_agent
+from service.file_names import LOGS
+from service.reading import Tell, silent
+from service.requests.agent import AgentRequest
+from service.requests.run_files import run_files, run_request
+from service.verbs.agent.request import AgentPlaces
+from service.verbs.result import ServedResult
+from stepnc_model.errors import StepNcError
+
+
+def run(request: AgentRequest, files: AgentPlaces, *, tell: Tell = silent) -> ServedResult:
+    """Serve a run of a program, or what adapters tell, until told to stop.
+
+    Raises
+    ------
+    StepNcError
+        As :func:`service.agent.run.serve_agent`.
+    """
+    if request.program_id or request.advice_id or request.pace:
+        raise StepNcError("program_id, advice_id and pace are of the service: name a file")
+    file = files.file
+    is_log = file is not None and file.suffix.lower() in LOGS
+    # A recorded run is neither a program nor NC code.
+    named = replace(files, file=None) if is_log else files
+    run_places = run_files(named, request)
+    places = AgentFiles(
+        run=replace(run_places, file=file) if is_log else run_places,
+        device=files.device,
+        schemas=files.schema_files,
+        runs=files.runs,
+    )
+    serve_agent(run_request(request, named), places, tell=tell)
+    return ServedResult()

@@ -1,0 +1,64 @@
+"""Run of a shop: its figures, or live for clients."""
+
+from dataclasses import fields
+
+from service.execution.pools import pools_of
+from service.factory.run import run_factory
+from service.factory.serve import serve_shop
+from service.files import write_atomically
+from service.reading import Tell, silent
+from service.requests.factory import FactoryRequest, LiveFactoryRequest
+from service.requests.fields import fields_of
+from service.requests.serves import given_values
+from service.verbs.factory.request import FactoryFiles
+from service.verbs.factory.result import ShopResult
+from service.verbs.result import ServedResult
+from stepnc_model.errors import StepNcError
+
+REPORT = "factory.html"
+"""Name of the page in the folder."""
+
+
+def run(
+    request: LiveFactoryRequest, files: FactoryFiles, *, tell: Tell = silent
+) -> ShopResult | ServedResult:
+    """Run a shop, or serve it live until told to stop.
+
+    Raises
+    ------
+    StepNcError
+        When the file, a program or an option is invalid, or the machines wait for each other.
+    """
+    if request.is_live:
+        if files.output is not None or files.has_report:
+            raise StepNcError(
+                "--live serves clients and writes nothing: leave out -o, --report"
+            )
+        serve_shop(files.shop, request, tell=tell)
+        return ServedResult()
+    _require_not_live(request)
+    folder = files.output
+    if folder is None and (files.has_report or request.documents or request.has_energy):
+        raise StepNcError("--report, --documents and --energy write files: name a folder, -o")
+    pools = pools_of(files.cluster)
+    found = ShopResult(
+        found=run_factory(files.shop, request, folder=folder, pools=pools, tell=tell)
+    )
+    if folder is not None:
+        tell(f"written: {folder} ({found.found.parts_written} parts)")
+    if request.documents:
+        tell(f"MTConnect documents: {found.found.documents_written}")
+    if folder is not None and files.has_report:
+        write_atomically(folder / REPORT, found.page().encode())
+        tell(f"report: {folder / REPORT}")
+    return found
+
+
+def _require_not_live(request: LiveFactoryRequest) -> None:
+    """Refuse options that only a live shop uses."""
+    flags = {each.name: each.about.flag for each in fields_of(LiveFactoryRequest)}
+    for each in fields(FactoryRequest):
+        flags.pop(each.name, None)
+    for name in given_values(request):
+        if name in flags:
+            raise StepNcError(f"{flags[name]} needs --live")
