@@ -1,10 +1,9 @@
 """What the commands share."""
 
-from service.simulation.run_files import CodeOfRun
-
 from service.cli import options as cli_options
 from service.cli.interrupts import INTERRUPTED
 from service.requests.fields import fields_of
+from service.simulation.run_files import CodeOfRun
 from stepnc_model.post.dialect import Dialect
 
 
