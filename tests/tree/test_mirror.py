@@ -78,7 +78,6 @@ THROUGH = {
     "service/factory/test_live.py": ("service/factory/live_status.py",),
     "service/jobs/test_evaluate.py": ("service/jobs/review.py",),
     "service/jobs/test_runner.py": ("service/jobs/frozen.py",),
-    "service/dataset/test_run.py": ("service/cli/dataset.py",),
     "service/jobs/test_verify.py": ("service/jobs/logs.py",),
     "service/verbs/score/test_run.py": ("service/learning/recorded.py",),
     "service/rest/test_agent.py": ("service/agent/shop.py",),
@@ -98,7 +97,6 @@ THROUGH = {
     "service/test_report.py": ("service/figures.py",),
     "service/test_run_file.py": ("service/growing_file.py",),
     "service/verbs/test_verb.py": ("service/requests/files.py",),
-    "service/verbs/simulate/test_run.py": ("service/simulation/run_files.py",),
     "service/test_uses.py": ("service/paths/remarks.py",),
 }
 """tests, and the modules that they run through others"""

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from service.requests.agent import AGENT, AgentRequest
 from service.requests.fields import About, FileUse
-from service.requests.run_files import CodeOfRun
+from service.simulation.run_files import CodeOfRun
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

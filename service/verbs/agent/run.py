@@ -6,7 +6,7 @@ from service.agent.run import AgentFiles, serve_agent
 from service.file_names import LOGS
 from service.reading import Tell, silent
 from service.requests.agent import AgentRequest
-from service.requests.run_files import run_files, run_request
+from service.simulation.run_files import run_files, run_request
 from service.verbs.agent.request import AgentPlaces
 from service.verbs.result import ServedResult
 from stepnc_model.errors import StepNcError

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Annotated
 
 from service.requests.fields import About, FileUse
-from service.requests.run_files import CodeOfRun
 from service.requests.runs import MotionRequest
+from service.simulation.run_files import CodeOfRun
 from simulator.spec import CuttingMaterial
 
 

@@ -6,9 +6,9 @@ from pathlib import Path
 from service.errors import MissingArgument
 from service.files import require_place, write_atomically
 from service.reading import Tell, silent
-from service.requests.run_files import run_files, run_request
 from service.requests.runs import MotionRequest, SimulationRequest
 from service.simulation.run import RunFiles, waiting_machine
+from service.simulation.run_files import run_files, run_request
 from service.verbs.calibrate.request import CalibrationFiles, CalibrationRequest
 from service.verbs.calibrate.result import CalibrationResult, CycleTime
 from service.verbs.calibrate.tool_life import ToolLifeResult, tool_life_fit

@@ -3,7 +3,7 @@
 from service.cli import options as cli_options
 from service.cli.interrupts import INTERRUPTED
 from service.requests.fields import fields_of
-from service.requests.run_files import CodeOfRun
+from service.simulation.run_files import CodeOfRun
 from stepnc_model.post.dialect import Dialect
 
 
