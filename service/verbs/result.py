@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from service.exit_codes import OK
 from service.rendering.columns import Change, Column
 from service.rendering.view import ResultView
 from stepnc_model.errors import StepNcError
@@ -11,9 +12,6 @@ from stepnc_model.errors import StepNcError
 if TYPE_CHECKING:
     import plotly.graph_objects as go
     import pyarrow as pa
-
-OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED = 0, 3, 4, 5, 6
-"""Exit codes of the command line; with ``NOTHING_ADVISED`` no program is written."""
 
 WIDE = 10_000
 """Characters per line of a text that no terminal limits."""

@@ -23,11 +23,12 @@ from service.control.facts import (
     whole,
 )
 from service.control.run import ControlRun
+from service.exit_codes import BAD_INPUT, LIMIT_EXCEEDED, OK
 from service.rendering.columns import Cell, Change, Column
 from service.rendering.records import record
 from service.rendering.text import RED
 from service.rendering.view import Fact, Findings, Item, ResultView, Table, TextLine
-from service.verbs.result import BAD_INPUT, LIMIT_EXCEEDED, OK, Result
+from service.verbs.result import Result
 from stepnc_model.errors import StepNcError
 from stepnc_model.units import mm_min_from_speed
 

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 from service.along_path.output import STEP, along_path_items, along_path_record
 from service.along_path.run import FeedsAlongPath
+from service.exit_codes import LIMIT_EXCEEDED, NOTHING_ADVISED, OK
 from service.rendering.text import RED
 from service.rendering.view import Fact, Findings, ResultView, TextLine
 from service.verbs.optimise.result import OptimiseResult
-from service.verbs.result import LIMIT_EXCEEDED, NOTHING_ADVISED, OK
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import Finding
 from stepnc_model.nc.advice import RewrittenCode

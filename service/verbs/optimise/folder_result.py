@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
+from service.exit_codes import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, OK
 from service.rendering.columns import Change, Column
 from service.rendering.view import Fact, ResultView, Table, TextLine
 from service.verbs.optimise.ledger import ProgramRow, ProgramStatus
 from service.verbs.optimise.result import OptimiseResult
-from service.verbs.result import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, OK
 
 ROWS: tuple[Column[ProgramRow], ...] = (
     Column(key="program", heading="program", is_key=True, kind=str,

@@ -15,6 +15,7 @@ from optimiser.problem import LimitName
 from optimiser.remedies import slower_than_programmed
 from optimiser.roughness import IDEAL
 from optimiser.stability import Basis
+from service.exit_codes import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED, OK
 from service.plan_checks import chatter_words, unchecked_words
 from service.rendering.columns import Cell, Change, Column
 from service.rendering.records import finding_record
@@ -22,7 +23,6 @@ from service.rendering.text import RED
 from service.rendering.view import Fact, Findings, Item, ResultView, Table, TextLine
 from service.verbs.optimise.plan_record import FRONT, advice_record, plunge_feed_mm_min
 from service.verbs.optimise.result import OptimiseResult
-from service.verbs.result import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED, OK
 from stepnc_model.errors import Finding
 from stepnc_model.units import kw_from_watts, mm_min_from_speed, rpm_from_rev_s
 

@@ -2,13 +2,14 @@
 
 from dataclasses import asdict, dataclass
 
+from service.exit_codes import LIMIT_EXCEEDED, OK
 from service.learning.drift import Drift
 from service.learning.learned import LearnedModel
 from service.learning.score_table import ScoredModel, model_name, score_columns
 from service.learning.scores import Score
 from service.learning.table import unit_of
 from service.rendering.view import Fact, ResultView, Table, TextLine
-from service.verbs.result import LIMIT_EXCEEDED, OK, Result
+from service.verbs.result import Result
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -9,6 +9,7 @@ from functools import partial
 from math import nan
 from typing import TYPE_CHECKING, Any
 
+from service.exit_codes import BAD_INPUT, LIMIT_EXCEEDED, OK
 from service.rendering.columns import Column
 from service.rendering.records import record
 from service.rendering.text import RED
@@ -17,7 +18,7 @@ from service.simulation.carbon import WORLD, CarbonFactor, kilowatt_hours
 from service.simulation.facts import COMPONENTS as NAMES
 from service.simulation.facts import SimulationRow, exceeded, ratio, rows
 from service.simulation.run import Simulation
-from service.verbs.result import BAD_INPUT, LIMIT_EXCEEDED, OK, Result
+from service.verbs.result import Result
 from simulator.machine.deviation import SeededDeviation
 from simulator.machine.totals import Peak, Total
 from stepnc_model.errors import StepNcError

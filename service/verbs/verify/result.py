@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from service.exit_codes import LIMIT_EXCEEDED, OK
 from service.rendering.columns import Column
 from service.rendering.records import record
 from service.rendering.text import RED
 from service.rendering.view import Fact, Findings, ResultView, Table, TextLine
 from service.run_file import ColumnKind, RunColumn, RunFile, Words
-from service.verbs.result import LIMIT_EXCEEDED, OK, Result
+from service.verbs.result import Result
 from service.verification.facts import (
     RAW,
     UNSEEN,
