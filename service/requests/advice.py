@@ -48,7 +48,7 @@ class AdviceRequest(ProgramRequest):
         Interval(gt=0.0, le=1000.0),
         About(
             "largest Ra of finished surfaces, in µm", unit="µm", name="roughness",
-            flag="--roughness", metavar="UM",
+            group="limits", flag="--roughness", metavar="UM",
         ),
     ] = None  # fmt: skip
     free: Annotated[
@@ -66,13 +66,18 @@ class AdviceRequest(ProgramRequest):
     ] = ()  # fmt: skip
     profile: Annotated[
         FileProfile,
-        About("how advice is recorded: optimisation or standard", flag="--profile"),
+        About(
+            "how advice is recorded: optimisation or standard",
+            group="what is written",
+            flag="--profile",
+        ),
     ] = FileProfile.OPTIMISATION
     records: Annotated[
         RecordChoice,
         About(
             "all, or none: advice is written into the technologies only, without a plunge feed "
             "of its own",
+            group="what is written",
             flag="--records",
         ),
     ] = RecordChoice.ALL
@@ -81,6 +86,7 @@ class AdviceRequest(ProgramRequest):
         About(
             "also write NC code with the advised feeds, for linuxcnc, fanuc, haas, sinumerik, "
             "heidenhain or canonical",
+            group="what is written",
             name="control", flag="--nc", metavar="CONTROL", examples=("linuxcnc",),
         ),
     ] = None  # fmt: skip
@@ -90,6 +96,7 @@ class AdviceRequest(ProgramRequest):
             "NC code with exact stops at corners, instead of rounding them within the path "
             "tolerance",
             name="exact_path",
+            group="what is written",
             flag="--exact-path",
         ),
     ] = False
@@ -101,7 +108,7 @@ class AdviceRequest(ProgramRequest):
         Interval(ge=0.0, le=86_400.0),
         About(
             "time to change a worn tool, in s; tool life is then considered", unit="s",
-            name="tool change", flag="--tool-change-s", metavar="S",
+            name="tool change", group="limits", flag="--tool-change-s", metavar="S",
         ),
     ] = 0.0  # fmt: skip
     has_corrections: Annotated[bool, About("apply accepted corrections of k_c")] = True
@@ -119,7 +126,7 @@ class AdviceRequest(ProgramRequest):
         About(
             "quantile of k_c, by its spread in catalogues or as learned, at which loads keep "
             "their bounds; 0.5: nominal",
-            flag="--safety", metavar="Q",
+            group="limits", flag="--safety", metavar="Q",
         ),
     ] = USUAL_QUANTILE  # fmt: skip
     centre_cutting: Annotated[
@@ -134,6 +141,7 @@ class AdviceRequest(ProgramRequest):
         About(
             "ignore the limits of optimisation records in the file: motor power, greatest feed "
             "per tooth, greatest depth",
+            group="limits",
             flag="--ignore-record",
         ),
     ] = False
@@ -151,6 +159,7 @@ class AdviceRequest(ProgramRequest):
             "let tools that do not cut over centre plunge straight into solid material; "
             "without it: exit 5; of NC code: let straight plunges be faster than programmed, "
             "by their depth",
+            group="limits",
             flag="--allow-plunge",
         ),
     ] = False
@@ -159,6 +168,7 @@ class AdviceRequest(ProgramRequest):
         About(
             "also choose the feed along each path, within its limits at every place; the NC "
             "code of --nc gets these feeds",
+            group="along the path",
             flag="--along-path",
         ),
     ] = False
@@ -167,7 +177,7 @@ class AdviceRequest(ProgramRequest):
         Interval(ge=1, le=10_000),
         About(
             "largest number of different feeds in a workingstep along its path (default: any)",
-            flag="--levels", metavar="K",
+            group="along the path", flag="--levels", metavar="K",
         ),
     ] = None  # fmt: skip
     motion: Annotated[
@@ -175,6 +185,7 @@ class AdviceRequest(ProgramRequest):
         About(
             "motion control along the path, which decides how early a feed is commanded: fir, "
             "junction or exact-stop",
+            group="along the path",
             flag="--motion",
         ),
     ] = ControlModelName.FIR
@@ -182,6 +193,7 @@ class AdviceRequest(ProgramRequest):
         bool,
         About(
             "also compute the profile along the path with the jerk of the axes limited",
+            group="along the path",
             flag="--jerk",
         ),
     ] = False
@@ -191,13 +203,14 @@ class AdviceRequest(ProgramRequest):
         About(
             "also compute the smoothest profile along the path that takes at most this share "
             "of time more than the fastest",
-            flag="--smooth", metavar="SHARE",
+            group="along the path", flag="--smooth", metavar="SHARE",
         ),
     ] = None  # fmt: skip
     writes_toolpaths: Annotated[
         bool,
         About(
             "with --along-path: write each path into the program, with its feeds along it",
+            group="along the path",
             flag="--write-toolpaths",
         ),
     ] = False
@@ -206,6 +219,7 @@ class AdviceRequest(ProgramRequest):
         Interval(ge=0.0, le=100.0),
         About(
             "distance from the stock within which nothing counts as air, in mm; 3 for castings",
+            group="along the path",
             unit="mm", name="stock margin", flag="--stock-margin", metavar="MM",
         ),
     ] = 1.0  # fmt: skip
@@ -214,6 +228,7 @@ class AdviceRequest(ProgramRequest):
         Interval(gt=0.0, le=10.0),
         About(
             "rounding of corners by the control that is always permitted along the path, in mm",
+            group="along the path",
             unit="mm", name="corner tolerance", flag="--corner-tolerance", metavar="MM",
         ),
     ] = 0.05  # fmt: skip
@@ -222,6 +237,7 @@ class AdviceRequest(ProgramRequest):
         Interval(gt=0.0, le=1e6),
         About(
             "greatest feed along the path, in mm/min (default: that of the machine)",
+            group="along the path",
             unit="mm/min", name="greatest feed", flag="--max-feed", metavar="MM_MIN",
         ),
     ] = None  # fmt: skip
@@ -230,7 +246,7 @@ class AdviceRequest(ProgramRequest):
         Interval(ge=1.0, le=1000.0),
         About(
             "of NC code: greatest feed along the path over the programmed one",
-            name="greatest rise", flag="--greatest-rise", metavar="N",
+            name="greatest rise", group="NC code", flag="--greatest-rise", metavar="N",
         ),
     ] = USUAL_RISE  # fmt: skip
     least_feed_mm_min: Annotated[
@@ -239,6 +255,7 @@ class AdviceRequest(ProgramRequest):
         About(
             "feed along the path that is always permitted, in mm/min: where limits demand "
             "less, it is taken, and a warning says where",
+            group="along the path",
             unit="mm/min", name="least feed", flag="--least-feed", metavar="MM_MIN",
         ),
     ] = None  # fmt: skip
@@ -248,7 +265,7 @@ class AdviceRequest(ProgramRequest):
         About(
             "of NC code: a tool that leaves final surfaces, such as T3; repeatable; what "
             "follows a comment with the word FINISH does too",
-            flag="--finish", metavar="TOOL",
+            group="NC code", flag="--finish", metavar="TOOL",
         ),
     ] = ()  # fmt: skip
     keep: Annotated[
@@ -256,7 +273,7 @@ class AdviceRequest(ProgramRequest):
         MaxLen(1000),
         About(
             "of NC code: a tool whose feeds stay as programmed; repeatable",
-            flag="--keep", metavar="TOOL",
+            group="NC code", flag="--keep", metavar="TOOL",
         ),
     ] = ()  # fmt: skip
     is_unrolled: Annotated[
@@ -264,6 +281,7 @@ class AdviceRequest(ProgramRequest):
         About(
             "of NC code: write each block as often as it is executed, without calls and "
             "repeats, so that each call has feeds of its own",
+            group="NC code",
             flag="--unroll",
         ),
     ] = False
@@ -271,10 +289,14 @@ class AdviceRequest(ProgramRequest):
         Dialect | None,
         About(
             "of NC code: its control (default: recognised by what it says)",
-            flag="--dialect", metavar="CONTROL",
+            group="NC code", flag="--dialect", metavar="CONTROL",
         ),
     ] = None  # fmt: skip
     is_marked: Annotated[
         bool,
-        About("of NC code: add the reason of each changed feed as a comment", flag="--mark"),
+        About(
+            "of NC code: add the reason of each changed feed as a comment",
+            group="NC code",
+            flag="--mark",
+        ),
     ] = False

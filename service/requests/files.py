@@ -37,7 +37,7 @@ MostRepeats = Annotated[
     About(
         "blocks, and moves, that NC code may execute beyond those of its file, by calls, loops "
         "and repeated cycles (default: 1000000, which take about 100 MB and 10 s)",
-        flag="--most-repeats", metavar="N",
+        group="NC code", flag="--most-repeats", metavar="N",
     ),
 ]  # fmt: skip
 
@@ -51,7 +51,13 @@ Report = Annotated[
 
 ToolsUnit = Annotated[
     FileUnit | None,
-    About("unit of a tool.tbl: mm or inch", name="unit", flag="--tools-unit", metavar="UNIT"),
+    About(
+        "unit of a tool.tbl: mm or inch",
+        name="unit",
+        group="NC code",
+        flag="--tools-unit",
+        metavar="UNIT",
+    ),
 ]
 
 Knowledge = Annotated[

@@ -25,6 +25,7 @@ FileUnits = Annotated[
         "rpm-mmrev, revs-mmtooth, revs-mmrev, rpm-mmtooth-mmrev, revs-mmtooth-mmrev (per tooth "
         "in milling, per turn in drilling), or auto: the only ones in which all numbers are "
         "plausible",
+        group="the program",
         flag="--units",
     ),
 ]
@@ -49,6 +50,7 @@ class ProgramRequest(Request):
             "of a box, diameter,z0,z1 or diameter,length of a bar, x,y,diameter,z0,z1 of an "
             "upright bar; on the command line also an STL or STEP file (part.step#SOLID), of "
             "NC code an .npz file of --keep-stock too",
+            group="the program",
             flag="--stock", metavar="STOCK", examples=("0,0,-30,100,120,5",), read=raw_part_in,
         ),
     ] = ""  # fmt: skip
@@ -59,7 +61,7 @@ class ProgramRequest(Request):
             "value in place of the one in the file, or of one that it lacks, in its units: "
             "#INSTANCE.attribute=value; kept out of the file unless optimise is --in-place; "
             "repeatable",
-            flag="--set", metavar="VALUE", examples=("#46.depth=12",),
+            group="the program", flag="--set", metavar="VALUE", examples=("#46.depth=12",),
         ),
     ] = ()  # fmt: skip
     teeth: Annotated[
@@ -67,7 +69,7 @@ class ProgramRequest(Request):
         MaxLen(1000),
         About(
             "number of teeth that the file lacks: TOOL=NUMBER; repeatable",
-            flag="--teeth", metavar="TOOL=N", examples=("T3=2",),
+            group="the program", flag="--teeth", metavar="TOOL=N", examples=("T3=2",),
         ),
     ] = ()  # fmt: skip
     feed: Annotated[
@@ -75,6 +77,6 @@ class ProgramRequest(Request):
         About(
             "feed of technologies that give none: 240 in mm/min, or with its unit: 0.004m/s, "
             "0.1mm/tooth, 0.2mm/rev",
-            flag="--feed", metavar="FEED", examples=("240", "0.1mm/tooth"),
+            group="the program", flag="--feed", metavar="FEED", examples=("240", "0.1mm/tooth"),
         ),
     ] = ""  # fmt: skip

@@ -27,10 +27,13 @@ class AdviceFiles(Request):
         About(
             "default: FILE.optimised.stpnc, or the suffix of NC code; of a folder: another "
             "folder",
+            group="what is written",
             flag="--output", short="-o", use=FileUse.OUTPUT, metavar="FILE",
         ),
     ] = None  # fmt: skip
-    in_place: Annotated[bool, About("overwrite the input file", flag="--in-place")] = False
+    in_place: Annotated[
+        bool, About("overwrite the input file", group="what is written", flag="--in-place")
+    ] = False
     holding: Annotated[
         Path | None,
         About(
@@ -43,7 +46,7 @@ class AdviceFiles(Request):
         About(
             "tool table: the tools of NC code; of a program, which cut over centre or have "
             "wipers",
-            flag="--tools", use=FileUse.INPUT, metavar="TABLE",
+            group="NC code", flag="--tools", use=FileUse.INPUT, metavar="TABLE",
         ),
     ] = None  # fmt: skip
     tools_unit: ToolsUnit = None
@@ -52,11 +55,13 @@ class AdviceFiles(Request):
     feeds_csv: Annotated[
         Path | None,
         About(
-            "write the feeds along the paths as a table", flag="--feeds-csv",
-            use=FileUse.OUTPUT, metavar="CSV",
+            "write the feeds along the paths as a table", group="along the path",
+            flag="--feeds-csv", use=FileUse.OUTPUT, metavar="CSV",
         ),
     ] = None  # fmt: skip
-    dry_run: Annotated[bool, About("write no optimised program", flag="--dry-run")] = False
+    dry_run: Annotated[
+        bool, About("write no optimised program", group="what is written", flag="--dry-run")
+    ] = False
     report: Report = None
     cluster: Annotated[
         str,
