@@ -22,8 +22,8 @@ The phase determines the override::
   continues to its end.
 - STOPPED: 0, permanently.
 
-All functions are pure: a state and a reading give the next state. States are tuples and not
-dataclasses, as one is made several times in a tooth period. Units: mm, s, N, rev/s.
+All functions are pure: a state and a reading give the next state. States are tuples, as some
+are made in each tooth period. Units: mm, s, N, rev/s.
 """
 
 from collections.abc import Callable, Sequence
@@ -244,8 +244,8 @@ def awaited(state: LoopState, reading: Reading, law_for: LawFor) -> LoopState:
         Part of a tooth period, which has no load of a tooth.
     law_for : callable
     """
-    without_sample, without_force = _listened(state, reading, None, nan)
-    state = state._replace(without_sample=without_sample, without_force=without_force)
+    sample, force = _listened(state, reading, None, nan)
+    state = state._replace(without_sample=sample, without_force=force)
     if state.phase in {Phase.HELD, Phase.STOPPED} or not state.is_blind(reading.spindle_speed):
         return state
     return _decided(state, None, None, is_blind=True, law_for=law_for)
@@ -272,27 +272,22 @@ def _loaded(
     state: LoopState, reading: Reading, revolution: Revolution | None, force: float
 ) -> tuple[LoopState, float]:
     """Update the load of a tooth period, N, as compared with the threshold; NaN: not known."""
-    without_sample, without_force = _listened(state, reading, revolution, force)
-    shares = state.shares
-    if len(shares.usual) != reading.teeth:
-        shares = overload.fresh(reading.teeth)
-    if not state.by_teeth:
-        # Means of other periods do not show runout.
-        level = force
-    else:
-        # Noise in air and the entry into the work do not show runout.
+    silence = _listened(state, reading, revolution, force)
+    is_same = len(state.shares.usual) == reading.teeth
+    shares = state.shares if is_same else overload.fresh(reading.teeth)
+    level = force
+    # Means of other periods than a tooth's do not show runout.
+    if state.by_teeth:
+        # Noise in air and the entry into the work do not show it either.
         see = overload.seen if state.has_chips else overload.noted
         shares = see(shares, reading.tooth, force)
         level = overload.level(shares, reading.tooth, force)
     load = state.keep.load(state.settings.band, level=level, force=force)
-    # One copy of the state and not four: this runs once in each tooth period.
-    state = state._replace(
-        without_sample=without_sample,
-        without_force=without_force,
-        shares=shares,
-        greatest=max(state.greatest, load),
-    )
-    return state, load
+    # One copy for all: this runs once in each tooth period.
+    greatest, (sample, without) = max(state.greatest, load), silence
+    return state._replace(
+        without_sample=sample, without_force=without, shares=shares, greatest=greatest
+    ), load
 
 
 def _held(state: LoopState, reading: Reading, load: float) -> LoopState:
@@ -303,9 +298,8 @@ def _held(state: LoopState, reading: Reading, load: float) -> LoopState:
     held = _into(state._replace(hold=hold, holds=holds, law=None), Phase.HELD, 0.0)
     held = told(held, EventKind.HOLD, text)
     if holds > state.settings.band.holds:
-        return _stopped(
-            held, f"held {holds:.0f} times in quick succession: {state.monitor.cause}"
-        )
+        often = f"held {holds:.0f} times in quick succession"
+        return _stopped(held, f"{often}: {state.monitor.cause}")
     return held
 
 

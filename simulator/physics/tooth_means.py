@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simulator.kernels.kernel import entry, kernel
+from simulator.kernels.kernel import kernel
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -140,8 +140,9 @@ def _passed(angle: Floats, lag: Floats, delay: float) -> Floats:
     return share
 
 
-def tooth_means(at: Periods, offsets: Floats) -> Floats:
-    """Mean force in the period of each tooth, over that of equal teeth.
+@kernel
+def means_of(at: Periods, offsets: Floats, means: Floats) -> None:
+    """Mean force in the period of each tooth, over that of equal teeth; for kernels.
 
     ``h_j = max(0, min over k = 1…z of k·f_z·sin φ + ρ_j − ρ_{j−k})``, as
     :func:`simulator.physics.tooth_forces.forces` does.
@@ -149,13 +150,10 @@ def tooth_means(at: Periods, offsets: Floats) -> Floats:
     Parameters
     ----------
     at : Periods
-    offsets : (M, z) array, mm
+    offsets : (z,) array, mm
         Assumed radius of each tooth minus the nominal radius; ``LOST`` if broken.
-
-    Returns
-    -------
-    (M, z) array
-        Period j is the time in which tooth j is the last that has entered.
+    means : (z,) array
+        The result. Period j is the time in which tooth j is the last that has entered.
 
     Examples
     --------
@@ -163,24 +161,11 @@ def tooth_means(at: Periods, offsets: Floats) -> Floats:
 
     >>> thin = Arcs(entry_angle=np.full(4, 3.0), exit_angle=np.full(4, 3.1), lag=np.zeros(4))
     >>> four = periods(thin, feed_per_tooth=np.full(4, 0.1), exponent=1.0)
-    >>> tooth_means(four, np.array([[0.0, LOST, 0.0, 0.0]])).round(6)
-    array([[1., 0., 2., 1.]])
+    >>> means = np.empty(4)
+    >>> means_of(four, np.array([0.0, LOST, 0.0, 0.0]), means)
+    >>> means.round(6)
+    array([1., 0., 2., 1.])
     """
-    means = np.empty(offsets.shape)
-    _means(at, np.ascontiguousarray(offsets), means)
-    return means
-
-
-@entry
-def _means(at: Periods, offsets: Floats, means: Floats) -> None:
-    """Kernel of :func:`tooth_means`; the means are written into ``means``."""
-    for row in range(offsets.shape[0]):
-        means_of(at, offsets[row], means[row])
-
-
-@kernel
-def means_of(at: Periods, offsets: Floats, means: Floats) -> None:
-    """Write the means, (z,), of one set of offsets, (z,); for kernels."""
     for period in range(offsets.shape[0]):
         force = 0.0
         for back in range(at.cutting.shape[1]):
@@ -188,14 +173,14 @@ def means_of(at: Periods, offsets: Floats, means: Floats) -> None:
             for point in range(at.sine.shape[1]):
                 weight = at.weight[period, back, point]
                 if weight != 0.0:
-                    force += weight * _chip(at, offsets, period, tooth, point) ** at.exponent
+                    force += weight * _chip(at, offsets, period, (tooth, point)) ** at.exponent
         means[period] = force / at.equal[period]
 
 
 @kernel
-def _chip(at: Periods, offsets: Floats, period: int, tooth: int, point: int) -> float:
+def _chip(at: Periods, offsets: Floats, period: int, where: tuple[int, int]) -> float:
     """Chip of a tooth at a point of the arc over the feed per tooth."""
-    teeth, chip = offsets.shape[0], inf
+    (tooth, point), teeth, chip = where, offsets.shape[0], inf
     for step in range(1, teeth + 1):
         # An index below 0 counts from the end, in kernels too.
         higher = offsets[tooth] - offsets[tooth - step]
