@@ -18,12 +18,12 @@ The phase determines the override::
 - HELD: 0, until each tooth is below the set point or the axes stand.
 - BLIND: at most the safe override, until a revolution has a valid force.
 - OFF and INHIBITED: 1; the force is only watched. The switch and the lock of a workingstep take
-  effect from the next complete revolution or the next workingstep, and before BLIND; a hold
-  continues to its end.
+  effect from the next complete revolution or workingstep, and before BLIND; a hold continues to
+  its end.
 - STOPPED: 0, permanently.
 
-All functions are pure: a state and a reading give the next state. States are tuples and not
-dataclasses, as one is made several times in a tooth period. Units: mm, s, N, rev/s.
+All functions are pure: a state and a reading give the next state. States are tuples, as some
+are made in each tooth period. Units: mm, s, N, rev/s.
 """
 
 from collections.abc import Callable, Sequence
@@ -56,7 +56,6 @@ STANDING = 0.02
 
 FORGIVING = 1.0 / 100.0
 """Share of a feed hold forgotten per revolution: only holds in quick succession count."""
-
 BELOW = 500
 """Consecutive revolutions with an override below the band after which the program stops."""
 
@@ -67,7 +66,7 @@ REVOLUTIONS = 2.0
 """Revolutions without a force allowed besides the timeout; the first is mostly incomplete."""
 
 LEAST_WAY = 0.1
-"""Least override used to compute the program time of the next revolutions."""
+"""Least override in the program time of the next revolutions."""
 
 LawFor = Callable[[Plant], ControlLaw[Any]]
 """Function that returns a control law tuned for a process."""
@@ -244,8 +243,8 @@ def awaited(state: LoopState, reading: Reading, law_for: LawFor) -> LoopState:
         Part of a tooth period, which has no load of a tooth.
     law_for : callable
     """
-    without_sample, without_force = _listened(state, reading, None, nan)
-    state = state._replace(without_sample=without_sample, without_force=without_force)
+    sample, force = _listened(state, reading, None, nan)
+    state = state._replace(without_sample=sample, without_force=force)
     if state.phase in {Phase.HELD, Phase.STOPPED} or not state.is_blind(reading.spindle_speed):
         return state
     return _decided(state, None, None, is_blind=True, law_for=law_for)
@@ -272,25 +271,22 @@ def _loaded(
     state: LoopState, reading: Reading, revolution: Revolution | None, force: float
 ) -> tuple[LoopState, float]:
     """Update the load of a tooth period, N, as compared with the threshold; NaN: not known."""
-    without_sample, without_force = _listened(state, reading, revolution, force)
-    shares = state.shares
-    if len(shares.usual) != reading.teeth:
-        shares = overload.fresh(reading.teeth)
-    level = force  # Means of other periods than a tooth's do not show runout.
+    silence = _listened(state, reading, revolution, force)
+    is_same = len(state.shares.usual) == reading.teeth
+    shares = state.shares if is_same else overload.fresh(reading.teeth)
+    level = force
+    # Means of other periods than a tooth's do not show runout.
     if state.by_teeth:
-        # Noise in air and the entry into the work do not show runout.
+        # Noise in air and the entry into the work do not show it either.
         see = overload.seen if state.has_chips else overload.noted
         shares = see(shares, reading.tooth, force)
         level = overload.level(shares, reading.tooth, force)
     load = state.keep.load(state.settings.band, level=level, force=force)
-    # One copy of the state and not four: this runs once in each tooth period.
-    state = state._replace(
-        without_sample=without_sample,
-        without_force=without_force,
-        shares=shares,
-        greatest=max(state.greatest, load),
-    )
-    return state, load
+    # One copy for all: this runs once in each tooth period.
+    greatest, (sample, without) = max(state.greatest, load), silence
+    return state._replace(
+        without_sample=sample, without_force=without, shares=shares, greatest=greatest
+    ), load
 
 
 def _held(state: LoopState, reading: Reading, load: float) -> LoopState:
@@ -301,9 +297,8 @@ def _held(state: LoopState, reading: Reading, load: float) -> LoopState:
     held = _into(state._replace(hold=hold, holds=holds, law=None), Phase.HELD, 0.0)
     held = told(held, EventKind.HOLD, text)
     if holds > state.settings.band.holds:
-        return _stopped(
-            held, f"held {holds:.0f} times in quick succession: {state.monitor.cause}"
-        )
+        often = f"held {holds:.0f} times in quick succession"
+        return _stopped(held, f"{often}: {state.monitor.cause}")
     return held
 
 
@@ -446,7 +441,7 @@ def _tuned(
 ) -> tuple[ControlLaw[Any], Any]:
     """Tune the law for the cut that begins, and return it with its initial state."""
     # Rounded, so that equal cuts reuse a cached law.
-    lag = state.settings.servo_lag * revolution.spindle_speed / revolution.decision_turns
+    lag = state.settings.servo_lag * revolution.spindle_speed / _turns(revolution)
     lag = round(max(lag, 0.1), 1)
     exponent = state.keep.exponent
     law = law_for(Plant(exponent=round(exponent, 2) or exponent, lag=lag))
@@ -456,7 +451,7 @@ def _tuned(
 def _situation(state: LoopState, revolution: Revolution) -> Situation:
     """Input for the control law from the state and a revolution."""
     keep, preview = state.keep, state.preview
-    look_ahead = ceil(state.settings.look_ahead / revolution.decision_turns)
+    look_ahead = ceil(state.settings.look_ahead / _turns(revolution))
     way = revolution.period * max(revolution.override, LEAST_WAY)
     begin, end = revolution.progress_before, revolution.progress
     return Situation(
@@ -469,6 +464,11 @@ def _situation(state: LoopState, revolution: Revolution) -> Situation:
         expected=preview.mean(begin, end) if look_ahead else 0.0,
         ahead=preview.ahead(end, revolution=way, count=look_ahead) if look_ahead else (),
     )
+
+
+def _turns(revolution: Revolution) -> float:
+    """Turns between two decisions of the law."""
+    return 1.0 if revolution.by_teeth else max(revolution.turns, 1.0)
 
 
 def with_bounds(state: LoopState, *, cap: float) -> LoopState:

@@ -96,11 +96,6 @@ class Revolution:
         return self.period * self.spindle_speed
 
     @property
-    def decision_turns(self) -> float:
-        """Turns between two decisions of the law."""
-        return 1.0 if self.by_teeth else max(self.turns, 1.0)
-
-    @property
     def teeth(self) -> int:
         """Number of teeth of the cutter."""
         return len(self.tooth_peaks)

@@ -96,5 +96,5 @@ class Unavailable(ServiceError):
     """Something that the service depends on is missing or does not answer."""
 
 
-class MissingArgument(ServiceError):
+class MissingArgument(StepNcError):
     """A command was called without what it needs."""

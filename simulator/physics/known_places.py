@@ -16,7 +16,7 @@ from simulator.physics.tooth_forces import Floats, Places, peak_resultant, wall_
 DIGITS = 3
 """Number of decimals to which engagements are distinguished: µm, mrad."""
 
-KEPT = 200_000
+KEPT = 40_000
 """Number of places that are kept for a cutter and a law: 16 bytes each."""
 
 CUTTERS = 8

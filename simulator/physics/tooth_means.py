@@ -142,7 +142,7 @@ def _passed(angle: Floats, lag: Floats, delay: float) -> Floats:
 
 @kernel
 def means_of(at: Periods, offsets: Floats, means: Floats) -> None:
-    """Write the mean force in the period of each tooth, over that of equal teeth; for kernels.
+    """Mean force in the period of each tooth, over that of equal teeth; for kernels.
 
     ``h_j = max(0, min over k = 1…z of k·f_z·sin φ + ρ_j − ρ_{j−k})``, as
     :func:`simulator.physics.tooth_forces.forces` does.
@@ -153,7 +153,18 @@ def means_of(at: Periods, offsets: Floats, means: Floats) -> None:
     offsets : (z,) array, mm
         Assumed radius of each tooth minus the nominal radius; ``LOST`` if broken.
     means : (z,) array
-        Gets the means; period j is the time in which tooth j is the last that has entered.
+        The result. Period j is the time in which tooth j is the last that has entered.
+
+    Examples
+    --------
+    Four teeth on a short arc, so that each is alone in its period; one tooth is lost:
+
+    >>> thin = Arcs(entry_angle=np.full(4, 3.0), exit_angle=np.full(4, 3.1), lag=np.zeros(4))
+    >>> four = periods(thin, feed_per_tooth=np.full(4, 0.1), exponent=1.0)
+    >>> means = np.empty(4)
+    >>> means_of(four, np.array([0.0, LOST, 0.0, 0.0]), means)
+    >>> means.round(6)
+    array([1., 0., 2., 1.])
     """
     for period in range(offsets.shape[0]):
         force = 0.0
@@ -162,14 +173,14 @@ def means_of(at: Periods, offsets: Floats, means: Floats) -> None:
             for point in range(at.sine.shape[1]):
                 weight = at.weight[period, back, point]
                 if weight != 0.0:
-                    force += weight * _chip(at, offsets, period, tooth, point) ** at.exponent
+                    force += weight * _chip(at, offsets, period, (tooth, point)) ** at.exponent
         means[period] = force / at.equal[period]
 
 
 @kernel
-def _chip(at: Periods, offsets: Floats, period: int, tooth: int, point: int) -> float:
+def _chip(at: Periods, offsets: Floats, period: int, where: tuple[int, int]) -> float:
     """Chip of a tooth at a point of the arc over the feed per tooth."""
-    teeth, chip = offsets.shape[0], inf
+    (tooth, point), teeth, chip = where, offsets.shape[0], inf
     for step in range(1, teeth + 1):
         # An index below 0 counts from the end, in kernels too.
         higher = offsets[tooth] - offsets[tooth - step]

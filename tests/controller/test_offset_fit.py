@@ -12,7 +12,6 @@ from controller.offsets import PLAIN, SCALE, unknown
 from controller.tooth_shares import ToothShares
 from simulator.physics.tooth_means import LOST, Arcs, Floats, periods
 from tests.controller import plain_offsets
-from tests.oracles.tooth_means import tooth_means
 
 
 def shares(teeth: int, seed: int, lost: int | None) -> ToothShares:
@@ -29,7 +28,7 @@ def shares(teeth: int, seed: int, lost: int | None) -> ToothShares:
     offsets = random.normal(0.0, 0.01, teeth)
     if lost is not None:
         offsets[lost % teeth] = LOST
-    force = random.uniform(300.0, 320.0, teeth) * tooth_means(at, offsets[None])[0]
+    force = random.uniform(300.0, 320.0, teeth) * plain_offsets.means(at, offsets[None])[0]
     taken = force / force.mean() + random.normal(0.0, 0.01, teeth)
     errors = random.normal(0.0, 0.01, (teeth, teeth))
     noise = errors @ errors.T + 0.015**2 * np.eye(teeth)

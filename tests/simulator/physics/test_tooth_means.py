@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 
 from simulator.physics.flutes import CuttingEdges, ForceLaw
 from simulator.physics.tooth_forces import forces, one_place
-from simulator.physics.tooth_means import LOST, Arcs, Floats, periods
+from simulator.physics.tooth_means import LOST, Arcs, Floats, Periods, means_of, periods
 from simulator.physics.uneven_teeth import Runout, eccentric_runout
-from tests.oracles.tooth_means import tooth_means
 
 EXPONENT = 0.75
 FEED = 0.04
@@ -22,6 +21,14 @@ SAMPLES = 192
 def arcs(teeth: int, entry: float, exit_: float, lag: float) -> Arcs:
     even = np.ones(teeth)
     return Arcs(entry_angle=entry * even, exit_angle=exit_ * even, lag=lag * even)
+
+
+def tooth_means(at: Periods, offsets: Floats) -> Floats:
+    """Means of (M, z) sets of offsets, by the kernel as plain Python."""
+    means = np.empty(offsets.shape)
+    for row, each in zip(means, offsets, strict=True):
+        means_of(at, each, row)
+    return means
 
 
 def shares(at: Arcs, offsets: Floats, *, delay: float = 0.0, feed: float = FEED) -> Floats:
