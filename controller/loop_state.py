@@ -399,9 +399,8 @@ def _lowered(state: LoopState, revolution: Revolution) -> LoopState:
         actual=revolution.override,
         force=state.greatest,
     )
-    if got.override < state.override:
-        return state._replace(phase=Phase.FOLLOWING, allowed=got)
-    return state
+    is_lower = got.override < state.override
+    return state._replace(phase=Phase.FOLLOWING, allowed=got) if is_lower else state
 
 
 def _followed(
