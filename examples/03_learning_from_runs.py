@@ -35,7 +35,7 @@ with TemporaryDirectory() as folder:
         # Seven runs in ten need no more force than a plan at the 70 % quantile expects.
         plan = optimise(
             AdviceRequest(safety=0.7, **SHOP),
-            AdviceFiles(file=PART, output=planned, knowledge=known),
+            AdviceFiles(file=PART, output=planned, kb=known),
         ).plan
         run = control_recorded(
             ControlRequest(

@@ -119,11 +119,11 @@ def _record(plan: Plan, advised: _Advised) -> AdviceRecord:
         cutting_power=rounded(kw_from_watts(cutting)),
         spindle_speed=rounded(clockwise * best.speed),
         specific_cutting_resistance=rounded(cutting * 1000.0 / removal),
-        machining_time=rounded(after.time),
-        motor_power=rounded(kw_from_watts(after.motor_power)),
-        cutting_force=rounded(after.cutting_force),
-        energy=rounded(after.energy),
-        surface_roughness=rounded(um_from_mm(after.roughness)) if after.roughness else None,
+        machining_time=_predicted(after.time),
+        motor_power=_predicted(kw_from_watts(after.motor_power)),
+        cutting_force=_predicted(after.cutting_force),
+        energy=_predicted(after.energy),
+        surface_roughness=_predicted(um_from_mm(after.roughness)) if after.roughness else None,
         contact_angle=rounded(deg_from_rad(engagement.contact_angle)) if engagement else None,
         immersion=immersion(engagement) if engagement else None,
         programmed_feedrate=raw_feed if is_feed else None,
@@ -200,3 +200,11 @@ def immersion(engagement: Engagement) -> str:
     middle = 0.5 * (engagement.entry_angle + engagement.exit_angle)
     is_centred = abs(middle - half) < 1e-9
     return "BILATERAL_PART_IMMERSION" if is_centred else "UNIDIRECTIONAL_PART_IMMERSION"
+
+
+def _predicted(value: float) -> float:
+    """Round a predicted value to fewer digits than those of the feed that it follows from.
+
+    A second run reads the feed with the digits that were written, and must predict the same.
+    """
+    return float(f"{value:.9g}")
