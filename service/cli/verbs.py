@@ -5,7 +5,7 @@ from collections.abc import Callable
 from functools import partial
 
 from service.cli.options import CommandParser, Commands
-from service.verbs.result import Result
+from service.verbs.result import Result, ServedResult
 from service.verbs.verb import Verb
 
 
@@ -53,7 +53,10 @@ def _run(verb: Verb, options: argparse.Namespace) -> int:
     typed = {name: value for name, value in vars(options).items() if value or value == 0}
     given = {name: value for name, value in typed.items() if value is not False}
     result = ran(verb, request, files, given=given, tell=tell)
-    if options.json:
+    if isinstance(result, ServedResult):
+        if options.json:
+            tell("--json has no effect: what is served says nothing at its end")
+    elif options.json:
         from service.rendering.records import dump
         from service.terminal import write_out
 

@@ -18,8 +18,9 @@ def test_a_harder_material_is_found(tmp_path: Path) -> None:
     assert found.exit_code == 0
     record = found.record()
     assert record["override_band"] == [0.3, 1.1]
-    (factor,) = found.table("workingsteps")["override.greatest"].to_pylist()[-1:]
-    assert factor <= 1.1
+    (step,) = [each for each in record["workingsteps"] if each["kc_factor"]]
+    assert step["kc_factor"]["value"] == pytest.approx(1.2, abs=0.02)
+    assert max(found.table("workingsteps")["override.greatest"].to_pylist()) <= 1.1
     assert place.exists()
 
 
