@@ -18,8 +18,7 @@ from optimiser.conditions import PermittedDeflection
 from optimiser.formulate import OptimisationTask
 from optimiser.modes import Free
 from simulator import library
-from simulator.library import load_machine
-from simulator.matching import match_material
+from simulator.library import load_machine, match_material
 from simulator.spec import (
     Machine,
     ModeDirection,

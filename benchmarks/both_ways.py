@@ -28,11 +28,9 @@ from service.simulation.code_paths import CodeBlocks, CodePaths
 from service.verbs.optimise.plan_result import ProgramAdvice
 from service.verbs.optimise.program import advise_program as optimise
 from service.verbs.optimise.request import AdviceFiles
-from simulator.edge_material import edge_material
-from simulator.removal.cutter import Insert
-from simulator.removal.tool_shape import THREADS, shape_of
+from simulator.removal.cutter import THREADS, Cutter, Insert, shape_of
 from simulator.spec import CuttingMaterial
-from simulator.tool_kind import tool_kind
+from simulator.tool_kind import edge_material, tool_kind
 from simulator.tool_table import TableTool
 from stepnc_model.nc.program import read_program as read_code
 from stepnc_model.post.dialect import Dialect
@@ -158,6 +156,9 @@ def _tools(program: Program) -> dict[int, TableTool]:
         kind = tool_kind(tool)
         if shape is None or kind in THREADS:
             continue
+        if isinstance(shape, Cutter):
+            # The length of a whole tool in its holder, which is no overhang.
+            shape = replace(shape, holder=None)
         found[number] = TableTool(
             number=number,
             id=tool.id,

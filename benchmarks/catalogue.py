@@ -30,7 +30,7 @@ from optimiser.speed_limits import why_no_speed
 from simulator.library import DATA, load_machine, load_material, material_names
 from simulator.physics.engagement import unidirectional
 from simulator.spec import CuttingMaterial, ToolKind
-from simulator.tool_windows import why_unsuited
+from simulator.tool_table import why_unsuited
 from stepnc_model.tool import Tool
 
 DIAMETERS = (1.0, 12.0, 160.0)
@@ -52,7 +52,7 @@ SLACK = 1.0 + 1e-9
 
 
 class Verdict(StrEnum):
-    """What became of a case."""
+    """Outcome of a case."""
 
     WITHIN = "within its catalogue windows"
     MARKED = "marked: a required limit is unchecked"
@@ -127,7 +127,7 @@ MILLED = {ToolKind.ENDMILL, ToolKind.FACEMILL}
 
 
 def _is_within(case: Case, cut: Cut, setting: Setting) -> bool:
-    """Whether a setting keeps the windows of the group of its material."""
+    """True if a setting keeps the windows of the group of its material."""
     window = window_of(case)
     feed = setting.feed * (1 if case.kind in MILLED else cut.tool.teeth)
     depth = setting.depth if case.kind in MILLED | {ToolKind.TURNING} else 0.0

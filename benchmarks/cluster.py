@@ -23,7 +23,7 @@ from benchmarks.local_cluster import LocalCluster, end, running_cluster
 from service.dataset.folder import PARTITION, DatasetFolder
 from service.dataset.run import make_dataset
 from service.execution.executors import processes
-from service.reading import silent
+from service.progress import silent
 
 ROWS, KILLS, WORKERS = 2000, 8, 3
 

@@ -1,10 +1,13 @@
 """Table of programs and commands: what works, with which options, and why the rest does not.
 
-``python -m benchmarks.corpus [FOLDER ...]`` runs each command on each program of the folders
-(default: the public programs beside the project) and prints Markdown. Where a command refuses a
-program, it is run again with the option that its refusal names (units, a material, a spindle
-speed, a feed), then with the one that leaves workingsteps out; NC code, simulation and control
-are tried on the optimised program too. Refusals are printed as the commands print them.
+``python -m benchmarks.corpus [FOLDER ...]`` prints two tables in Markdown about the programs
+of the folders (default: the public programs beside the project, and ten AP238 programs of tool
+paths alone that are written for it). The first is the way from ``check`` to advice, NC code and
+simulation, with what each check calls missing (:mod:`benchmarks.end_to_end`). For the second
+each command runs on each public program. Where it refuses one, it runs again with the option
+that its refusal names (units, a material, a spindle speed, a feed), then with the one that
+leaves workingsteps out; NC code, simulation and control are tried on the optimised program too.
+Refusals are printed as the commands print them.
 """
 
 import argparse
@@ -16,12 +19,15 @@ import textwrap
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from benchmarks.end_to_end import filled, ways
+from benchmarks.end_to_end import table as way_table
 from service.cli.main import main as stepnc
-from service.cli.options import BAD_INPUT, OK
+from service.exit_codes import BAD_INPUT, OK
 from service.files import read_bytes
 from stepnc_model.ap238.view import is_aim
 from stepnc_model.errors import StepNcError
 from stepnc_model.part21.reader import Part21File
+from tests.stepnc_model.ap238.writer_samples import write_samples
 
 CORPUS = Path(__file__).parents[2] / "shared" / "corpus"
 FOLDERS = (CORPUS / "iso14649", CORPUS / "ap238")
@@ -79,13 +85,13 @@ class Attempt:
 
     @property
     def is_of_use(self) -> bool:
-        """Whether something was made: of the whole program, or without some workingsteps."""
+        """True if something was made: of the whole program, or without some workingsteps."""
         return self.is_made and (self.code != BAD_INPUT or self.left > 0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Entry:
-    """What a command does with a program."""
+    """Outcome of a command on a program."""
 
     works: bool
     options: Options = ()
@@ -103,12 +109,20 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("folders", nargs="*", type=Path, default=FOLDERS, metavar="FOLDER")
-    files = [file for each in parser.parse_args(arguments).folders for file in programs(each)]
-    if not files:
-        print("no program in these folders: nothing to print")
-        return
-    print(table({file.name: entries(file) for file in files}))
+    parser.add_argument("folders", nargs="*", type=Path, metavar="FOLDER")
+    folders = parser.parse_args(arguments).folders
+    with tempfile.TemporaryDirectory() as written:
+        if not folders:
+            write_samples(Path(written))
+        files = [file for each in folders or FOLDERS for file in programs(each)]
+        samples = programs(Path(written))
+        if not files and not samples:
+            print("no program in these folders: nothing to print")
+            return
+        print(way_table(list(ways([*files, *samples]))))
+        if files:
+            print()
+            print(table({file.name: entries(file) for file in files}))
 
 
 def programs(folder: Path) -> list[Path]:
@@ -118,7 +132,7 @@ def programs(folder: Path) -> list[Path]:
 
 
 def entries(file: Path) -> dict[str, Entry]:
-    """What each command does with a program, in the order of the table."""
+    """Outcomes of the commands on a program, in the order of the table."""
     with tempfile.TemporaryDirectory() as folder:
         advised = Path(folder) / f"advised{OPTIMISE.output}"
         found = {each.name: entry(file, each) for each in (*BEFORE, _conversion(file))}
@@ -212,6 +226,8 @@ def _next(command: Command, error: str, options: Options) -> Options | None:
         is_rpm = any(word.startswith("rpm-") for word in options)
         value = f"{asked[1]}={SPINDLE[is_rpm]}"
         return ("--set", value) if value not in options else None
+    if "complete and run:" in error and not options:
+        return _completed(error)
     if "--material" in error and "--material" not in options:
         return MATERIAL
     return next(
@@ -222,6 +238,14 @@ def _next(command: Command, error: str, options: Options) -> Options | None:
         ),
         None,
     )
+
+
+def _completed(error: str) -> Options | None:
+    """Options of the command that a refusal names, with a value for each name in capitals.
+
+    Tools are those of the first table only: None where a tool table is missing.
+    """
+    return None if "TABLE" in error else tuple(filled(error))
 
 
 def table(rows: dict[str, dict[str, Entry]]) -> str:

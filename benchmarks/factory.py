@@ -1,10 +1,17 @@
 """Speed of the virtual factory, beside bare SimPy in the same run.
 
 A shop of 50 machines runs for 4000 h at ten minutes a part. Each part has three states, each
-batch two more; but a part passes in one SimPy event here, as nobody listens. Its peers are the
-same line as a plain SimPy script, which takes an event a state, draws the same times and
-records nothing, and processes that only wait, one for each machine: for as many events as there
-are states, and for as many as SimPy has.
+batch of ten two more. Its peers, all in CPU seconds of this process, are
+
+- the same line as a plain SimPy script, which takes an event a state, draws the same times and
+  records nothing;
+- processes that only wait, one for each machine, with 3.2 waits a part: one for each state;
+- the same with 1.2 waits a part: one for each part and two for its batch. That is what a part
+  costs bare SimPy in a model without states, and the promised ratio is beside it.
+
+The shop itself takes fewer events: as nobody listens, a whole batch passes in one, and more
+come only where a machine waits or fails. 1.2 stays the measure: by the events that the shop
+really takes, it would seem slower the fewer it needs.
 ``python -m benchmarks.factory --hours 400``
 """
 
@@ -28,7 +35,7 @@ from simulator.factory.streams import Streams
 MACHINES, HOURS = 50, 4_000.0
 
 STATES, EVENTS = 3.2, 1.2
-"""States and SimPy events of a part: three or one, and two for each batch of ten."""
+"""Waits of a part in bare SimPy: three or one, and two for each batch of ten."""
 
 SHOP = """
 hours = {hours}
@@ -81,11 +88,11 @@ def shop_of(machines: int, hours: float) -> Shop:
 
 
 def shop_speed(machines: int, hours: float) -> tuple[float, int]:
-    """Seconds and machined parts of a shop."""
+    """CPU seconds and machined parts of a shop."""
     shop = shop_of(machines, hours)
-    begin = time.perf_counter()
+    begin = time.process_time()
     run = run_shop(shop, MachiningPlan(), Streams(seed=1), listeners=Listeners())
-    seconds = time.perf_counter() - begin
+    seconds = time.process_time() - begin
     parts = sum(
         each.value
         for each in run.measures
@@ -95,7 +102,7 @@ def shop_speed(machines: int, hours: float) -> tuple[float, int]:
 
 
 def script_speed(machines: int, hours: float) -> tuple[float, int]:
-    """Seconds and machined parts of the same line as a plain script, without failures."""
+    """CPU seconds and machined parts of the same line as a plain script, without failures."""
     env = simpy.Environment()
     draw = random.Random(1)
     wip = simpy.Store(env, 40)
@@ -122,13 +129,13 @@ def script_speed(machines: int, hours: float) -> tuple[float, int]:
 
     for row in range(machines):
         env.process(lathe() if row < machines // 2 else mill())
-    begin = time.perf_counter()
+    begin = time.process_time()
     env.run(3600.0 * hours)
-    return time.perf_counter() - begin, made[0]
+    return time.process_time() - begin, made[0]
 
 
 def bare_speed(machines: int, events: int) -> float:
-    """Seconds of processes that only wait, for a number of events."""
+    """CPU seconds of processes that only wait, for a number of events."""
     env = simpy.Environment()
 
     def waits(count: int) -> "simpy.events.ProcessGenerator":
@@ -137,16 +144,22 @@ def bare_speed(machines: int, events: int) -> float:
 
     for _ in range(machines):
         env.process(waits(events // machines))
-    begin = time.perf_counter()
+    begin = time.process_time()
     env.run()
-    return time.perf_counter() - begin
+    return time.process_time() - begin
 
 
 def event_ratio(hours: float = HOURS, rounds: int = 3) -> float:
-    """Speed of the shop over that of bare SimPy by its events, each the best of some rounds."""
-    seconds, parts = min(shop_speed(MACHINES, hours) for _ in range(rounds))
-    bare = min(bare_speed(MACHINES, int(EVENTS * parts)) for _ in range(rounds))
-    return bare / seconds
+    """Speed of the shop over that of bare SimPy at 1.2 waits a part.
+
+    Each is the best of some rounds; they take turns, so that other work meets both.
+    """
+    shops, bare = [], []
+    for _ in range(rounds):
+        seconds, parts = shop_speed(MACHINES, hours)
+        shops.append(seconds)
+        bare.append(bare_speed(MACHINES, int(EVENTS * parts)))
+    return min(bare) / min(shops)
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -162,9 +175,10 @@ def main(arguments: list[str] | None = None) -> None:
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
         print(
             f"{options.machines} machines, {hours:g} h: {parts} parts machined in "
-            f"{seconds:.1f} s, {STATES * parts / seconds:.0f} states/s; of a plain script "
-            f"{script / made / (seconds / parts):.2f}, of bare SimPy {states / seconds:.2f} by "
-            f"states, {events / seconds:.2f} by its events; peak memory {memory:.0f} MB"
+            f"{seconds:.1f} s of CPU, {STATES * parts / seconds:.0f} states/s; "
+            f"of a plain script {script / made / (seconds / parts):.2f}, "
+            f"of bare SimPy {states / seconds:.2f} by states, {events / seconds:.2f} by parts; "
+            f"peak memory {memory:.0f} MB"
         )
 
 

@@ -121,7 +121,7 @@ def _functions(body: Iterable[ast.AST]) -> Iterator[Function]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scope:
-    """What is known of a function in its statements."""
+    """Names known in the statements of a function."""
 
     returns: str
     rebound: frozenset[str]
@@ -210,7 +210,7 @@ class Source:
 
 
 def _can_be_dropped(node: ast.stmt, scope: Scope) -> bool:
-    """Whether a statement can go without leaving a name unknown."""
+    """True if a statement can go without leaving a name unknown."""
     match node:
         case ast.Expr(value=ast.Call() | ast.Await()):
             return _called(node.value) not in TELLING
@@ -235,7 +235,7 @@ def _called(node: ast.AST) -> str:
 
 
 def _is_text(*operands: ast.expr) -> bool:
-    """Whether an operand is no number."""
+    """True if an operand is no number."""
     kinds = ast.JoinedStr | ast.List | ast.ListComp | ast.Tuple | ast.Set | ast.Dict
     return any(
         isinstance(each, kinds)

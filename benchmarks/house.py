@@ -4,7 +4,9 @@
 Reached is what the console scripts import and read, through module-level code and through the
 bodies of functions and classes; a class counts as a whole. ``--check`` prints public functions
 and classes without a reader and exits with 1 where one is not allowed below. Entered are the
-modules of which ``optimise paper002`` runs a function.
+modules that ``optimise paper002`` runs beyond their own level, running those of which it runs
+a function; argument names are those of the parameters that take instances of the product's
+classes: as many as classes would be one name for each thing.
 """
 
 import argparse
@@ -19,10 +21,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
-from service.verbs.verb import verbs as all_verbs
+from service.verbs.call import verbs as all_verbs
 
 ROOT = Path(__file__).parents[1]
+
+PAPER = ROOT / "examples" / "parts" / "paper002.stpnc"
 
 PRODUCT = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service", "stepnc")
 
@@ -36,6 +41,13 @@ ALLOWED = {
     "service.rest.app.openapi": "the document by itself, for the pages",
     "simulator.machine.samples.Rotation": "codes of a column, for readers of samples",
     "simulator.machine.samples.TravelDirection": "codes of columns, for readers of samples",
+    "simulator.linuxcnc.bench.LinuxCncFailed": "a real control, in tests and benchmarks",
+    "simulator.linuxcnc.bench.ProgramRun": "a real control, in tests and benchmarks",
+    "simulator.linuxcnc.bench.RecordedMotion": "a real control, in tests and benchmarks",
+    "simulator.linuxcnc.bench.reason_why_not": "a real control, in tests and benchmarks",
+    "simulator.linuxcnc.bench.run_programs": "a real control, in tests and benchmarks",
+    "simulator.linuxcnc.configuration.write_configuration": "that control's configuration",
+    "simulator.linuxcnc.session.main": "runs in that control's namespaces",
     "simulator.motion.segments.arc": "paths made by hand, beside lines",
     "stepnc_model.writeback.records": "reads what is written, for scripts",
 }
@@ -43,21 +55,42 @@ ALLOWED = {
 
 ENTER = """
 import sys
-part, *product = sys.argv[1:]
-names = set()
+from collections import defaultdict
+from enum import Enum
+from inspect import CO_NEWLOCALS
+part, output, *product = sys.argv[1:]
+entered, running, names = set(), set(), defaultdict(set)
+def is_ours(module):
+    return module.partition(".")[0] in product
 def see(frame, event, _):
-    if event == "call" and frame.f_code.co_name != "<module>":
-        names.add(frame.f_globals.get("__name__", ""))
+    code, module = frame.f_code, frame.f_globals.get("__name__", "")
+    if event != "call" or code.co_name == "<module>" or not is_ours(module):
+        return
+    entered.add(module)
+    # Bodies of classes have no locals of their own; dataclasses make functions of text.
+    if not code.co_flags & CO_NEWLOCALS or code.co_name == "__create_fn__":
+        return
+    running.add(module)
+    if code.co_name.startswith("__"):
+        return
+    for name in code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]:
+        kind = type(frame.f_locals.get(name))
+        is_value = name in {"self", ".0"} or issubclass(kind, Enum)
+        if not is_value and is_ours(kind.__module__):
+            names[kind].add(name)
 from service.cli.main import optimise_main
 sys.setprofile(see)
+words = [part, "--mode", "TC", "--machine", "vmc15", "--material", "c45", "-o", output]
 try:
-    optimise_main([part, "--mode", "TC", "--machine", "paper002", "--dry-run"])
+    optimise_main(words)
 except SystemExit:
     pass
 sys.setprofile(None)
-print(sum(name.split(".")[0] in product for name in names))
+print(len(entered), len(running), len(names), sum(map(len, names.values())))
+print(*sorted(running))
 """
-"""program that counts the modules it enters"""
+"""program that counts the modules it enters, those of which a function runs, and the names of
+parameters by the classes of what they hold"""
 
 ENTITIES = "stepnc_model.entities"
 """read by their EXPRESS names, which no name in the source tells"""
@@ -196,7 +229,7 @@ def unreached(house: House, found: set[Name]) -> list[Name]:
 
 
 def _is_reached_by_name(node: Definition, module: str) -> bool:
-    """Whether a definition needs a reader: decorators register functions, keywords entities."""
+    """True if a definition needs a reader: decorators register functions, keywords entities."""
     if isinstance(node, ast.ClassDef):
         return not module.startswith(ENTITIES)
     return not node.decorator_list
@@ -249,20 +282,41 @@ def _page_lines(text: str) -> int:
     return sum(bool(line) and not line.startswith(("//", "/*", "*", "<!--")) for line in lines)
 
 
-def entered(part: Path) -> int:
-    """Number of modules of which a function runs when a part is optimised, in a new process."""
-    made = subprocess.run(
-        [sys.executable, "-c", ENTER, str(part), *PRODUCT],
-        cwd=ROOT, check=True, capture_output=True, text=True,
-    )  # fmt: skip
-    return int(made.stdout.splitlines()[-1])
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Walk:
+    """What ``optimise`` of a part runs through."""
+
+    entered: int
+    """Modules that run any code but that of their own level, that of classes among it."""
+    running: tuple[str, ...]
+    """Modules of which a function runs."""
+    classes: int
+    """Classes of the product whose instances are arguments."""
+    names: int
+    """Names of the parameters that take them, each counted for each class."""
+
+
+def walk(part: Path) -> Walk:
+    """Optimise a part in a new process and count."""
+    with TemporaryDirectory() as folder:
+        made = subprocess.run(
+            [sys.executable, "-c", ENTER, str(part), f"{folder}/x.stpnc", *PRODUCT],
+            cwd=ROOT, check=True, capture_output=True, text=True,
+        )  # fmt: skip
+    *_, figures, running = made.stdout.splitlines()
+    entered, _, classes, names = map(int, figures.split())
+    return Walk(entered=entered, running=(*running.split(),), classes=classes, names=names)
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Print the figures."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--check", action="store_true", help="only what nothing reaches")
+    parser.add_argument("--running", action="store_true", help="only what a request runs")
     options = parser.parse_args(arguments)
+    if options.running:
+        print(*walk(PAPER).running, sep="\n")
+        return 0
     house = House(ROOT, PRODUCT)
     found = house.reached(entries(ROOT))
     idle = unreached(house, found)
@@ -282,7 +336,10 @@ def main(arguments: list[str] | None = None) -> int:
     print(f"packages         {packages}")
     print(f"classes          {house.classes().total()}")
     print(f"shared names     {len(shared)}")
-    print(f"entered modules  {entered(ROOT / 'examples' / 'parts' / 'paper002.stpnc')}")
+    way = walk(PAPER)
+    print(f"entered modules  {way.entered}")
+    print(f"running modules  {len(way.running)}")
+    print(f"argument names   {way.names} of {way.classes} classes")
     outside = sorted(set(house.texts) - modules)
     lines = sum(house.texts[module].count("\n") for module in outside)
     lines += sum(house.units[name].lines for name in idle if name[0] in modules)

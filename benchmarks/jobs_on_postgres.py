@@ -32,7 +32,7 @@ from uuid import UUID
 import psycopg
 
 from kbe.store import open_store
-from service.jobs import advise
+from service.jobs import verb_job
 from service.jobs.task import RunningJob
 from service.requests.advice import AdviceRequest
 from service.requests.fields import dumped
@@ -348,7 +348,7 @@ def _advised(data_folder: DataFolder, file: Path) -> tuple[list[float], int]:
         task = RunningJob(data_folder=data_folder, job=job)
         begin = time.process_time()
         task.make_folder()
-        advise.run(task)
+        verb_job.run(task)
         jobs.finish(data_folder, job, jobs.JobState.SUCCEEDED)
         seconds.append(time.process_time() - begin)
     return seconds, program.size + sum(each.stat().st_size for each in task.folder.iterdir())

@@ -14,8 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from kbe.queries import EVERYTHING
 from kbe.rows import outcome_row
-from kbe.selection import EVERYTHING
 from kbe.store import Store, open_store
 from service.knowledge.evaluated import summary
 from stepnc_model.outcome import ProcessOutcome

@@ -23,10 +23,10 @@ import pyarrow as pa
 from pyarrow import parquet
 
 import stepnc
-from service.dataset.rows import SCHEMA
+from service.dataset.folder import SCHEMA
 from service.dataset.run import make_dataset
 from service.execution.executors import processes
-from service.reading import silent
+from service.progress import silent
 
 PARTS, ROWS = 300, 1_000_000
 TEST = 10_000

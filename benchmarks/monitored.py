@@ -1,4 +1,4 @@
-"""What an MTConnect client sees of runs of the papers, over HTTP, beside the simulation.
+"""Runs of the papers as an MTConnect client sees them over HTTP, beside the simulation.
 
 Starts ``stepnc agent`` and reads it with the client of ``stepnc record``: Fig. 8 of paper 000,
 the items of Fig. 10 of paper 003, energy and time of four programs.

@@ -58,7 +58,7 @@ TIMEOUT = "timeout"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """What found a fault, and in which ring; 0 if nothing did."""
+    """Test that found a fault, and its ring; 0 if none did."""
 
     ring: int = 0
     found_by: str = "NOT FOUND"

@@ -10,6 +10,7 @@ from functools import partial
 from math import pi
 from random import Random
 
+from stepnc_model.nc.exact import read
 from stepnc_model.post.blocks import (
     Block,
     Circular,
@@ -23,7 +24,8 @@ from stepnc_model.post.blocks import (
     ToolChange,
 )
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.dialects import read, write
+from stepnc_model.post.dialects import write
+from stepnc_model.toolpath.path import Arc
 
 
 def generate(count: int) -> Iterator[Block]:
@@ -44,7 +46,7 @@ def generate(count: int) -> Iterator[Block]:
         elif kind < 0.95:
             centre = (x + random.uniform(1.0, 20.0), y, z)
             x, y = centre[0], y - (centre[0] - x)
-            yield Circular(end=(x, y, z), centre=centre, turn=0.5 * pi, rate=rate)
+            yield Circular(end=(x, y, z), arc=Arc(centre=centre, turn=0.5 * pi), rate=rate)
         else:
             z = 50.0
             yield Rapid(end=(x, y, z))

@@ -128,7 +128,7 @@ def summary(found: list[Confirmation]) -> str:
 
 
 def is_compared(figure: Figure) -> bool:
-    """Whether plan or run have anything of a quantity."""
+    """True if plan or run have anything of a quantity."""
     return figure.promised > 0.0 or figure.found > 0.0
 
 

@@ -166,7 +166,7 @@ ROWS = (
     ),
     Row(
         name="factory",
-        work="50 machines, 400 h, by events",
+        work="50 machines, 400 h, by parts",
         measure=_shop,
         unit="of bare SimPy",
         goal=0.5,
@@ -174,7 +174,7 @@ ROWS = (
     ),
     Row(
         name="long-factory",
-        work="50 machines, 4000 h, by events",
+        work="50 machines, 4000 h, by parts",
         measure=_long_shop,
         unit="of bare SimPy",
         goal=0.5,

@@ -21,8 +21,7 @@ from optimiser.source import along_paths
 from service.confirm import confirm
 from service.confirmation import Confirmation
 from service.records import changes_of
-from simulator.library import load_machine
-from simulator.matching import match_material
+from simulator.library import load_machine, match_material
 from stepnc_model import writeback
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File

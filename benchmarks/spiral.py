@@ -90,7 +90,7 @@ class SpiralResult:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MachineResult:
-    """What was found on one machine."""
+    """Results on one machine."""
 
     hidden: HiddenMachine
     block_time: float

@@ -35,7 +35,7 @@ from simulator.calibration.features import (
 )
 from simulator.calibration.fit import fitted
 from simulator.calibration.measured_run import Component
-from simulator.calibration.skill import Skill, compared, estimated_lag, mean_power, skill
+from simulator.calibration.simulated import Skill, compared, estimated_lag, mean_power, skill
 from simulator.machine.spindle_course import SpindleCourse, ramped, standing
 from simulator.motion.control import ExactStop
 from simulator.motion.segments import AxisLimits, Floats, Ints
@@ -68,7 +68,7 @@ PRIORS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Log:
-    """What a run did of the program, in the order of the path."""
+    """Logged samples of a run, in the order of the path."""
 
     name: str
     feed: float
@@ -90,7 +90,7 @@ class Log:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Mill:
-    """What four runs told of program and machine."""
+    """Program and machine as found from four runs."""
 
     program: Rebuilt
     acceleration: float

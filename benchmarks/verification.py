@@ -48,7 +48,7 @@ class RunLog:
     block: Ints
 
     def within(self, program: PreparedProgram, workingstep: str) -> Bools:
-        """Whether a position is of a workingstep, (N,)."""
+        """True if a position is of a workingstep, (N,)."""
         names = [each.workingstep for each in program.steps]
         return np.asarray(self.workingstep == names.index(workingstep))
 
@@ -283,7 +283,7 @@ WALL_OFFSET = 0.15
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FoundError:
-    """What a verification says of an injected error."""
+    """Result of verifying an injected error."""
 
     error: InjectedError
     spots: tuple[tuple[str, DeviationSpot], ...]
@@ -308,7 +308,7 @@ class FoundError:
 
     @property
     def is_right(self) -> bool:
-        """Whether the error is found at its place with its size, or rightly nothing is."""
+        """True if the error is found at its place with its size, or rightly nothing is."""
         if not self.error.size:
             return not self.spots
         if self.spot is None:
@@ -429,7 +429,7 @@ def _found_wall(
     folder: Path,
     request: VerificationRequest,
 ) -> str:
-    """Whether an error is found in the first log, or shows in the second, denser one."""
+    """True if an error is found in the first log, or shows in the second, denser one."""
     sparse = found(error, logs[0], program, folder=folder, request=request)
     if sparse.spot is not None:
         return told(sparse.spot)

@@ -104,7 +104,7 @@ class Breakage:
 
     @property
     def is_broken(self) -> bool:
-        """Whether a broken tooth was detected."""
+        """True if a broken tooth was detected."""
         return self.broken is not None
 
     def paused(self) -> "Breakage":
@@ -196,7 +196,7 @@ def _suspects(turns: Sequence[_Turn], known: Offsets) -> list[int]:
 
 
 def _is_lost(tooth: int, known: Offsets, last: Sequence[ToothShares]) -> bool:
-    """Whether two revolutions together indicate that a tooth is lost."""
+    """True if two revolutions together indicate that a tooth is lost."""
     without = _judged_all(known, last, lost=tooth)
     whole, other = _judged_all(known, last), _judged_all(unknown(len(known.mean)), last)
     most = max(each.misfit for each in without) / len(known.mean)

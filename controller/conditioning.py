@@ -12,11 +12,13 @@ References
 
 from dataclasses import dataclass, field
 from math import exp, isnan, pi
+from typing import NamedTuple
 
 import numpy as np
 
 from controller.ports import Reading
 from simulator.physics.domain import require_at_most, require_positive
+from stepnc_model.units import NMM_S_PER_WATT
 
 MEMORY = 10.0
 """Time after which a learnt zero is weighted 1/e, s: noise averages out, drift does not."""
@@ -31,11 +33,8 @@ Doubling takes seven revolutions, about what the loop needs to settle, so that t
 grows large.
 """
 
-_NMM_S_PER_WATT = 1000.0  # 1 W = 1000 N·mm/s
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Tare:
+class Tare(NamedTuple):
     """Zero of an instrument: its reading while nothing is cut."""
 
     offset: float = 0.0
@@ -47,7 +46,7 @@ class Tare:
 
     @property
     def is_known(self) -> bool:
-        """Whether a zero has been learnt."""
+        """True if a zero has been learnt."""
         return self.seconds > 0.0
 
 
@@ -80,11 +79,16 @@ def tared(tare: Tare, reading: Reading, *, has_chips: bool | None = None) -> Tar
     """
     if _cuts(reading, has_chips) or not len(reading.force):
         return tare
-    seen = reading.force[~np.isnan(reading.force)]
+    seen = reading.force
+    total = float(np.add.reduce(seen))
+    if isnan(total):
+        # A single lost sample makes the sum NaN.
+        seen = seen[~np.isnan(seen)]
+        total = float(np.add.reduce(seen))
     if not len(seen):
         return tare
     seconds = reading.period * len(seen) / len(reading.force)
-    return _learnt(tare, float(seen.mean()), seconds=seconds, time=reading.time)
+    return _learnt(tare, total / len(seen), seconds=seconds, time=reading.time)
 
 
 def without_offset(reading: Reading, tare: Tare) -> Reading:
@@ -151,7 +155,7 @@ def force_from_power(
         return reading._replace(force=np.array([np.nan]))
     cutting = (reading.power - idle.tare.offset) * efficiency
     around = pi * tool_diameter * reading.spindle_speed
-    return reading._replace(force=np.array([_NMM_S_PER_WATT * cutting / around]))
+    return reading._replace(force=np.array([NMM_S_PER_WATT * cutting / around]))
 
 
 def conditioned(set_point: float, wanted: float, *, rise: float = RISE) -> float:
@@ -187,7 +191,7 @@ def conditioned(set_point: float, wanted: float, *, rise: float = RISE) -> float
 
 
 def _cuts(reading: Reading, has_chips: bool | None) -> bool:
-    """Whether chips may be forming."""
+    """True if chips may be forming."""
     return reading.can_override if has_chips is None else has_chips
 
 

@@ -12,8 +12,10 @@ from controller.orders import LoopEvent
 from controller.signal import Revolution
 from controller.tool_life import ToolLife
 from simulator.reading import Reading
+from stepnc_model.tuples import quick_replace
 
 
+@quick_replace
 class LoopCycle(NamedTuple):
     """Reading, override, set point and events of one control cycle."""
 

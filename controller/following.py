@@ -21,7 +21,7 @@ PATIENCE = 1.0
 
 
 class Following(NamedTuple):
-    """How the axes follow the commanded override."""
+    """Response of the axes to the commanded override."""
 
     modelled: float = 1.0
     """Override that axes of the assumed lag would run now."""
@@ -30,7 +30,7 @@ class Following(NamedTuple):
 
     @property
     def is_astray(self) -> bool:
-        """Whether the override is not followed."""
+        """True if the override is not followed."""
         return self.astray >= PATIENCE
 
 

@@ -24,6 +24,7 @@ s, N.
 from dataclasses import dataclass
 from enum import StrEnum
 from math import inf, isfinite
+from typing import NamedTuple
 
 from controller.reference import Reference
 
@@ -154,8 +155,7 @@ class WorkingstepBounds:
         return max(level, force * self.threshold(band) / self.strength)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AllowedOverride:
+class AllowedOverride(NamedTuple):
     """Override that is sent to the machine, and the reason if it was limited."""
 
     override: float

@@ -22,8 +22,7 @@ The phase determines the override::
   its end.
 - STOPPED: 0, permanently.
 
-All functions are pure: a state and a reading give the next state. States are tuples, as some
-are made in each tooth period. Units: mm, s, N, rev/s.
+All functions are pure: a state and a reading give the next state. Units: mm, s, N, rev/s.
 """
 
 from collections.abc import Callable, Sequence
@@ -50,6 +49,8 @@ from controller.preview import Preview
 from controller.set_point import approached, bounded, introduction
 from controller.signal import Revolution, tooth_periods
 from simulator.reading import Reading
+from stepnc_model.counted import counted
+from stepnc_model.tuples import quick_replace
 
 STANDING = 0.02
 """Override below which the axes count as standing."""
@@ -72,6 +73,7 @@ LawFor = Callable[[Plant], ControlLaw[Any]]
 """Function that returns a control law tuned for a process."""
 
 
+@quick_replace
 class LoopState(NamedTuple):
     """State of the control loop after a reading."""
 
@@ -126,7 +128,7 @@ class LoopState(NamedTuple):
 
     @property
     def is_stopped(self) -> bool:
-        """Whether the loop has stopped the program."""
+        """True if the loop has stopped the program."""
         return self.phase is Phase.STOPPED
 
     @property
@@ -137,7 +139,7 @@ class LoopState(NamedTuple):
         return min(self.override, max(self.settings.band.safe, self.keep.least))
 
     def is_blind(self, spindle_speed: float) -> bool:
-        """Whether there has been no force for too long; a standing spindle does not count."""
+        """True if there has been no force for too long; a standing spindle does not count."""
         most = self.settings.band.sensor_timeout
         turning = REVOLUTIONS / spindle_speed if spindle_speed > 0.0 else inf
         return self.without_sample > most or self.without_force > most + turning
@@ -297,7 +299,7 @@ def _held(state: LoopState, reading: Reading, load: float) -> LoopState:
     held = _into(state._replace(hold=hold, holds=holds, law=None), Phase.HELD, 0.0)
     held = told(held, EventKind.HOLD, text)
     if holds > state.settings.band.holds:
-        often = f"held {holds:.0f} times in quick succession"
+        often = f"held {counted(int(holds), 'time')} in quick succession"
         return _stopped(held, f"{often}: {state.monitor.cause}")
     return held
 
@@ -442,8 +444,7 @@ def _tuned(
     # Rounded, so that equal cuts reuse a cached law.
     lag = state.settings.servo_lag * revolution.spindle_speed / _turns(revolution)
     lag = round(max(lag, 0.1), 1)
-    exponent = state.keep.exponent
-    law = law_for(Plant(exponent=round(exponent, 2) or exponent, lag=lag))
+    law = law_for(Plant(exponent=round(state.keep.exponent, 2) or state.keep.exponent, lag=lag))
     return law, law.begin(max(state.override, LEAST_WAY))
 
 

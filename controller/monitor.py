@@ -18,6 +18,7 @@ from controller.signal import Revolution
 from controller.threshold import AlarmLevel, ThresholdWatch, reason, watched
 from controller.tool_life import Ratios, ToolLife, compared_anew, lived, new_tool, taught
 from simulator.physics.tool_life import LIFE_CRITERION
+from stepnc_model.tuples import quick_replace
 
 STEADY = 0.02
 """Greatest relative change of the override per revolution that counts as steady."""
@@ -71,7 +72,7 @@ class OverTime(NamedTuple):
 
     @property
     def is_lasting(self) -> bool:
-        """Whether it has lasted longer than a law needs to bring the force back."""
+        """True if it has lasted longer than a law needs to bring the force back."""
         return self.seconds >= LASTS
 
 
@@ -79,6 +80,7 @@ NOT_OVER = OverTime()
 """No time above the set point."""
 
 
+@quick_replace
 class Monitor(NamedTuple):
     """State of the process monitor, learnt from the revolutions so far."""
 
@@ -118,7 +120,7 @@ class Monitor(NamedTuple):
 
     @property
     def is_worn(self) -> bool:
-        """Whether the wear land takes a large share of the force now."""
+        """True if the wear land takes a large share of the force now."""
         life = self.life
         return life is not None and life.share(self.land_share) > WORN_SHARE
 

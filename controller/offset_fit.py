@@ -4,19 +4,21 @@ It is the inner loop of :mod:`controller.offsets`, which explains the model and 
 offsets are those that make ``e'·R⁻¹·e + a'·P⁻¹·a`` least, with e the error of the shares,
 R its covariance, a the distance from the offsets known before and P the covariance of these. A
 step that makes the fit worse is halved. Compiled, because each guess takes a dozen products of
-small matrices, whose calls from Python cost far more than their arithmetic. Units mm.
+small matrices, whose calls from Python cost far more than their arithmetic. The kernels are
+bound to arrays of one cutter, as a fit follows each revolution. Units mm.
 """
 
-from functools import cache
+from functools import cache, lru_cache
 from math import inf, log, pi
+from threading import get_ident
 from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from controller.ports import Floats
 from controller.tooth_shares import ToothShares, shares_into
-from simulator.kernels.kernel import entry, kernel
-from simulator.physics.tooth_means import LOST, Periods
+from simulator.kernels.kernel import BoundKernel, entry, kernel
+from simulator.physics.tooth_means import LOST, POINTS, Periods
 
 STEP = 1e-4
 """Step of numerical derivatives, mm."""
@@ -78,9 +80,10 @@ def misfits(shares: ToothShares, mean: Floats, *, scale: float) -> Floats:
     (z + 1,) array
         The first entry is with all teeth.
     """
-    found = np.empty(len(mean) + 1)
-    _misfits(shares.periods, _measured(shares), (mean, found), scale, _scratch(len(mean)))
-    return _checked(found, found)
+    space = _space_for(shares)
+    space.take(shares, mean)
+    space.misfits(scale)()
+    return _checked(space.found.copy(), space.found)
 
 
 def fitted(
@@ -113,16 +116,11 @@ def fitted(
     numpy.linalg.LinAlgError
         If a covariance is singular.
     """
-    teeth = len(mean)
-    found = Fit(np.empty(teeth), np.empty((teeth, teeth)), np.zeros(2))
-    known = mean, covariance, _starts(teeth)
-    settings = scale, plain, -1 if lost is None else lost
-    _search(shares.periods, _measured(shares), known, settings, found, _scratch(teeth))
-    return _checked(found, found.figures)
-
-
-def _measured(shares: ToothShares) -> tuple[Floats, Floats, Floats]:
-    return shares.taken, shares.expected, shares.noise
+    space = _space_for(shares)
+    space.take(shares, mean)
+    space.covariance[...] = covariance
+    space.search((scale, plain, -1 if lost is None else lost))()
+    return _checked(Fit(*(each.copy() for each in space.fit)), space.fit.figures)
 
 
 Found = TypeVar("Found", Floats, Fit)
@@ -132,6 +130,67 @@ def _checked(found: Found, figures: Floats) -> Found:
     if not figures[0] < inf:
         raise np.linalg.LinAlgError("the covariance of offsets or shares is singular")
     return found
+
+
+def _space_for(shares: ToothShares) -> "_Space":
+    # Threads must not write into each other's arrays.
+    return _space(get_ident(), *shares.periods.cutting.shape, shares.periods.exponent)
+
+
+@lru_cache(maxsize=16)
+def _space(_thread: int, teeth: int, back: int, exponent: float) -> "_Space":
+    return _Space(teeth, back, exponent)
+
+
+class _Space:
+    """Arrays that stay in place, and the kernels bound to them (mutable state).
+
+    Parameters
+    ----------
+    teeth : int
+    back : int
+        Number K of teeth that may cut in a tooth period.
+    exponent : float
+        Exponent of the force law.
+    """
+
+    def __init__(self, teeth: int, back: int, exponent: float) -> None:
+        self.periods = Periods(
+            np.empty(teeth),
+            exponent,
+            np.empty((teeth, POINTS)),
+            np.empty((teeth, back, POINTS)),
+            np.empty((teeth, back), dtype=np.int64),
+            np.empty(teeth),
+        )
+        self.measured = np.empty(teeth), np.empty(teeth), np.empty((teeth, teeth))
+        self.mean, self.covariance = np.empty(teeth), np.empty((teeth, teeth))
+        self.found = np.empty(teeth + 1)
+        self.fit = Fit(np.empty(teeth), np.empty((teeth, teeth)), np.empty(2))
+        self._scratch = _scratch(teeth)
+        self._shares: ToothShares | None = None
+        # Few settings are in use: at most one for each tooth that may be lost.
+        self.misfits, self.search = cache(self._misfits), cache(self._search)
+
+    def take(self, shares: ToothShares, mean: Floats) -> None:
+        """Copy a revolution and the known offsets into the arrays."""
+        self.mean[...] = mean
+        if self._shares is shares:
+            return
+        self._shares, at, to = shares, shares.periods, self.periods
+        to.feed_per_tooth[...], to.equal[...] = at.feed_per_tooth, at.equal
+        to.sine[...], to.weight[...], to.cutting[...] = at.sine, at.weight, at.cutting
+        taken, expected, noise = self.measured
+        taken[...], expected[...], noise[...] = shares.taken, shares.expected, shares.noise
+
+    def _misfits(self, scale: float) -> BoundKernel:
+        asked = self.mean, self.found
+        return _misfits.bound(self.periods, self.measured, asked, scale, self._scratch)
+
+    def _search(self, settings: tuple[float, float, int]) -> BoundKernel:
+        known = self.mean, self.covariance, _starts(len(self.mean))
+        at, measured = self.periods, self.measured
+        return _search.bound(at, measured, known, settings, self.fit, self._scratch)
 
 
 @cache

@@ -5,7 +5,10 @@ knows of it in advance. Its timing is not exact, so each look ahead takes the gr
 within one revolution before and after. Units: s, N.
 """
 
-from dataclasses import dataclass
+from bisect import bisect_left, bisect_right
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +19,8 @@ Values = NDArray[np.float32] | NDArray[np.float64]
 
 NEARBY = 3
 """Rows that are looked at one by one before all of them are searched."""
+
+_FEW = 7  # values that numpy, too, adds up in order
 
 LOOK_AHEAD = 8
 """Default look-ahead, revolutions.
@@ -62,8 +67,13 @@ class Preview:
     """Force that 1 mm of flank wear adds at any override, (N,), N; None: not known."""
     arcs: Arcs | None = None
     """Arcs of contact, (N,); None: not known."""
+    _ends: "memoryview[Any]" = field(init=False, repr=False)
+    """The times, as Python reads single ones fastest."""
+    _force: "memoryview[Any]" = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "_ends", self.until.data)
+        object.__setattr__(self, "_force", self.force.data)
         if self.until.shape != self.force.shape or self.until.ndim != 1 or not len(self.until):
             raise ValueError("a preview needs equal numbers of forces and times, at least one")
         if not (np.diff(self.until) > 0.0).all():
@@ -74,14 +84,14 @@ class Preview:
     def mean(self, begin: float, end: float) -> float:
         """Mean expected force between two program times, over the stretches touched, N."""
         first, beyond = self._rows(begin, end)
-        return _mean(self.force[first:beyond])
+        return average(self.force[first:beyond])
 
     def mean_land(self, begin: float, end: float) -> float:
         """Force that 1 mm of flank wear adds between two program times, N; 0: not known."""
         if self.land_force is None:
             return 0.0
         first, beyond = self._rows(begin, end)
-        return _mean(self.land_force[first:beyond])
+        return average(self.land_force[first:beyond])
 
     def expected(self, begin: float, end: float, *, teeth: int, first: int) -> Expected | None:
         """Expected values in each tooth period of a revolution; None if no arc is known.
@@ -96,20 +106,21 @@ class Preview:
         """
         if self.arcs is None:
             return None
-        middle = (np.arange(-1.0, teeth + 1.0) + 0.95) / teeth
-        rows = self.until.searchsorted(begin + (end - begin) * middle, side="left")
-        rows = np.minimum(rows, len(self.until) - 1)
-        force = np.asarray(self.force[rows], dtype=np.float64)
-        steps = np.abs(np.diff(force))
-        order = (np.arange(teeth) - first) % teeth
+        until, final, way = self._ends, len(self._ends) - 1, end - begin
+        # Lists, as numpy takes several times as long for the few teeth of a cutter.
+        middles = [begin + way * ((each + 0.95) / teeth) for each in range(-1, teeth + 1)]
+        rows = [min(bisect_left(until, middle), final) for middle in middles]
+        force = [self._force[row] for row in rows]
+        steps = [abs(after - before) for before, after in pairwise(force)]
+        order = [(tooth - first) % teeth for tooth in range(teeth)]
         return Expected(
-            force=force[1:-1][order],
-            change=np.maximum(steps[1:], steps[:-1])[order],
-            arcs=self.arcs.rows(rows[1:-1][order]),
+            force=np.array([force[place + 1] for place in order]),
+            change=np.array([max(steps[place : place + 2]) for place in order]),
+            arcs=self.arcs.rows([rows[place + 1] for place in order]),
         )
 
     def is_air(self, progress: float, *, revolution: float) -> bool:
-        """Whether no chip is expected within one revolution before and after a program time."""
+        """True if no chip is expected within one revolution before and after a program time."""
         first, beyond = self._rows(progress - revolution, progress + revolution)
         # Chips mostly begin with the first row: Python then stops sooner than numpy starts.
         return not any(self.force[first:beyond].data)
@@ -126,9 +137,17 @@ class Preview:
             force = float(self.force[first])
             plain = float(self.force[first] / self.weight[first])
             return force / plain if plain > 0.0 else 1.0
-        forces = self.force[first:beyond]
-        plain = float((forces / self.weight[first:beyond]).sum())
-        return float(forces.sum()) / plain if plain > 0.0 else 1.0
+        if beyond - first > _FEW:
+            forces = self.force[first:beyond]
+            plain = float((forces / self.weight[first:beyond]).sum())
+            return float(forces.sum()) / plain if plain > 0.0 else 1.0
+        # A tooth period touches two cells, for which numpy takes ten times as long.
+        whole = plain = 0.0
+        rows = self.force[first:beyond].tolist(), self.weight[first:beyond].tolist()
+        for force, weight in zip(*rows, strict=True):
+            whole += force
+            plain += force / weight
+        return whole / plain if plain > 0.0 else 1.0
 
     def ahead(self, progress: float, *, revolution: float, count: int) -> tuple[float, ...]:
         """Greatest expected force around each of the next revolutions, N.
@@ -158,16 +177,22 @@ class Preview:
         return tuple(values)
 
     def _rows(self, begin: float, end: float) -> tuple[int, int]:
-        until, final = self.until, len(self.until) - 1
-        first = min(int(until.searchsorted(begin, side="right")), final)
+        until, final = self._ends, len(self._ends) - 1
+        first = min(bisect_right(until, begin), final)
         # A tooth period touches one row or two: no search through all of them.
         for last in range(first, min(first + NEARBY, final)):
             if end <= until[last]:
                 return first, last + 1
-        last = int(until.searchsorted(end, side="left"))
+        last = bisect_left(until, end)
         return first, max(min(last, final), first) + 1
 
 
-def _mean(values: Values) -> float:
-    """Mean as numpy's method gives it, which takes several times as long for a few values."""
+def average(values: Values) -> float:
+    """Mean as numpy's method gives it, which takes several times as long for a few values.
+
+    Parameters
+    ----------
+    values : (N,) array
+        At least one.
+    """
     return float(np.add.reduce(values) / len(values))

@@ -4,7 +4,7 @@ Every limit that rises with the force is converted to the cutting force at which
 every limit on the feed to the override at which it is reached. Units: N, mm, rad.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from math import inf
 
@@ -57,7 +57,7 @@ class ForceBound:
 
     @property
     def is_mean(self) -> bool:
-        """Whether the bound is on the mean force."""
+        """True if the bound is on the mean force."""
         return self.peak == 0.0 and self.wall == 0.0
 
 
@@ -140,7 +140,11 @@ class Reference:
         )
         return replace(self, bounds=bounds, breakage=factor * self.breakage)
 
-    def _scaled(self, power_factor: float) -> Iterator[ForceBound]:
+    def _scaled(self, power_factor: float) -> Iterable[ForceBound]:
+        # Asked in each revolution, mostly with the whole power.
+        return self.bounds if power_factor == 1.0 else self._reduced(power_factor)
+
+    def _reduced(self, power_factor: float) -> Iterator[ForceBound]:
         for each in self.bounds:
             is_power = each.name is LimitName.MOTOR_POWER
             yield replace(each, force=each.force * power_factor) if is_power else each

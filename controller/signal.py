@@ -13,13 +13,14 @@ References
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import isnan, nan
+from typing import NamedTuple
 
 import numpy as np
 
 from controller.ports import Floats, Reading
 from controller.spectrum import UNKNOWN, Spectrum, spectrum
+from stepnc_model.tuples import quick_replace
 
 COVERED = 0.5
 """Share of samples from which a revolution has a valid mean force."""
@@ -40,8 +41,8 @@ WHOLE = 0.999
 """Turns from which a revolution is whole; times are rounded."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Revolution:
+@quick_replace
+class Revolution(NamedTuple):
     """Sensor values of one revolution of the spindle."""
 
     time: float
@@ -102,7 +103,7 @@ class Revolution:
 
     @property
     def is_covered(self) -> bool:
-        """Whether enough samples arrived for a valid mean."""
+        """True if enough samples arrived for a valid mean."""
         return self.coverage >= COVERED
 
 
@@ -198,7 +199,7 @@ class ToothJoiner:
 
 
 def _is_whole(last: Reading | None, reading: Reading) -> bool:
-    """Whether a reading is a tooth period or more, or what the end of a feed left of one."""
+    """True if a reading is a tooth period or more, or what the end of a feed left of one."""
     periods = tooth_periods(reading)
     if periods >= 1.0 - EXACT:
         return True
@@ -223,6 +224,7 @@ def revolution(readings: Sequence[Reading], *, progress_before: float) -> Revolu
     """
     last, shown = readings[-1], _shown(readings)
     powers = [each.power for each in readings if not isnan(each.power)]
+    feeds, overrides = [each.feed for each in readings], [each.override for each in readings]
     teeth, first = len(readings), readings[0].tooth
     return Revolution(
         time=last.time,
@@ -231,14 +233,14 @@ def revolution(readings: Sequence[Reading], *, progress_before: float) -> Revolu
         peak=shown.peak,
         tooth_peaks=_by_number(shown.peaks, first),
         tooth_means=_by_number(shown.means, first),
-        tooth_feeds=_by_number(np.array([each.feed for each in readings]), first),
-        tooth_overrides=_by_number(np.array([each.override for each in readings]), first),
+        tooth_feeds=_by_number(np.array(feeds), first),
+        tooth_overrides=_by_number(np.array(overrides), first),
         samples=len(last.force),
         first=first,
         coverage=shown.coverage,
         power=sum(powers) / len(powers) if powers else nan,
-        feed=sum(each.feed for each in readings) / teeth,
-        override=sum(each.override for each in readings) / teeth,
+        feed=sum(feeds) / teeth,
+        override=sum(overrides) / teeth,
         spindle_speed=last.spindle_speed,
         progress=last.progress,
         progress_before=progress_before,
@@ -319,6 +321,8 @@ def _joined(readings: Sequence[Reading]) -> Reading:
 
 def _normal(readings: Sequence[Reading]) -> float:
     """Mean normal force over the time of readings, N; NaN if one is not known."""
+    if isnan(readings[0].normal):
+        return nan
     seconds = sum(each.period for each in readings)
     return sum(each.normal * each.period for each in readings) / seconds
 
@@ -329,13 +333,13 @@ def _off(reading: Reading) -> float:
 
 
 def _is_skipped(last: Reading, reading: Reading) -> bool:
-    """Whether a tooth is skipped between readings that are tooth periods."""
+    """True if a tooth is skipped between readings that are tooth periods."""
     is_next = reading.tooth == (last.tooth + 1) % last.teeth
     return not is_next and max(_off(last), _off(reading)) <= EXACT
 
 
 def follows(last: Reading, reading: Reading) -> bool:
-    """Whether a reading directly continues the last one, without change or gap."""
+    """True if a reading directly continues the last one, without change or gap."""
     late = reading.time - reading.period - last.time
     return (
         reading.teeth == last.teeth
@@ -345,8 +349,7 @@ def follows(last: Reading, reading: Reading) -> bool:
     )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Shown:
+class _Shown(NamedTuple):
     """Forces of one revolution from its samples, with the teeth in the order of time."""
 
     force: float

@@ -16,6 +16,7 @@ from controller.conditioning import (
     tared,
     without_offset,
 )
+from controller.preview import average
 from simulator.reading import Reading
 
 
@@ -100,4 +101,4 @@ class DrivePower:
 
 def _mean(reading: Reading) -> float:
     """Mean of the samples, N; NaN if a sample is lost or none was taken."""
-    return float(reading.force.mean()) if len(reading.force) else nan
+    return average(reading.force) if len(reading.force) else nan

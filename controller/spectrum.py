@@ -10,17 +10,16 @@ References
    frequency in milling forces.
 """
 
-from dataclasses import dataclass
 from functools import lru_cache
 from math import hypot, nan, pi
+from typing import NamedTuple
 
 import numpy as np
 
 from controller.ports import Floats
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Spectrum:
+class Spectrum(NamedTuple):
     """Force amplitudes of a revolution; NaN if there are too few samples."""
 
     tooth_passing: float

@@ -10,11 +10,14 @@ from controller.orders import EventKind
 from controller.phase import Phase
 from controller.signal import Revolution
 from simulator.reading import Reading
+from stepnc_model.units import ms_from_seconds
+
+_WITHOUT_EFFECT = Phase.OFF, Phase.INHIBITED
 
 
 def supervised(state: LoopState, reading: Reading) -> LoopState:
     """Report axes that do not run the commanded override, and that they do so again."""
-    if state.phase is Phase.OFF or state.phase is Phase.INHIBITED:
+    if state.phase in _WITHOUT_EFFECT:
         return state._replace(following=Following(modelled=reading.override))
     before = state.following
     now = followed(before, reading, state.override, lag=state.settings.servo_lag)
@@ -40,8 +43,8 @@ def resolved(state: LoopState, reading: Reading, revolution: Revolution) -> Loop
     if not by_teeth:
         tooth = 1.0 / (reading.spindle_speed * reading.teeth)
         text = (
-            f"readings of {1e3 * reading.period:.3g} ms where a tooth takes "
-            f"{1e3 * tooth:.3g} ms: forces are means over a turn or more, broken teeth are not "
-            "looked for, and an overload is noticed no sooner than a reading"
+            f"readings of {ms_from_seconds(reading.period):.3g} ms where a tooth takes "
+            f"{ms_from_seconds(tooth):.3g} ms: forces are means over a turn or more, broken "
+            "teeth are not looked for, and an overload is noticed no sooner than a reading"
         )
     return told(state, EventKind.AVERAGED, text)

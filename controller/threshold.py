@@ -13,12 +13,14 @@ References
    Cambridge, 2009: exponentially weighted mean and standard deviation.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 from math import exp, log, sqrt
+from typing import NamedTuple
 
 from controller.signal import Revolution
 from simulator.physics.domain import require_positive
+from stepnc_model.tuples import quick_replace
 
 
 class AlarmLevel(StrEnum):
@@ -68,8 +70,8 @@ class Thresholds:
 USUAL = Thresholds()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ThresholdWatch:
+@quick_replace
+class ThresholdWatch(NamedTuple):
     """Learnt force threshold and the present alarm level; a new object learns anew."""
 
     level: AlarmLevel = AlarmLevel.SAFE
@@ -127,9 +129,9 @@ def watched(
         return watch
     if not is_steady:
         is_above = force > (1.0 + by.margin) * set_point
-        return replace(watch, level=AlarmLevel.OVER if is_above else AlarmLevel.SAFE)
+        return watch._replace(level=AlarmLevel.OVER if is_above else AlarmLevel.SAFE)
     level = _level(watch, force, set_point=set_point, by=by)
-    return replace(_learnt(watch, log(force), by), level=level)
+    return _learnt(watch, log(force), by)._replace(level=level)
 
 
 def reason(
@@ -192,8 +194,7 @@ def _learnt(watch: ThresholdWatch, value: float, by: Thresholds) -> ThresholdWat
         reach = _reach(watch, by)
         away = min(max(away, -reach), reach)
     part = max(1.0 / count, 1.0 / by.memory)
-    return replace(
-        watch,
+    return watch._replace(
         log_mean=watch.log_mean + part * away if watch.revolutions else value,
         log_variance=(1.0 - part) * (watch.log_variance + part * away * away),
         revolutions=count,

@@ -28,8 +28,9 @@ References
 .. [5] D. Simon, "Optimal state estimation", Wiley, 2006, section 7.5: projected estimates.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import exp, hypot, inf, isnan, log, nan, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -38,10 +39,12 @@ from simulator.physics.domain import require_not_negative, require_positive
 from simulator.physics.flank import CUTTING, NORMAL
 from simulator.physics.milling import RADIAL_SHARE
 from simulator.physics.tool_life import LIFE_CRITERION
+from stepnc_model.tuples import quick_replace
 
 _DECISION = 10.0  # standard deviations
 _LEAST = 0.02  # least K that is believed
 _BOUNDS = np.array([_LEAST, 0.0, 0.0, 0.0])  # of K, sharp normal ratio, VB and its rate
+_STILL = np.eye(4)  # step of the belief in no time
 _IN_ORDER = (3, 0, 1, 2)  # VB last, as the others move it
 
 FRESH = np.array([0.3, 0.5 * RADIAL_SHARE, 0.005, 0.003])
@@ -112,8 +115,7 @@ class WearMonitorSettings:
 USUAL = WearMonitorSettings()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Ratios:
+class Ratios(NamedTuple):
     """Measured over expected force of one revolution, and what explains it."""
 
     log_ratio: float
@@ -126,16 +128,14 @@ class Ratios:
     """Measured normal force over expected cutting force; NaN: not measured."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Belief:
+class _Belief(NamedTuple):
     """Mean (4,) and covariance (4, 4) of K, sharp normal ratio, VB and its rate."""
 
     mean: Floats
     covariance: Floats
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class CumulativeSum:
+class CumulativeSum(NamedTuple):
     """One-sided cumulative sum (CUSUM), [1]_."""
 
     total: float = 0.0
@@ -145,8 +145,8 @@ class CumulativeSum:
     """What was believed when the sum was 0."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ToolLife:
+@quick_replace
+class ToolLife(NamedTuple):
     """Estimated wear of a tool; create a new one with :func:`new_tool`."""
 
     belief: _Belief
@@ -182,13 +182,13 @@ class ToolLife:
 
     @property
     def is_worn_out(self) -> bool:
-        """Whether the flank wear has surely reached the end of tool life, [2]_."""
+        """True if the flank wear has surely reached the end of tool life, [2]_."""
         noise = sqrt(float(self.belief.covariance[2, 2]))
         return self.flank_wear >= LIFE_CRITERION and noise < 0.25 * LIFE_CRITERION
 
     @property
     def basis(self) -> str:
-        """What the estimate of the wear rests on, in words."""
+        """Basis of the wear estimate, in words."""
         least, greatest = self.shares
         found = ["the slow rise of the force"]
         if greatest > SPREAD * least:
@@ -199,7 +199,7 @@ class ToolLife:
 
     @property
     def is_wear_sure(self) -> bool:
-        """Whether there is wear beyond three standard deviations and the errors of the plan."""
+        """True if there is wear beyond three standard deviations and the errors of the plan."""
         noise = sqrt(float(self.belief.covariance[2, 2]))
         return self.flank_wear > max(3.0 * noise, PLAN_ERROR)
 
@@ -238,7 +238,7 @@ def taught(life: ToolLife, hardness: float) -> ToolLife:
     covariance[2, 2] = max(covariance[2, 2], TAUGHT**2)
     mean = life.belief.mean.copy()
     mean[0] = hardness
-    return replace(life, belief=_Belief(mean=mean, covariance=covariance))
+    return life._replace(belief=_Belief(mean=mean, covariance=covariance))
 
 
 def lived(life: ToolLife, at: Ratios, *, by: WearMonitorSettings = USUAL) -> ToolLife:
@@ -255,25 +255,28 @@ def lived(life: ToolLife, at: Ratios, *, by: WearMonitorSettings = USUAL) -> Too
     explained = max(_explained(predicted, at), _LEAST)
     away = at.log_ratio - log(explained) if life.readings else 0.0
     part = max(1.0 / (readings + EXPECTED), 1.0 / by.memory)
-    moved = replace(
-        life,
-        log_variance=(1.0 - part) * life.log_variance + part * _variance(away, life),
-        away=away,
-        readings=readings,
-        has_normal=life.has_normal or not isnan(at.normal),
-    )
-    if at.land_share > 0.0:
-        least, greatest = life.shares
-        moved = replace(moved, shares=(min(least, at.land_share), max(greatest, at.land_share)))
-    deviation = max(sqrt(moved.log_variance), 0.25 * by.allowance)
-    moved = replace(moved, belief=_updated(predicted, at, deviation=deviation))
-    if readings <= by.learning:
-        return moved
+    log_variance = (1.0 - part) * life.log_variance + part * _variance(away, life)
+    deviation = max(sqrt(log_variance), 0.25 * by.allowance)
     allowance = max(by.allowance, deviation)
     decision = max(by.decision, _DECISION * deviation)
-    above = _summed(life.above, away - allowance, life.belief)
-    below = _summed(life.below, -away - allowance, life.belief)
-    moved = replace(moved, above=above, below=below)
+    above, below, (least, greatest) = life.above, life.below, life.shares
+    if readings > by.learning:
+        above = _summed(above, away - allowance, life.belief)
+        below = _summed(below, -away - allowance, life.belief)
+    if at.land_share > 0.0:
+        least, greatest = min(least, at.land_share), max(greatest, at.land_share)
+    moved = life._replace(
+        belief=_updated(predicted, at, deviation=deviation),
+        log_variance=log_variance,
+        away=away,
+        readings=readings,
+        above=above,
+        below=below,
+        shares=(least, greatest),
+        has_normal=life.has_normal or not isnan(at.normal),
+    )
+    if readings <= by.learning:
+        return moved
     if above.total > decision:
         return _changed(moved, above.total / above.revolutions + allowance, above, at)
     if below.total > decision:
@@ -298,7 +301,7 @@ def _explained(belief: _Belief, at: Ratios) -> float:
 
 def _predicted(belief: _Belief, period: float) -> _Belief:
     """Belief some seconds of cutting later: VB grows at its rate, the rate wanders."""
-    step = np.eye(4)
+    step = _STILL.copy()
     step[2, 3] = period
     covariance = step @ belief.covariance @ step.T
     covariance[3, 3] += DRIFT**2 * period
@@ -340,7 +343,7 @@ def _measured(belief: _Belief, row: Floats, value: float, error: float) -> _Beli
     towards = belief.covariance @ row
     spread = float(row @ towards) + error
     mean = belief.mean + towards * ((value - float(row @ belief.mean)) / spread)
-    covariance = belief.covariance - np.outer(towards, towards) / spread
+    covariance = belief.covariance - towards[:, None] * towards / spread
     return _Belief(mean=mean, covariance=0.5 * (covariance + covariance.T))
 
 
@@ -384,8 +387,7 @@ def _whole(belief: _Belief, at: Ratios) -> float:
 
 def _restarted(life: ToolLife, belief: _Belief, changes: tuple[float, ...]) -> ToolLife:
     """Life whose comparison begins anew."""
-    return replace(
-        life,
+    return life._replace(
         belief=belief,
         readings=0,
         log_variance=ENTRY**2,

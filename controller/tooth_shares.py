@@ -4,12 +4,13 @@ Shares do not depend on depth or k_c, which act on all teeth alike. Units: mm, s
 """
 
 from dataclasses import dataclass
-from math import pi
+from functools import lru_cache
+from math import isfinite, pi
 
 import numpy as np
 
 from controller.ports import Floats
-from controller.preview import Expected
+from controller.preview import Expected, average
 from controller.signal import Revolution
 from simulator.kernels.kernel import entry, kernel
 from simulator.physics.tooth_means import Periods, means_of, periods
@@ -100,14 +101,14 @@ def force_ratio(revolution: Revolution, expected: Expected | None) -> float | No
     """
     if expected is None or revolution.samples < 2 or not revolution.force > 0.0:
         return None
-    means = revolution.tooth_means
-    passing = revolution.teeth * revolution.spindle_speed
-    is_whole = bool(np.isfinite(means).all()) and means.sum() > 0.0
-    is_fed = bool(revolution.tooth_feeds.min() > LEAST_CHIP * passing)
-    is_known = expected.arcs.are_known and bool(expected.force.min() > 0.0)
+    means, passing = revolution.tooth_means, revolution.teeth * revolution.spindle_speed
+    # Lists, as numpy takes several times as long for the few teeth of a cutter.
+    is_whole = all(map(isfinite, means.tolist())) and np.add.reduce(means) > 0.0
+    is_fed = all(each > LEAST_CHIP * passing for each in revolution.tooth_feeds.tolist())
+    is_known = expected.arcs.are_known and min(expected.force.tolist()) > 0.0
     if not (is_whole and is_fed and is_known):
         return None
-    return revolution.force / float(expected.force.mean())
+    return revolution.force / average(expected.force)
 
 
 def shares_of(
@@ -126,7 +127,7 @@ def shares_of(
         Change of ln(measured / expected force) since the previous revolution; None: none
     """
     teeth, means = revolution.teeth, revolution.tooth_means
-    taken: Floats = means / means.mean()
+    taken: Floats = means / average(means)
     per_tooth = revolution.tooth_feeds / (teeth * revolution.spindle_speed)
     # The mean of samples taken at the ends of their intervals is early by half an interval.
     delay = max(LAG - 0.5 * revolution.period / (teeth * revolution.samples), 0.0)
@@ -149,19 +150,26 @@ def _noise(
 ) -> Floats:
     """Covariance of the errors of the shares, (z, z)."""
     teeth = revolution.teeth
-    order = (np.arange(teeth) - revolution.first) % teeth
-    near = JITTER * expected.change / expected.force.mean()
-    even = FLOOR / revolution.tooth_means.mean(), MISSED * (1.0 - revolution.coverage)
+    near = JITTER * expected.change / average(expected.force)
+    even = FLOOR / average(revolution.tooth_means), MISSED * (1.0 - revolution.coverage)
     own = READING**2 * (1.0 + taken**2) + even[0] ** 2 + even[1] ** 2
     # Columns: jitter, of which an excess of one tooth shifts the mean, and with it the shares
     # of all teeth; drift; early entry.
     errors = np.empty((teeth, teeth + 2))
     errors[:, :teeth] = taken[:, None] * (near / -teeth)
     errors.flat[:: teeth + 3] += near
-    errors[:, -2] = drift * taken * ((order + 0.5) / teeth - 0.5)
+    errors[:, -2] = drift * taken * _places(teeth, revolution.first)
     errors[0, -1] = taken[-1] - taken[0]
     errors[1:, -1] = taken[:-1] - taken[1:]
     errors[:, -1] *= EARLY
     noise = errors @ errors.T
     noise.flat[:: teeth + 1] += own
     return noise
+
+
+@lru_cache(maxsize=64)
+def _places(teeth: int, first: int) -> Floats:
+    """Middle of each tooth period from the middle of the revolution, in revolutions, (z,)."""
+    places: Floats = ((np.arange(teeth) - first) % teeth + 0.5) / teeth - 0.5
+    places.setflags(write=False)
+    return places

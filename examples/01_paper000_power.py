@@ -1,4 +1,4 @@
-"""How the power of a lathe runs through the turning case of Shin et al. (2016).
+"""Power of a lathe through the turning case of Shin et al. (2016).
 
 Runs ``parts/paper000.stpnc`` on the paper's lathe and draws power against time with the five
 events that the paper marks in its Fig. 8. ``python examples/01_paper000_power.py [PICTURE]``.

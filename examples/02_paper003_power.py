@@ -1,4 +1,4 @@
-"""What the two slots of Lechevalier et al. (2018) draw above idle, and how long a pass takes.
+"""Power above idle and time of a pass for the two slots of Lechevalier et al. (2018).
 
 Runs ``parts/paper003_case1.stpnc`` and ``case2`` on the paper's mill and draws power against
 time. ``python examples/02_paper003_power.py [PICTURE]``.

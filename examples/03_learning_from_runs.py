@@ -1,4 +1,4 @@
-"""How three runs teach the plan what the catalogue does not know of the material.
+"""Three runs that correct the catalogue's cutting force for the next plan.
 
 The catalogue's k_c is wrong by a factor that nobody told; plan, run, record, review, accept,
 plan again. ``python examples/03_learning_from_runs.py [FACTOR]``: 1.35 when none is given; at

@@ -1,4 +1,4 @@
-"""What cuts within Table 1 of Lechevalier et al. (2015) draw on the mill of their later paper.
+"""Power of cuts within Table 1 of Lechevalier et al. (2015) on the mill of their later paper.
 
 The paper prints ranges of feed, spindle speed and depth, but neither tool, material nor
 machine: here they cut the slot of ``parts/paper003_case1.stpnc`` in one layer.

@@ -1,4 +1,4 @@
-"""How fast a control runs points at each spacing, after Vijayaraghavan et al. (2009), Table 2.
+"""Feed of a control by point spacing, after Vijayaraghavan et al. (2009), Table 2.
 
 Beside print: the block time that its slope means, and what the motion of the library's
 machining centre makes of the paper's circle. ``python examples/07_paper004_feed.py``.

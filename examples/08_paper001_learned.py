@@ -1,4 +1,4 @@
-"""How well models learn the total power of 800 parts, as § 4.3 of Lechevalier et al. (2015).
+"""Learned models of the total power of 800 parts, as § 4.3 of Lechevalier et al. (2015).
 
 The paper's part, machine and network are not printed: here a pocket is cut on the mill of their
 later paper, within the ranges of Table 1. 500 rows train, the next 300 test.

@@ -1,4 +1,4 @@
-"""Where a learned model helps: on a machine that the physics does not know.
+"""A learned model on a machine that the physics does not know.
 
 The pocket of ``08_paper001_learned.py`` on a mill as the physics has it, and on one with 15 %
 more k_c and 60 W more idle power: models learn from few runs, 300 others test.

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from math import exp, log
 
+from stepnc_model.counted import counted
 from stepnc_model.outcome import LearnedCorrection
 
 
@@ -73,7 +74,8 @@ def objections(
         else f"confidence {proposed.confidence:.3f} below {keep.least_confidence:g}",
         ObjectionGround.OUTCOMES: ""
         if proposed.outcomes >= keep.fewest_outcomes
-        else f"learned from {proposed.outcomes} outcomes, fewer than {keep.fewest_outcomes}",
+        else f"learned from {counted(proposed.outcomes, 'outcome')}, "
+        f"fewer than {keep.fewest_outcomes}",
         ObjectionGround.CHANGE: ""
         if accepted is None
         else _leap(factor, exp(accepted.log_centre), keep.greatest_change),

@@ -20,6 +20,7 @@
 ``place`` is a file, or the address of a server without its password.
 """
 
+from stepnc_model.counted import counted
 from stepnc_model.errors import StepNcError
 
 
@@ -117,7 +118,7 @@ class StoreNotEmpty(KnowledgeError):
 
     def __init__(self, place: str, *, rows: int) -> None:
         super().__init__(
-            f"holds {rows} rows that differ from the backup; "
+            f"holds {counted(rows, 'row')} that differ from the backup; "
             "restore into a new file or an empty database",
             place=place,
         )

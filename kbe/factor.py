@@ -6,7 +6,7 @@ It is separate from the learning of corrections, so that a plan can use one with
 from dataclasses import dataclass
 from math import exp
 
-from kbe.student import StudentT
+from kbe.statistics import StudentT
 from stepnc_model.outcome import LearnedCorrection
 
 SAFE = 0.9

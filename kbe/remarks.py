@@ -1,5 +1,14 @@
 """Remarks on a group of outcomes: observations with numbers, and recommendations.
 
+Comparison of the measured force with the force bound of the plan.
+
+Grade of a group of outcomes against its plan.
+
+The letter grades the prediction: the root mean square of the deviations, bias and scatter
+together, of the quantity that deviates most. Roughness counts only above the plan. Two words
+take precedence over letters: *violated*, the force exceeded its bound, and *wasted*, it stayed
+far below although the plan intended to use it.
+
 References
 ----------
 .. [1] F. Ridwan, X. Xu, G. Liu, "A framework for machining optimisation based on STEP-NC",
@@ -7,15 +16,93 @@ References
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
-from math import sqrt
+from math import hypot, sqrt
 
 from kbe.acceptance import AcceptanceBounds
-from kbe.bound import PASSED, UNUSED, BoundUse
 from kbe.factor import factor_at, interval
 from kbe.statistics import DeviationStatistics, Evaluated
-from stepnc_model.outcome import LearnedCorrection
+from stepnc_model.counted import counted
+from stepnc_model.outcome import LearnedCorrection, ProcessOutcome
+
+PASSED = 1.05
+"""Share of the bound above which the force has violated it."""
+UNUSED = 0.80
+"""Share of the bound below which the bound is wasted, if the plan intended to use it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoundUse:
+    """Counts of outcomes that violated, wasted or overplanned their force bounds."""
+
+    known: int = 0
+    """Number of outcomes with a bound and a measured force."""
+    violated: int = 0
+    wasted: int = 0
+    overplanned: int = 0
+    """Number of outcomes in which the plan itself expected to exceed the bound."""
+    highest: float | None = None
+    """Greatest ratio of measured force to bound."""
+    time_to_win: float = 0.0
+    """Time that could be saved in all wasted outcomes together, s."""
+
+
+def used(sum_before: BoundUse, outcome: ProcessOutcome) -> BoundUse:
+    """Add one more outcome to the counts."""
+    share = share_of(outcome)
+    if share is None:
+        return sum_before
+    wasted = is_wasted(outcome)
+    return replace(
+        sum_before,
+        known=sum_before.known + 1,
+        violated=sum_before.violated + (share > PASSED),
+        wasted=sum_before.wasted + wasted,
+        overplanned=sum_before.overplanned + is_overplanned(outcome),
+        highest=max(share, sum_before.highest or 0.0),
+        time_to_win=sum_before.time_to_win + (time_to_win(outcome) if wasted else 0.0),
+    )
+
+
+def share_of(outcome: ProcessOutcome) -> float | None:
+    """Measured force over its bound; None if either is not known."""
+    measured, bound = outcome.force.measured, outcome.force_bound
+    if measured is None or bound is None or not bound > 0.0 or not measured >= 0.0:
+        return None
+    return measured / bound
+
+
+def is_wasted(outcome: ProcessOutcome) -> bool:
+    """True if the force stayed below a bound that the plan intended to use.
+
+    A plan that itself stays far below its bound is limited by something else (power, chip load,
+    roughness), which is not waste.
+    """
+    share = share_of(outcome)
+    if share is None or outcome.force_bound is None or share >= UNUSED:
+        return False
+    predicted = outcome.force.predicted
+    return predicted is None or predicted >= UNUSED * outcome.force_bound
+
+
+def is_overplanned(outcome: ProcessOutcome) -> bool:
+    """True if the plan itself expected more force than its bound."""
+    predicted, bound = outcome.force.predicted, outcome.force_bound
+    return predicted is not None and bound is not None and predicted > PASSED * bound
+
+
+def time_to_win(outcome: ProcessOutcome) -> float:
+    """Approximate time that full use of the bound would save, s.
+
+    ``t·(1 − F/F_bound)``: it assumes force proportional to feed and chips all the time. Force
+    rises less than the feed, which would save more; time in air, less.
+    """
+    share, seconds = share_of(outcome), outcome.time.measured
+    if share is None or seconds is None:
+        return 0.0
+    return seconds * max(0.0, 1.0 - share)
+
 
 NOTABLE = 0.05
 """Deviation, or change of the factor, above which a remark is made."""
@@ -82,7 +169,7 @@ def remarks(evidence: Evidence) -> tuple[Remark, ...]:
 
 
 def is_pending(evidence: Evidence) -> bool:
-    """Whether the learned factor differs notably from the one that plans use."""
+    """True if the learned factor differs notably from the one that plans use."""
     return abs(_learned(evidence) / _in_force(evidence) - 1.0) > NOTABLE
 
 
@@ -106,7 +193,7 @@ def _overplanned(bound: BoundUse) -> Remark | None:
         about=Evaluated.FORCE,
         action=Action.PLAN_AGAIN,
         observed=f"the plan itself exceeded the force bound in {bound.overplanned} of "
-        f"{bound.known} cuts",
+        f"{counted(bound.known, 'cut')}",
         advice="optimise the program for this machine and material",
     )
 
@@ -119,7 +206,8 @@ def _violated(bound: BoundUse) -> Remark | None:
         about=Evaluated.FORCE,
         action=Action.PLAN_SAFER,
         observed=f"force passed its bound by more than {_percent(PASSED - 1.0)} in "
-        f"{bound.violated} of {bound.known} cuts, by {_percent(bound.highest - 1.0)} at worst",
+        f"{bound.violated} of {counted(bound.known, 'cut')}, "
+        f"by {_percent(bound.highest - 1.0)} at worst",
         advice="plan with a higher quantile of the k_c factor, or a lower bound",
     )
 
@@ -169,7 +257,7 @@ def _wasted(evidence: Evidence) -> Remark | None:
         about=Evaluated.FORCE,
         action=Action.PLAN_AGAIN if overestimated else Action.PLAN_BOLDER,
         observed=f"force below {_percent(UNUSED)} of its bound in {bound.wasted} of "
-        f"{bound.known} cuts{won}",
+        f"{counted(bound.known, 'cut')}{won}",
         advice="accept the k_c factor and plan again"
         if overestimated
         else f"let the controller raise the feed, or {_bolder(evidence)}",
@@ -241,7 +329,7 @@ def _trend(evidence: Evidence, which: Evaluated) -> Remark | None:
         about=which,
         action=Action.CHANGE_TOOL if worn else Action.WAIT,
         observed=f"{which} {'rises' if rises else 'falls'} by {size:.1f} ± {error:.1f} % of "
-        f"the plan per run, over {trend.runs} runs",
+        f"the plan per run, over {counted(trend.runs, 'run')}",
         advice="the edge wears; index or change the tool"
         if worn
         else "wait until it settles before accepting a factor",
@@ -256,9 +344,62 @@ def _deviates(evidence: Evidence, which: Evaluated) -> str:
     above = seen.mean > 0.0
     runs = seen.runs_above if above else seen.runs - seen.runs_above
     side = "above" if above else "below"
-    return f"{which} {_percent(abs(seen.mean))} {side} plan in {runs} of {seen.runs} runs"
+    share = f"{runs} of {counted(seen.runs, 'run')}"
+    return f"{which} {_percent(abs(seen.mean))} {side} plan in {share}"
 
 
 def _percent(share: float) -> str:
     """Format a share as a percentage."""
     return f"{100.0 * share:.0f} %"
+
+
+LETTERS = ((0.05, "A"), (0.10, "B"), (0.20, "C"))
+"""Greatest root mean square deviation of each letter."""
+
+
+class EvaluationGrade(StrEnum):
+    """Grade of a group, from worst to best; unknown without data."""
+
+    VIOLATED = "violated"
+    WASTED = "wasted"
+    D = "D"
+    C = "C"
+    B = "B"
+    A = "A"
+    UNKNOWN = "unknown"
+
+
+def grade(
+    deviations: Mapping[Evaluated, DeviationStatistics], bound: BoundUse
+) -> EvaluationGrade:
+    """Grade a group of outcomes.
+
+    Parameters
+    ----------
+    deviations : mapping of DeviationStatistics
+    bound : BoundUse
+        A group is violated by one outcome, and wasted by half of its outcomes.
+    """
+    if bound.violated:
+        return EvaluationGrade.VIOLATED
+    if bound.wasted and 2 * bound.wasted >= bound.known:
+        return EvaluationGrade.WASTED
+    sizes = [_size(which, each) for which, each in deviations.items()]
+    known = [size for size in sizes if size is not None]
+    if not known:
+        return EvaluationGrade.UNKNOWN
+    worst = max(known)
+    return next(
+        (EvaluationGrade(letter) for most, letter in LETTERS if worst <= most),
+        EvaluationGrade.D,
+    )
+
+
+def _size(which: Evaluated, statistics: DeviationStatistics) -> float | None:
+    """Root mean square deviation of one quantity; None if nothing is known."""
+    if statistics.mean is None:
+        return None
+    # A surface smoother than planned is not a defect.
+    if which is Evaluated.ROUGHNESS and statistics.mean <= 0.0:
+        return 0.0
+    return hypot(statistics.mean, statistics.deviation or 0.0)

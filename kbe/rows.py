@@ -79,7 +79,7 @@ class RowLayout(Generic[T]):
 
     def __init__(self, noun: type[T]) -> None:
         self.leaves = tuple(_leaves(noun, path=(), is_optional=False))
-        self._writers = tuple((leaf.name, _writer(leaf)) for leaf in self.leaves)
+        self.readers = tuple((leaf, _writer(leaf)) for leaf in self.leaves)
         self._read = _reader(noun, count())
 
     def row(self, value: T) -> dict[str, Value]:
@@ -90,7 +90,7 @@ class RowLayout(Generic[T]):
         ValueError
             When a number is not finite, a time has no zone, or a text cannot be stored.
         """
-        return {name: write(value) for name, write in self._writers}
+        return {leaf.name: write(value) for leaf, write in self.readers}
 
     def noun(self, columns: Sequence[Any]) -> T:
         """Convert a row, in the order of :attr:`leaves`, to a dataclass instance."""
@@ -202,7 +202,7 @@ def storable_text(name: str, value: Any) -> str:
 
 
 def _has_surrogate(text: str) -> bool:
-    """Whether the text contains surrogates, which UTF-8 cannot encode."""
+    """True if the text contains surrogates, which UTF-8 cannot encode."""
     return any("\ud800" <= letter <= "\udfff" for letter in text)
 
 

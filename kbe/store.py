@@ -23,7 +23,15 @@ from sqlalchemy import Connection, bindparam, func, insert, select, text
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.engine import URL, Engine
 
-from kbe.connection import connected, reading, writing
+from kbe.connection import (
+    StoreLocation,
+    connected,
+    migrate,
+    parsed_place,
+    reading,
+    require_openable,
+    writing,
+)
 from kbe.errors import (
     KnowledgeError,
     OutcomeDiffers,
@@ -33,9 +41,19 @@ from kbe.errors import (
     StoreUnavailable,
     UnknownCorrection,
 )
-from kbe.groups import Group, group, grouped
-from kbe.ledger import Standing, StoredCorrection, entries, entry, in_force
-from kbe.migrate import migrate
+from kbe.queries import (
+    EVERYTHING,
+    Group,
+    Selection,
+    Standing,
+    StoredCorrection,
+    conditions,
+    entries,
+    entry,
+    group,
+    grouped,
+    in_force,
+)
 from kbe.rows import (
     CORRECTION,
     IDENTITY,
@@ -47,8 +65,6 @@ from kbe.rows import (
     what_differs,
 )
 from kbe.schema import DECIDED, TABLES, correction, decision, outcome
-from kbe.selection import EVERYTHING, Selection, conditions
-from kbe.store_location import StoreLocation, parsed_place, require_openable
 from stepnc_model.outcome import Context, LearnedCorrection, ProcessOutcome
 
 if TYPE_CHECKING:

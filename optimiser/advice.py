@@ -180,12 +180,12 @@ class Plan:
 
     @property
     def has_bad_data(self) -> bool:
-        """Whether a workingstep was left as it is because of its data."""
+        """True if a workingstep was left as it is because of its data."""
         return any(not each.is_infeasible for each in self.refused)
 
     @property
     def is_infeasible(self) -> bool:
-        """Whether any workingstep has no feasible setting."""
+        """True if any workingstep has no feasible setting."""
         return any(advice.status is AdviceStatus.INFEASIBLE for advice in self.advices) or any(
             each.is_infeasible for each in self.refused
         )

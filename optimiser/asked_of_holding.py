@@ -4,8 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from optimiser.advice import Advice
-from optimiser.bar_grip import BarGrip, grip_of, holding_of, setup_id
-from optimiser.conditions import CuttingConditions
+from optimiser.conditions import BarGrip, CuttingConditions, grip_of, holding_of, setup_id
 from optimiser.holding import HoldingLoad
 from optimiser.tolerance import permitted_bar_deflection
 from simulator.spec import (
@@ -20,6 +19,7 @@ from stepnc_model.entities.turning import Contouring, Grooving
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.units import nm_from_nmm
 
 
 def with_holding(
@@ -84,8 +84,10 @@ def _asked(program: Program, held: Sequence[Advice]) -> str:
         across = _greatest(held, lambda load: load.force, "N across the spindle")
         lift = _greatest(held, lambda load: load.lift, "N upwards")
         return f"the vice or clamps must hold {across}{lift and ' and ' + lift}"
-    torque = _greatest(held, lambda load: 1e-3 * load.torque, "N·m about the axis")
-    moment = _greatest(held, lambda load: 1e-3 * load.moment, "N·m of tilting about the jaws")
+    torque = _greatest(held, lambda load: nm_from_nmm(load.torque), "N·m about the axis")
+    moment = _greatest(
+        held, lambda load: nm_from_nmm(load.moment), "N·m of tilting about the jaws"
+    )
     grip = grip_of(program, first.workingstep, None)
     return (
         f"the chuck must hold {torque}{moment and ' and ' + moment}"

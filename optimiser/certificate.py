@@ -45,7 +45,7 @@ NO_LIMIT = "no limit"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LimitExcess:
-    """How far a profile exceeds one limit where it exceeds it most."""
+    """Largest excess of a profile over one limit."""
 
     limit: str
     excess: float
@@ -67,7 +67,7 @@ class LimitShare:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProfileCertificate:
-    """What holds of a profile."""
+    """Certificate of a profile: its excess over limits."""
 
     time: float
     """Time of the profile, s."""

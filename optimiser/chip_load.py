@@ -86,7 +86,7 @@ def greatest_feed(cut: Cut, at: CuttingConditions) -> float | None:
 
 
 def is_borrowed_feed(cut: Cut, at: CuttingConditions) -> bool:
-    """Whether the greatest feed comes from a window of another group."""
+    """True if the greatest feed comes from a window of another group."""
     is_borrowed = at.grade is not None and at.grade.borrowed != ""
     has_own = at.material.max_feed_per_tooth_ratio is not None and _is_solid_carbide(cut, at)
     return is_borrowed and not has_own
@@ -150,7 +150,7 @@ def least_chip(cut: Cut, at: CuttingConditions) -> float:
 
 
 def _is_solid_carbide(cut: Cut, at: CuttingConditions) -> bool:
-    """Whether the feeds per tooth of the material's file are for this tool."""
+    """True if the feeds per tooth of the material's file are for this tool."""
     is_carbide = at.cutting_material is CuttingMaterial.CARBIDE
     return is_carbide and cut.tool_kind is ToolKind.ENDMILL
 

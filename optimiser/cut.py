@@ -13,6 +13,7 @@ from simulator.physics.engagement import Engagement, mean_chip_ratio
 from simulator.physics.flutes import CuttingEdges
 from simulator.physics.slender_bar import BarSection
 from simulator.spec import ToolKind
+from stepnc_model.counted import counted
 from stepnc_model.tool import Tool
 
 LEAST_VOLUME = 1e-3
@@ -29,7 +30,7 @@ class CutKind(StrEnum):
 
     @property
     def is_turned(self) -> bool:
-        """Whether the workpiece rotates instead of the tool."""
+        """True if the workpiece rotates instead of the tool."""
         return self in {CutKind.TURNING, CutKind.GROOVING}
 
 
@@ -94,7 +95,7 @@ class RefusedPasses:
     @property
     def words(self) -> str:
         """The reason with the number: 'in 2 passes up to 0.8 mm more would be left'."""
-        return f"in {self.passes} {'pass' if self.passes == 1 else 'passes'} {self.why}"
+        return f"in {counted(self.passes, 'pass', 'passes')} {self.why}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -302,5 +303,5 @@ class Cut:
 
     @property
     def is_air(self) -> bool:
-        """Whether the path removes no material."""
+        """True if the path removes no material."""
         return self.volume is not None and self.volume <= LEAST_VOLUME

@@ -3,7 +3,7 @@
 The radial width follows from the strategy's overlap, axial depth and passes from the feature's
 depth, and the path length from area over step-over plus approach and overrun. Explicit tool
 paths are measured between the corner points of their curves. Cuts of drills, reamers and
-boring bars follow from the hole. Turning is in :mod:`optimiser.estimate_turning`.
+boring bars follow from the hole. Turning is in :mod:`optimiser.estimated`.
 """
 
 from dataclasses import dataclass, replace
@@ -13,8 +13,15 @@ from math import ceil, dist
 from optimiser.cut import Cut, CutKind, Texture
 from optimiser.problem import ROUNDING, Setting
 from optimiser.region import FeatureRegion, pattern_count, points_of, region_of
-from simulator.physics.engagement import Engagement, bilateral, full_immersion, unidirectional
-from simulator.physics.travel import centred_approach, drill_point_length, one_sided_approach
+from simulator.physics.engagement import (
+    Engagement,
+    bilateral,
+    centred_approach,
+    drill_point_length,
+    full_immersion,
+    one_sided_approach,
+    unidirectional,
+)
 from simulator.spec import ToolKind
 from simulator.tool_kind import tool_kind
 from stepnc_model.entities.entity import Entity
@@ -305,8 +312,11 @@ def ratio(written: float) -> float:
 
 def _texture(sweep: Sweep, tool: Tool, kind: ToolKind) -> tuple[Texture, float]:
     """Texture of the finished surface, and the radius that forms it, mm."""
-    if sweep.is_wall:
-        return Texture.WALL, 0.0
+    return (Texture.WALL, 0.0) if sweep.is_wall else texture_of_floor(tool, kind)
+
+
+def texture_of_floor(tool: Tool, kind: ToolKind) -> tuple[Texture, float]:
+    """Texture that the end of a tool leaves on a floor, and the radius that forms it, mm."""
     if not tool.corner_radius:
         return Texture.NONE, 0.0
     if kind is ToolKind.FACEMILL:
@@ -368,7 +378,7 @@ def hole_cut(
 ) -> tuple[Cut, tuple[Finding, ...]]:
     """Estimate the cut of a drilling workingstep; parameters as :func:`milling_cut`."""
     operation = step.operation
-    kind = _tool_kind(operation, tool)
+    kind = drill_kind(operation, tool)
     depth, count = _depth_and_count(program, step, operation)
     previous, findings = _previous_diameter(program, step, operation, tool)
     length = depth + CLEARANCE + (getattr(operation, "overcut_length", None) or 0.0)
@@ -392,13 +402,13 @@ def hole_cut(
 
 
 def is_hole_making(operation: MachiningOperation, tool: Tool) -> bool:
-    """Whether an operation drills: by its type, or by its tool along a given path."""
+    """True if an operation drills: by its type, or by its tool along a given path."""
     return isinstance(operation, DrillingTypeOperation) or (
         isinstance(operation, FreeformOperation) and tool.keyword in TOOL_BODIES
     )
 
 
-def _tool_kind(operation: MachiningOperation, tool: Tool) -> ToolKind:
+def drill_kind(operation: MachiningOperation, tool: Tool) -> ToolKind:
     """Kind of tool by the operation, or by the tool body where the path is given."""
     by_operation = (kind for cls, kind in TOOL_KINDS if isinstance(operation, cls))
     return next(by_operation, TOOL_BODIES.get(tool.keyword, ToolKind.DRILL))
@@ -428,7 +438,7 @@ def _depth_and_count(
 
 
 def _is_through(program: Program, step: ResolvedWorkingstep) -> bool:
-    """Whether the hole is a through hole."""
+    """True if the hole is a through hole."""
     feature: Entity = program.get(step.features[0])
     if isinstance(feature, ReplicateFeature):
         feature = program.get(feature.replicate_base_feature)

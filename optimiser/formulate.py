@@ -1,4 +1,10 @@
-"""Build the optimisation problem of a cut, and evaluate settings of the cut."""
+"""Build the optimisation problem of a cut, and evaluate settings of the cut.
+
+Pareto front between time, roughness and energy of one workingstep.
+
+Every point is an exact optimum: least time, or least energy, for a required roughness. Points
+that another point equals or beats in all three are left out.
+"""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -7,9 +13,10 @@ from math import inf, isfinite, pi
 from types import MappingProxyType
 
 from optimiser import workingstep as exact
-from optimiser.advice import EvaluatedSetting, LimitLoad
+from optimiser.advice import EvaluatedSetting, LimitLoad, ParetoPoint
 from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind
+from optimiser.errors import Infeasible
 from optimiser.holding import chuck_limits, holding_limits
 from optimiser.limits import (
     drill_point,
@@ -23,7 +30,7 @@ from optimiser.loads import scaled, thrust
 from optimiser.modes import Free, Mode
 from optimiser.plunge_feed import plunge_limits
 from optimiser.problem import BoundSide, Cost, Limit, LimitName, Monomial, Problem, Setting
-from optimiser.roughness import roughness_load
+from optimiser.roughness import roughness_limit, roughness_load
 from optimiser.safety import USUAL_QUANTILE, require_quantile, safety_factor
 from optimiser.source import Source, along_paths
 from optimiser.speed_limits import held_speed, speed_range
@@ -217,7 +224,7 @@ def state_of(
         plunge_power=_greatest(power_load, plunges, at, setting.speed),
         thrust=_greatest(_thrust_load, along, at, setting.speed),
         roughness=max(roughness, default=None),
-        loads=_loads(exact.limits_at(problem, setting.speed), point),
+        loads=limit_loads(exact.limits_at(problem, setting.speed), point),
         plunge_loads=_plunge_loads(cut, at, setting),
     )
 
@@ -227,10 +234,10 @@ def _plunge_loads(cut: Cut, at: CuttingConditions, setting: Setting) -> tuple[Li
     if setting.plunge_feed is None:
         return ()
     point = (setting.plunge_feed, setting.depth, setting.speed)
-    return _loads(plunge_limits(cut, at, setting.speed), point)
+    return limit_loads(plunge_limits(cut, at, setting.speed), point)
 
 
-def _loads(
+def limit_loads(
     limits: tuple[Limit, ...], point: tuple[float, float, float]
 ) -> tuple[LimitLoad, ...]:
     """Loads of limits at one feed per tooth, depth and spindle speed."""
@@ -298,3 +305,77 @@ def _greatest(
         (load(part.cut, at).value(part.feed, part.depth, speed) for part in parts),
         default=0.0,
     )
+
+
+POINTS = 15
+"""Number of roughness levels between the finest possible and the unconstrained optimum."""
+
+
+def front_of(problem: Problem, cut: Cut, at: CuttingConditions) -> tuple[ParetoPoint, ...]:
+    """Points of the Pareto front, the fastest first."""
+    free = replace(problem, limits=_without_roughness(problem.limits))
+    best = [state_of(cut, free, at, _best(free, mode)) for mode in (Mode.TC, Mode.EC)]
+    points = [ParetoPoint(state=state, roughness_bound=None) for state in best]
+    roughest = max(best, key=lambda state: state.roughness or 0.0)
+    for level in _levels(free, cut, roughest):
+        bounded = replace(free, limits=(*free.limits, roughness_limit(cut, level)))
+        for mode in (Mode.TC, Mode.EC):
+            try:
+                setting = _best(bounded, mode)
+            except Infeasible:
+                continue
+            state = state_of(cut, bounded, at, setting)
+            points.append(ParetoPoint(state=state, roughness_bound=level))
+    return tuple(sorted(_undominated(points), key=lambda point: point.state.time))
+
+
+def _best(problem: Problem, mode: Mode) -> Setting:
+    """Best setting: closed form, or the geometric program when tool wear counts."""
+    has_wear = mode is not Mode.EC and problem.cost.tool_change > 0.0
+    if not has_wear or len(problem.speeds) == 1:
+        return exact.solve(problem, mode).setting
+    from optimiser import program as general  # noqa: PLC0415 (cvxpy takes a second)
+
+    return general.snapped(problem, general.solve(problem, mode))
+
+
+def _without_roughness(limits: tuple[Limit, ...]) -> tuple[Limit, ...]:
+    return tuple(limit for limit in limits if limit.name is not LimitName.ROUGHNESS)
+
+
+def _levels(problem: Problem, cut: Cut, roughest: EvaluatedSetting) -> list[float]:
+    """Ra levels, mm, from the roughest optimum down to the thinnest permitted chip."""
+    load = roughness_load(cut)
+    if load is None or roughest.roughness is None:
+        return []
+    setting = roughest.setting
+    thinnest = max(
+        (
+            limit.feed_at_bound(setting.depth, setting.speed)
+            for limit in problem.limits
+            if limit.sense is BoundSide.AT_LEAST and limit.load.feed_exponent > 0.0
+        ),
+        default=setting.feed / POINTS,
+    )
+    steps = [index / (POINTS - 1) for index in range(POINTS)]
+    feeds = [setting.feed * (thinnest / setting.feed) ** step for step in steps]
+    return [load.value(feed, setting.depth, setting.speed) for feed in feeds]
+
+
+def _undominated(points: list[ParetoPoint]) -> list[ParetoPoint]:
+    """Points that no other point equals or beats in time, roughness and energy."""
+    kept: list[ParetoPoint] = []
+    for point in sorted(points, key=lambda point: _measures(point.state)):
+        mine = _measures(point.state)
+        if not any(_beats(_measures(other.state), mine) for other in kept):
+            kept.append(point)
+    return kept
+
+
+def _measures(state: EvaluatedSetting) -> tuple[float, float, float]:
+    return state.time, state.roughness or 0.0, state.energy
+
+
+def _beats(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
+    """True if the first point is nowhere worse than the second, up to rounding."""
+    return all(a <= b * (1.0 + exact.TIE) for a, b in zip(one, other, strict=True))

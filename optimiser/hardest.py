@@ -24,7 +24,7 @@ from simulator.physics.known_places import DIGITS, peak_at, wall_at
 from simulator.physics.slender_bar import BarSection
 from simulator.physics.tooth_forces import Places, peak_resultant, wall_force
 from simulator.removal.lathe import BarRadii, TurningStock
-from simulator.removal.stations import SingleArcs, StationKind, Stations, single_arcs
+from simulator.removal.stations import SingleArcs, StationKind, Stations
 from simulator.spec import Kienzle, ToolKind
 
 LEAST_RATIO = 0.01
@@ -96,7 +96,7 @@ def bending(
     at = _milled_rows(stations)
     if cut.tool_kind is not ToolKind.ENDMILL or not len(at):
         return Bending(at=at[:0], shank=np.empty(0), wall=np.empty(0))
-    arcs = single_arcs(stations)
+    arcs = stations.arcs
     columns = np.stack((arcs.entry_angle[at], arcs.exit_angle[at], arcs.depth[at]))
     law = ForceLaw(exponent=1.0 - kienzle.m_c)
     if is_exact:
@@ -212,7 +212,7 @@ def _milled(
     at = _milled_rows(stations)
     if not len(at):
         return cut
-    arcs = single_arcs(stations)
+    arcs = stations.arcs
     mean = stations.peak_section[at] * stations.chip_ratio[at].clip(LEAST_RATIO) ** -kienzle.m_c
     hardest = at[(mean / stations.diameter[at]).argmax()]
 

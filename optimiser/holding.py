@@ -33,7 +33,7 @@ from simulator.work_holding import (
     Chuck,
     Clamp,
 )
-from stepnc_model.units import rpm_from_rev_s
+from stepnc_model.units import UM_PER_MM, nm_from_nmm, rpm_from_rev_s
 
 FEEDS = (0.05, 1.0)
 """Range of turning feeds in which forces are fitted as powers of the feed, mm/rev."""
@@ -41,7 +41,7 @@ FEEDS = (0.05, 1.0)
 PLACES = 24
 """Number of places along a bar with a tailstock at which its bending is evaluated."""
 
-NM, UM = 1e-3, 1e3
+NM, UM = nm_from_nmm(1.0), UM_PER_MM
 """Factors from canonical units to user units: N·mm to N·m, mm to µm."""
 
 

@@ -54,7 +54,7 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class BlockRule:
-    """What a control asks of the blocks of a feed.
+    """Rule of a control for the blocks of a feed.
 
     Raises
     ------
@@ -392,6 +392,6 @@ def _consider_starts(
 
 @kernel
 def _differs(one: float, other: float, change: float) -> bool:
-    """Whether two neighbouring feeds may follow each other."""
+    """True if two neighbouring feeds may follow each other."""
     high, low = max(one, other), min(one, other)
     return high > low and high >= low * (1.0 + change) * (1.0 - 1e-12)

@@ -2,6 +2,8 @@
 
 A value that a source does not give sets no limit. All loads come from :mod:`optimiser.loads`;
 this module does not depend on how a problem is solved.
+
+Limits on the depth of one pass, from machine, tool and the windows of its grade.
 """
 
 from collections.abc import Iterator
@@ -19,20 +21,126 @@ from optimiser.chip_load import (
 )
 from optimiser.conditions import CuttingConditions, PermittedDeflection
 from optimiser.cut import Cut, CutKind
-from optimiser.depth_limits import depth_limits
 from optimiser.problem import BoundSide, Limit, LimitName, Monomial
 from optimiser.roughness import surface_limits
-from optimiser.speed_limits import speed_limits
-from simulator.edge_material import correction_of
+from optimiser.speed_limits import WRITTEN, SourcedBound, borrowed_bound, speed_limits
 from simulator.library import reaming_allowances
 from simulator.physics.drilling import LIPS_ONLY
 from simulator.physics.spindle import CurveSegment, curve_segments
 from simulator.physics.strength import end_mill
-from simulator.spec import (
-    DrillPoint,
-    ToolGrade,
-    ToolKind,
-)
+from simulator.spec import DrillPoint, ToolGrade, ToolKind
+from simulator.tool_kind import correction_of
+from stepnc_model.units import kw_from_watts, mm_min_from_speed, nm_from_nmm
+
+DEEPER = 1.01
+"""Depth of the deepest place over that of a pass above which it is named."""
+
+
+def depth_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
+    """Limit on the depth of one pass from machine, tool and grade."""
+    if cut.kind not in {CutKind.MILLING, CutKind.TURNING}:
+        return
+    of_tool = _grade_depth(cut, at)
+    greatest = _least_known(cut, at, of_tool)
+    if greatest is not None:
+        is_of_tool = greatest == of_tool.bound
+        deepest = cut.deepest_share if cut.is_depth_free else 1.0
+        yield Limit(
+            name=LimitName.AXIAL_DEPTH,
+            label="depth at the deepest place" if deepest > DEEPER else "",
+            load=Monomial(coefficient=deepest, depth_exponent=1.0),
+            bound=greatest,
+            unit="mm",
+            origin=of_tool.origin if is_of_tool else "",
+            datum=of_tool.datum if is_of_tool else "",
+        )
+        yield from _shoulder_limits(cut, greatest)
+
+
+def depth_at_shoulder(cut: Cut, at: CuttingConditions) -> float | None:
+    """Depth of a turning tool beyond which a place keeps its programmed feed, mm; None: any."""
+    if cut.kind is not CutKind.TURNING or cut.is_depth_free or at.grade is None:
+        return None
+    return _least_known(cut, at, _grade_depth(cut, at))
+
+
+def _least_known(cut: Cut, at: CuttingConditions, of_tool: SourcedBound) -> float | None:
+    """Least of the greatest depths that anything permits, mm; None: any."""
+    bounds = [at.machine.max_axial_depth, cut.depth_bound, at.bounds.axial_depth]
+    known = [bound for bound in (*bounds, of_tool.bound) if bound is not None]
+    return min(known, default=None)
+
+
+def _shoulder_limits(cut: Cut, bound: float) -> Iterator[Limit]:
+    """Keep the programmed feed where a finishing cut meets more than its insert may cut.
+
+    An insert that turns along the axis up to a shoulder meets the allowance of its face with
+    the whole edge, as high as the shoulder is: an edge at 93° stands 3° off the face, so that
+    an allowance of 0.5 mm is met on 9.5 mm of it at once. What is left along the face's normal
+    would count only for a move along the face. No feed makes a shoulder less deep: the program
+    itself must change. One feed holds for a workingstep; along the path only the place itself
+    keeps it (:mod:`optimiser.along_path.caps`).
+    """
+    depth = cut.programmed.depth
+    deepest = cut.deepest_share * depth
+    if cut.is_depth_free or deepest <= DEEPER * bound or depth > bound:
+        return
+    yield Limit(
+        name=LimitName.PROGRAMMED_FEED,
+        load=Monomial(coefficient=1.0, feed_exponent=1.0),
+        bound=cut.programmed.feed,
+        unit="mm",
+        step=0.01,
+        origin=f"{deepest:.3g} mm deep at a shoulder, where the tool may cut {bound:.3g} mm",
+        datum="a tool for that depth, roughing nearer to the shoulder, or facing it inwards",
+        stands_for=LimitName.AXIAL_DEPTH,
+    )
+
+
+def _grade_depth(cut: Cut, at: CuttingConditions) -> SourcedBound:
+    """Greatest depth of a pass by the windows of the tool, mm."""
+    grade, given = at.grade, cut.programmed.depth
+    if grade is None:
+        return SourcedBound()
+    bounds = [grade.max_depth, depth_by_diameter(cut, at, grade)]
+    known = [bound for bound in bounds if bound is not None]
+    if not known:
+        if grade.has_feeds or at.machine.only_stated_limits:
+            return SourcedBound()
+        origin = f"no source for more with {grade.name}"
+        return SourcedBound(bound=given, origin=origin, datum="a catalogue of the tool")
+    found = borrowed_bound(min(known), given, at)
+    if found.origin or not _is_wide(cut, at, grade):
+        return found
+    return replace(found, origin=f"for a width of {_width_ratio(cut):.3g} of the diameter")
+
+
+def depth_by_diameter(cut: Cut, at: CuttingConditions, grade: ToolGrade) -> float | None:
+    """Greatest depth of a pass as a ratio of the diameter, mm; None without one.
+
+    Beyond the width of the window it falls linearly with a_e/D to that in a full slot.
+    """
+    ratio, window = grade.max_depth_ratio, grade.depth_window
+    if ratio is None:
+        return None
+    if window is not None and _is_wide(cut, at, grade):
+        beyond = (_width_ratio(cut) - window.width_ratio) / (1.0 - window.width_ratio)
+        ratio -= min(1.0, beyond) * (ratio - min(ratio, window.slot_ratio))
+    return ratio * grade.size(cut.diameter)
+
+
+def _is_wide(cut: Cut, at: CuttingConditions, grade: ToolGrade) -> bool:
+    """True if a milling cut is wider than the depths of the tool are meant for."""
+    window = grade.depth_window
+    if window is None or cut.kind is not CutKind.MILLING or at.machine.only_stated_limits:
+        return False
+    return _width_ratio(cut) > window.width_ratio + WRITTEN
+
+
+def _width_ratio(cut: Cut) -> float:
+    """Radial width over diameter where the force is greatest."""
+    return min(cut.radial_width / cut.diameter, 1.0) if cut.diameter > 0.0 else 0.0
+
 
 PLUNGE_FEED_RATIO = 0.5
 """Greatest feed per tooth in a straight plunge over the feed along the pass (customary).
@@ -51,7 +159,7 @@ VENDOR_FEED = "max_feed_mm of the tool in a tool table"
 STRAIGHT_DOWN = "straight down"
 """Words added to the limits of a plunge to distinguish them from those along the pass."""
 
-KW, NM, MM_MIN = 1e-3, 1e-3, 60.0
+KW, NM, MM_MIN = kw_from_watts(1.0), nm_from_nmm(1.0), mm_min_from_speed(1.0)
 """Factors from canonical units to user units."""
 
 
@@ -294,6 +402,7 @@ def _bending_limits(cut: Cut, at: CuttingConditions, grade: ToolGrade) -> Iterat
         cut.tool.diameter,
         cutting_edge_length=cut.tool.cutting_edge_length,
         youngs_modulus=grade.youngs_modulus,
+        overhang=cut.tool.overhang,
     )
     normal = loads.wall_force(cut, at.material.kienzle, force_factor(at))
     if normal is not None:
@@ -316,7 +425,7 @@ def _bending_limits(cut: Cut, at: CuttingConditions, grade: ToolGrade) -> Iterat
 
 
 def is_bent(cut: Cut) -> bool:
-    """Whether the tool bends under load: end mills do, face mills do not."""
+    """True if the tool bends under load: end mills do, face mills do not."""
     return cut.kind is CutKind.MILLING and cut.tool_kind is ToolKind.ENDMILL
 
 

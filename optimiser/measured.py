@@ -31,7 +31,7 @@ from optimiser.hardest import (
     weighted_volume,
     with_hardest,
 )
-from optimiser.other_depth import with_depth
+from optimiser.path_only import greatest_depth, is_path_only
 from optimiser.plunge import (
     PlungeCuts,
     along_passes,
@@ -50,10 +50,10 @@ from optimiser.reached import (
     with_reached,
 )
 from optimiser.side_by_side import Result, one_by_one, side_by_side
-from optimiser.stock_left import difference_left
-from optimiser.tried_path import SearchTrace, TriedPath, air_share
+from optimiser.tried_path import SearchTrace, TriedPath, air_share, difference_left, with_depth
 from simulator.motion.passing import motion_of
 from simulator.motion.tool_path import (
+    PathGeometry,
     SpeedRatios,
     ToolPathRun,
     paced,
@@ -70,7 +70,7 @@ from stepnc_model.post.blocks import MachineType as PostMachine
 from stepnc_model.post.modal_state import ModalState, conditions
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.technology import programmed
-from stepnc_model.toolpath.generate import require_ready, workingstep_path
+from stepnc_model.toolpath.generate import PathOf, require_ready, workingstep_path
 from stepnc_model.toolpath.path import Feed, ToolPath
 
 
@@ -89,6 +89,8 @@ class MeasuredCuts:
         the axes actually reach, and not only those above what the feed says.
     body_map : BodyMaps, optional
         Maker of maps of raw parts that are bodies; without it, their box or bar counts.
+    path_of : callable
+        Maker of the paths of workingsteps as programmed.
     """
 
     def __init__(
@@ -99,8 +101,10 @@ class MeasuredCuts:
         *,
         is_run: bool = False,
         body_map: BodyMaps | None = None,
+        path_of: PathOf = workingstep_path,
     ) -> None:
         self.program = program
+        self.path_of = path_of
         self.is_run = is_run
         self.machine = machine
         self.material = material
@@ -118,6 +122,8 @@ class MeasuredCuts:
         """Why numbers of passes of the workingstep are no candidates."""
         self._paths: dict[int, ToolPath] = {}
         """Paths of the workingstep in other numbers of passes."""
+        self._shapes: dict[int, PathGeometry] = {}
+        """Geometries of the paths of the workingstep, by the identity of the path."""
         self._trace = SearchTrace()
         self._numbers: dict[StockPlace, dict[int, int]] = {}
         """New numbers of the first moves of repeated workingsteps, by their old numbers."""
@@ -133,9 +139,12 @@ class MeasuredCuts:
         SchemaError
             When the workingstep lacks what a cut needs.
         """
-        self._seen, self._refused, self._paths = {}, {}, {}
+        self._seen, self._refused, self._paths, self._shapes = {}, {}, {}, {}
         self._trace = SearchTrace(place=self.stocks.place(step))
-        cut, findings = estimated_cut(self.program, step, self.machine, self.material)
+        depth = self._depth_met(step) if is_path_only(self.program, step) else None
+        cut, findings = estimated_cut(
+            self.program, step, self.machine, self.material, depth=depth
+        )
         self._estimate, self._found = cut, self.stocks.before(step)
         try:
             seen = self._see(step, self._path(step), cut, passes=cut.programmed.passes)
@@ -154,6 +163,12 @@ class MeasuredCuts:
             text = f"the engagement is estimated from the feature: {seen.meeting.why}"
             findings.append(self._warning(step, text))
         return self._timed(step, seen, seen.cut.programmed), findings
+
+    def _depth_met(self, step: ResolvedWorkingstep) -> float | None:
+        """Greatest depth that a given path meets, mm; None where none is known."""
+        run = self._run(self._path(step), SpeedRatios(technology=step.technology_ref))
+        met = met_by(self.program, step, run, self.stocks.before(step)).met
+        return None if met is None else greatest_depth(run, met)
 
     def at(self, step: ResolvedWorkingstep, cut: Cut, setting: Setting) -> Cut:
         """Return the cut as the path of another setting makes it.
@@ -204,7 +219,7 @@ class MeasuredCuts:
 
     def leave_out(self, step: ResolvedWorkingstep) -> None:
         """Cut the stock with a workingstep that is not optimised but will run."""
-        stock = self.stocks.before(step)
+        stock, self._shapes = self.stocks.before(step), {}
         self._trace = SearchTrace(place=self.stocks.place(step))
         try:
             run = self._run(self._path(step), SpeedRatios(technology=step.technology_ref))
@@ -232,7 +247,7 @@ class MeasuredCuts:
     def is_apart(
         self, step: ResolvedWorkingstep, trace: SearchTrace, others: Sequence[SearchTrace]
     ) -> bool:
-        """Whether a workingstep would have met the same stock after the others."""
+        """True if a workingstep would have met the same stock after the others."""
         features = {int(feature) for feature in step.features}
         if any(features & other.left_out.keys() for other in others):
             return False
@@ -276,7 +291,7 @@ class MeasuredCuts:
     def _path(self, step: ResolvedWorkingstep) -> ToolPath:
         """Tool path of a workingstep as programmed."""
         require_ready(self.program, step, self._left_out)
-        return workingstep_path(self.program, step)
+        return self.path_of(self.program, step)
 
     def _other_path(self, step: ResolvedWorkingstep, setting: Setting) -> ToolPath:
         """Tool path of a workingstep in another number of passes; each is made once."""
@@ -290,6 +305,9 @@ class MeasuredCuts:
         is_lathe = path.is_turning or self.machine.kind is MachineKind.LATHE
         kind = PostMachine.LATHE if is_lathe else PostMachine.MILL
         known: dict[Feed, ModalState] = {}
+        # A geometry keeps its path, so that no other path has its id.
+        shape = self._shapes.get(id(path)) or PathGeometry(path)
+        self._shapes[id(path)] = shape
 
         def look_up(feed: Feed) -> ModalState:
             with self.program.using(feed.technology):
@@ -303,7 +321,7 @@ class MeasuredCuts:
             return known[feed]
 
         with self.program.using(path.operation_ref):
-            return run_of(path, known_at_pace, self.machine.spindle)
+            return run_of(shape, known_at_pace, self.machine.spindle)
 
     def _see(
         self, step: ResolvedWorkingstep, path: ToolPath, cut: Cut, *, passes: int

@@ -24,32 +24,30 @@ from optimiser.asked_of_holding import holding_findings, with_holding
 from optimiser.conditions import CuttingConditions, PermittedDeflection, tool_grade
 from optimiser.cut import Cut
 from optimiser.errors import Infeasible, OptimisationError
-from optimiser.estimate_turning import mean_diameter
-from optimiser.formulate import OptimisationTask, problem_of, state_of
-from optimiser.front import front_of
+from optimiser.estimated import mean_diameter
+from optimiser.formulate import OptimisationTask, front_of, problem_of, state_of
 from optimiser.holding import holding_load
-from optimiser.impossible import why_impossible, why_thread_impossible
 from optimiser.limits import is_bent
 from optimiser.modes import Free, Mode
 from optimiser.passes import AdviceContext, best_of, untried_words
 from optimiser.plunge_feed import plunge_fault, plunge_findings
 from optimiser.problem import Problem
 from optimiser.reasons import passed_limits, plunge_reason, reason_of
-from optimiser.required import unchecked_limits
-from optimiser.requirement import required_roughness
-from optimiser.roughness import LAND_SHARE, roughness_load
+from optimiser.required import unchecked_limits, why_impossible, why_thread_impossible
+from optimiser.roughness import LAND_SHARE, required_roughness, roughness_load
 from optimiser.source import CutSource, WiperCutSource, why_elsewhere
 from optimiser.speed_limits import why_thread_too_fast, why_too_fast
 from optimiser.stability import RISK, estimate_texts, stability_of
 from optimiser.tolerance import permitted_deflection
-from simulator.edge_material import edge_material
 from simulator.spec import CuttingMaterial, Machine, MachineKind, MaterialMatch
+from simulator.tool_kind import edge_material
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError
 from stepnc_model.program import Program, ResolvedWorkingstep
-from stepnc_model.record_limits import NO_LIMITS, RecordLimits, record_limits
+from stepnc_model.record_edit import NO_LIMITS, RecordLimits, record_limits
 from stepnc_model.technology import Programmed, programmed
 from stepnc_model.tool import Tool, tool_of
+from stepnc_model.units import um_from_mm
 
 _Outcome = Advice | RefusedWorkingstep | None
 
@@ -101,7 +99,7 @@ def optimise_program(
             cuts.leave_out(step)
             return None, []
         try:
-            with program.using(step.operation_ref):
+            with program.using(step.operation_ref, *step.features, step.setup):
                 return advise(
                     program, step, cuts, machine=machine, material=material, task=task
                 )
@@ -204,36 +202,36 @@ def advise(
     if impossible:
         status = AdviceStatus.INFEASIBLE
         return replace(untouched, status=status, reason=impossible, after=None), findings
-    advice = untouched
-    if conditions.inhibition:
-        reason = f"{conditions.inhibition}: the program locks this feed"
-        advice = _kept(untouched, reason, why_too_fast(cut, at))
-        findings += [_lock(program, step, conditions), *_too_fast(program, advice)]
-    else:
-        try:
-            asked = AdviceContext(step=step, at=at, task=task, cuts=cuts)
-            advice, found = _solved(program, untouched, cut, problem, asked)
-            findings += found
-        except Infeasible as conflict:
-            reason = str(conflict)
-            advice = replace(
-                untouched, status=AdviceStatus.INFEASIBLE, reason=reason, after=None
-            )
-        except OptimisationError as error:
-            raise OptimisationError(f"{program.label(step.operation_ref)}: {error}") from error
-    may, used = task.allow_plunge, advice.cut
-    findings += plunge_findings(program, step, used, at, is_allowed=may)
+    asked = AdviceContext(step=step, at=at, task=task, cuts=cuts)
+    advice, found = _chosen(program, untouched, cut, problem, asked)
+    used, may = advice.cut or cut, task.allow_plunge
     state = advice.after or before
-    load = holding_load(used or cut, at, state.setting)
-    fault = plunge_fault(used, at, is_allowed=may)
-    limits = tuple(load.limit for load in state.loads)
     advice = replace(
         advice,
-        plunge_fault=fault,
-        holding_load=load,
-        unchecked=unchecked_limits(used or cut, at, limits),
+        plunge_fault=plunge_fault(used, at, is_allowed=may),
+        holding_load=holding_load(used, at, state.setting),
+        unchecked=unchecked_limits(used, at, tuple(load.limit for load in state.loads)),
     )
+    findings += [*found, *plunge_findings(program, step, used, at, is_allowed=may)]
     return advice, findings + passed_limits(program, advice)
+
+
+def _chosen(
+    program: Program, untouched: Advice, cut: Cut, problem: Problem, asked: AdviceContext
+) -> tuple[Advice, list[Finding]]:
+    """Advice on a cut with a feed: locked, solved, or without a solution."""
+    step, conditions = untouched.workingstep, untouched.programmed
+    if conditions.inhibition:
+        reason = f"{conditions.inhibition}: the program locks this feed"
+        advice = _kept(untouched, reason, why_too_fast(cut, asked.at))
+        return advice, [_lock(program, step, conditions), *_too_fast(program, advice)]
+    try:
+        return _solved(program, untouched, cut, problem, asked)
+    except Infeasible as conflict:
+        reason = str(conflict)
+        return replace(untouched, status=AdviceStatus.INFEASIBLE, reason=reason, after=None), []
+    except OptimisationError as error:
+        raise OptimisationError(f"{program.label(step.operation_ref)}: {error}") from error
 
 
 def _thread(
@@ -386,7 +384,7 @@ def _saving_of_free_speed(
 
 
 def _is_cut_with_feed(step: ResolvedWorkingstep) -> bool:
-    """Whether the feed may be chosen; the feed of a thread is its pitch."""
+    """True if the feed may be chosen; the feed of a thread is its pitch."""
     return not any(word in step.operation_type for word in ("tapping", "thread"))
 
 
@@ -454,16 +452,16 @@ def _roughness(
     asked = task.roughness or drawn
     if asked is not None and drawn is not None and asked > drawn:
         text = (
-            f"the requested Ra {asked * 1e3:g} µm is coarser than "
-            f"Ra {drawn * 1e3:g} µm in the file"
+            f"the requested Ra {um_from_mm(asked):g} µm is coarser than "
+            f"Ra {um_from_mm(drawn):g} µm in the file"
         )
         findings.append(program.finding(Severity.WARNING, text, step.operation_ref))
     if asked is None and task.mode is Mode.QC:
         asked = DEFAULT_QUALITY
-        text = f"no roughness is required: QC keeps Ra {DEFAULT_QUALITY * 1e3:g} µm"
+        text = f"no roughness is required: QC keeps Ra {um_from_mm(DEFAULT_QUALITY):g} µm"
         findings.append(program.finding(Severity.NOTE, text, step.operation_ref))
     if asked is not None and roughness_load(cut) is None:
-        text = f"Ra {asked * 1e3:g} µm is required, but " + (
+        text = f"Ra {um_from_mm(asked):g} µm is required, but " + (
             f"the parallel land of {cut.parallel_land:g} mm that inserts usually have makes "
             f"this surface: the feed keeps {100.0 * LAND_SHARE:g} % of it in a revolution"
             if cut.parallel_land

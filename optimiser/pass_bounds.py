@@ -176,7 +176,7 @@ def bounds_of(
 
 
 def are_alike(cuts: Sequence[Cut]) -> bool:
-    """Whether the levels of paths are alike: in length, and in the volume of them all."""
+    """True if the levels of paths are alike: in length, and in the volume of them all."""
     lengths = [cut.length for cut in cuts]
     volumes = [cut.volume for cut in cuts if cut.volume is not None]
     return ALIKE * max(lengths) <= min(lengths) and (

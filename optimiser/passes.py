@@ -29,10 +29,11 @@ from optimiser.formulate import LEAST_DEPTH, OptimisationTask, problem_of
 from optimiser.least_cost import least_cost
 from optimiser.modes import Free
 from optimiser.pass_bounds import PassCountBounds, are_alike, bounds_of
-from optimiser.plunge_search import CLOSE, PlungeOptimum, at_foot, best_plunge
+from optimiser.plunge_feed import CLOSE, PlungeOptimum, at_foot, best_plunge
 from optimiser.problem import SCALES_WITH_FORCE, BoundSide, Limit, LimitName, Problem, Setting
-from optimiser.remedy_words import remedy_for
+from optimiser.reasons import remedy_for
 from optimiser.source import CutSource
+from stepnc_model.counted import counted
 from stepnc_model.program import ResolvedWorkingstep
 
 UNTIL_FEASIBLE = 10
@@ -133,11 +134,11 @@ class PassCountSearch:
 
     @property
     def is_alike(self) -> bool:
-        """Whether the levels of all paths that were tried are alike."""
+        """True if the levels of all paths that were tried are alike."""
         return are_alike([each.cut for each in self.bounds.values()])
 
     def is_bounded(self, passes: int) -> bool:
-        """Whether bounds without a path tell that a number of passes is not worth a change."""
+        """True if bounds without a path tell that a number of passes is not worth a change."""
         is_alike = self.is_alike
         return any(
             each.at_least(passes, is_alike=is_alike) >= self.worthwhile
@@ -145,7 +146,7 @@ class PassCountSearch:
         )
 
     def is_hopeless(self, problem: Problem, passes: int) -> bool:
-        """Whether bounds, also along its path, tell that a number of passes is no better."""
+        """True if bounds, also along its path, tell that a number of passes is no better."""
         if self.is_bounded(passes):
             return True
         depth, asked = problem.depth_at(passes), self.asked
@@ -288,8 +289,8 @@ def _require_sensible(best: PassCountOptimum, given: int) -> None:
         return
     raise Infeasible(
         f"infeasible as tooled: {solution.holding.words} still sets the feed in "
-        f"{setting.passes} passes of {setting.depth:.3g} mm, which would take "
-        f"{solution.time:.4g} s{remedy_for((solution.active,))}",
+        f"{counted(setting.passes, 'pass', 'passes')} of {setting.depth:.3g} mm, which would "
+        f"take {solution.time:.4g} s{remedy_for((solution.active,))}",
         limits=(solution.active,),
     )
 
@@ -374,7 +375,7 @@ def _plunging(
 
 
 def _keeps(cut: Cut, setting: Setting, asked: AdviceContext) -> bool:
-    """Whether a turned cut keeps the greatest loads also as timed at its setting.
+    """True if a turned cut keeps the greatest loads also as timed at its setting.
 
     A spindle that follows the radius is late by another share at another speed or feed, so that
     the place of the greatest power has another power.
@@ -408,7 +409,7 @@ def _with_passes(problem: Problem, passes: int, task: OptimisationTask) -> Optim
         return _optimum(problem, task)
     if passes != given.passes:
         given = replace(given, passes=passes, depth=problem.depth_at(passes))
-    why = f"the tool path has {passes} passes"
+    why = f"the tool path has {counted(passes, 'pass', 'passes')}"
     held = replace(problem, passes=(passes, passes), programmed=given, why_held=why)
     return _optimum(held, task)
 

@@ -197,7 +197,7 @@ def _rounded(tangent: Floats) -> Floats:
 def _spans(segments: Segments) -> tuple[Ints, Floats, Floats]:
     """Rows, begins and ends of what lies between boundaries and quadrants."""
     length, rows = segments.length, np.arange(len(segments))
-    angle = _start_angles(segments)
+    angle = segments.start_angle
     low, high = (
         np.minimum(angle, angle + segments.turn),
         np.maximum(angle, angle + segments.turn),
@@ -216,14 +216,6 @@ def _spans(segments: Segments) -> tuple[Ints, Floats, Floats]:
     goes_on = np.append(row[1:] == row[:-1], False)
     finish[goes_on] = begin[1:][goes_on[:-1]]
     return row, begin, finish
-
-
-def _start_angles(segments: Segments) -> Floats:
-    """Angle of the tangent's normal at the start of arcs, (S,), rad: that of the arm."""
-    rows = np.arange(len(segments))
-    bend = -segments.curvature(rows, np.zeros(len(segments)))
-    first, second = (segments.normal + 1) % 3, (segments.normal + 2) % 3
-    return np.arctan2(bend[rows, second], bend[rows, first])
 
 
 def _refined(

@@ -111,7 +111,7 @@ def way_in_of(
         drilled=tuple(_drilled(cut, stations, row) for row in _hardest(stations, straight)),
         ramp=ramp,
         sine=sine,
-        reaches_axis=bool(_is_core(cut, stations)[straight].any()),
+        reaches_axis=bool(is_core(stations, cut.diameter)[straight].any()),
     )
 
 
@@ -143,12 +143,12 @@ def _sine(segments: Segments) -> Floats:
     return fall
 
 
-def _is_core(cut: Cut, stations: Stations) -> Bools:
-    """Whether straight plunges meet material near the axis, and not only a sliver, (M,)."""
+def is_core(stations: Stations, diameter: float) -> Bools:
+    """True if straight plunges meet material near the axis, and not only a sliver, (M,)."""
     # Here the axial depth is the width of a lip, and the diameter twice its mid-radius.
     inner = stations.diameter - stations.axial_depth
-    is_thick = stations.section >= LEAST_SHARE * 0.25 * pi * cut.diameter**2
-    core: Bools = is_thick & (inner <= CORE * cut.diameter)
+    is_thick = stations.section >= LEAST_SHARE * 0.25 * pi * diameter**2
+    core: Bools = is_thick & (inner <= CORE * diameter)
     return core
 
 

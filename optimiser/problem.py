@@ -76,7 +76,7 @@ class Monomial:
 
     @property
     def knows_depth(self) -> bool:
-        """Whether the load depends on the depth."""
+        """True if the load depends on the depth."""
         return self.depth_exponent != 0.0 or self.curve is not None
 
     def value(self, feed: float, depth: float, speed: float) -> float:
@@ -215,7 +215,7 @@ class Limit:
 
     @property
     def is_of_depth(self) -> bool:
-        """Whether the limit concerns only the depth of a pass."""
+        """True if the limit concerns only the depth of a pass."""
         return self.load.feed_exponent == 0.0 and self.load.depth_exponent > 0.0
 
     def greatest_depth(self, speed: float) -> float:
@@ -254,7 +254,7 @@ class Limit:
         return replace(self, load=load)
 
     def holds(self, feed: float, depth: float, speed: float) -> bool:
-        """Whether the load of the limit keeps its bound, up to rounding."""
+        """True if the load of the limit keeps its bound, up to rounding."""
         load, bound = self.load.value(feed, depth, speed), self.bound_at(speed)
         slack = bound - load if self.sense is BoundSide.AT_MOST else load - bound
         return slack >= -ROUNDING * bound
@@ -411,7 +411,7 @@ class Problem:
 
     @property
     def is_branched(self) -> bool:
-        """Whether the permitted speeds at a depth form several ranges."""
+        """True if the permitted speeds at a depth form several ranges."""
         return self.curved is not None and len(self.speeds) > 1
 
     def parts(self, depth: float) -> Iterator["Problem"]:

@@ -3,15 +3,23 @@
 A limit that has no bound of its own, or that stands on windows of another group, is listed with
 the datum that would bring it. Measured modes of vibration and work-holding are not required:
 hardly any shop has them, so stability is told as a risk and work-holding as its demand.
+
+Cuts that are impossible, with the reason: a tool that is unsuited, or that nobody makes.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from optimiser import workingstep as exact
 from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, Texture
+from optimiser.limits import allowance_limits
 from optimiser.problem import BoundSide, Limit, LimitName
-from simulator.spec import ToolKind
+from optimiser.speed_limits import why_no_speed
+from simulator.spec import CuttingMaterial, Machine, ToolKind, WorkMaterial
+from simulator.tool_kind import edge_material
+from simulator.tool_table import why_unsuited
+from stepnc_model.tool import Tool
 
 CHIP = (LimitName.FEED_PER_TOOTH, LimitName.CUTTING_SPEED, LimitName.MOTOR_POWER)
 """Limits required of every tool whose feed may be chosen."""
@@ -105,11 +113,43 @@ def _unchecked(
 
 
 def _lacks_corner(cut: Cut) -> bool:
-    """Whether the roughness of a mill is unknown only for want of its corner radius."""
+    """True if the roughness of a mill is unknown only for want of its corner radius."""
     is_mill = cut.tool_kind in {ToolKind.ENDMILL, ToolKind.FACEMILL}
     return is_mill and cut.texture is Texture.NONE and not cut.tool.corner_radius
 
 
 def _lacks_teeth(cut: Cut) -> bool:
-    """Whether the number of teeth of a rotating tool is assumed."""
+    """True if the number of teeth of a rotating tool is assumed."""
     return not cut.kind.is_turned and not cut.tool.has_teeth
+
+
+def why_impossible(cut: Cut, at: CuttingConditions, tool: Tool) -> str:
+    """Reason why this tool cannot cut this material; empty if it can, or if nothing is known.
+
+    A machine with only stated limits knows nothing beyond its source.
+    """
+    if at.machine.only_stated_limits:
+        return ""
+    if at.grade is None:
+        return f"the library knows no such tool of {at.cutting_material} as '{tool.id}'"
+    return (
+        why_unsuited(at.cutting_material, at.material)
+        or why_no_speed(cut, at)
+        or _why_not_reamed(cut, at)
+    )
+
+
+def _why_not_reamed(cut: Cut, at: CuttingConditions) -> str:
+    """Allowance that a reamer cannot take off; empty if it can, or if it is too small."""
+    for limit in allowance_limits(cut, at):
+        if limit.sense is BoundSide.AT_MOST and not limit.holds(1.0, 1.0, 1.0):
+            return f"{exact.told(limit, limit.load.value(1.0, 1.0, 1.0), 1.0)} {limit.origin}"
+    return ""
+
+
+def why_thread_impossible(tool: Tool, machine: Machine, material: WorkMaterial) -> str:
+    """Reason why a threading tool cannot cut this material; empty if it can."""
+    if machine.only_stated_limits:
+        return ""
+    edge = edge_material(tool.edge_material) or CuttingMaterial.CARBIDE
+    return why_unsuited(edge, material)

@@ -1,4 +1,10 @@
-"""Roughness that a feed leaves, and the feed limit of a required roughness."""
+"""Roughness that a feed leaves, and the feed limit of a required roughness.
+
+Surface roughness that a program requires.
+
+It is read from ISO 14649-10 ``surface_texture_parameter`` on ``machined_surface``. The standard
+does not fix the unit; roughness is customarily given in micrometres, so µm is assumed.
+"""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -6,8 +12,12 @@ from dataclasses import replace
 from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, Texture
 from optimiser.problem import Limit, LimitName, Monomial
-from simulator.physics.surface import RA_FLOOR, corner_coefficient, wall_coefficient
-from stepnc_model.units import UM_PER_MM
+from simulator.physics.surface import RA_FLOOR, RZ_PER_RA, corner_coefficient, wall_coefficient
+from stepnc_model.entities.enums import BottomOrSide
+from stepnc_model.entities.milling import PlaneMilling, SideMilling
+from stepnc_model.entities.profiles import SurfaceTextureParameter
+from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.units import UM_PER_MM, mm_from_um
 
 LAND_SHARE = 0.8
 """Greatest feed per revolution over the parallel land of a face mill's inserts.
@@ -78,3 +88,35 @@ def roughness_load(cut: Cut) -> Monomial | None:
     else:
         return None
     return Monomial(coefficient=coefficient, offset=RA_FLOOR, feed_exponent=2.0)
+
+
+def required_roughness(program: Program, step: ResolvedWorkingstep) -> float | None:
+    """Smallest Ra required of a surface that this workingstep leaves, mm, or None."""
+    asked = [
+        _arithmetic(texture)
+        for feature in step.features
+        for texture, surface in program.textures_of(feature)
+        if _leaves(step, surface.surface_element)
+    ]
+    known = [value for value in asked if value is not None]
+    return min(known) if known else None
+
+
+def _arithmetic(texture: SurfaceTextureParameter) -> float | None:
+    """Arithmetic roughness Ra of a parameter, mm; None if it is neither Ra nor Rz."""
+    name = texture.parameter_name.strip().upper()
+    value = texture.its_value
+    if value is None or value <= 0.0:
+        return None
+    if name in {"RA", "R"}:
+        return mm_from_um(value)
+    return mm_from_um(value) / RZ_PER_RA if name == "RZ" else None
+
+
+def _leaves(step: ResolvedWorkingstep, element: BottomOrSide | None) -> bool:
+    """True if the operation cuts the bottom or the side to which a texture applies."""
+    if isinstance(step.operation, PlaneMilling):
+        return element is not BottomOrSide.SIDE
+    if isinstance(step.operation, SideMilling):
+        return element is not BottomOrSide.BOTTOM
+    return True

@@ -53,7 +53,7 @@ class SplittableState(Protocol[Trace]):
     def is_apart(
         self, step: ResolvedWorkingstep, trace: Trace, others: Sequence[Trace]
     ) -> bool:
-        """Whether a workingstep would have had the same result after the others."""
+        """True if a workingstep would have had the same result after the others."""
         ...
 
     def repeat(self, step: ResolvedWorkingstep, trace: Trace) -> None:
@@ -107,7 +107,7 @@ def side_by_side(
 
 
 def _is_possible() -> bool:
-    """Whether there are two cores and this process has no threads, so that it may fork."""
+    """True if there are two cores and this process has no threads, so that it may fork."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
     return cores > 1 and threading.active_count() == 1
 

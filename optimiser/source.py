@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from optimiser.cut import Cut, CutKind
 from optimiser.estimated import Estimates
+from optimiser.path_only import is_path_only
 from optimiser.problem import Setting
 from optimiser.side_by_side import Result
 from simulator.spec import Machine, MachineKind, WorkMaterial
@@ -13,6 +14,7 @@ from stepnc_model.entities.milling import MillingTypeOperation
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding
 from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.toolpath.generate import PathOf, workingstep_path
 
 if TYPE_CHECKING:
     from optimiser.clamped import BodyMaps
@@ -100,17 +102,25 @@ def along_paths(
     *,
     is_run: bool = False,
     body_map: "BodyMaps | None" = None,
+    path_of: PathOf = workingstep_path,
 ) -> CutSource:
     """Source of cuts along the real tool paths in the remaining stock, timed by the machine.
 
     With ``is_run``, the cuts include the loads that the axes actually reach; with ``body_map``,
-    raw parts that are bodies have their own shape.
+    raw parts that are bodies have their own shape; ``path_of`` makes the paths as programmed.
     """
     from optimiser.measured import MeasuredCuts  # noqa: PLC0415 (numpy)
 
-    return MeasuredCuts(program, machine, material, is_run=is_run, body_map=body_map)
+    return MeasuredCuts(
+        program, machine, material, is_run=is_run, body_map=body_map, path_of=path_of
+    )
 
 
 def from_features(program: Program, machine: Machine, material: WorkMaterial) -> CutSource:
-    """Source of cuts estimated from features: fast, but without the real tool path."""
+    """Source of cuts estimated from features: fast, but without the real tool path.
+
+    Where nothing but its path tells what a workingstep cuts, all cuts are along their paths.
+    """
+    if any(is_path_only(program, step) for step in program.workingsteps):
+        return along_paths(program, machine, material)
     return Estimates(program, machine, material)

@@ -4,32 +4,49 @@ Where the spindle speed is not free it stays as programmed, but never above what
 machine allow. A speed below the recommended window costs time and wears the edge in other
 ways; a speed above it burns the edge. So a speed is lowered to its bound and never raised,
 except to the least speed of the spindle.
+
+Bound of a tool with its origin: of its own window, of another group, or without a source.
 """
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from math import inf, pi
 
+from optimiser.chip_load import borrowed_datum
 from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut
 from optimiser.problem import BoundSide, Limit, LimitName, Monomial
-from optimiser.sourced_bound import SourcedBound, borrowed_bound
 from optimiser.workingstep import told
-from simulator.edge_material import edge_material
 from simulator.library import find_window
 from simulator.physics.holding import usable_speed
-from simulator.spec import (
-    CuttingMaterial,
-    Machine,
-    ToolKind,
-    WorkMaterial,
-)
-from simulator.tool_windows import grade_for
+from simulator.spec import CuttingMaterial, Machine, ToolKind, WorkMaterial
+from simulator.tool_kind import edge_material
+from simulator.tool_table import grade_for
 from simulator.work_holding import Chuck
 from stepnc_model.technology import Programmed
 from stepnc_model.tool import Tool
 from stepnc_model.units import m_min_from_speed, rpm_from_rev_s
 
-M_MIN, RPM = 0.06, 60.0
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SourcedBound:
+    """Bound with its origin, and the datum that would bring a better one."""
+
+    bound: float | None = None
+    origin: str = ""
+    datum: str = ""
+
+
+def borrowed_bound(bound: float, given: float, at: CuttingConditions) -> SourcedBound:
+    """Bound by a window of the tool: one of another group does not slow a program down."""
+    if at.grade is None or not at.grade.borrowed:
+        return SourcedBound(bound=bound)
+    above = "as programmed, above " if given > bound else ""
+    origin = f"{above}{at.grade.borrowed}"
+    return SourcedBound(bound=max(bound, given), origin=origin, datum=borrowed_datum(at))
+
+
+M_MIN, RPM = m_min_from_speed(1.0), rpm_from_rev_s(1.0)
 """Factors from canonical units to user units."""
 
 WRITTEN = 1e-6

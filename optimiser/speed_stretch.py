@@ -15,8 +15,7 @@ from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut
 from optimiser.limits import segment_at
 from simulator.physics.holding import permitted_speed
-from simulator.physics.spindle import CurveSegment, available_power, curve_segments
-from simulator.physics.spindle_motion import idle_power
+from simulator.physics.spindle import CurveSegment, available_power, curve_segments, idle_power
 from simulator.work_holding import (
     Chuck,
 )

@@ -5,6 +5,8 @@ any speed in turning. Without them, the tool's overhang gives an estimate of the
 stable at any speed, with its band; it limits nothing, because it would forbid nearly every
 slot. The zero-order model is not used for thin cuts and for speeds with process damping; a
 message says so.
+
+Selection of the measured modes of a machine that apply to a cut.
 """
 
 from collections.abc import Iterable, Iterator
@@ -18,26 +20,88 @@ from optimiser.chip_load import least_chip, least_feed
 from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind
 from optimiser.limits import force_factor
-from optimiser.measured_modes import MeasuredModes, measured_modes, what_is_measured
 from optimiser.problem import Limit, LimitName, Monomial, SpeedCurve
 from optimiser.speed_limits import speed_range
 from simulator.physics.cutting import chip_stiffness
 from simulator.physics.engagement import mean_chip_ratio
 from simulator.physics.milling import RADIAL_SHARE
-from simulator.physics.strength import STICK_OUT, deflection, equivalent_diameter
+from simulator.physics.strength import customary_overhang, deflection, equivalent_diameter
 from simulator.spec import (
+    Machine,
     ModeDirection,
     ToolGrade,
     ToolKind,
     VibratingPart,
     VibrationMode,
 )
+from stepnc_model.counted import counted
 from stepnc_model.tool import Tool
 from stepnc_model.units import n_um_from_n_mm, rpm_from_rev_s
 
 if TYPE_CHECKING:
-    from simulator.physics.receptance import ModalStructure
-    from simulator.physics.stability import DynamicCut
+    from simulator.physics.stability import DynamicCut, ModalStructure
+
+
+SAME_DIAMETER = 1e-3
+"""Tolerance within which tool diameters are equal, mm."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeasuredModes:
+    """Measured vibration modes that apply to one cut, along the axes of the machine."""
+
+    x: tuple[VibrationMode, ...]
+    y: tuple[VibrationMode, ...]
+    z: tuple[VibrationMode, ...]
+
+    @property
+    def in_plane(self) -> tuple[VibrationMode, ...]:
+        """Modes that affect milling, each once."""
+        return tuple(dict.fromkeys((*self.x, *self.y)))
+
+    @property
+    def along_axis(self) -> tuple[VibrationMode, ...]:
+        """Modes that affect turning, each once."""
+        return tuple(dict.fromkeys((*self.x, *self.z)))
+
+
+def measured_modes(cut: Cut, machine: Machine) -> MeasuredModes | None:
+    """Measured modes that apply to a cut: those that name its tool, or else its diameter."""
+    if cut.kind not in {CutKind.MILLING, CutKind.TURNING}:
+        return None
+    fitting = [mode for mode in machine.modes if _is_of(mode, cut.tool)]
+    named = [mode for mode in fitting if mode.tool]
+    work = [mode for mode in machine.modes if mode.part is VibratingPart.WORKPIECE]
+    kept = (*(named or fitting), *work)
+    found = MeasuredModes(
+        x=tuple(mode for mode in kept if mode.direction in {ModeDirection.X, ModeDirection.XY}),
+        y=tuple(mode for mode in kept if mode.direction in {ModeDirection.Y, ModeDirection.XY}),
+        z=tuple(mode for mode in kept if mode.direction is ModeDirection.Z),
+    )
+    felt = found.in_plane if cut.kind is CutKind.MILLING else found.along_axis
+    return found if felt else None
+
+
+def _is_of(mode: VibrationMode, tool: Tool) -> bool:
+    """True if a mode was measured on a given tool."""
+    if mode.part is not VibratingPart.TOOL:
+        return False
+    if mode.tool and mode.tool.casefold() != tool.id.strip().casefold():
+        return False
+    diameter = mode.tool_diameter
+    return diameter is None or abs(diameter - tool.diameter) <= SAME_DIAMETER
+
+
+def what_is_measured(cut: Cut, measured: MeasuredModes) -> str:
+    """Describe the number of modes and the directions assumed to be rigid."""
+    modes = measured.in_plane if cut.kind is CutKind.MILLING else measured.along_axis
+    text = counted(len(modes), "measured mode")
+    if not any(mode.part is VibratingPart.TOOL for mode in modes):
+        text += " of the workpiece, the tool taken as rigid"
+    if cut.kind is CutKind.MILLING and not (measured.x and measured.y):
+        text += f", {'x' if measured.y else 'y'} taken as rigid"
+    return text
+
 
 FREQUENCY_TOLERANCE = 0.01
 """Relative uncertainty of a natural frequency; no advised speed is closer to a lobe's edge.
@@ -261,8 +325,7 @@ def _speeds(cut: Cut, at: CuttingConditions) -> tuple[float, float]:
 
 def _lobes(cut: Cut, at: CuttingConditions, measured: MeasuredModes) -> SpeedCurve:
     """Greatest stable depth by speed, above the speeds with process damping."""
-    from simulator.physics.receptance import ModalStructure  # noqa: PLC0415 (numpy)
-    from simulator.physics.stability import damped_speed  # noqa: PLC0415 (numpy)
+    from simulator.physics.stability import ModalStructure, damped_speed  # noqa: PLC0415 (numpy)
 
     low, high = _speeds(cut, at)
     low = max(low, damped_speed(measured.in_plane, cut.diameter))
@@ -272,7 +335,7 @@ def _lobes(cut: Cut, at: CuttingConditions, measured: MeasuredModes) -> SpeedCur
 
 def _least_measured(cut: Cut, at: CuttingConditions, measured: MeasuredModes) -> float:
     """Depth that is stable at any speed according to measured modes, mm."""
-    from simulator.physics.receptance import ModalStructure  # noqa: PLC0415 (numpy)
+    from simulator.physics.stability import ModalStructure  # noqa: PLC0415 (numpy)
 
     if cut.kind is CutKind.TURNING:
         return _turning_depth(cut, at, measured)
@@ -336,7 +399,8 @@ def _estimated(cut: Cut, at: CuttingConditions, grade: ToolGrade) -> Stability:
     diameter, softest, stiffest = cut.tool.diameter, *STIFFNESS_BAND
     stiffness, of = sqrt(softest * stiffest), "usual tools"
     if cut.tool_kind is ToolKind.ENDMILL:
-        overhang = max(STICK_OUT * diameter, cut.tool.cutting_edge_length or 0.0)
+        usual = customary_overhang(diameter, cut.tool.cutting_edge_length)
+        overhang = cut.tool.overhang or usual
         compliance = deflection(
             1.0,
             overhang=overhang,
@@ -364,7 +428,7 @@ def _estimated(cut: Cut, at: CuttingConditions, grade: ToolGrade) -> Stability:
 
 def _expected(cut: Cut, at: CuttingConditions, *, stiffness: float, damping: float) -> float:
     """Depth of one pass stable at any speed, mm, for one mode along x and y."""
-    from simulator.physics.receptance import ModalStructure  # noqa: PLC0415 (numpy)
+    from simulator.physics.stability import ModalStructure  # noqa: PLC0415 (numpy)
 
     mode = VibrationMode(
         part=VibratingPart.TOOL,

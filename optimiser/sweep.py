@@ -327,7 +327,7 @@ def _reach_on(
 
 @kernel
 def _is_straight(geometry: Geometry, row: int) -> bool:
-    """Whether an interval lies on a line."""
+    """True if an interval lies on a line."""
     start_tangent, start_curvature, end_tangent, end_curvature = geometry
     bend = 0.0
     for axis in range(3):
@@ -338,7 +338,7 @@ def _is_straight(geometry: Geometry, row: int) -> bool:
 
 @kernel
 def _is_parallel(tangent: Floats, row: int, other: int) -> bool:
-    """Whether two intervals begin in the same direction."""
+    """True if two intervals begin in the same direction."""
     turn = 0.0
     for axis in range(3):
         turn += abs(tangent[row, axis] - tangent[other, axis])
@@ -401,7 +401,7 @@ def _without_inertia(
 def _has_room(
     acceleration: Floats, geometry: Geometry, row: int, length: float, square: float, a: float
 ) -> bool:
-    """Whether no axis is at its limit at an acceleration a; most stations need no more."""
+    """True if no axis is at its limit at an acceleration a; most stations need no more."""
     start_tangent, start_curvature, end_tangent, end_curvature = geometry
     last = square + 2.0 * length * a
     for axis in range(3):

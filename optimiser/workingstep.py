@@ -22,8 +22,7 @@ from itertools import combinations
 from math import ceil, exp, inf, log
 
 from optimiser.errors import Infeasible
-from optimiser.feed_caps import FeedCaps, caps_at
-from optimiser.least_cost import least_cost
+from optimiser.least_cost import FeedCaps, caps_at, least_cost
 from optimiser.modes import Mode
 from optimiser.problem import (
     MOST_DIGITS,
@@ -35,6 +34,7 @@ from optimiser.problem import (
     Problem,
     Setting,
 )
+from stepnc_model.counted import counted
 from stepnc_model.units import rpm_from_rev_s
 
 TIE = 1e-9
@@ -195,7 +195,11 @@ def conflict(problem: Problem) -> Infeasible:
     for limit in caps:
         if limit.is_of_depth and not limit.holds(1.0, depth, speed):
             is_fixed = problem.passes[0] == problem.passes[1]
-            why = problem.why_held if is_fixed else f"at most {passes} passes are possible"
+            why = (
+                problem.why_held
+                if is_fixed
+                else f"no more than {counted(passes, 'pass', 'passes')} can be taken"
+            )
             load = limit.load.value(1.0, depth, speed)
             return Infeasible(
                 f"{told(limit, load, speed)}, and {why}{_elsewhere(limit, load)}",
@@ -218,7 +222,7 @@ def conflict(problem: Problem) -> Infeasible:
         f" ({cap.sense} {cap.told_bound(speed)}{_with_safety(cap)}),"
         f" {floor.words} needs at least {lowest:.4g} mm/tooth"
         f" ({floor.sense} {floor.told_bound(speed)}),"
-        f" at a depth of {depth:.4g} mm in {passes} passes",
+        f" at a depth of {depth:.4g} mm in {counted(passes, 'pass', 'passes')}",
         limits=(cap.name, floor.name),
     )
 
@@ -314,7 +318,7 @@ def saving_of_one_more(problem: Problem, mode: Mode, solution: Solution) -> floa
 
 
 def _may_keep(problem: Problem) -> bool:
-    """Whether the programmed depth keeps the depth limits."""
+    """True if the programmed depth keeps the depth limits."""
     at = problem.programmed
     return all(
         limit.holds(at.feed, at.depth, at.speed)
@@ -324,7 +328,7 @@ def _may_keep(problem: Problem) -> bool:
 
 
 def is_posynomial(problem: Problem) -> bool:
-    """Whether every load is a power of the depth, so that the cost is convex in ln k."""
+    """True if every load is a power of the depth, so that the cost is convex in ln k."""
     for limits in (problem.limits, *problem.stretches):
         for limit in limits:
             if limit.load.curve is not None:

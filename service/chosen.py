@@ -5,8 +5,7 @@ from pathlib import Path
 
 from simulator.errors import SimulationError
 from simulator.holding_file import read_holding_file
-from simulator.library import load_machine, load_material, material_names
-from simulator.matching import match_material
+from simulator.library import load_machine, load_material, match_material, material_names
 from simulator.spec import Certainty, Machine, MachineKind, MaterialMatch
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import SchemaError, StepNcError

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 from service.process_limits import GIB, ProcessLimits, limit_process
-from service.rendering.records import dump
+from service.rendering.columns import dump
 from service.verbs.check.request import CheckFiles, CheckRequest
 from service.verbs.check.run import run
 from stepnc_model.errors import StepNcError

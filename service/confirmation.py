@@ -36,7 +36,7 @@ class Figure:
 
     @property
     def is_passed(self) -> bool:
-        """Whether the value at the quantile exceeds its bound."""
+        """True if the value at the quantile exceeds its bound."""
         return self.greatest > PASSED * self.bound
 
 

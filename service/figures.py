@@ -8,7 +8,7 @@ from optimiser.advice import Advice, EvaluatedSetting, Plan, tightest
 from optimiser.problem import BoundSide, LimitName
 from optimiser.roughness import IDEAL
 from service.panels import BLUE, CLEAR, FAINT, GREY, LEGEND, RED
-from stepnc_model.units import kw_from_watts, mm_min_from_speed, um_from_mm
+from stepnc_model.units import kj_from_joules, kw_from_watts, mm_min_from_speed, um_from_mm
 
 ROW = 26
 """Height of the row of one workingstep in a figure, in pixels."""
@@ -96,7 +96,7 @@ def _fronts(plan: Plan) -> go.Figure:
             figure.add_scatter(
                 x=[state.time for state in states],
                 y=[um_from_mm(state.roughness or 0.0) for state in states],
-                customdata=[state.energy / 1e3 for state in states],
+                customdata=[kj_from_joules(state.energy) for state in states],
                 hovertemplate="%{x:.1f} s, ideal Ra %{y:.2f} µm, %{customdata:.1f} kJ",
                 mode="lines+markers",
                 name=advice.workingstep.id,

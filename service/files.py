@@ -1,8 +1,13 @@
-"""Reading of files, and atomic writing: an output file appears whole or not at all."""
+"""Reading of files, and atomic writing: an output file appears whole or not at all.
+
+Names of files in messages: stored files are named as their owners named them.
+"""
 
 import os
+import re
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from io import TextIOWrapper
 from pathlib import Path
 
@@ -250,3 +255,57 @@ def _mode(path: Path) -> int:
 def _reason(error: OSError) -> str:
     """Return the message of an operating system error, without its number."""
     return error.strerror or str(error)
+
+
+PROGRAMS = frozenset({
+    ".stpnc",
+    ".stp",
+    ".step",
+    ".p21",
+    ".238",
+    ".stpncz",
+    ".stpz",
+    ".238z",
+    ".p21z",
+})
+"""Suffixes of STEP-NC programs; other files are NC code."""
+
+LOGS = frozenset({".parquet", ".csv", ".xml", ".shdr", ".log"})
+"""Suffixes of recorded runs."""
+
+Names = Mapping[Path, str]
+"""Names that owners gave to files."""
+
+
+def with_names(text: str, names: Names) -> str:
+    """Return a text with the owners' names of files in place of their paths."""
+    named = {word: name for path, name in names.items() for word in (path.name, str(path))}
+    # A name may hold the end of its path, and is not to be named again.
+    named |= {name: name for name in names.values() if name}
+    words = sorted(named, key=len, reverse=True)
+    if not words:
+        return text
+    return re.sub("|".join(map(re.escape, words)), lambda found: named[found[0]], text)
+
+
+@contextmanager
+def naming(names: Names) -> Iterator[None]:
+    """Let errors within it name files as their owners named them.
+
+    Raises
+    ------
+    StepNcError
+        In place of one that names a path; others pass unchanged.
+    """
+    try:
+        yield
+    except StepNcError as error:
+        text = with_names(str(error), names)
+        if text == str(error):
+            raise
+        raise StepNcError(text) from error
+
+
+def plain_name(text: str) -> str:
+    """Return a text as it can name a file everywhere."""
+    return re.sub(r"[^A-Za-z0-9._-]", "_", text)[:150]

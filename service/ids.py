@@ -31,5 +31,5 @@ def new_id() -> str:
 
 
 def is_id(word: str) -> bool:
-    """Whether a word has the form of an id; only such words may become part of a path."""
+    """True if a word has the form of an id; only such words may become part of a path."""
     return _ID.match(word) is not None and len(word) == LENGTH

@@ -155,7 +155,7 @@ def _plain(name: str) -> str:
 
 
 def _is_any(name: str) -> bool:
-    """Whether a name stands for all addresses of the computer."""
+    """True if a name stands for all addresses of the computer."""
     try:
         return ip_address(name).is_unspecified
     except ValueError:

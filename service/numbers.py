@@ -118,6 +118,21 @@ def require_size(stock: Stock) -> None:
             raise StepNcError(f"stock: {axis} from {low:g} to {high:g} mm: {bound}")
 
 
+def program_numbers_in(words: tuple[str, ...]) -> frozenset[int]:
+    """Numbers of programs given as ``P9023``, ``O9023`` or ``9023``.
+
+    Raises
+    ------
+    StepNcError
+        When a word is no program number.
+    """
+    numbers = [word.upper().removeprefix("P").removeprefix("O") for word in words]
+    for word, number in zip(words, numbers, strict=True):
+        if not number.isdecimal():
+            raise StepNcError(f"program '{word}': expected a number, such as P9023")
+    return frozenset(map(int, numbers))
+
+
 def tool_numbers_in(words: tuple[str, ...]) -> frozenset[int]:
     """Numbers of tools given as ``T3`` or ``3``.
 

@@ -1,4 +1,4 @@
-"""What a run must not exceed, in words."""
+"""Bounds that a run must not exceed, in words."""
 
 from simulator.spec import Machine
 

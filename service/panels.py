@@ -14,6 +14,7 @@ import plotly.graph_objects as go
 
 from service.buckets import BucketedRun
 from simulator.motion.segments import Floats
+from stepnc_model.units import SECONDS_PER_HOUR, SECONDS_PER_MINUTE
 
 GREY, SKY, ORANGE, GREEN, PINK, BLUE, RED = (
     "#8c8c8c", "#56B4E9", "#E69F00", "#009E73", "#CC79A7", "#0072B2", "#D55E00",
@@ -40,7 +41,7 @@ MARGIN = 46
 TOP, BOTTOM = 26, 48
 """Margins above and below all panels, in pixels."""
 
-MINUTES, HOURS = 900.0, 3.0 * 3600.0
+MINUTES, HOURS = 900.0, 3.0 * SECONDS_PER_HOUR
 """Durations from which the time axis is in minutes or hours, in s."""
 
 
@@ -191,7 +192,7 @@ def _clock(last: float) -> tuple[float, str]:
     """Return the factor from seconds to the unit of the time axis, and that unit."""
     if last < MINUTES:
         return 1.0, "s"
-    return (1.0 / 60.0, "min") if last < HOURS else (1.0 / 3600.0, "h")
+    return (1.0 / SECONDS_PER_MINUTE, "min") if last < HOURS else (1.0 / SECONDS_PER_HOUR, "h")
 
 
 def _name(kind: str, number: int) -> str:

@@ -1,20 +1,92 @@
 """Shape of a part from a file: an STL file, or a solid of a STEP file.
 
 The content tells which, not the name.
+
+Triangles of an STL file, binary or text, in mm.
 """
 
+import re
 from dataclasses import dataclass
 from math import inf
 from pathlib import Path
 
+import numpy as np
+
 from service.brep.solid import SolidPlace, require_solids, sag_within, solid_triangles
 from service.files import read_bytes
 from service.program_kind import PART21
-from service.stl import HEADER, RECORD, VERTEX, is_binary_stl, stl_triangles
 from simulator.motion.segments import Floats
 from stepnc_model.errors import Part21Error, StepNcError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.regular_file import open_regular
+
+HEADER, RECORD = 84, 50
+"""Bytes before the first triangle of a binary file, and of each triangle."""
+
+MOST_TRIANGLES = 200_000
+
+VERTEX = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)")
+
+
+def stl_triangles(content: bytes, path: Path) -> Floats:
+    """Corners of the triangles of a file, (T, 3, 3), mm.
+
+    Parameters
+    ----------
+    content : bytes
+    path : Path
+        Path of the file, for messages.
+
+    Raises
+    ------
+    StepNcError
+        When the file is damaged, or has too many triangles.
+    """
+    triangles = _binary(content) if is_binary_stl(content) else _text(path, content)
+    if not len(triangles) and len(content) >= HEADER:
+        count = int.from_bytes(content[HEADER - 4 : HEADER], "little")
+        raise StepNcError(
+            f"{path}: no triangles as text, and as a binary file its {count} triangles need "
+            f"{HEADER + RECORD * count} bytes; it has {len(content)}: is it cut off?"
+        )
+    if not len(triangles):
+        raise StepNcError(f"{path}: no triangles: expected an STL or STEP file")
+    _require_few(path, len(triangles))
+    if not np.isfinite(triangles).all():
+        raise StepNcError(f"{path}: a corner of a triangle is not finite")
+    return triangles
+
+
+def _require_few(path: Path, count: int) -> None:
+    if count > MOST_TRIANGLES:
+        raise StepNcError(f"{path}: {count} triangles; at most {MOST_TRIANGLES} are accepted")
+
+
+def is_binary_stl(content: bytes) -> bool:
+    """True if a file has the size of as many triangles as it says."""
+    if len(content) < HEADER:
+        return False
+    count = int.from_bytes(content[HEADER - 4 : HEADER], "little")
+    return len(content) == HEADER + RECORD * count
+
+
+def _binary(content: bytes) -> Floats:
+    kind = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")])
+    records = np.frombuffer(content, dtype=kind, offset=HEADER)
+    return np.asarray(records["corners"], dtype=np.float64)
+
+
+def _text(path: Path, content: bytes) -> Floats:
+    # Counted first: each vertex takes many times its text in memory.
+    _require_few(path, content.count(b"vertex") // 3)
+    try:
+        found = [[float(each) for each in match] for match in VERTEX.findall(content)]
+    except ValueError as error:
+        raise StepNcError(f"{path}: damaged vertex: {error}") from error
+    if len(found) % 3:
+        raise StepNcError(f"{path}: {len(found)} vertices: triangles have three each")
+    return np.array(found, dtype=np.float64).reshape(-1, 3, 3)
+
 
 PACKED = (b"PK\x03\x04", b"\x1f\x8b")
 """Beginning of a ZIP archive and of a gzip stream, in which STEP files come."""

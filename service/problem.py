@@ -118,7 +118,7 @@ def _words(name: str) -> str:
 
 
 def _is_plain(value: object) -> bool:
-    """Whether the value can be written as JSON unchanged."""
+    """True if the value can be written as JSON unchanged."""
     if isinstance(value, tuple):
         return all(isinstance(each, str) for each in value)
     return isinstance(value, str | int | float) and not isinstance(value, bool)

@@ -26,6 +26,10 @@ BLOCK = re.compile(
 """Block of NC code: it begins with a word, after its number if it has one."""
 
 
+NO_TABLE = "--tools cannot be used with NC code here: its moves need no tools"
+"""Reason why commands that only show or time NC code take no tool table."""
+
+
 class ProgramKind(StrEnum):
     """Kind of a program."""
 

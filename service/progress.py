@@ -4,6 +4,14 @@ import re
 import time
 from collections.abc import Callable
 
+Tell = Callable[[str], None]
+"""Callback that receives messages."""
+
+
+def silent(_message: str) -> None:
+    """Discard a message."""
+
+
 INTERVAL = 2.0
 """Time before the first message and between two messages, in s."""
 

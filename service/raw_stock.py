@@ -13,7 +13,7 @@ from service.brep.bodies import USUAL_TOLERANCE, ProgramBodies, stock_around
 from service.files import read_bytes
 from service.numbers import require_size, stock_in
 from service.part_file import read_part
-from service.requests.stock import KEPT_SUFFIX, RawPart, StockFile
+from service.requests.given import KEPT_SUFFIX, RawPart, StockFile
 from simulator.machine.virtual import StockMap
 from simulator.motion.segments import Floats
 from simulator.removal.engage import MillingStock
@@ -21,7 +21,7 @@ from simulator.removal.grown import grown_milling_stock, grown_turning_stock
 from simulator.removal.lathe import TurningStock
 from simulator.removal.stock_file import kept_stock
 from simulator.spec import Machine, MachineKind
-from simulator.verification.mesh_stock import bounds_of, milling_stock_of, turning_stock_of
+from simulator.verification.revolved import bounds_of, milling_stock_of, turning_stock_of
 from stepnc_model.entities.executables import Setup
 from stepnc_model.errors import StepNcError
 from stepnc_model.part21.values import Ref

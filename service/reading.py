@@ -1,6 +1,5 @@
 """Reading of programs, and parsing of option values."""
 
-from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -8,10 +7,11 @@ from typing import TYPE_CHECKING, TypeVar
 from service.brep.bodies import ProgramBodies
 from service.files import read_bytes
 from service.numbers import feed_in
-from service.requests.given import ProgramRequest
-from service.requests.stock import RawPart
+from service.progress import Tell, silent
+from service.requests.given import ProgramRequest, RawPart
 from stepnc_model.errors import StepNcError
 from stepnc_model.given import Completed, GivenData, completed
+from stepnc_model.given_tool import GivenTool
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.plausibility import units_by_numbers
 from stepnc_model.program import Program, ResolvedWorkingstep
@@ -20,15 +20,10 @@ from stepnc_model.units import AUTO, PROFILES, UnitProfile
 
 if TYPE_CHECKING:
     from service.raw_stock import GivenStock
+    from simulator.tool_files.file_unit import FileUnit
+    from simulator.tool_files.read import ToolLibrary
 
 E = TypeVar("E", bound=StrEnum)
-
-Tell = Callable[[str], None]
-"""Callback that receives messages."""
-
-
-def silent(_message: str) -> None:
-    """Discard a message."""
 
 
 def read_program(
@@ -36,30 +31,25 @@ def read_program(
 ) -> Program:
     """Read a program from a file; its name is the file's name unless another is given.
 
-    A raw part may be passed only if the file itself defines none. With the units ``auto``, the
-    profile that fits is told, with the numbers of each technology.
+    A raw part that is given counts in place of that of the file, which is told. With the units
+    ``auto``, the profile that fits is told, with the numbers of each technology.
     """
     called = name or path.name
     file = Part21File.from_bytes(read_bytes(path), name=called)
     raw = read_stock(stock)
     program = program_in(file, units=units, name=called, stock=raw, tell=tell)
-    require_no_other_stock(program)
+    if program.stock is not None and drawn_stock(program, None) is not None:
+        tell(f"raw part: as given, in place of that of '{program.name}'")
     return program
 
 
-def require_no_other_stock(program: Program) -> None:
-    """Refuse a raw part that was given for a program that describes its own.
-
-    Raises
-    ------
-    StepNcError
-    """
-    if program.stock is not None and drawn_stock(program, None) is not None:
-        raise StepNcError(f"'{program.name}' defines its own raw part: omit --stock")
-
-
 def read_given(
-    path: Path, request: ProgramRequest, *, name: str = "", tell: Tell = silent
+    path: Path,
+    request: ProgramRequest,
+    *,
+    name: str = "",
+    tools: "ToolLibrary | None" = None,
+    tell: Tell = silent,
 ) -> Completed:
     """Read a program with all that a request gives about it: units, raw part, missing data.
 
@@ -69,6 +59,8 @@ def read_given(
     request : ProgramRequest
     name : str
         Name of the program; empty: the name of its file.
+    tools : ToolLibrary or None
+        Tools of which the file may have nothing but the name.
     tell : callable
         Receives messages.
 
@@ -83,6 +75,7 @@ def read_given(
         When the file or something that is given is not valid.
     """
     program = read_program(path, units=request.units, stock=request.stock, name=name, tell=tell)
+    program.tools = () if tools is None else given_tools(tools)
     return completed(program, given_data(request))
 
 
@@ -93,6 +86,22 @@ def given_data(request: ProgramRequest) -> GivenData:
         teeth=request.teeth,
         feed=feed_in(request.feed) if request.feed else None,
     )
+
+
+def given_tools(library: "ToolLibrary") -> tuple[GivenTool, ...]:
+    """Tools of a table, for a program that only names them."""
+    from simulator.given_tool import given_tool  # noqa: PLC0415 (numpy)
+
+    return tuple(given_tool(tool) for tool in library.tools)
+
+
+def tool_library(path: Path | None, unit: "FileUnit | None" = None) -> "ToolLibrary | None":
+    """Read a tool table; None without a file."""
+    if path is None:
+        return None
+    from simulator.tool_files.read import read_tools  # noqa: PLC0415 (numpy)
+
+    return read_tools(path, unit=unit)
 
 
 def program_in(

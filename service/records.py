@@ -8,13 +8,19 @@ from optimiser.cut import Cut, CutKind
 from optimiser.modes import Mode
 from optimiser.problem import BoundSide, LimitName
 from simulator.physics.engagement import Engagement
-from stepnc_model.edit_conditions import rounded
+from stepnc_model.cut_settings import rounded
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program
 from stepnc_model.record import GENERATOR, AdviceRecord
-from stepnc_model.record_limits import NO_LIMITS, RecordLimits
+from stepnc_model.record_edit import NO_LIMITS, RecordLimits
 from stepnc_model.technology import ProgrammedQuantity
-from stepnc_model.units import deg_from_rad, kw_from_watts, mm_min_from_speed, um_from_mm
+from stepnc_model.units import (
+    NMM_S_PER_WATT,
+    deg_from_rad,
+    kw_from_watts,
+    mm_min_from_speed,
+    um_from_mm,
+)
 from stepnc_model.writeback import WorkingstepUpdate
 
 UNCHANGED = 1e-9
@@ -113,12 +119,12 @@ def _record(plan: Plan, advised: _Advised) -> AdviceRecord:
         generator=GENERATOR,
         active_limit=advice.active.value if advice.active else "",
         number_of_passes=best.passes,
-        feed_per_tooth=rounded(best.feed),
+        feed_per_tooth=_predicted(best.feed),
         axial_depth=rounded(best.depth),
         machine_power=rounded(kw_from_watts(available)),
-        cutting_power=rounded(kw_from_watts(cutting)),
+        cutting_power=_predicted(kw_from_watts(cutting)),
         spindle_speed=rounded(clockwise * best.speed),
-        specific_cutting_resistance=rounded(cutting * 1000.0 / removal),
+        specific_cutting_resistance=_predicted(cutting * NMM_S_PER_WATT / removal),
         machining_time=_predicted(after.time),
         motor_power=_predicted(kw_from_watts(after.motor_power)),
         cutting_force=_predicted(after.cutting_force),
@@ -203,7 +209,7 @@ def immersion(engagement: Engagement) -> str:
 
 
 def _predicted(value: float) -> float:
-    """Round a predicted value to fewer digits than those of the feed that it follows from.
+    """Round what follows from the written feed to fewer digits than the feed has.
 
     A second run reads the feed with the digits that were written, and must predict the same.
     """

@@ -8,6 +8,7 @@ from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.own_operation import can_be_copied, with_own_operations
 from stepnc_model.plausibility import refusal
 from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.program_listing import NOT_FOLLOWED, is_followed
 from stepnc_model.remedy import error_of
 from stepnc_model.writeback import WorkingstepUpdate
 
@@ -127,6 +128,11 @@ def require_usable(
     if program.faults and len(chosen) == len(program.workingsteps):
         raise program.faults[0]
     require_any(chosen)
+    if len(chosen) == len(program.workingsteps):
+        for executable in program.executables:
+            entity = program.model.entity(int(executable.ref))
+            if program.fault_of(executable.ref) is None and not is_followed(entity):
+                raise program.error(NOT_FOLLOWED, executable.ref)
     for finding in findings:
         if finding.severity is Severity.ERROR:
             raise error_of(finding)

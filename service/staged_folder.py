@@ -1,7 +1,7 @@
 """A folder of outputs that appears whole: written elsewhere, and moved when all is there.
 
 A run that is killed leaves a hidden folder, which the next one into the same place removes. A
-run that fails or is interrupted leaves what it has, as files do (:mod:`service.growing_file`).
+run that fails or is interrupted leaves what it has, as files do (:mod:`service.run_file`).
 """
 
 import fcntl
@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from service.reading import Tell
+from service.progress import Tell
 from stepnc_model.errors import WriteError
 
 

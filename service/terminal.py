@@ -20,7 +20,7 @@ class OutputFault(OSError):
 
     @property
     def is_reader_gone(self) -> bool:
-        """Whether it is a pipe whose reader has left, as of ``| head``, which is fine."""
+        """True if it is a pipe whose reader has left, as of ``| head``, which is fine."""
         return self.errno == errno.EPIPE
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from optimiser.formulate import OptimisationTask
 from optimiser.optimise import optimise_program
-from optimiser.source import from_features
+from optimiser.source import Source, along_paths, from_features
 from service.chosen import load_material_named, machine_for, material_for, require_axes
 from service.refusals import require_any, require_usable
 from simulator.spec import MaterialMatch
@@ -46,7 +46,7 @@ class Use:
 
     @property
     def is_possible(self) -> bool:
-        """Whether the program can be used so as it is."""
+        """True if the program can be used so as it is."""
         return not self.reason
 
 
@@ -70,7 +70,9 @@ def uses_of(program: Program, made: "Paths | StepNcError") -> tuple[Use, ...]:
     any_match = match if isinstance(match, MaterialMatch) else load_material_named(ANY_MATERIAL)
     missing = match if isinstance(match, str) else ""
     simulation = code or _simulation(program, any_match)
-    advice = _advice(program, any_match)
+    # What stops a path may stop the advice too; estimates alone would not show it.
+    source = along_paths if paths else from_features
+    advice = _advice(program, any_match, source)
     return (
         Use(name=UseName.PATHS, reason=paths),
         Use(name=UseName.CODE, reason=code),
@@ -125,7 +127,7 @@ def _simulation(program: Program, match: MaterialMatch) -> str:
     return ""
 
 
-def _advice(program: Program, match: MaterialMatch) -> str:
+def _advice(program: Program, match: MaterialMatch, source: Source) -> str:
     """Reason why feeds cannot be advised; empty where they can."""
     try:
         require_any(program.workingsteps)
@@ -134,7 +136,7 @@ def _advice(program: Program, match: MaterialMatch) -> str:
             program,
             machine=machine_for("", program),
             material=match,
-            task=OptimisationTask(source=from_features),
+            task=OptimisationTask(source=source),
         )
     except StepNcError as error:
         return str(error)

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from stepnc_model.errors import StepNcError
+from stepnc_model.units import hours_from_seconds
 
 
 class SimulationError(StepNcError):
@@ -183,11 +184,12 @@ class Deadlock(SimulationError):
 
     def __init__(self, waits: Sequence[str], time: float) -> None:
         super().__init__(
-            f"deadlock after {time / 3600.0:.2f} h: {'; '.join(waits)}; enlarge a buffer"
+            f"deadlock after {hours_from_seconds(time):.2f} h: {'; '.join(waits)}; "
+            "enlarge a buffer"
         )
         self.waits = tuple(waits)
         self.time = time
 
     def __reduce__(self) -> tuple[type["Deadlock"], tuple[tuple[str, ...], float]]:
-        """How it is passed from a worker process."""
+        """Arguments for pickling, from a worker process."""
         return Deadlock, (self.waits, self.time)

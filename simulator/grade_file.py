@@ -100,7 +100,7 @@ class LandTable(FileTable, frozen=True, kw_only=True):
 
 
 class EdgeTable(FileTable, frozen=True, kw_only=True):
-    """What all grades of a cutting material have in common."""
+    """Common data of all grades of a cutting material."""
 
     min_chip_thickness_mm: ChipThickness
     rake_angle_deg: Rake | None = None

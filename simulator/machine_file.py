@@ -20,6 +20,7 @@ from simulator.handling_file import (
 )
 from simulator.holding_file import HoldingRow, holding_row, require_kind, require_one_each
 from simulator.physics.spindle import curve_segments
+from simulator.planner_settings import PlannerSettings
 from simulator.spec import (
     Axis,
     AxisDrive,
@@ -72,6 +73,8 @@ Jerk = Annotated[float, quantity(100, 10_000_000, "mm/s³")]
 CuttingForce = Annotated[float, quantity(1, 10_000_000, "N")]
 AxialDepth = Annotated[float, quantity(0.01, 1_000, "mm")]
 BlockTime = Annotated[float, quantity(1e-5, 1, "s")]
+FeedOverride = Annotated[float, quantity(0.1, 10)]
+ServoPeriod = Annotated[float, quantity(1e-5, 0.1, "s")]
 BlockLength = Annotated[float, quantity(1e-3, 100, "mm")]
 FeedChange = Annotated[float, quantity(0, 1)]
 Delay = Annotated[float, quantity(0, 10, "s")]
@@ -266,6 +269,20 @@ class ModeRow(FileTable, frozen=True, kw_only=True):
         )
 
 
+class PlannerTable(FileTable, frozen=True, kw_only=True):
+    """The ``[linuxcnc]`` table: what the INI file of its control says."""
+
+    max_feed_override: FeedOverride = 1.0
+    servo_period_s: ServoPeriod = 0.001
+
+    @property
+    def planner(self) -> PlannerSettings:
+        """Settings in canonical units."""
+        return PlannerSettings(
+            max_feed_override=self.max_feed_override, servo_period=self.servo_period_s
+        )
+
+
 class MachineFile(FileTable, frozen=True, kw_only=True):
     """A whole machine file."""
 
@@ -289,6 +306,7 @@ class MachineFile(FileTable, frozen=True, kw_only=True):
     axis: tuple[AxisRow, ...] = ()
     handling: HandlingTable | None = None
     deviation: DeviationTable | None = None
+    linuxcnc: PlannerTable = PlannerTable()
     holding: tuple[HoldingRow, ...] = ()
     mode: tuple[ModeRow, ...] = ()
 
@@ -323,6 +341,7 @@ class MachineFile(FileTable, frozen=True, kw_only=True):
             handling=None if self.handling is None else self.handling.handling,
             deviation=None if self.deviation is None else self.deviation.deviation,
             only_stated_limits=self.only_stated_limits,
+            planner=self.linuxcnc.planner,
         )
 
 
@@ -375,6 +394,10 @@ def machine_toml(machine: Machine, *, notes: Sequence[str] = ()) -> str:
         axis=tuple(_axis_row(axis, machine.source) for axis in machine.axes),
         handling=None if machine.handling is None else handling_table(machine.handling),
         deviation=None if machine.deviation is None else deviation_table(machine.deviation),
+        linuxcnc=PlannerTable(
+            max_feed_override=machine.planner.max_feed_override,
+            servo_period_s=machine.planner.servo_period,
+        ),
         holding=tuple(map(holding_row, machine.holdings)),
     )
     lines = [f"# {_comment(line)}".rstrip() for note in notes for line in note.splitlines()]

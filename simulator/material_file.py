@@ -211,6 +211,50 @@ class ShareTable(FileTable, frozen=True, kw_only=True):
         return low, share, high
 
 
+CALIBRATION_VERSION = 1
+"""Version of the ``[calibration]`` table."""
+
+
+class LearnedLaw(FileTable, frozen=True, kw_only=True):
+    """Posterior of one law; the covariance is over the prior's standard deviations."""
+
+    names: tuple[str, ...]
+    mean: tuple[float, ...]
+    prior_mean: tuple[float, ...]
+    prior_sd: tuple[float, ...]
+    covariance: tuple[tuple[float, ...], ...]
+    sigma: float
+    degrees: float
+    count: int
+    range: dict[str, tuple[float, ...]]
+
+
+class CalibrationTable(FileTable, frozen=True, kw_only=True):
+    """The ``[calibration]`` table: measured rows, and what was known before them.
+
+    The laws are told for readers; a later fit starts from rows and priors.
+    """
+
+    version: int
+    digest: str
+    edge_material: CuttingMaterial
+    wear_criterion_mm: float
+    prior_k_c11_n_mm2: SpecificForce
+    prior_m_c: KienzleExponent
+    prior_exponent: TaylorExponent | None = None
+    prior_constant_m_min: CuttingSpeed | None = None
+    rows: str
+    forces: LearnedLaw | None = None
+    roughness: LearnedLaw | None = None
+    life: LearnedLaw | None = None
+
+    def __post_init__(self) -> None:
+        require_together(self, "prior_exponent", "prior_constant_m_min")
+        if self.version != CALIBRATION_VERSION:
+            message = f"{self.version}; this program reads version {CALIBRATION_VERSION}"
+            raise KeyFault("version", message)
+
+
 class MaterialHead(TableHead, frozen=True, kw_only=True):
     """Names of a material: what stands in the root of its file."""
 
@@ -241,6 +285,7 @@ class MaterialFile(FileTable, frozen=True, kw_only=True):
     tool_life: tuple[ToolLifeRow, ...] = ()
     feed_per_tooth: FeedTable | None = None
     turning_share: ShareTable | None = None
+    calibration: CalibrationTable | None = None
 
     def __post_init__(self) -> None:
         require_together(self, "youngs_modulus_n_mm2", "youngs_modulus_source")

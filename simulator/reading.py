@@ -9,9 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stepnc_model.tuples import quick_replace
+
 Floats = NDArray[np.float64]
 
 
+@quick_replace
 class Reading(NamedTuple):
     """Sensor values of one tooth period or any other, or of a time without feed override.
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from math import inf
 
+from simulator.planner_settings import USUAL, PlannerSettings
 from simulator.work_holding import Holding
 
 
@@ -245,6 +246,8 @@ class Machine:
     """States between parts and batches; ``None``: unknown."""
     deviation: PowerDeviation | None = None
     """Random deviation of motor powers; ``None``: unknown."""
+    planner: PlannerSettings = USUAL
+    """Planner of its LinuxCNC, if it has one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -397,7 +400,7 @@ class DepthWindow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReamingAllowance:
-    """What reamers up to a diameter take off the diameter of a hole."""
+    """Allowance on the diameter for reamers up to a diameter."""
 
     up_to: float
     """Greatest diameter of these reamers, mm."""
@@ -470,7 +473,7 @@ class ToolGrade:
 
     @property
     def has_feeds(self) -> bool:
-        """Whether a source gives a greatest feed."""
+        """True if a source gives a greatest feed."""
         return self.max_feed is not None or self.max_feed_ratio is not None
 
 

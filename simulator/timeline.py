@@ -8,7 +8,9 @@ MILLIMETER/SECOND, REVOLUTION/MINUTE, WATT, NEWTON.
 
 from dataclasses import dataclass
 
-RPM = 60.0
+from stepnc_model.units import rpm_from_rev_s
+
+RPM = rpm_from_rev_s(1.0)
 """Revolutions per minute in one revolution per second."""
 
 

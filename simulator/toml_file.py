@@ -4,6 +4,14 @@ A file is declared as a :class:`FileTable`: the fields are its keys, with the un
 and the allowed range in the type. msgspec checks types, ranges, and missing and unknown keys;
 this module turns its findings into errors that name file, key, value and bound with unit.
 Values stay in the units of the keys; the tables convert them.
+
+Bounds of a TOML text, checked in one linear scan before the parser reads it.
+
+The parser's time and memory grow with the square of the parts of a dotted key, and its calls
+nest as brackets do: 64 KB of ``a.a.a`` cost it 4 GB. Within these bounds its cost is in
+proportion to the size. Strings and comments are passed over; what stands in them never counts.
+The scan has to agree with the parser only up to the first fault of a text, where the parser
+stops.
 """
 
 import json
@@ -18,8 +26,64 @@ import msgspec
 from msgspec import inspect
 
 from simulator.errors import LibraryError
-from simulator.toml_bounds import MOST_BYTES, require_bounded
 from stepnc_model.regular_file import open_regular
+
+MOST_BYTES = 1 << 19
+"""of a file; the library's have 3 KB, a tool table of 400 tools has 100 KB"""
+
+MOST_PARTS = 20
+"""of a dotted key or table header; the library's have 2"""
+
+MOST_NESTED = 20
+"""arrays and inline tables within one another; the library's nest 2 deep"""
+
+LONGEST_WORD = 400
+"""letters of a key without quotes, or digits of a number: the largest float has 309"""
+
+_TOKEN = re.compile(
+    r'"""(?>(?:[^"\\]++|\\.|"(?!""))*)(?:"{3,5})?'
+    r"|'''.*?(?:'{3,5}|\Z)"
+    r'|"(?>(?:[^"\\\n]++|\\.)*)"?'
+    r"|'[^'\n]*+'?"
+    r"|\#[^\n]*+"
+    r"|(?P<word>[A-Za-z0-9_+-]++)"
+    r"|(?P<dot>\.)|(?P<open>[\[{])|(?P<close>[\]}])|(?P<next>[\n=,])",
+    re.DOTALL,
+)
+
+
+def require_bounded(text: str, path: Path) -> None:
+    """Refuse a text that may cost the parser more than in proportion to its size.
+
+    Raises
+    ------
+    LibraryError
+        With the line, the value and the bound.
+    """
+    parts, nested = 1, 0
+    for match in _TOKEN.finditer(text):
+        kind = match.lastgroup
+        if kind == "dot":
+            parts += 1
+            if parts > MOST_PARTS:
+                _refuse(text, match, path, f"a key of more than {MOST_PARTS} dotted parts")
+        elif kind == "word":
+            if len(match[0]) > LONGEST_WORD:
+                what = f"a key or number of {len(match[0])} letters; at most {LONGEST_WORD}"
+                _refuse(text, match, path, what)
+        elif kind is not None:
+            parts = 1
+            nested += (kind == "open") - (kind == "close")
+            if nested > MOST_NESTED:
+                what = f"arrays and tables nested more than {MOST_NESTED} deep"
+                _refuse(text, match, path, what)
+
+
+def _refuse(text: str, match: re.Match[str], path: Path, what: str) -> None:
+    """Raise the error at a token."""
+    line = text.count("\n", 0, match.start()) + 1
+    raise LibraryError(what, path=str(path), line=line)
+
 
 LONGEST_SHOWN = 80
 """characters of a value or a key in a message"""
@@ -65,7 +129,7 @@ def quantity(low: float, high: float, unit: str = "") -> msgspec.Meta:
 
 
 def complaint(value: object, kind: Any) -> str:
-    """What is wrong with a value of a type; empty when nothing is."""
+    """Complaint about a value of a type; empty when it is valid."""
     try:
         msgspec.convert(value, kind)
     except msgspec.ValidationError:
@@ -173,7 +237,7 @@ def read_bounded(path: Path, *, most: int = MOST_BYTES) -> bytes:
 
 
 def parsed(text: str, path: Path) -> dict[str, Any]:
-    """Content of a TOML text within the bounds of :mod:`simulator.toml_bounds`."""
+    """Content of a TOML text within the bounds of the scan."""
     require_bounded(text, path)
     try:
         return tomllib.loads(text)
@@ -347,7 +411,7 @@ def _expected(kind: inspect.Type) -> str:
 
 
 def _complaint(value: object, kind: inspect.Type, place: str) -> str:
-    """What is wrong with a value that is of another type or out of its range."""
+    """Complaint about a value that is of another type or out of its range."""
     inner = kind.type if isinstance(kind, inspect.Metadata) else kind
     match inner:
         case inspect.FloatType():

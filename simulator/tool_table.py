@@ -3,19 +3,34 @@
 For a program that has its own tools it says what ISO 14649 has no attribute for.
 
 One ``[[tool]]`` table a tool, units in the keys; what is absent is customary.
+
+Windows of feed, speed and depth of a tool in a work material.
+
+Where no source gives windows for the ISO group of the material, those of the nearest group that
+is harder to cut take their place: its feeds, speeds and depths are smaller. A material that
+names no group is taken as the hardest to cut of the groups that its data do not exclude. So a
+material of which little is known gets the smallest windows.
+
+Grade of a tool of a tool table: that of the library, with what the table says instead.
+
+References
+----------
+.. [1] ISO 513: group H is hardened steel and chilled cast iron.
+.. [2] ISO 4957: high-speed steels have 64 to 67 HRC after hardening and tempering.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import cache
 from math import inf
 from pathlib import Path
 from typing import Annotated
 
 from simulator.errors import LibraryError
+from simulator.library import bare_tool, find_grade, load_material, material_names
 from simulator.material_file import SpeedWindow
-from simulator.removal.cutter import Cutter, Holder, Insert
-from simulator.removal.tool_shape import ENDS
-from simulator.spec import CuttingMaterial, ToolKind
+from simulator.removal.cutter import ENDS, Cutter, Holder, Insert
+from simulator.spec import CuttingMaterial, ToolGrade, ToolKind, WorkMaterial
 from simulator.toml_file import (
     FileTable,
     KeyFault,
@@ -46,7 +61,6 @@ INSERT_KEYS = {
     "cutting_edge_angle_deg",
     "trailing_angle_deg",
     "width_mm",
-    "hand",
     "inside",
     "max_depth_mm",
 }
@@ -68,8 +82,8 @@ CUSTOMARY_TRAILING_DEG = 5.0
 CUSTOMARY_POINT_DEG = {ToolKind.DRILL: 118.0, ToolKind.COUNTERSINK: 90.0}
 
 
-class TurningHand(StrEnum):
-    """Hands of turning tools as the file spells them."""
+class ToolHand(StrEnum):
+    """Hands of tools as the file spells them."""
 
     RIGHT = "right"
     LEFT = "left"
@@ -90,6 +104,8 @@ class TableTool:
     """Helix angle, rad; None: that of the grade"""
     centre_cutting: bool | None = None
     """whether the edges of a mill reach its axis; None: not said"""
+    hand: HandOfToolType = HandOfToolType.RIGHT
+    """Hand of the tool; a rotating tool that cuts both ways is neutral"""
     has_wiper: bool = False
     """whether a flat beside the nose of a turning insert smooths the surface"""
     grade: str = ""
@@ -123,12 +139,12 @@ class ToolRow(SpeedWindow, frozen=True, kw_only=True):
     point_angle_deg: PointAngle | None = None
     edge_length_mm: Length = 0.0
     holder_diameter_mm: Diameter | None = None
-    overhang_mm: Length | None = None
+    overhang_mm: Diameter | None = None
     nose_radius_mm: Length = 0.0
     cutting_edge_angle_deg: EdgeAngle = 90.0
     trailing_angle_deg: TrailingAngle = CUSTOMARY_TRAILING_DEG
     width_mm: Diameter | None = None
-    hand: TurningHand = TurningHand.RIGHT
+    hand: ToolHand = ToolHand.RIGHT
     inside: bool = False
     grade: str = ""
     min_feed_mm: VendorFeed | None = None
@@ -172,7 +188,7 @@ class ToolRow(SpeedWindow, frozen=True, kw_only=True):
 
     @property
     def lacks_teeth(self) -> bool:
-        """Whether the number of teeth is unknown of a tool that usually has several."""
+        """True if the number of teeth is unknown of a tool that usually has several."""
         return self.teeth is None and self.kind in SEVERAL_EDGES
 
     def insert(self) -> Insert:
@@ -217,6 +233,7 @@ def tool_of_row(row: ToolRow) -> TableTool:
         shape=row.insert() if row.kind in TURNED else row.cutter(),
         helix_angle=None if helix is None else rad_from_deg(helix),
         centre_cutting=row.centre_cutting,
+        hand=HandOfToolType[row.hand.name],
         has_wiper=row.wiper,
         grade=row.grade,
         min_feed=row.min_feed_mm,
@@ -225,6 +242,16 @@ def tool_of_row(row: ToolRow) -> TableTool:
         min_cutting_speed=row.speeds[0],
         max_cutting_speed=row.speeds[1],
     )
+
+
+def reaches_centre(tool: TableTool) -> bool | None:
+    """True if the edges of a mill reach its axis; None if neither table nor form tells it."""
+    if tool.centre_cutting is not None or not isinstance(tool.shape, Cutter):
+        return tool.centre_cutting
+    if tool.kind is ToolKind.FACEMILL:
+        return False
+    is_ball = tool.shape.corner_radius >= 0.5 * tool.shape.diameter
+    return True if is_ball else None
 
 
 class ToolFile(FileTable, frozen=True, kw_only=True):
@@ -251,3 +278,180 @@ def read_tool_rows(path: Path) -> tuple[ToolRow, ...]:
     if not rows:
         raise LibraryError("has no [[tool]]", path=str(path))
     return rows
+
+
+GROUPS = "NKPMSH"
+"""ISO groups, the easiest to cut first: in this order feeds and depths of the library fall."""
+
+HARD = "H"
+"""Group of hardened steel and chilled iron: nothing is too hard for it."""
+
+BEYOND = 1.2
+"""Factor by which a value may lie beyond those of the library's materials of a group: the
+spread of k_c between catalogues."""
+
+DENSITY_BEYOND = 1.05
+"""The same factor for the density, which depends on the alloy alone."""
+
+CHIP = 0.1
+"""Chip thickness at which specific cutting forces are compared, mm."""
+
+
+def grade_for(
+    tool_kind: ToolKind, cutting_material: CuttingMaterial, material: WorkMaterial
+) -> ToolGrade | None:
+    """Tool for a material: with its own windows, else the nearest on the safe side, else none.
+
+    Returns
+    -------
+    ToolGrade or None
+        None if the library has no such tool. Borrowed windows say so; a tool without windows
+        has no greatest feed.
+    """
+    groups = possible_groups(material)
+    hardest = groups[-1]
+    for group in GROUPS[GROUPS.index(hardest) :]:
+        grade = _grade(tool_kind, cutting_material, group)
+        if grade is not None:
+            return replace(grade, borrowed=_why(grade, material, group))
+    easier = reversed(groups[:-1])
+    for grade in (_grade(tool_kind, cutting_material, group) for group in easier):
+        if grade is not None:
+            return replace(grade, borrowed=_why(grade, material, grade.iso_group))
+    return bare_tool(tool_kind, cutting_material)
+
+
+def _grade(
+    tool_kind: ToolKind, cutting_material: CuttingMaterial, group: str
+) -> ToolGrade | None:
+    """Grade of a kind of tool for one ISO group; None if there is none."""
+    try:
+        return find_grade(tool_kind, cutting_material, group)
+    except LibraryError:
+        return None
+
+
+def _why(grade: ToolGrade, material: WorkMaterial, group: str) -> str:
+    """Reason why windows of a group are used; empty if it is that of the material."""
+    if material.iso_group == group:
+        return ""
+    if material.iso_group:
+        return (
+            f"the windows of ISO group {group}, the nearest that is harder to cut: no source "
+            f"gives {grade.cutting_material} in group {material.iso_group}"
+        )
+    groups = possible_groups(material)
+    of = f"the hardest to cut of {', '.join(groups)}" if len(groups) > 1 else "as its data say"
+    return f"the windows of ISO group {group}, {of}: material '{material.name}' names no group"
+
+
+def why_unsuited(cutting_material: CuttingMaterial, material: WorkMaterial) -> str:
+    """Reason why an edge cannot cut a material at all; empty if it can.
+
+    High-speed steel is hardly harder than group H [1]_, [2]_.
+    """
+    if cutting_material is not CuttingMaterial.HSS or possible_groups(material) != (HARD,):
+        return ""
+    return (
+        f"high-speed steel (64 to 67 HRC) does not cut {material.title}, ISO group H: use "
+        "carbide, ceramic or CBN"
+    )
+
+
+def possible_groups(material: WorkMaterial) -> tuple[str, ...]:
+    """ISO groups that a material may belong to, the easiest to cut first.
+
+    That of its file, else those that hardness, strength, density and specific cutting force do
+    not exclude; all if no group fits.
+    """
+    if material.iso_group:
+        return (material.iso_group,)
+    values = _values(material)
+    fitting = tuple(group for group in GROUPS if _fits(group, values))
+    return fitting or tuple(GROUPS)
+
+
+def _fits(group: str, values: tuple[float | None, ...]) -> bool:
+    """True if no known value lies beyond those of the group."""
+    ranges = _ranges()[group]
+    return all(
+        value is None or low <= value <= high
+        for value, (low, high) in zip(values, ranges, strict=True)
+    )
+
+
+def _values(material: WorkMaterial) -> tuple[float | None, ...]:
+    """Hardness, tensile strength, density and specific cutting force of a material."""
+    law = material.kienzle
+    force = law.k_c11 * CHIP**-law.m_c
+    return material.hardness_hb, material.tensile_strength, material.density, force
+
+
+@cache
+def _ranges() -> dict[str, tuple[tuple[float, float], ...]]:
+    """Ranges of the values of each group, from the materials of the library."""
+    known: dict[str, list[tuple[float | None, ...]]] = {group: [] for group in GROUPS}
+    for name in material_names():
+        material = load_material(name)
+        if material.iso_group:
+            known[material.iso_group].append(_values(material))
+    return {
+        group: tuple(
+            _range(column, group, place) for place, column in enumerate(zip(*rows, strict=True))
+        )
+        for group, rows in known.items()
+    }
+
+
+def _range(column: tuple[float | None, ...], group: str, place: int) -> tuple[float, float]:
+    """Least and greatest value of a property in a group, widened; unbounded if unknown."""
+    values = [value for value in column if value is not None]
+    if not values:
+        return 0.0, inf
+    beyond = DENSITY_BEYOND if place == 2 else BEYOND
+    high = inf if group == HARD and place != 2 else beyond * max(values)
+    return min(values) / beyond, high
+
+
+def grade_of_table_tool(tool: TableTool, material: WorkMaterial) -> ToolGrade | None:
+    """Grade of a tool in a material.
+
+    The vendor's windows of feed, speed and depth, helix angle and name of the grade replace
+    those of the library where the table gives them.
+
+    Parameters
+    ----------
+    tool : TableTool
+    material : WorkMaterial
+
+    Returns
+    -------
+    ToolGrade or None
+        None if the library has no grade of this kind for the material.
+    """
+    grade = grade_for(tool.kind, tool.cutting_material, material)
+    if grade is None:
+        return None
+    if tool.helix_angle is not None:
+        grade = replace(grade, helix_angle=tool.helix_angle)
+    if tool.grade:
+        grade = replace(grade, name=tool.grade)
+    if tool.min_feed is not None or tool.max_feed is not None:
+        # A window in mm takes the place of one relative to the diameter.
+        grade = replace(
+            grade,
+            min_feed_ratio=None,
+            max_feed_ratio=None,
+            min_feed=tool.min_feed,
+            max_feed=tool.max_feed,
+            borrowed="" if tool.max_feed is not None else grade.borrowed,
+        )
+    if tool.max_depth is not None:
+        grade = replace(grade, max_depth=tool.max_depth)
+    if tool.min_cutting_speed is not None or tool.max_cutting_speed is not None:
+        grade = replace(
+            grade,
+            min_cutting_speed=tool.min_cutting_speed,
+            max_cutting_speed=tool.max_cutting_speed,
+        )
+    return grade

@@ -12,23 +12,22 @@ in a notebook, it shows what the command line prints. Messages go to the logger 
 import logging
 from collections.abc import Callable
 
-from service.verbs.call import call
+from service.verbs.call import Verb, call, verbs
 from service.verbs.result import Result
-from service.verbs.verb import Verb, verbs
 from stepnc_model.errors import StepNcError as StepNcError
 
 LOG = logging.getLogger("stepnc")
 
 
 def __getattr__(name: str) -> Callable[..., Result]:
-    verb = verbs().get(name)
-    if verb is None:
-        raise AttributeError(f"module 'stepnc' has no attribute '{name}'")
-    return _function(verb)
+    for verb in verbs().values():
+        if verb.function == name:
+            return _function(verb)
+    raise AttributeError(f"module 'stepnc' has no attribute '{name}'")
 
 
 def __dir__() -> list[str]:
-    return sorted(["Result", "StepNcError", *verbs()])
+    return sorted(["Result", "StepNcError", *(each.function for each in verbs().values())])
 
 
 def _function(verb: Verb) -> Callable[..., Result]:
@@ -37,7 +36,7 @@ def _function(verb: Verb) -> Callable[..., Result]:
     def function(*args: object, **words: object) -> Result:
         return call(verb, args, words, tell=LOG.info)
 
-    function.__name__ = function.__qualname__ = verb.folder
+    function.__name__ = function.__qualname__ = verb.function
     function.__module__ = "stepnc"
     function.__doc__ = verb.about
     return function

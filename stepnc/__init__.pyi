@@ -1,6 +1,7 @@
 """Functions of ``stepnc``, made by ``python -m tests.tree.python_stub``."""
 
 from collections.abc import Iterable, Mapping
+from datetime import datetime
 from pathlib import Path
 from typing import Literal
 
@@ -9,16 +10,38 @@ from stepnc_model.errors import StepNcError as StepNcError
 
 from service.verbs.blockfit.result import BlockFitResult as BlockFitResult
 from service.verbs.blocktest.result import BlockTestResult as BlockTestResult
+from service.verbs.calibrate.cuts import CutsResult as CutsResult
+from service.verbs.calibrate.cuts import CutsResult as CutsResult
 from service.verbs.calibrate.result import CalibrationResult as CalibrationResult
 from service.verbs.calibrate.tool_life import ToolLifeResult as ToolLifeResult
 from service.verbs.canonical.result import CanonicalResult as CanonicalResult
 from service.verbs.check.result import CodeContents as CodeContents
 from service.verbs.check.result import ProgramContents as ProgramContents
+from service.verbs.compare.result import ComparisonResult as ComparisonResult
 from service.verbs.control.result import ControlResult as ControlResult
 from service.verbs.convert.result import ConvertResult as ConvertResult
 from service.verbs.cycletime.result import CycleTimeResult as CycleTimeResult
 from service.verbs.dataset.result import DatasetReport as DatasetReport
 from service.verbs.factory.result import ShopResult as ShopResult
+from service.verbs.kbe.add.result import AddResult as AddResult
+from service.verbs.kbe.content import ContentResult as ContentResult
+from service.verbs.kbe.content import ContentResult as ContentResult
+from service.verbs.kbe.content import ContentResult as ContentResult
+from service.verbs.kbe.corrections.result import CorrectionsResult as CorrectionsResult
+from service.verbs.kbe.corrections.result import CorrectionsResult as CorrectionsResult
+from service.verbs.kbe.corrections.result import CorrectionsResult as CorrectionsResult
+from service.verbs.kbe.corrections.result import CorrectionsResult as CorrectionsResult
+from service.verbs.kbe.export.result import ExportResult as ExportResult
+from service.verbs.kbe.list.result import OutcomesResult as OutcomesResult
+from service.verbs.kbe.read.result import RecordedResult as RecordedResult
+from service.verbs.kbe.review.result import ReviewReport as ReviewReport
+from service.verbs.kbe.show.result import RunResult as RunResult
+from service.verbs.kbe.table.result import EvaluationResult as EvaluationResult
+from service.verbs.kbe.table.result import SummaryResult as SummaryResult
+from service.verbs.kbe.write.result import WriteResult as WriteResult
+from service.verbs.keys.create.result import NewKeyResult as NewKeyResult
+from service.verbs.keys.list.result import KeysResult as KeysResult
+from service.verbs.keys.revoke.result import RevokedResult as RevokedResult
 from service.verbs.learn.result import LearnResult as LearnResult
 from service.verbs.library import EntryResult as EntryResult
 from service.verbs.library import EntryResult as EntryResult
@@ -30,7 +53,9 @@ from service.verbs.predict.result import PredictResult as PredictResult
 from service.verbs.record.result import RecordingResult as RecordingResult
 from service.verbs.result import ServedResult as ServedResult
 from service.verbs.result import ServedResult as ServedResult
+from service.verbs.result import ServedResult as ServedResult
 from service.verbs.score.result import ScoreResult as ScoreResult
+from service.verbs.setup.result import SetupResult as SetupResult
 from service.verbs.simulate.result import SimulateResult as SimulateResult
 from service.verbs.taptest.result import TapTestResult as TapTestResult
 from service.verbs.toolpath.result import CodePathResult as CodePathResult
@@ -44,6 +69,7 @@ def agent(
     dialect: str | Path = ...,
     tools: str | Path | None = ...,
     tools_unit: Literal['mm', 'inch'] | None = ...,
+    setup: str | Path | None = ...,
     most_repeats: int | None = ...,
     device: str | Path | None = ...,
     schema_files: str | Path | None = ...,
@@ -55,7 +81,7 @@ def agent(
     feed: str | Path = ...,
     machine: str | Path = ...,
     material: str | Path = ...,
-    control: Literal['exact-stop', 'junction', 'fir'] = ...,
+    control: Literal['exact-stop', 'junction', 'fir', 'linuxcnc'] = ...,
     filter_s: str | Path = ...,
     deviation_mm: float = ...,
     program_id: str | Path | None = ...,
@@ -117,8 +143,10 @@ def calibrate(
     dialect: str | Path = ...,
     tools: str | Path | None = ...,
     tools_unit: Literal['mm', 'inch'] | None = ...,
+    setup: str | Path | None = ...,
     most_repeats: int | None = ...,
     tool_life: str | Path | None = ...,
+    table: str | Path | None = ...,
     output: str | Path | None = ...,
     units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
     stock: str | Path | None = ...,
@@ -127,15 +155,19 @@ def calibrate(
     feed: str | Path = ...,
     machine: str | Path = ...,
     material: str | Path = ...,
-    control: Literal['exact-stop', 'junction', 'fir'] = ...,
+    control: Literal['exact-stop', 'junction', 'fir', 'linuxcnc'] = ...,
     filter_s: str | Path = ...,
     deviation_mm: float = ...,
     life: str | Path | Iterable[str | Path] = ...,
     edge: Literal['hss', 'carbide', 'ceramic'] = ...,
-) -> CalibrationResult | ToolLifeResult: ...
+    only: Literal['forces', 'roughness', 'life'] | Iterable[Literal['forces', 'roughness', 'life']] = ...,
+    wear_criterion_mm: float = ...,
+    anyway: bool = ...,
+) -> CalibrationResult | CutsResult | ToolLifeResult: ...
 def canonical(
     file: str | Path,
     *,
+    tools: str | Path | None = ...,
     units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
     stock: str | Path | None = ...,
     given: str | Path | Iterable[str | Path] = ...,
@@ -148,6 +180,7 @@ def canonical(
 def check(
     file: str | Path,
     *,
+    tools: str | Path | None = ...,
     name: str | Path = ...,
     most_repeats: int | None = ...,
     units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
@@ -157,6 +190,12 @@ def check(
     feed: str | Path = ...,
     dialect: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
 ) -> ProgramContents | CodeContents: ...
+def compare(
+    plans: str | Path | Iterable[str | Path],
+    *,
+    output: str | Path | None = ...,
+    format: Literal['text', 'csv', 'json', 'html', 'parquet'] | None = ...,
+) -> ComparisonResult: ...
 def control(
     file: str | Path | None = ...,
     *,
@@ -164,6 +203,7 @@ def control(
     dialect: str | Path = ...,
     tools: str | Path | None = ...,
     tools_unit: Literal['mm', 'inch'] | None = ...,
+    setup: str | Path | None = ...,
     most_repeats: int | None = ...,
     output: str | Path | None = ...,
     report: str | Path | None = ...,
@@ -181,7 +221,7 @@ def control(
     feed: str | Path = ...,
     machine: str | Path = ...,
     material: str | Path = ...,
-    control: Literal['exact-stop', 'junction', 'fir'] = ...,
+    control: Literal['exact-stop', 'junction', 'fir', 'linuxcnc'] = ...,
     filter_s: str | Path = ...,
     deviation_mm: float = ...,
     program_id: str | Path | None = ...,
@@ -212,6 +252,8 @@ def cycletime(
     file: str | Path,
     log: str | Path | None = ...,
     *,
+    tools: str | Path | None = ...,
+    setup: str | Path | None = ...,
     most_repeats: int | None = ...,
     output: str | Path | None = ...,
     report: str | Path | None = ...,
@@ -222,7 +264,7 @@ def cycletime(
     feed: str | Path = ...,
     machine: str | Path = ...,
     dialect: str | Path = ...,
-    control: Literal['exact-stop', 'junction', 'fir'] = ...,
+    control: Literal['exact-stop', 'junction', 'fir', 'linuxcnc'] = ...,
     deviation_mm: float = ...,
 ) -> CycleTimeResult: ...
 def dataset(
@@ -254,6 +296,144 @@ def factory(
     host_names: str | Path | Iterable[str | Path] = ...,
     buffer: int = ...,
 ) -> ShopResult | ServedResult: ...
+def kbe_accept(
+    ids: int | Iterable[int],
+    *,
+    kb: str | Path = ...,
+    by: str | Path = ...,
+) -> CorrectionsResult: ...
+def kbe_add(
+    file: str | Path,
+    *,
+    kb: str | Path = ...,
+) -> AddResult: ...
+def kbe_backup(
+    file: str | Path,
+    *,
+    kb: str | Path = ...,
+) -> ContentResult: ...
+def kbe_check(
+    *,
+    kb: str | Path = ...,
+) -> ContentResult: ...
+def kbe_corrections(
+    *,
+    kb: str | Path = ...,
+) -> CorrectionsResult: ...
+def kbe_export(
+    what: Literal['outcomes', 'corrections', 'table'],
+    *,
+    kb: str | Path = ...,
+    output: str | Path,
+    format: Literal['text', 'csv', 'json', 'html', 'parquet'] | None = ...,
+    summary: bool = ...,
+    machine: str | Path | None = ...,
+    material: str | Path | None = ...,
+    tool: str | Path | None = ...,
+    feature_kind: str | Path | None = ...,
+    program: str | Path | None = ...,
+    run: str | Path | None = ...,
+    since: datetime | str | None = ...,
+    until: datetime | str | None = ...,
+    grouping: Literal['feature', 'kind'] = ...,
+    only: Literal['all', 'violated', 'wasted', 'with remarks', 'with trend', 'factor pending'] = ...,
+    sort: Literal['name', 'grade', 'runs', 'latest', 'force', 'time', 'feed', 'roughness', 'time to win'] = ...,
+) -> ExportResult: ...
+def kbe_list(
+    *,
+    kb: str | Path = ...,
+    machine: str | Path | None = ...,
+    material: str | Path | None = ...,
+    tool: str | Path | None = ...,
+    feature_kind: str | Path | None = ...,
+    program: str | Path | None = ...,
+    run: str | Path | None = ...,
+    since: datetime | str | None = ...,
+    until: datetime | str | None = ...,
+    limit: int = ...,
+) -> OutcomesResult: ...
+def kbe_read(
+    file: str | Path,
+) -> RecordedResult: ...
+def kbe_restore(
+    file: str | Path,
+    *,
+    kb: str | Path = ...,
+) -> ContentResult: ...
+def kbe_review(
+    *,
+    kb: str | Path = ...,
+    by: str | Path = ...,
+    auto_accept: bool = ...,
+    least_confidence: float = ...,
+    fewest_outcomes: int = ...,
+    greatest_change: float = ...,
+    machine: str | Path | None = ...,
+    material: str | Path | None = ...,
+    tool: str | Path | None = ...,
+    feature_kind: str | Path | None = ...,
+    program: str | Path | None = ...,
+    run: str | Path | None = ...,
+    since: datetime | str | None = ...,
+    until: datetime | str | None = ...,
+) -> ReviewReport: ...
+def kbe_show(
+    id: str | Path,
+    *,
+    kb: str | Path = ...,
+) -> RunResult | CorrectionsResult: ...
+def kbe_table(
+    *,
+    output: str | Path | None = ...,
+    format: Literal['text', 'csv', 'json', 'html', 'parquet'] | None = ...,
+    kb: str | Path = ...,
+    summary: bool = ...,
+    machine: str | Path | None = ...,
+    material: str | Path | None = ...,
+    tool: str | Path | None = ...,
+    feature_kind: str | Path | None = ...,
+    program: str | Path | None = ...,
+    run: str | Path | None = ...,
+    since: datetime | str | None = ...,
+    until: datetime | str | None = ...,
+    grouping: Literal['feature', 'kind'] = ...,
+    only: Literal['all', 'violated', 'wasted', 'with remarks', 'with trend', 'factor pending'] = ...,
+    sort: Literal['name', 'grade', 'runs', 'latest', 'force', 'time', 'feed', 'roughness', 'time to win'] = ...,
+) -> EvaluationResult | SummaryResult: ...
+def kbe_withdraw(
+    ids: int | Iterable[int],
+    *,
+    kb: str | Path = ...,
+    by: str | Path = ...,
+) -> CorrectionsResult: ...
+def kbe_write(
+    file: str | Path,
+    *,
+    kb: str | Path = ...,
+    output: str | Path | None = ...,
+    run: str | Path = ...,
+) -> WriteResult: ...
+def keys_create(
+    *,
+    data: str | Path | None = ...,
+    database: str | Path = ...,
+    files: str | Path = ...,
+    owner: str | Path,
+    roles: Literal['viewer', 'planner', 'operator'] | Iterable[Literal['viewer', 'planner', 'operator']] = ...,
+) -> NewKeyResult: ...
+def keys_list(
+    *,
+    data: str | Path | None = ...,
+    database: str | Path = ...,
+    files: str | Path = ...,
+) -> KeysResult: ...
+def keys_revoke(
+    id: str | Path,
+    *,
+    data: str | Path | None = ...,
+    database: str | Path = ...,
+    files: str | Path = ...,
+) -> RevokedResult: ...
 def learn(
     dataset: str | Path,
     *,
@@ -283,6 +463,7 @@ def optimise(
     holding: str | Path | None = ...,
     tools: str | Path | None = ...,
     tools_unit: Literal['mm', 'inch'] | None = ...,
+    setup: str | Path | None = ...,
     most_repeats: int | None = ...,
     kb: str | Path = ...,
     feeds_csv: str | Path | None = ...,
@@ -315,7 +496,7 @@ def optimise(
     allow_plunge: bool = ...,
     is_along_path: bool = ...,
     levels: int | None = ...,
-    motion: Literal['exact-stop', 'junction', 'fir'] = ...,
+    motion: Literal['exact-stop', 'junction', 'fir', 'linuxcnc'] = ...,
     is_jerk_limited: bool = ...,
     smooth_share: float | None = ...,
     writes_toolpaths: bool = ...,
@@ -326,6 +507,8 @@ def optimise(
     least_feed_mm_min: float | None = ...,
     finish: str | Path | Iterable[str | Path] = ...,
     keep: str | Path | Iterable[str | Path] = ...,
+    keeps_state: str | Path | Iterable[str | Path] = ...,
+    spindle: str | Path | Iterable[str | Path] = ...,
     is_unrolled: bool = ...,
     dialect: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
     is_marked: bool = ...,
@@ -333,6 +516,7 @@ def optimise(
 def post(
     file: str | Path,
     *,
+    tools: str | Path | None = ...,
     output: str | Path | None = ...,
     units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
     stock: str | Path | None = ...,
@@ -375,6 +559,39 @@ def score(
     false_alarm: float = ...,
     seed: int = ...,
 ) -> ScoreResult: ...
+def serve(
+    *,
+    data: str | Path | None = ...,
+    database: str | Path = ...,
+    files: str | Path = ...,
+    kb: str | Path = ...,
+    tls_cert: str | Path | None = ...,
+    tls_key: str | Path | None = ...,
+    host: str | Path = ...,
+    port: int = ...,
+    workers: int = ...,
+    jobs: int = ...,
+    job_memory_gb: int = ...,
+    names: str | Path | Iterable[str | Path] = ...,
+    agents: str | Path | Iterable[str | Path] = ...,
+    needs_keys: bool = ...,
+    upload_mb: int = ...,
+    rate: float | None = ...,
+    log_level: Literal['debug', 'info', 'warning', 'error'] = ...,
+) -> ServedResult: ...
+def setup(
+    file: str | Path,
+    *,
+    tools: str | Path | None = ...,
+    tools_unit: Literal['mm', 'inch'] | None = ...,
+    stock: str | Path | None = ...,
+    most_repeats: int | None = ...,
+    output: str | Path | None = ...,
+    dry_run: bool = ...,
+    dialect: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
+    material: str | Path = ...,
+    machine: str | Path = ...,
+) -> SetupResult: ...
 def simulate(
     file: str | Path | None = ...,
     *,
@@ -382,6 +599,7 @@ def simulate(
     dialect: str | Path = ...,
     tools: str | Path | None = ...,
     tools_unit: Literal['mm', 'inch'] | None = ...,
+    setup: str | Path | None = ...,
     most_repeats: int | None = ...,
     output: str | Path | None = ...,
     report: str | Path | None = ...,
@@ -399,7 +617,7 @@ def simulate(
     feed: str | Path = ...,
     machine: str | Path = ...,
     material: str | Path = ...,
-    control: Literal['exact-stop', 'junction', 'fir'] = ...,
+    control: Literal['exact-stop', 'junction', 'fir', 'linuxcnc'] = ...,
     filter_s: str | Path = ...,
     deviation_mm: float = ...,
     program_id: str | Path | None = ...,
@@ -433,6 +651,7 @@ def taptest(
 def toolpath(
     file: str | Path,
     *,
+    tools: str | Path | None = ...,
     most_repeats: int | None = ...,
     plot: str | Path | None = ...,
     units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
@@ -443,6 +662,14 @@ def toolpath(
     dialect: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
     keep_going: bool = ...,
 ) -> ToolPathResult | CodePathResult: ...
+def validate(
+    *,
+    table: str | Path,
+    material: str | Path = ...,
+    only: Literal['forces', 'roughness', 'life'] | Iterable[Literal['forces', 'roughness', 'life']] = ...,
+    edge: Literal['hss', 'carbide', 'ceramic'] = ...,
+    wear_criterion_mm: float = ...,
+) -> CutsResult: ...
 def verify(
     log: str | Path,
     *,

@@ -97,7 +97,7 @@ _DISPENSABLE = ("its_secplane", "implicit_tolerance")
 
 
 def is_about_values(error: Exception) -> bool:
-    """Whether an error can come from values of a file, and not from the code alone.
+    """True if an error can come from values of a file, and not from the code alone.
 
     Code that asks an object of its own for an attribute that it does not have is wrong,
     whatever the file holds.
@@ -108,7 +108,7 @@ def is_about_values(error: Exception) -> bool:
 
 
 def is_of_file(error: Exception, fault: Finding | None) -> bool:
-    """Whether an error comes from the values of a file, given the fault found near them.
+    """True if an error comes from the values of a file, given the fault found near them.
 
     Without a fault the error itself must show that a value is missing, empty or out of range:
     an optional attribute that is not given is no fault of its own.
@@ -352,7 +352,7 @@ def _optimisation_at(
 
 
 def _is_optimisation(file: Part21File | None, ref: Ref[object]) -> bool:
-    """Whether a reference leads to an optimisation entity."""
+    """True if a reference leads to an optimisation entity."""
     return (
         file is not None
         and int(ref) in file

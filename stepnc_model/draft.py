@@ -117,29 +117,54 @@ class Draft:
             waiting += [each for each in dict.fromkeys(inner) if met[each] == uses[each]]
         return found
 
-    def own(self, owner: Ref[Any], attribute: str, *, at: Ref[Any] | None = None) -> Ref[Any]:
-        """Instance that an attribute refers to; it is copied first if others use it too."""
+    def own(
+        self,
+        owner: Ref[Any],
+        attribute: str,
+        *,
+        at: Ref[Any] | None = None,
+        parts: Sequence[Ref[Any]] = (),
+    ) -> Ref[Any]:
+        """Instance that an attribute refers to; it is copied first if others use it too.
+
+        Parameters
+        ----------
+        owner : Ref
+        attribute : str
+        at : Ref, optional
+            Copy of the owner that is edited instead of it.
+        parts : sequence of Ref
+            Parts of the owner whose attribute of the same name refers to that instance too.
+        """
         holder = at if at is not None else owner
         key = (int(holder), attribute)
         if key not in self._own:
             reference: Ref[Any] = getattr(self.program.get(owner), attribute)
-            self._own[key] = self._unshared(owner, attribute, reference, at=holder)
+            self._own[key] = self._unshared(owner, attribute, reference, at=holder, parts=parts)
         return self._own[key]
 
     def _unshared(
-        self, owner: Ref[Any], attribute: str, reference: Ref[Any], *, at: Ref[Any]
+        self,
+        owner: Ref[Any],
+        attribute: str,
+        reference: Ref[Any],
+        *,
+        at: Ref[Any],
+        parts: Sequence[Ref[Any]],
     ) -> Ref[Any]:
         """Return the referenced instance if unshared, else a copy for the holder."""
-        uses = self._use_counts()
-        if uses[int(reference)] < 2:
+        uses, own_uses = self._use_counts(), 1 + len(parts)
+        if uses[int(reference)] <= own_uses:
             return reference
         values = self.program.file.parameters(int(reference))
         copy = self.add_like(reference, values)
-        uses[int(reference)] -= 1
-        uses[int(copy)] = 1
+        uses[int(reference)] -= own_uses
+        uses[int(copy)] = own_uses
         # The instances that the original refers to are now used by the copy as well.
         uses.update(int(inner) for inner in references(values))
         self.put(owner, attribute, copy, at=at)
+        for part in parts:
+            self.put(part, attribute, copy)
         return copy
 
     def _use_counts(self) -> Counter[int]:

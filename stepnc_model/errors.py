@@ -177,7 +177,7 @@ class FindingList:
             self.add(finding)
 
     def has_room(self, severity: Severity) -> bool:
-        """Whether another finding of a severity would be listed."""
+        """True if another finding of a severity would be listed."""
         return self._counts[severity] < MOST_FINDINGS
 
     def count(self, severity: Severity, number: int = 1) -> None:

@@ -2,7 +2,8 @@
 
 They are set into the text that is read, so that paths, loads and advice follow from them, and
 can be withdrawn afterwards: what was given then stands nowhere in the file, and what was
-advised on its basis does. Units are those of the file.
+advised on its basis does. Units are those of the file; in AP238 those of the number that is
+replaced.
 """
 
 import re
@@ -10,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeGuard
 
-from stepnc_model.ap238.converted import Converted
+from stepnc_model.ap238.table import Converted
 from stepnc_model.ap238.view import AimView
 from stepnc_model.binding import Model
 from stepnc_model.draft import Draft
@@ -24,6 +25,7 @@ from stepnc_model.entities.turning import TurningTechnology
 from stepnc_model.errors import Part21Error, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Real, Ref, Value
+from stepnc_model.path_technology import fed_paths
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.tool import tool_of
 from stepnc_model.units import FeedUnit, m_s_from_speed, mm_min_from_speed
@@ -42,7 +44,7 @@ class GivenFeed:
 
     @property
     def is_speed(self) -> bool:
-        """Whether it is a feed by time."""
+        """True if it is a feed by time."""
         return self.unit in {FeedUnit.METRES_PER_SECOND, FeedUnit.MM_PER_MINUTE}
 
 
@@ -154,13 +156,16 @@ def _set(draft: Draft, text: str) -> SetAttribute:
     slots = slots_of(type(entity))  # type: ignore[arg-type]
     if attribute not in slots:
         known = ", ".join(slots)
-        raise program.error(f"has no attribute '{attribute}'; known: {known}", Ref(number))
+        text = f"has no attribute '{attribute}' that --set could set; known: {known}"
+        raise program.error(text, Ref(number))
     value, slot = _value(written, text), slots[attribute]
     present = getattr(entity, attribute)
     if isinstance(present, Ref) and _is_number(value):
         inside = _in_place(draft, present, attribute, value)
         if inside is not None:
             return inside
+    if _is_number(value) and float in slot.plain:
+        value = _from_file(program, number, attribute, value)
     value, added = _fitting(draft, slot, value, attribute)
     return _put(draft, ref, attribute, value, added)
 
@@ -186,10 +191,20 @@ def _in_place(
     if not chain or any(draft.uses(each) > 1 for each in chain):
         return None
     if len(chain) == 1:
-        return _put(draft, present, "theoretical_size", Real(number))
+        size = _from_file(program, int(present), "theoretical_size", number)
+        return _put(draft, present, "theoretical_size", size)
     x, y, _ = program.get(chain[-1]).coordinates
-    moved = (Real(x), Real(y), Real(_height(attribute, number)))
+    height = _from_file(program, int(chain[-1]), "coordinates", _height(attribute, number))
+    moved = (Real(x), Real(y), height)
     return _put(draft, chain[-1], "coordinates", moved)
+
+
+def _from_file(program: Program, number: int, attribute: str, value: float) -> Real:
+    """Number of ISO 14649 for one in the unit that a file of AP238 gives there."""
+    factor = None
+    if isinstance(program.file, AimView):
+        factor = program.file.factor(number, attribute)
+    return Real(value if factor is None else value * factor)
 
 
 def _level_plane(program: Program, ref: Ref[Any]) -> tuple[Ref[Any], ...]:
@@ -225,7 +240,7 @@ def _put(
 
 
 def origin_in(program: Program, value: Value) -> Converted | None:
-    """What an instance stands for in an AP238 file."""
+    """Origin of an instance in an AP238 file."""
     if not isinstance(value, Ref) or not isinstance(program.file, AimView):
         return None
     return program.file.origins.get(int(value))
@@ -262,7 +277,7 @@ def _numbered(program: Program, number: int, attribute: str) -> int:
 
 
 def _is_number(value: Value) -> TypeGuard[int | float]:
-    """Whether a value is a number; references are whole numbers in Python, too."""
+    """True if a value is a number; references are whole numbers in Python, too."""
     return isinstance(value, int | float) and not isinstance(value, Ref)
 
 
@@ -312,7 +327,8 @@ def _feeds(draft: Draft, feed: GivenFeed) -> Iterator[SetAttribute]:
     program = draft.program
     users: dict[Ref[Entity], list[ResolvedWorkingstep]] = {}
     for step in program.workingsteps:
-        users.setdefault(step.technology_ref, []).append(step)
+        for ref in fed_technologies(program, step):
+            users.setdefault(ref, []).append(step)
     for ref, steps in users.items():
         technology = program.get(ref)
         if not isinstance(technology, (MillingTechnology, TurningTechnology)):
@@ -329,6 +345,12 @@ def _feeds(draft: Draft, feed: GivenFeed) -> Iterator[SetAttribute]:
         if technology.feedrate is not None:
             yield replace(_put(draft, ref, "feedrate", None), only_beside=per_edge)
         yield _put(draft, ref, per_edge, Real(feed.value / edges))
+
+
+def fed_technologies(program: Program, step: ResolvedWorkingstep) -> list[Ref[Entity]]:
+    """Technologies that give feeds of a workingstep, also those of its tool paths."""
+    own = [technology for technology, _ in fed_paths(program.model, step.operation)]
+    return list(dict.fromkeys([step.technology_ref, *own]))
 
 
 def _in_file(program: Program, ref: Ref[Entity], feed: GivenFeed) -> float:

@@ -25,7 +25,7 @@ from math import exp, inf, isfinite
 
 from stepnc_model.ap238.view import AimView
 from stepnc_model.binding import to_parameters
-from stepnc_model.edit_conditions import rounded
+from stepnc_model.cut_settings import rounded
 from stepnc_model.entities import optimisation as entities
 from stepnc_model.entities.operations import MachiningOperation
 from stepnc_model.errors import SchemaError

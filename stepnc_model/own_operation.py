@@ -15,7 +15,7 @@ from stepnc_model.program import Program
 
 
 def can_be_copied(program: Program) -> bool:
-    """Whether operations can be copied: one of AP238 has properties that are not read here."""
+    """True if operations can be copied: one of AP238 has properties that are not read here."""
     return not isinstance(program.file, AimView)
 
 

@@ -16,7 +16,14 @@ from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.remedy import error_of
 from stepnc_model.technology import Number, Programmed, ProgrammedQuantity, programmed
 from stepnc_model.tool import hand_of, tool_of
-from stepnc_model.units import ISO, PROFILES, UnitProfile, m_min_from_speed, rpm_from_rev_s
+from stepnc_model.units import (
+    ISO,
+    PROFILES,
+    UnitProfile,
+    m_min_from_speed,
+    m_s_from_speed,
+    rpm_from_rev_s,
+)
 
 MAX_SPINDLE_SPEED = 300.0
 """Greatest plausible spindle speed, rev/s; only dental and circuit-board machines exceed it."""
@@ -71,6 +78,9 @@ def refusal(program: Program, steps: Sequence[ResolvedWorkingstep]) -> SchemaErr
     for step in steps:
         for finding in _findings(program, step):
             if finding.severity is Severity.WARNING and finding.rule == RULE:
+                if program.file is not program.source:
+                    # Units of an AP238 file are its own: only the number can be another one.
+                    return error_of(finding)
                 words = proposal(program, steps).words
                 advice = (
                     f"plausible with --units {words}"
@@ -141,7 +151,7 @@ def units_by_numbers(
 def unit_findings(program: Program) -> tuple[Finding, ...]:
     """Findings that propose units, for a program whose numbers cannot be in its units."""
     error = refusal(program, program.workingsteps)
-    if error is None:
+    if error is None or program.file is not program.source:
         return ()
     found = proposal(program, program.workingsteps)
     name = program.units.name
@@ -215,7 +225,8 @@ def _oddities(
         yield speed, f"spindle {speed.value:g} rev/s exceeds {MAX_SPINDLE_SPEED:g} rev/s"
     if not is_spindle and speed.value > MAX_CUTTING_SPEED:
         text = (
-            f"cutting speed {speed.value / 1e3:g} m/s exceeds {MAX_CUTTING_SPEED / 1e3:g} m/s"
+            f"cutting speed {m_s_from_speed(speed.value):g} m/s exceeds "
+            f"{m_s_from_speed(MAX_CUTTING_SPEED):g} m/s"
         )
         yield speed, text
     if conditions.is_synchronised:
@@ -229,7 +240,7 @@ def _oddities(
     turning = conditions.spindle_speed(tool.diameter)
     around = pi * tool.diameter * turning
     if around < LEAST_CUTTING_SPEED:
-        yield speed, f"the cutting speed is only {around * 60.0 / 1e3:.3g} m/min"
+        yield speed, f"the cutting speed is only {m_min_from_speed(around):.3g} m/min"
     feed = conditions.feed_per_tooth(turning, tool.teeth)
     radius = 0.5 * tool.diameter
     if feed > radius:
@@ -275,7 +286,7 @@ def _readings(
 
 
 def _is_shared(program: Program, step: ResolvedWorkingstep) -> bool:
-    """Whether a technology is refused because two kinds of operation share it."""
+    """True if a technology is refused because two kinds of operation share it."""
     try:
         program.units_of(step.technology_ref)
     except SchemaError:
@@ -312,7 +323,7 @@ def _reading(
 def _agrees(
     program: Program, step: ResolvedWorkingstep, units: UnitProfile, around: float
 ) -> bool:
-    """Whether the cutting speed of a technology is that of its spindle speed."""
+    """True if the cutting speed of a technology is that of its spindle speed."""
     written = getattr(program.get(step.technology_ref), "cutspeed", None)
     return written is not None and isclose(
         written * units.cutting_speed, around, rel_tol=SAME_SPEED

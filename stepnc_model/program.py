@@ -4,7 +4,7 @@ Loading does not fail on deviations that leave the program usable; they are find
 that makes a workingstep unusable is an error finding, raised when the workingstep is requested.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,16 +14,10 @@ from stepnc_model.ap238.view import AimView, is_aim
 from stepnc_model.binding import Model, is_of_file
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import (
-    IfStatement,
     MachiningWorkingstep,
-    NonSequential,
-    Parallel,
     Project,
-    Selective,
     Setup,
     TurningWorkingstep,
-    WhileStatement,
-    Workplan,
 )
 from stepnc_model.entities.measures import PropertyParameter
 from stepnc_model.entities.milling import DrillingTypeOperation
@@ -31,8 +25,11 @@ from stepnc_model.entities.operations import MachiningOperation
 from stepnc_model.entities.profiles import MachinedSurface, SurfaceTextureParameter
 from stepnc_model.entities.workpiece import Material, Workpiece
 from stepnc_model.errors import Finding, FindingList, PathError, SchemaError, Severity
+from stepnc_model.given_tool import GivenTool
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
+from stepnc_model.path_technology import technologies_of
+from stepnc_model.program_listing import ProgramLine, program_lines
 from stepnc_model.remedy import error_of, with_remedy
 from stepnc_model.units import ISO, UnitProfile
 
@@ -64,14 +61,9 @@ class Bodies(Protocol):
     """Reader of B-rep bodies, whose geometry this package does not know."""
 
     def box(self, file: Part21File, representation: int) -> Stock | None:
-        """Box or bar around a body in coordinates of its workpiece; None: it is not known.
+        """Box or bar around a body, by the instance of its shape representation.
 
-        Parameters
-        ----------
-        file : Part21File
-            Instances of ISO 14649 of a program.
-        representation : int
-            Instance of the shape representation.
+        In coordinates of its workpiece; None: it is not known.
         """
         ...
 
@@ -79,23 +71,6 @@ class Bodies(Protocol):
 T = TypeVar("T")
 
 Texture = tuple[SurfaceTextureParameter, MachinedSurface]
-
-MAX_EXECUTABLES = 100_000
-"""Greatest number of executables; mutually nested workplans could grow without bound."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ProgramLine:
-    """Line of a program listing: a program structure, an NC function or a workingstep."""
-
-    ref: Ref[Entity]
-    keyword: str
-    """EXPRESS name in capitals, as in the file."""
-    id: str
-    level: int
-    """Nesting level, 0 for the main workplan."""
-    setup: Ref[Setup] | None
-    """Setup of the innermost workplan that has one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -108,13 +83,19 @@ class ResolvedWorkingstep:
     operation: MachiningOperation
     features: tuple[Ref[Entity], ...]
     tool_ref: Ref[Entity]
-    technology_ref: Ref[Entity]
     functions_ref: Ref[Entity] | None
     setup: Ref[Setup] | None
     index: int
     """Position among the workingsteps of the program, from 0."""
     is_last_on_feature: bool
     """Whether no later workingstep works on the same feature."""
+    technologies: tuple[Ref[Entity], ...]
+    """Technologies that its feed stands in, the first for all: they have the same values."""
+
+    @property
+    def technology_ref(self) -> Ref[Entity]:
+        """Technology with its feed and speed."""
+        return self.technologies[0]
 
     @property
     def operation_type(self) -> str:
@@ -136,6 +117,8 @@ class Program:
         Raw part to use if the file does not describe one.
     bodies : Bodies, optional
         Reader of raw parts that are B-rep bodies; without one they are not known.
+    tools : sequence of GivenTool, optional
+        Tools of which the file may have nothing but the name.
     """
 
     def __init__(
@@ -146,9 +129,11 @@ class Program:
         name: str = "",
         stock: Stock | None = None,
         bodies: Bodies | None = None,
+        tools: Sequence[GivenTool] = (),
     ) -> None:
         self.name = name
         self.bodies = bodies
+        self.tools = tools
         self.stock = stock
         """Raw part given by the user, for a file that does not describe one."""
         self.units = units
@@ -162,7 +147,7 @@ class Program:
             )
         self.model = Model(self.file)
         self._faults: dict[int, SchemaError] = {}
-        self.executables = tuple(self._walk())
+        self.executables = tuple(program_lines(self.model, self.error, self._faults))
         self.workingsteps = tuple(self._workingsteps())
         self._textures: dict[int, list[Texture]] | None = None
         self._by_feature: dict[int, list[ResolvedWorkingstep]] = {}
@@ -184,7 +169,12 @@ class Program:
     def changed(self, file: Part21File) -> "Program":
         """Program of a changed file: its units, name, raw part and bodies stay."""
         return Program(
-            file, units=self.units, name=self.name, stock=self.stock, bodies=self.bodies
+            file,
+            units=self.units,
+            name=self.name,
+            stock=self.stock,
+            bodies=self.bodies,
+            tools=self.tools,
         )
 
     def get(self, ref: Ref[T]) -> T:
@@ -258,7 +248,12 @@ class Program:
         try:
             yield
         except ValueError as error:
-            raise self.error(str(error), ref) from error
+            if "empty sequence" not in str(error):
+                raise self.error(str(error), ref) from error
+            fault = self.model.fault_near(ref, *(other for other in near if other is not None))
+            if fault is None:
+                raise self.error("a list of values has none", ref) from error
+            raise error_of(fault) from error
         except (ArithmeticError, AttributeError, IndexError, TypeError) as error:
             fault = self.model.fault_near(ref, *(other for other in near if other is not None))
             if not is_of_file(error, fault):
@@ -337,70 +332,6 @@ class Program:
             raise self.error("is not a material, where one is expected", workpiece.its_material)
         return material
 
-    def _main_workplan(self) -> Ref[Workplan]:
-        """Main workplan of the project, or the only workplan that is not nested in another."""
-        for ref, project in self.model.of_type(Project):
-            if project.main_workplan is None:
-                raise self.error("the project has no main workplan", ref, "main_workplan")
-            plan = self.get(project.main_workplan)
-            if not isinstance(plan, Workplan):
-                raise self.error("is not a workplan", ref, "main_workplan")
-            return project.main_workplan
-        plans = dict(self.model.of_type(Workplan))
-        inner = {int(element) for plan in plans.values() for element in plan.its_elements}
-        outer = [ref for ref in plans if int(ref) not in inner]
-        if len(outer) != 1:
-            names = ", ".join(f"line {self.line(ref)}: {self.label(ref)}" for ref in outer[:5])
-            raise SchemaError(
-                f"no PROJECT, and {len(outer)} workplans that are not nested in another "
-                f"({names}): a program needs one main workplan"
-            )
-        return outer[0]
-
-    def _walk(self) -> Iterator[ProgramLine]:
-        """Executables in order, structures before their contents; iterative."""
-        stack = [_WalkVisit(self._main_workplan(), 0, None)]
-        open_ones: set[int] = set()
-        count = 0
-        while stack:
-            visit = stack.pop()
-            number = int(visit.ref)
-            if visit.is_leaving:
-                open_ones.discard(number)
-                continue
-            if number in open_ones:
-                raise self.error(
-                    "the program structure contains itself", visit.ref, "its_elements"
-                )
-            if number not in self.file:
-                message = "is referenced, but does not exist in the file"
-                self._faults[number] = SchemaError(message, entity=str(visit.ref))
-                continue
-            count += 1
-            if count > MAX_EXECUTABLES:
-                raise self.error(
-                    f"the program has more than {MAX_EXECUTABLES} executables", visit.ref
-                )
-            # An executable without an entity class is kept and shown.
-            entity = self.model.entity(number)
-            setup = visit.setup
-            if isinstance(entity, Workplan):
-                setup = entity.its_setup or setup
-            yield ProgramLine(
-                ref=visit.ref,
-                keyword=self.file.keyword(number),
-                id=str(getattr(entity, "its_id", "")),
-                level=visit.level,
-                setup=setup,
-            )
-            children = _children(entity)
-            if children:
-                open_ones.add(number)
-                stack.append(_WalkVisit(visit.ref, visit.level, setup, is_leaving=True))
-            stack.extend(
-                _WalkVisit(child, visit.level + 1, setup) for child in reversed(children)
-            )
-
     def _workingsteps(self) -> Iterator[ResolvedWorkingstep]:
         """Workingsteps in order; problems of a workingstep are recorded as faults."""
         last: dict[int, int] = {}
@@ -438,11 +369,12 @@ class Program:
             raise self.error("is not a machining operation", entity.its_operation)
         if operation.its_tool is None:
             raise self.error("the operation has no tool", entity.its_operation, "its_tool")
-        if operation.its_technology is None:
+        technologies = technologies_of(self.model, operation)
+        if not technologies:
             raise self.error(
                 "the operation has no technology", entity.its_operation, "its_technology"
             )
-        for ref in (operation.its_tool, operation.its_technology, *features):
+        for ref in (operation.its_tool, technologies[0], *features):
             self.get(ref)
         return ResolvedWorkingstep(
             ref=at,
@@ -451,7 +383,7 @@ class Program:
             operation=operation,
             features=features,
             tool_ref=operation.its_tool,
-            technology_ref=operation.its_technology,
+            technologies=technologies,
             functions_ref=operation.its_machine_functions,
             setup=executable.setup,
             index=0,
@@ -466,16 +398,6 @@ def _nouns_of(file: Part21File) -> Part21File:
     return AimView.of(file)
 
 
-@dataclass(frozen=True, slots=True)
-class _WalkVisit:
-    """Step of the walk: entering an executable, or leaving it."""
-
-    ref: Ref[Entity]
-    level: int
-    setup: Ref[Setup] | None
-    is_leaving: bool = False
-
-
 def _technologies(steps: tuple[ResolvedWorkingstep, ...]) -> tuple[set[int], set[int]]:
     """Instance numbers of the technologies of drilling, and of all other operations."""
     drilling: set[int] = set()
@@ -484,17 +406,3 @@ def _technologies(steps: tuple[ResolvedWorkingstep, ...]) -> tuple[set[int], set
         is_drilling = isinstance(step.operation, DrillingTypeOperation)
         (drilling if is_drilling else other).add(int(step.technology_ref))
     return drilling, other
-
-
-def _children(entity: Entity | None) -> tuple[Ref[Entity], ...]:
-    """Executables contained in a program structure, in order."""
-    if isinstance(entity, (Workplan, Selective, NonSequential)):
-        return tuple(entity.its_elements)
-    if isinstance(entity, Parallel):
-        return tuple(entity.branches)
-    if isinstance(entity, IfStatement):
-        branches = (entity.true_branch, entity.false_branch)
-        return tuple(branch for branch in branches if branch is not None)
-    if isinstance(entity, WhileStatement):
-        return (entity.body,)
-    return ()

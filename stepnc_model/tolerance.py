@@ -197,7 +197,7 @@ def _fit(given: LimitsAndFits, size: float) -> Tolerance:
 
 
 def _are_numbers(*values: object) -> bool:
-    """Whether all values are numbers; a missing value is None."""
+    """True if all values are numbers; a missing value is None."""
     return all(isinstance(value, float) for value in values)
 
 

@@ -11,6 +11,7 @@ from stepnc_model.entities.turning_tools import (
     RoundedCorner,
     TurningMachineCuttingTool,
 )
+from stepnc_model.given_tool import GivenTool
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from stepnc_model.units import rad_from_deg
@@ -26,6 +27,9 @@ LEAST_DIAMETER = 0.01
 
 MAX_DIAMETER = 2000.0
 """Greatest tool diameter accepted, mm; the largest face mills are below one metre."""
+
+MAX_EDGE_LENGTH = 2000.0
+"""Greatest length of a cutting edge accepted, mm; the longest end mills are below one metre."""
 
 MAX_TEETH = 500
 """Greatest number of teeth accepted; only circular saws have more."""
@@ -65,6 +69,9 @@ class Tool:
     """Corner radius of end mill or insert nose, mm; half the diameter for a ball end mill."""
     cutting_edge_length: float | None = None
     """Length of the cutting edge, or the greatest depth that an insert may cut, mm."""
+    overhang: float | None = None
+    """Distance from the tip to the holder, mm; None: not stated. ISO 14649 has no attribute for
+    it: ``overall_assembly_length`` includes the holder."""
     cutting_edge_angle: float = RIGHT_ANGLE
     """Cutting edge angle κ_r, rad."""
     point_angle: float | None = None
@@ -86,11 +93,35 @@ def tool_of(program: Program, ref: Ref[Entity]) -> Tool:
         If the diameter is missing or invalid, or the entity is not a cutting tool.
     """
     tool = program.get(ref)
-    if isinstance(tool, MillingCuttingTool):
-        return _rotating(program, ref, tool)
-    if isinstance(tool, TurningMachineCuttingTool):
-        return _turning(program, ref, tool)
+    with program.using(ref):
+        if isinstance(tool, MillingCuttingTool):
+            return _rotating(program, ref, tool)
+        if isinstance(tool, TurningMachineCuttingTool):
+            return _turning(program, ref, tool)
     raise program.error("is not a milling, drilling or turning tool", ref)
+
+
+def is_described(program: Program, ref: Ref[Entity]) -> bool:
+    """True unless nothing is known of a rotating tool but its name."""
+    tool = program.get(ref)
+    if not isinstance(tool, MillingCuttingTool) or getattr(tool, "its_tool_body", None):
+        return True
+    return any(each.is_named(tool.its_id) for each in program.tools)
+
+
+def given_for(program: Program, ref: Ref[Entity]) -> GivenTool | None:
+    """Tool of the user's that stands for one of which the file has only the name."""
+    tool = program.get(ref)
+    if not isinstance(tool, MillingCuttingTool) or body_of(program, ref) is not None:
+        return None
+    return next((each for each in program.tools if each.is_named(tool.its_id)), None)
+
+
+def tool_name(program: Program, ref: Ref[Entity]) -> str:
+    """Id of a tool, also of one of which the file has nothing else."""
+    if is_described(program, ref):
+        return tool_of(program, ref).id
+    return str(getattr(program.get(ref), "its_id", "")) or program.label(ref)
 
 
 def body_of(program: Program, ref: Ref[Entity]) -> MillingToolBody | None:
@@ -108,24 +139,35 @@ def hand_of(program: Program, ref: Ref[Entity]) -> Hand | None:
 
 def _rotating(program: Program, ref: Ref[Entity], tool: MillingCuttingTool) -> Tool:
     """Convert a milling or drilling tool."""
-    if tool.its_tool_body is None:
-        raise program.error("the tool has no tool body", ref, "its_tool_body")
+    given = next((each for each in program.tools if each.is_named(tool.its_id)), None)
+    if not is_described(program, ref):
+        raise program.error(
+            f"the tool has no tool body: --tools gives a table with tool '{tool.its_id}'", ref
+        )
+    if given is not None and body_of(program, ref) is None:
+        return _given(given, tool.its_id)
     body = program.get(tool.its_tool_body)
     if not isinstance(body, MillingToolBody) or body.dimension is None:
         raise program.error("the tool body has no dimension", tool.its_tool_body, "dimension")
     dimension = program.get(body.dimension)
     diameter = dimension.diameter
     if diameter is None or not LEAST_DIAMETER <= diameter <= MAX_DIAMETER:
-        given = "no diameter is given" if diameter is None else f"diameter {diameter} mm"
+        written = "no diameter is given" if diameter is None else f"diameter {diameter} mm"
         bounds = f"{LEAST_DIAMETER:g} mm to {MAX_DIAMETER:g} mm"
-        message = f"{given}: it must be positive, {bounds}"
+        message = f"{written}: it must be positive, {bounds}"
         raise program.error(message, body.dimension, "diameter")
     teeth = body.number_of_teeth
+    if teeth is None and given is not None:
+        teeth = given.teeth
     if teeth is not None and not 1 <= teeth <= MAX_TEETH:
         message = f"{teeth} teeth: a cutter must have 1 to {MAX_TEETH}"
         if tool.its_id:
             message += f'; --teeth "{tool.its_id}=N" gives another number'
         raise program.error(message, tool.its_tool_body, "number_of_teeth")
+    length = dimension.cutting_edge_length
+    if length is not None and not 0.0 <= length <= MAX_EDGE_LENGTH:
+        message = f"cutting edge length {length:g} mm must be 0 to {MAX_EDGE_LENGTH:g} mm"
+        raise program.error(message, body.dimension, "cutting_edge_length")
     radius = 0.5 * diameter if isinstance(body, BallEndmill) else dimension.edge_radius
     return Tool(
         id=tool.its_id or body.keyword.lower().replace("_", " "),
@@ -136,8 +178,27 @@ def _rotating(program: Program, ref: Ref[Entity], tool: MillingCuttingTool) -> T
         has_teeth=teeth is not None,
         corner_radius=radius or None,
         cutting_edge_length=dimension.cutting_edge_length or None,
+        overhang=None if given is None else given.overhang,
         point_angle=_point_angle(dimension.tool_top_angle),
         centre_cutting=CENTRE_CUTTING.get(body.keyword),
+    )
+
+
+def _given(given: GivenTool, id: str) -> Tool:
+    """Tool that the file only names."""
+    return Tool(
+        id=id,
+        keyword=given.body,
+        edge_material=(given.edge_material, id),
+        diameter=given.diameter,
+        teeth=given.teeth,
+        corner_radius=given.corner_radius or None,
+        cutting_edge_length=given.edge_length,
+        cutting_edge_angle=given.insert.cutting_edge_angle if given.insert else RIGHT_ANGLE,
+        width=given.insert.width if given.insert else None,
+        overhang=given.overhang,
+        point_angle=given.point_angle,
+        centre_cutting=CENTRE_CUTTING.get(given.body),
     )
 
 

@@ -24,6 +24,10 @@ MM_PER_INCH = 25.4
 UM_PER_MM = 1000.0
 NEWTONS_PER_KILONEWTON = 1000.0
 NMM_PER_NM = 1000.0
+NMM_S_PER_WATT = 1000.0
+MM_PER_FOOT = 304.8
+US_PER_SECOND = 1_000_000
+SECONDS_PER_DAY = 86_400.0
 
 
 def seconds_from_hours(value: float) -> float:
@@ -54,6 +58,11 @@ def rev_s_from_rad_s(value: float) -> float:
 def rad_s_from_rev_s(value: float) -> float:
     """Speed in rad/s from rev/s."""
     return value * (2.0 * pi)
+
+
+def kj_from_joules(energy: float) -> float:
+    """Energy in kJ from J."""
+    return energy / WATTS_PER_KILOWATT
 
 
 def kwh_from_joules(energy: float) -> float:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from math import isclose
 from typing import Any
 
-from stepnc_model.ap238.converted import Converted
+from stepnc_model.ap238.table import Converted
 from stepnc_model.ap238.view import AimView
 from stepnc_model.ap238.writing import spliced_into
 from stepnc_model.draft import Draft
@@ -70,7 +70,7 @@ def _of_copies(program: Program, whole: Completed) -> Iterator[SetAttribute]:
 
 
 def _is_alike(program: Program, ref: Ref[Any], before: Program, old: Ref[Any]) -> bool:
-    """Whether an instance of a changed program is the one that it was before."""
+    """True if an instance of a changed program is the one that it was before."""
     now, then = origin_in(program, ref), origin_in(before, old)
     if now is None or then is None:
         return ref == old
@@ -86,7 +86,7 @@ def _together(given: Sequence[SetAttribute], one: SetAttribute) -> Iterator[SetA
 
 
 def _is_kept(program: Program, given: SetAttribute) -> bool:
-    """Whether an attribute still has the value that was given."""
+    """True if an attribute still has the value that was given."""
     place = program.model.position(given.ref, given.attribute)
     return program.file.parameters(int(given.ref))[place] == given.value
 
@@ -116,14 +116,14 @@ class _AimWithdrawal:
             self._draft.remove(tuple(_below(view, value)))
 
     def _is_kept(self, value: Value, given: SetAttribute) -> bool:
-        """Whether a value is the one that was given."""
+        """True if a value is the one that was given."""
         if not isinstance(value, Ref) or not isinstance(given.value, Ref):
             return _is_same(value, given.value)
         origin = given.value_origin
         return origin is None or self._view.number_of(origin) == int(value)
 
     def _before(self, given: SetAttribute) -> Value:
-        """What stood there before, under the number that it has now."""
+        """Previous value, under the number that it has now."""
         origin = given.before_origin
         if origin is None:
             return given.before
@@ -142,7 +142,7 @@ class _AimWithdrawal:
 
 
 def _is_same(one: Value, other: Value) -> bool:
-    """Whether two values are the same, but for the digits that a change of unit costs."""
+    """True if two values are the same, but for the digits that a change of unit costs."""
     if isinstance(one, int | float) and isinstance(other, int | float):
         return isclose(one, other, rel_tol=1e-12)
     return one == other

@@ -7,7 +7,7 @@
     places where no interpreter looks. A system that saves the file again may drop them.
 
 An AP238 file takes profile ``standard`` only: the parameters become representation items of
-action properties of the workplan (:mod:`stepnc_model.ap238.loose`).
+action properties of the workplan (:mod:`stepnc_model.ap238.writing`).
 
 In both profiles the operation's own technology holds the feed. A technology shared by several
 operations is copied before it is edited. Existing records are removed first, so that writing
@@ -21,8 +21,8 @@ from dataclasses import dataclass, replace
 
 from stepnc_model.ap238.view import AimView
 from stepnc_model.ap238.writing import spliced_into
+from stepnc_model.cut_settings import edit_depth, edit_number, edit_speed
 from stepnc_model.draft import Draft
-from stepnc_model.edit_conditions import edit_depth, edit_number
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, ResolvedWorkingstep
@@ -194,7 +194,7 @@ def _edit_conditions(draft: Draft, change: WorkingstepUpdate) -> None:
     step = change.workingstep
     edit_number(draft, step, change.programmed.feed, change.feed)
     if change.speed is not None:
-        edit_number(draft, step, change.programmed.speed, change.speed)
+        edit_speed(draft, step, change.programmed.speed, change.speed)
     if change.depth is not None:
         edit_depth(draft, step, change.depth)
 

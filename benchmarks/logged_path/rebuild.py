@@ -120,7 +120,7 @@ def _middle(line: AxisLine) -> Floats:
 
 
 def _is_flat(before: AxisLine, after: AxisLine) -> bool:
-    """Whether two lines lie in one plane of X and Y and meet at right angles."""
+    """True if two lines lie in one plane of X and Y and meet at right angles."""
     return before.axis + after.axis == 1
 
 
@@ -151,7 +151,7 @@ def _path(lines: list[AxisLine], samples: PathSamples) -> tuple[Floats, Floats]:
 def _meeting(
     lines: list[AxisLine], fixed: list[Floats], row: int, samples: PathSamples
 ) -> list[Floats]:
-    """Where a line and the next one meet; both ends of what joins them if they do not."""
+    """Intersection of a line with the next one; else both ends of the line that joins them."""
     before, after = lines[row], lines[row + 1]
     if before.axis != after.axis:
         point = fixed[row].copy()

@@ -89,7 +89,7 @@ def _stretches(samples: PathSamples, axis: int) -> list[AxisLine]:
 
 
 def _is_same(before: AxisLine, after: AxisLine, half_step: Floats) -> bool:
-    """Whether two stretches are one line, cut where its rounded coordinate flips."""
+    """True if two stretches are one line, cut where its rounded coordinate flips."""
     step = 2.0 * half_step[after.rows[0]] + NEVER
     step[after.axis] = np.inf
     return before.axis == after.axis and bool((np.abs(after.first - before.last) <= step).all())

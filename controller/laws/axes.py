@@ -16,10 +16,11 @@ References
    back-calculation and tracking of an actuator that is measured or modelled.
 """
 
-from dataclasses import dataclass
 from math import exp, expm1, log
+from typing import NamedTuple
 
 from controller.law import Plant, Situation
+from stepnc_model.tuples import quick_replace
 
 FARTHEST = log(20.0)
 """Greatest deviation of the force from its set point that is accepted, either way, in ln."""
@@ -32,8 +33,8 @@ LEAST = 1e-3
 """Least override used in place of zero."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Axes:
+@quick_replace
+class Axes(NamedTuple):
     """Overrides that axes of the nominal lag would run, above 0."""
 
     last: float

@@ -164,7 +164,7 @@ class Previewed(Generic[S]):
     def _slowed(self, state: PreviewedState[S], at: Situation, forward: float) -> float:
         """Feed-forward with lead where it slows the axes; slowing too much is harmless."""
         late = max(1.0, ran(at) / (state.axes.mean * state.forward.mean))
-        axes = replace(state.forward, last=state.forward.last * late)
+        axes = state.forward._replace(last=state.forward.last * late)
         if axes.last <= forward:
             return forward
         lead = quickening(self.plant, self.closing)

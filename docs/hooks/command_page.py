@@ -4,18 +4,18 @@ import argparse
 from collections.abc import Iterator
 
 from docs.hooks.markdown import block, code, page, table
-from service.cli import options
+from service import exit_codes
 from service.cli.commands import parser
 from service.cli.interrupts import INTERRUPTED
-from service.cli.kbe import USAGE
 
 EXIT_CODES = {
-    options.OK: "done",
-    USAGE: "the words of the command line make no command: unknown option, word missing",
-    options.BAD_INPUT: "a file, a name or a number cannot be used; nothing was written",
-    options.INFEASIBLE: "no feed keeps all limits, or the solver found none",
-    options.LIMIT_EXCEEDED: "a run passed a bound of power or force, or was stopped",
-    options.NOTHING_ADVISED: "`optimise` found nothing to advise, and wrote no program",
+    exit_codes.OK: "done",
+    exit_codes.USAGE: "the words of the command line make no command: unknown option, "
+    "word missing",
+    exit_codes.BAD_INPUT: "a file, a name or a number cannot be used; nothing was written",
+    exit_codes.INFEASIBLE: "no feed keeps all limits, or the solver found none",
+    exit_codes.LIMIT_EXCEEDED: "a run passed a bound of power or force, or was stopped",
+    exit_codes.NOTHING_ADVISED: "`optimise` found nothing to advise, and wrote no program",
     INTERRUPTED: "interrupted by Ctrl-C or SIGTERM",
 }
 

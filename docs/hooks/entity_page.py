@@ -139,6 +139,6 @@ def _documented(path: Path) -> dict[str, dict[str, str]]:
 
 
 def _meaning(summary: str) -> str:
-    """What a summary says after the name of the entity, as a sentence."""
+    """Summary without the name of the entity, as a sentence."""
     _, _, meaning = summary.partition(": ")
     return meaning[:1].upper() + meaning[1:]

@@ -247,6 +247,8 @@ def _sent(document: JsonObject, operation: JsonObject) -> Iterator[str]:
 def _parameter_value(document: JsonObject, parameter: JsonObject) -> str:
     given = _given(parameter)
     value = example_of(document, parameter.get("schema", {})) if given is None else given
+    if isinstance(value, list):
+        value = next(iter(value), None)
     return parameter["name"].upper() if value in {"string", None} else str(value)
 
 
@@ -262,7 +264,7 @@ def _given(holder: JsonObject) -> Any:
 
 
 def _resolved(document: JsonObject, each: JsonObject) -> JsonObject:
-    """What a ``$ref`` refers to; a description beside it stays."""
+    """Target of a ``$ref``; a description beside it stays."""
     while "$ref" in each:
         found: Any = document
         for word in each["$ref"].removeprefix("#/").split("/"):

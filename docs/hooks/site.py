@@ -1,4 +1,4 @@
-"""What mkdocs asks when it builds the site: pages that are made, navigation that is found.
+"""Hooks of mkdocs: generated pages and navigation.
 
 Pages are made in memory; none is under version control. A page of ``mkdocs.yml`` that does not
 exist is left out of the navigation if it is named in ``WHEN_THERE``, and an error otherwise.
@@ -19,6 +19,7 @@ from docs.hooks.command_page import command_page
 from docs.hooks.decision_pages import INDEX, decision_files, decision_page
 from docs.hooks.entity_page import entity_page
 from docs.hooks.error_page import error_page
+from docs.hooks.file_page import file_page, schemas
 
 ROOT = Path(__file__).parents[2]
 REST = "reference/rest.md"
@@ -42,9 +43,11 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Add the pages that are made."""
-    for name, make in makers(Path(config.docs_dir)).items():
-        files.append(File.generated(config, name, content=make()))
+    """Add the pages that are made, and the schemas that one of them links."""
+    made = {name: make() for name, make in makers(Path(config.docs_dir)).items()}
+    made |= {f"reference/{name}": text for name, text in schemas().items()}
+    for name, content in made.items():
+        files.append(File.generated(config, name, content=content))
     return files
 
 
@@ -67,6 +70,7 @@ def makers(docs: Path) -> dict[str, Callable[[], str]]:
         "reference/commands.md": command_page,
         "reference/entities.md": partial(entity_page, ROOT),
         "reference/errors.md": partial(error_page, ROOT),
+        "reference/files.md": file_page,
         "changelog.md": partial((ROOT / "CHANGELOG.md").read_text, encoding="utf-8"),
         INDEX: partial(decision_page, docs),
     }

@@ -1,7 +1,7 @@
 """Alembic environment that migrates a store over a given connection.
 
-The transaction belongs to the caller (:mod:`kbe.migrate`) for both databases: SQLite, too, can
-roll back DDL.
+The transaction belongs to the caller (:mod:`kbe.connection`) for both databases: SQLite, too,
+can roll back DDL.
 """
 
 from alembic import context

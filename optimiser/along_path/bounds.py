@@ -2,8 +2,7 @@
 
 from optimiser.advice import Advice
 from optimiser.along_path.caps import CapName, CutBounds
-from optimiser.depth_limits import depth_at_shoulder
-from optimiser.limits import STRAIGHT_DOWN
+from optimiser.limits import STRAIGHT_DOWN, depth_at_shoulder
 from optimiser.plunge_feed import permitted_plunge
 from optimiser.problem import BoundSide, LimitName
 

@@ -26,10 +26,9 @@ from simulator.physics.drilling import chisel_factors, constant_thrust
 from simulator.physics.engagement import conventional
 from simulator.physics.spindle import curve_segments
 from simulator.physics.strength import end_mill
-from simulator.removal.stations import StationKind, Stations, single_arcs
+from simulator.removal.stations import StationKind, Stations
 from simulator.spec import DrillPoint, FeedWindow
-
-NMM_S_PER_WATT = 1000.0
+from stepnc_model.units import NMM_S_PER_WATT
 
 RAMP = 0.01
 """Sine of the descent above which a path with chips counts as a ramp."""
@@ -61,6 +60,8 @@ class CapName(StrEnum):
     STRAIGHT = "straight_plunge"
     NO_STOCK = "no_stock_met"
     SHOULDER = "depth_at_a_shoulder"
+    GUESSED = "guessed_values"
+    AS_PROGRAMMED = "as_programmed"
 
     @property
     def words(self) -> str:
@@ -124,6 +125,17 @@ class CutBounds:
     """Depth of a turning tool beyond which the programmed feed stays, mm; None: any depth."""
     keeps_programmed: bool = False
     """Whether no feed in the material may rise, because no source says how far."""
+    plausible: "tuple[CutBounds, ...]" = ()
+    """Bounds for other values of what is guessed about the tool: a feed rises only as far as
+    all permit, and falls only where none permits the programmed one."""
+    is_stock_guessed: bool = False
+    """Whether the stock is guessed: no feed falls for it, and none rises where nothing is
+    met."""
+
+    @property
+    def is_guessed(self) -> bool:
+        """True if anything about the cut is guessed."""
+        return self.is_stock_guessed or bool(self.plausible)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -134,6 +146,19 @@ class StationCaps:
     """All process limits, (M,); infinite in air."""
     chip: Floats
     """Feed at the greatest permitted chip alone, (M,), mm/s; infinite where not limited."""
+
+    most: Floats
+    """Greatest of the caps for all values of what is guessed, (M,), mm/s."""
+    floor: Floats | None = None
+    """Feed below which no cap goes, as it rests on a guess, (M,), mm/s; None: any."""
+
+    def least(self, other: "StationCaps") -> "StationCaps":
+        """Lesser caps of each station, for two values of what is guessed."""
+        return StationCaps(
+            caps=self.caps.least(other.caps),
+            chip=np.minimum(self.chip, other.chip),
+            most=np.maximum(self.most, other.most),
+        )
 
 
 def station_caps(
@@ -164,16 +189,21 @@ def station_caps(
         found = found.least(capped(speed, name))
         if name in {CapName.CHIP_THICKNESS, CapName.FEED_PER_TOOTH}:
             chip = np.minimum(chip, speed)
-    return StationCaps(caps=_not_below(found, bounds.least), chip=chip)
+    caps = _not_below(found, bounds.least)
+    return StationCaps(caps=caps, chip=chip, most=caps.feed)
+
+
+def raised_to(caps: Caps, feed: Floats, name: CapName) -> Caps:
+    """Caps of which none is below a feed, (M,), mm/s; those that were have another name."""
+    is_low = caps.feed < feed
+    return Caps(
+        feed=np.where(is_low, feed, caps.feed), name=np.where(is_low, NUMBER[name], caps.name)
+    )
 
 
 def _not_below(caps: Caps, least: float) -> Caps:
     """Caps of which none is below a feed, mm/s."""
-    is_low = caps.feed < least
-    return Caps(
-        feed=np.where(is_low, least, caps.feed),
-        name=np.where(is_low, NUMBER[CapName.LEAST], caps.name),
-    )
+    return raised_to(caps, np.full(len(caps.feed), least), CapName.LEAST)
 
 
 def _feeds_per_tooth(
@@ -210,7 +240,7 @@ def _chip_bounds(stations: Stations, bounds: CutBounds) -> Iterator[tuple[CapNam
         yield CapName.FEED_PER_TOOTH, np.full(len(stations), base)
         return
     factor = np.ones(len(stations))
-    arcs = single_arcs(stations)
+    arcs = stations.arcs
     at_arc = np.flatnonzero(
         (stations.kind == StationKind.MILLING) & (arcs.exit_angle > arcs.entry_angle)
     )
@@ -281,7 +311,7 @@ def _force_bounds(
 
 
 def _is_solid(stations: Stations, point: DrillPoint) -> Bools:
-    """Whether the chisel edge of a drill meets material: any existing hole is narrower."""
+    """True if the chisel edge of a drill meets material: any existing hole is narrower."""
     inside = stations.diameter - stations.axial_depth
     solid: Bools = inside <= point.chisel_ratio * (stations.diameter + stations.axial_depth)
     return solid & (point.chisel_ratio > 0.0)
@@ -312,6 +342,7 @@ def _bending_bounds(stations: Stations, bounds: CutBounds) -> Iterator[tuple[Cap
         cut.tool.diameter,
         cutting_edge_length=cut.tool.cutting_edge_length,
         youngs_modulus=grade.youngs_modulus,
+        overhang=cut.tool.overhang,
     )
     scale = force_factor(at) * at.safety_factor * kienzle.k_c11
     for name, load, bound in (

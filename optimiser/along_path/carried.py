@@ -1,4 +1,4 @@
-"""What a control's filter carries into a cut: the feeds of a given path, judged by place.
+"""Feeds that a control's filter carries over into a cut, judged by place on the path.
 
 A feed that is too fast for its own place is found at once. Behind a filter the tool also meets
 a place at the feeds that are commanded around it, half a window before and behind
@@ -15,7 +15,8 @@ from functools import cache
 
 import numpy as np
 
-from optimiser.along_path.caps import NAMES, NUMBER, CapName, Caps
+from optimiser.advice import LimitLoad
+from optimiser.along_path.caps import NAMES, NUMBER, CapName, Caps, raised_to
 from optimiser.along_path.envelope import lower_envelope
 from optimiser.along_path.pieces import SLACK, FeedPieces, PieceRules, pieces_of
 from optimiser.along_path.runs import Commands, MachineFeeds
@@ -38,7 +39,8 @@ def permitted_commands(stretch: PathStretch, machine: MachineFeeds) -> Commands:
     """
     segments, met = stretch.segments, stretch.met
     offsets = np.concatenate(([0.0], np.cumsum(segments.length)))
-    caps = met_caps(stretch)
+    limits = met_caps(stretch)
+    caps = limits.caps
     starts = np.flatnonzero(np.diff(segments.is_rapid, prepend=~segments.is_rapid[:1]))
     beyond = np.append(starts[1:], len(segments))
     run = np.searchsorted(starts, np.arange(len(segments)), side="right") - 1
@@ -69,6 +71,11 @@ def permitted_commands(stretch: PathStretch, machine: MachineFeeds) -> Commands:
         feed=np.append(limit, np.inf)[which] * unit[segment],
         name=np.append(caps.name[at], NUMBER[CapName.AIR])[which],
     )
+    if limits.floor is not None:
+        # What rests on a guess lowers no feed, also not over the border of a place.
+        stations = offsets[met.segment] + met.station
+        row = np.minimum(np.searchsorted(stations, _middles(ends)), len(stations) - 1)
+        least = raised_to(least, limits.floor[row], CapName.GUESSED)
     return _commands(ends, segment, least, run)
 
 
@@ -128,6 +135,13 @@ class BrokenBound:
     ratio: float
     """Feed over the permitted one."""
     name: CapName
+    load: LimitLoad | None = None
+    """Load of the limit there; None where only the feeds are compared."""
+
+    @property
+    def words(self) -> str:
+        """Excess of the feed over the limit, in words."""
+        return f"its feed is {self.ratio:.3g} times what {self.name.words} permits"
 
 
 def most_broken(stretch: PathStretch, machine: MachineFeeds) -> BrokenBound | None:

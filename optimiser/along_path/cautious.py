@@ -39,12 +39,12 @@ def risen(stretch: PathStretch, base: Floats, rise: float) -> Floats:
 
 
 def is_straight_down(stretch: PathStretch) -> Bools:
-    """Whether segments at a feed go straight down along Z, (N,)."""
+    """True if segments at a feed go straight down along Z, (N,)."""
     return _descent(stretch) >= STRAIGHT
 
 
 def is_straight_up(stretch: PathStretch) -> Bools:
-    """Whether segments at a feed go straight up along Z, (N,)."""
+    """True if segments at a feed go straight up along Z, (N,)."""
     return _descent(stretch) <= -STRAIGHT
 
 

@@ -11,10 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from optimiser.along_path.caps import NAMES
 from optimiser.along_path.runs import Commands
 from optimiser.along_path.stretch import PathStretch
 from simulator.kernels.kernel import entry
 from simulator.motion.segments import Bools, Floats, Ints
+from stepnc_model.post.block_feeds import BlockPart
 
 SLACK = 2e-3
 """Relative excess over its cap up to which a programmed feed may be kept: engagements of a path
@@ -23,7 +25,7 @@ that is cut finer differ by less."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PieceRules:
-    """How finely blocks may be split, and which programmed feeds are kept."""
+    """Rules for splitting blocks and for keeping programmed feeds."""
 
     least_length: float = 0.5
     """Least length of a part of a split block, mm."""
@@ -64,6 +66,35 @@ class FeedPieces:
 
     def __len__(self) -> int:
         return len(self.block)
+
+
+class Executions:
+    """Executions of blocks, one after another, and the parts of each at given feeds."""
+
+    def __init__(self, pieces: FeedPieces, rates: Floats) -> None:
+        self._pieces, self._rates = pieces, rates
+        self.starts = np.flatnonzero(np.diff(pieces.block, prepend=-1))
+        """First piece of each execution."""
+        self._beyond = np.append(self.starts[1:], len(pieces))
+        # Worked out for all blocks at once, as most have a single piece.
+        self._is_last = np.append(np.diff(rates) != 0.0, True)
+        self._is_last[self._beyond - 1] = True
+        self._ends = pieces.begin + pieces.length
+
+    def parts(self, row: int) -> tuple[BlockPart, ...]:
+        """Parts of an execution; neighbours of equal feed are one."""
+        pieces, first = self._pieces, int(self.starts[row])
+        last = int(self._beyond[row]) - 1
+        ends = first + np.flatnonzero(self._is_last[first : last + 1])
+        return tuple(
+            BlockPart(
+                end=1.0 if end == last else float(self._ends[end] / self._ends[last]),
+                rate=float(self._rates[end]),
+                is_per_revolution=bool(pieces.is_per_revolution[first]),
+                reason=NAMES[pieces.name[end]].words,
+            )
+            for end in ends.tolist()
+        )
 
 
 def pieces_of(stretch: PathStretch, commands: Commands, rules: PieceRules) -> FeedPieces:

@@ -11,26 +11,29 @@ Units: mm, mm/s, s.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Set
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from optimiser.along_path.caps import NAMES, NUMBER, CapName
 from optimiser.along_path.carried import BrokenBound, excess, most_broken
+from optimiser.along_path.deep_places import DeepPlaces, with_deep_places
 from optimiser.along_path.free import FASTEST_ALONE, FreeProfile, FreeTask, free_profile
 from optimiser.along_path.pieces import (
+    Executions,
     FeedPieces,
     PieceRules,
     pieces_of,
     without_small_changes,
 )
+from optimiser.along_path.place_loads import broken_bounds, lost_times, worst_bounds
 from optimiser.along_path.runs import MachineFeeds, commands_of, own_caps, written_caps
 from optimiser.along_path.stretch import PathStretch, PlaceCaps, place_caps
 from optimiser.levels import best_levels
 from simulator.motion.segments import Bools, Floats, Ints
 from simulator.motion.smoothing import smoothing_of
 from stepnc_model.post.block_feeds import BlockPart
+from stepnc_model.units import speed_from_mm_min
 
 BlockFeeds = Mapping[int, tuple[BlockPart, ...]]
 """Parts of the blocks that change, by the number of the block."""
@@ -38,7 +41,7 @@ BlockFeeds = Mapping[int, tuple[BlockPart, ...]]
 PERMITTED = 1.01
 """Programmed feed over the permitted one up to which a part may stay as it is."""
 
-PER_MINUTE_STEP = 1.0 / 60.0
+PER_MINUTE_STEP = speed_from_mm_min(1.0)
 """Step of a written feed per time, mm/s: 1 mm/min."""
 
 PER_REVOLUTION_STEP = 0.001
@@ -50,7 +53,7 @@ COARSEST = 0.01
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FeedTask:
-    """How the feeds of a program are to be planned."""
+    """Settings for planning the feeds of a program."""
 
     machine: MachineFeeds
     rules: PieceRules
@@ -85,6 +88,10 @@ class PartPlan:
     """Length in mm and time in s at each active limit."""
     rise_cost: float = 0.0
     """Time that the greatest rise over the programmed feeds costs, s."""
+    lost: Mapping[CapName, float] = field(default_factory=dict)
+    """Time that each bound of the process costs where the program breaks it, s."""
+    broken: Mapping[CapName, BrokenBound] = field(default_factory=dict)
+    """Bounds that the programmed feeds break, each where it is broken most."""
 
     @property
     def levels_gap(self) -> float:
@@ -122,6 +129,10 @@ class FeedPlanner:
         """Greatest feed of each run that may not be chosen, mm/s."""
         self._rise_cost: dict[str, float] = {}
         self._broken: dict[str, BrokenBound] = {}
+        self._by_name: dict[str, dict[CapName, BrokenBound]] = {}
+        """Bounds that each part breaks, each where it is broken most."""
+        self.deep: Mapping[str, DeepPlaces] = {}
+        """Places where mills cut deeper than their tools allow, by part of the program."""
         self._kept: set[int] = set()
         """Blocks that keep their feeds."""
 
@@ -155,12 +166,18 @@ class FeedPlanner:
         free = free_profile(stretch, places, machine, self.task.free)
         self._free[name] = self._free.get(name, FreeProfile()).plus(free)
         most = float(excess(stretch, machine).max(initial=0.0))
+        if machine.greatest is not None:
+            # A run shows no such excess: the machine goes no faster.
+            most = max(most, float(pieces.programmed.max(initial=0.0)) / machine.greatest)
         self._excess[name] = max(most, self._excess.get(name, 0.0))
         given = self._given_windows.get(name, 0.0)
         self._given_windows[name] = given + commands.given_window
         worst, known = most_broken(stretch, machine), self._broken.get(name)
         if worst is not None and (known is None or worst.ratio > known.ratio):
             self._broken[name] = worst
+        broken = broken_bounds(stretch, pieces)
+        self._by_name[name] = worst_bounds(self._by_name.get(name, {}), broken)
+        self.deep = with_deep_places(self.deep, stretch)
         cost = self._cost_of_rise(stretch, places, pieces)
         self._rise_cost[name] = self._rise_cost.get(name, 0.0) + cost
         if stretch.is_kept is not None:
@@ -216,7 +233,7 @@ class FeedPlanner:
         return FeedPlan(pieces=joined(chosen.values()), part=numbers, parts=parts)
 
     def _is_as_good(self, name: str, pieces: FeedPieces) -> bool:
-        """Whether a part is permitted as programmed and takes hardly more time.
+        """True if a part is permitted as programmed and takes hardly more time.
 
         The engagement is known for stretches that depend on how the path is cut into blocks. A
         plan that changes little would change it again when its result is planned.
@@ -262,6 +279,8 @@ class FeedPlanner:
             feeds=len(np.unique(chosen.rate)),
             shares=shares,
             rise_cost=self._rise_cost[name],
+            lost=lost_times(chosen),
+            broken=self._by_name[name],
         )
 
 
@@ -283,8 +302,8 @@ def joined(parts: Iterable[FeedPieces]) -> FeedPieces:
             last_run=none,
         )
     return FeedPieces(**{
-        field: np.concatenate([getattr(part, field) for part in found])
-        for field in FeedPieces.__slots__
+        name: np.concatenate([getattr(part, name) for part in found])
+        for name in FeedPieces.__slots__
     })
 
 
@@ -348,17 +367,15 @@ class SlowerPart:
 
 def slower_parts(pieces: FeedPieces) -> Iterator[tuple[int, SlowerPart]]:
     """Yield slower feeds by block number, once for each execution of a block."""
-    starts = np.flatnonzero(np.diff(pieces.block, prepend=-1))
+    if not len(pieces):
+        return
     rates = rounded_down(pieces.rate, pieces.programmed, pieces.is_per_revolution)
-    for first, last in pairwise([*starts.tolist(), len(pieces)]):
-        rows = slice(first, last)
-        yield (
-            int(pieces.block[first]),
-            SlowerPart(
-                parts=_parts_of(pieces, rows, rates[rows]),
-                excess=float((pieces.programmed[rows] / pieces.rate[rows]).max()),
-            ),
-        )
+    runs = Executions(pieces, rates)
+    excess = np.maximum.reduceat(pieces.programmed / pieces.rate, runs.starts)
+    for row, (block, most) in enumerate(
+        zip(pieces.block[runs.starts].tolist(), excess.tolist(), strict=True)
+    ):
+        yield block, SlowerPart(parts=runs.parts(row), excess=most)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -456,27 +473,11 @@ def _joined(parts: Iterable[BlockPart]) -> tuple[BlockPart, ...]:
 def block_feeds(plan: FeedPlan) -> Iterator[tuple[int, tuple[BlockPart, ...]]]:
     """Yield the feeds of each block that changes; parts of equal feed are one."""
     pieces = plan.pieces
-    starts = np.flatnonzero(np.diff(pieces.block, prepend=-1))
-    starts = starts[np.unique(pieces.block[starts], return_index=True)[1]]
-    is_new = np.append(np.diff(pieces.block) != 0, True)
-    for first in starts:
-        last = first + int(is_new[first:].argmax()) + 1
-        rates = pieces.rate[first:last]
-        if (rates == pieces.programmed[first:last]).all():
-            continue
-        yield int(pieces.block[first]), _parts_of(pieces, slice(first, last), rates)
-
-
-def _parts_of(pieces: FeedPieces, rows: slice, rates: Floats) -> tuple[BlockPart, ...]:
-    """Parts of one block at given feeds."""
-    ends = pieces.begin[rows] + pieces.length[rows]
-    kept = np.append(np.flatnonzero(np.diff(rates)), len(rates) - 1)
-    return tuple(
-        BlockPart(
-            end=1.0 if row == len(rates) - 1 else float(ends[row] / ends[-1]),
-            rate=float(rates[row]),
-            is_per_revolution=bool(pieces.is_per_revolution[rows.start]),
-            reason=NAMES[pieces.name[rows.start + row]].words,
-        )
-        for row in kept.tolist()
-    )
+    if not len(pieces):
+        return
+    runs = Executions(pieces, pieces.rate)
+    is_changed = np.logical_or.reduceat(pieces.rate != pieces.programmed, runs.starts)
+    # A block that is executed again has the feeds of the first time.
+    firsts = np.unique(pieces.block[runs.starts], return_index=True)[1]
+    for row in firsts[is_changed[firsts]].tolist():
+        yield int(pieces.block[runs.starts[row]]), runs.parts(row)

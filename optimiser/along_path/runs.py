@@ -13,12 +13,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from optimiser.along_path.caps import NUMBER, CapName, Caps, capped, unbounded
+from optimiser.along_path.caps import NUMBER, CapName, Caps, capped, raised_to, unbounded
 from optimiser.along_path.envelope import lower_envelope
 from optimiser.along_path.stretch import (
     PathStretch,
     PlaceCaps,
-    curvatures,
     segment_caps,
 )
 from simulator.motion.path_limits import corners
@@ -29,6 +28,9 @@ TRIALS, ROUNDS = 16, 2
 """Number of intervals between the greatest feeds that are tried for each run, and how often
 they are tried, the second time more finely around the best."""
 
+CERTAIN = 1.0 - 1e-9
+"""Share of a bound on a time that no rounding of sums exceeds."""
+
 SLOWEST = 1e-3
 """Least of the greatest feeds that are tried, over the greatest."""
 
@@ -38,7 +40,7 @@ LEAST_TURN = 1e-3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MachineFeeds:
-    """What machine and control allow along a path."""
+    """Feeds that machine and control allow along a path."""
 
     control: ControlModel
     limits: AxisLimits
@@ -89,7 +91,11 @@ def written_caps(stretch: PathStretch) -> Caps:
     corner to a faster move passes them, as it does at the programmed feeds.
     """
     found = unbounded(len(stretch.segments))
-    for feed, name in ((stretch.rise, CapName.RISE), (stretch.plunge, CapName.STRAIGHT)):
+    for feed, name in (
+        (stretch.unraised, CapName.AS_PROGRAMMED),
+        (stretch.rise, CapName.RISE),
+        (stretch.plunge, CapName.STRAIGHT),
+    ):
         if feed is not None:
             found = found.least(capped(np.where(stretch.is_free, feed, np.inf), name))
     if stretch.is_kept is None:
@@ -128,6 +134,7 @@ def commands_of(stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds) 
         run = _FeedRun(
             stretch, slice(first, last), offsets[first : last + 1],
             ends=places.ends[rows], caps=within, machine=machine,
+            floor=None if places.floor is None else places.floor[rows],
         )  # fmt: skip
         found.append(run.fastest())
         runs.append(np.full(len(found[-1].ends), len(locked)))
@@ -158,7 +165,10 @@ OWN = [
 ]  # fmt: skip
 """Numbers of the limits of machine and control, whose places are exact."""
 
-WRITTEN = [NUMBER[name] for name in (CapName.RISE, CapName.STRAIGHT, CapName.NO_STOCK)]
+WRITTEN = [
+    NUMBER[name]
+    for name in (CapName.AS_PROGRAMMED, CapName.RISE, CapName.STRAIGHT, CapName.NO_STOCK)
+]
 """Numbers of the limits on what may be written."""
 
 
@@ -194,7 +204,7 @@ class _Smoothed:
 class _FeedRun:
     """Feed moves between two rapids, with what bounds their feeds."""
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 (a stretch with its places)
         self,
         stretch: PathStretch,
         rows: slice,
@@ -203,8 +213,10 @@ class _FeedRun:
         ends: Floats,
         caps: Caps,
         machine: MachineFeeds,
+        floor: Floats | None = None,
     ) -> None:
         segments = stretch.segments[rows]
+        self.floor = floor
         self.clearance = clearance_of(stretch)
         self.least = 0.0 if stretch.bounds is None else stretch.bounds.least
         self.written = written_caps(stretch).at(rows)
@@ -224,7 +236,7 @@ class _FeedRun:
         bent = np.flatnonzero(sine > LEAST_TURN)
         self.corner_places = (offsets[1:][segments.length > 0.0])[:-1][bent]
         self.corner_sines = sine[bent]
-        self.bends = curvatures(segments)
+        self.bends = segments.bend
         # A plan rounds no corner more than the program does, or than the tolerance.
         self.given = smoothing_of(machine.control, machine.limits, float(segments.speed.max()))
         slower = np.minimum(moving.speed[1:], moving.speed[:-1])[bent]
@@ -256,10 +268,21 @@ class _FeedRun:
         """Greatest feed of least time among trials in a range, and its commands."""
         chosen = top
         for greatest in np.geomspace(top, low, TRIALS + 1).tolist():
+            if CERTAIN * self._least_time(greatest) > best.time:
+                continue
             tried = self._smoothed(greatest)
             if tried.time <= best.time:
                 chosen, best = greatest, tried
         return chosen, best
+
+    def _least_time(self, greatest: float) -> float:
+        """Time that commands up to a greatest feed take at least, s: no cap reaches over."""
+        feed = self.within.feed
+        if self.floor is not None:
+            feed = np.maximum(feed, self.floor)
+        lengths = self.ends - self.begins
+        window = smoothing_of(self.machine.control, self.machine.limits, greatest).window
+        return float((lengths / np.minimum(feed, greatest)).sum()) + window
 
     @property
     def greatest_locked(self) -> float:
@@ -302,7 +325,17 @@ class _FeedRun:
         # A cap may reach over several segments; each place lies on one of them.
         ends = np.union1d(found.ends, self.offsets[1:][self.segments.length > 0.0])
         which = found.which[np.searchsorted(found.ends, ends)]
-        return self._timed(ends, Caps(feed=feed[which], name=name[which]), smoothing)
+        found_caps = self._not_below(Caps(feed=feed[which], name=name[which]), ends)
+        return self._timed(ends, found_caps, smoothing)
+
+    def _not_below(self, caps: Caps, ends: Floats) -> Caps:
+        """Caps without those that reach over from other places and rest on a guess."""
+        if self.floor is None:
+            return caps
+        middles = ends - 0.5 * np.diff(ends, prepend=self.offsets[0])
+        at = np.minimum(np.searchsorted(self.ends, middles), len(self.ends) - 1)
+        is_process = ~np.isin(caps.name, [*OWN, *WRITTEN])
+        return raised_to(caps, np.where(is_process, self.floor[at], 0.0), CapName.GUESSED)
 
     def _timed(self, ends: Floats, caps: Caps, smoothing: Smoothing) -> _Smoothed:
         lengths = np.diff(ends, prepend=self.offsets[0])

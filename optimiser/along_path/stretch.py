@@ -7,6 +7,7 @@ the larger stock would give. The first part of each way into the material has a 
 Units: mm, mm/s, rev/s, rad.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,12 +18,18 @@ from optimiser.along_path.caps import (
     CutBounds,
     StationCaps,
     capped,
+    raised_to,
     station_caps,
     unbounded,
 )
 from optimiser.cut import CutKind
-from optimiser.depth_limits import DEEPER
-from simulator.motion.path_limits import CENTRIPETAL_SHARE, block_lengths, least
+from optimiser.limits import DEEPER
+from simulator.motion.path_limits import (
+    CENTRIPETAL_SHARE,
+    block_lengths,
+    least,
+    slower_in_plane,
+)
 from simulator.motion.segments import AxisLimits, Bools, Floats, Ints, Segments
 from simulator.removal.stations import StationKind, Stations
 
@@ -61,8 +68,13 @@ class PathStretch:
     """Greatest feed by the permitted rise over the programmed one, (N,), mm/s; None: any."""
     plunge: Floats | None = None
     """Greatest feed of straight plunges, (N,), mm/s, infinite elsewhere; None: not bounded."""
+    unraised: Floats | None = None
+    """Programmed feed of a tool whose feeds may only fall, (N,), mm/s; None: they may rise."""
     is_kept: Bools | None = None
     """Whether a block keeps its feed in all its executions, (N,); None: none does."""
+    programmed: Floats | None = None
+    """Feed as programmed, before any plan, (N,), mm/s, infinite on rapids; None: that of the
+    segments."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -77,6 +89,8 @@ class PlaceCaps:
     """Greatest feed, (K,); infinite in air."""
     is_cut: Bools
     """Whether the tool removes material, (K,)."""
+    floor: Floats | None = None
+    """Feed below which no process limit goes, as it rests on a guess, (K,), mm/s; None: any."""
 
 
 def segment_caps(segments: Segments, limits: AxisLimits, *, greatest: float | None) -> Caps:
@@ -89,38 +103,17 @@ def segment_caps(segments: Segments, limits: AxisLimits, *, greatest: float | No
     greatest : float or None, mm/s
         Greatest feed of the machine.
     """
-    share = _greatest_shares(segments)
+    share = segments.greatest_shares
     found = capped(least(limits.feed, share), CapName.AXIS_SPEED)
     if greatest is not None:
         found = found.least(capped(np.full(len(segments), greatest), CapName.FEED_MECHANISM))
     if limits.block_time > 0.0:
         longest = block_lengths(segments) / limits.block_time
         found = found.least(capped(longest, CapName.BLOCK_TIME))
-    bend = curvatures(segments)
-    is_normal = np.arange(3) == segments.normal[:, None]
-    grip = np.where(is_normal, np.inf, limits.acceleration).min(axis=1)
-    is_bent = bend > 0.0
-    squares = np.full(len(segments), np.inf)
-    np.divide(CENTRIPETAL_SHARE * grip, bend, out=squares, where=is_bent)
+    bend, squares = segments.bend, np.full(len(segments), np.inf)
+    grip = slower_in_plane(segments, limits.acceleration)
+    np.divide(CENTRIPETAL_SHARE * grip, bend, out=squares, where=bend > 0.0)
     return found.least(capped(np.sqrt(squares), CapName.CURVATURE))
-
-
-def curvatures(segments: Segments) -> Floats:
-    """Curvature of each segment, (N,), 1/mm; 0 for lines."""
-    length = np.where(segments.length > 0.0, segments.length, 1.0)
-    curvature: Floats = segments.radius * (segments.turn / length) ** 2
-    return curvature
-
-
-def _greatest_shares(segments: Segments) -> Floats:
-    """Greatest movement of each axis per length of path, (N, 3)."""
-    length = np.where(segments.length > 0.0, segments.length, 1.0)[:, None]
-    share = np.abs(segments.end - segments.start) / length
-    in_plane = segments.radius * np.abs(segments.turn) / length[:, 0]
-    is_in_plane = np.arange(3) != segments.normal[:, None]
-    is_arc = segments.turn[:, None] != 0.0
-    shares: Floats = np.where(is_arc & is_in_plane, in_plane[:, None], share)
-    return shares
 
 
 def place_caps(stretch: PathStretch) -> PlaceCaps:
@@ -159,7 +152,42 @@ def place_caps(stretch: PathStretch) -> PlaceCaps:
     is_entry = is_cut & (since < way_in) & ~is_drilled
     entry = np.where(is_entry, np.maximum(ENTRY_SHARE * chip, bounds.least), np.inf)
     caps = caps.least(capped(entry, CapName.ENTRY))
-    return PlaceCaps(ends=ends, segment=_segments(ends, offsets), caps=caps, is_cut=is_cut)
+    segment = _segments(ends, offsets)
+    if found.floor is None:
+        return PlaceCaps(ends=ends, segment=segment, caps=caps, is_cut=is_cut)
+    programmed, floor = _programmed(stretch)[segment], found.floor[row]
+    if bounds.is_stock_guessed:
+        blocks = stretch.segments.block[segment]
+        kept = np.where(
+            is_cut, np.inf, _without_stock(caps, blocks, is_cut, programmed, bounds)
+        )
+        caps = caps.least(capped(kept, CapName.GUESSED))
+    caps = raised_to(caps, floor, CapName.GUESSED)
+    return PlaceCaps(ends=ends, segment=segment, caps=caps, is_cut=is_cut, floor=floor)
+
+
+def _without_stock(
+    caps: Caps, blocks: Ints, is_cut: Bools, programmed: Floats, bounds: CutBounds
+) -> Floats:
+    """Greatest feed of places where a guessed stock leaves no material, (K,), mm/s.
+
+    It is the programmed one. A drill meets the same load wherever the material begins: its
+    block has the feed that holds where it meets some.
+    """
+    if bounds.cut.kind is not CutKind.DRILLING:
+        return programmed
+    known, of = np.unique(blocks, return_inverse=True)
+    least = np.full(len(known), np.inf)
+    np.minimum.at(least, of[is_cut], caps.feed[is_cut])
+    met: Floats = least[of]
+    return np.where(np.isfinite(met), met, programmed)
+
+
+def _programmed(stretch: PathStretch) -> Floats:
+    """Feed of each segment as programmed, (N,), mm/s; infinite on rapids."""
+    if stretch.programmed is not None:
+        return stretch.programmed
+    return np.where(stretch.segments.is_rapid, np.inf, stretch.segments.speed)
 
 
 class _Along:
@@ -177,7 +205,7 @@ class _Along:
         return np.minimum(rows, len(self.ends) - 1)
 
     def is_cut(self, ends: Floats) -> Bools:
-        """Whether material is removed at the places with given ends."""
+        """True if material is removed at the places with given ends."""
         cuts: Bools = self._cuts[self.rows(ends)]
         return cuts
 
@@ -199,7 +227,7 @@ def _entries(ends: Floats, is_cut: Bools) -> Floats:
     return np.concatenate(([0.0], ends[:-1]))[begins]
 
 
-def met_caps(stretch: PathStretch) -> Caps:
+def met_caps(stretch: PathStretch) -> StationCaps:
     """Process limits at the stations of a stretch, without a reduced chip on the way in, (M,).
 
     Raises
@@ -208,8 +236,9 @@ def met_caps(stretch: PathStretch) -> Caps:
         When an engagement is not a number; with its place.
     """
     if stretch.bounds is None:
-        return unbounded(len(stretch.met))
-    return _caps_of(stretch, stretch.met, stretch.bounds).caps
+        free = unbounded(len(stretch.met))
+        return StationCaps(caps=free, chip=free.feed, most=free.feed)
+    return _caps_of(stretch, stretch.met, stretch.bounds)
 
 
 def _caps_of(stretch: PathStretch, stations: Stations, bounds: CutBounds) -> StationCaps:
@@ -221,9 +250,14 @@ def _caps_of(stretch: PathStretch, stations: Stations, bounds: CutBounds) -> Sta
         raise ValueError(f"block {block}: the engagement at station {row} is not a number")
     segment = stations.segment
     direction = stretch.segments.direction(segment, stations.station)
-    found = station_caps(
-        stations, bounds, spindle=stretch.spindle[segment], descent=-direction[:, 2]
-    )
+    spindle, descent = stretch.spindle[segment], -direction[:, 2]
+    found = station_caps(stations, bounds, spindle=spindle, descent=descent)
+    if bounds.is_guessed:
+        others = [
+            station_caps(stations, each, spindle=spindle, descent=descent)
+            for each in bounds.plausible
+        ]
+        found = _plausible(found, others)
     caps, given = found.caps, stretch.segments.speed[segment]
     if bounds.deepest is not None:
         is_deep = stations.axial_depth > DEEPER * bounds.deepest
@@ -231,4 +265,20 @@ def _caps_of(stretch: PathStretch, stations: Stations, bounds: CutBounds) -> Sta
     if bounds.keeps_programmed:
         kept = np.where(stations.peak_section > 0.0, given, np.inf)
         caps = caps.least(capped(kept, CapName.LOCKED))
-    return replace(found, caps=caps)
+    if not bounds.is_guessed:
+        return replace(found, caps=caps)
+    # A feed falls to what the most favourable value permits, and not at all for a guessed
+    # stock, which may not be there.
+    floor = _programmed(stretch)[segment]
+    if not bounds.is_stock_guessed:
+        floor = np.minimum(floor, found.most)
+    floor = np.where(np.isfinite(floor), floor, 0.0)
+    return replace(found, caps=raised_to(caps, floor, CapName.GUESSED), floor=floor)
+
+
+def _plausible(own: StationCaps, others: Sequence[StationCaps]) -> StationCaps:
+    """Caps that hold for all values of what is guessed."""
+    found = own
+    for each in others:
+        found = found.least(each)
+    return found

@@ -4,31 +4,31 @@ What a STEP-NC program says of a workingstep is not known: roughness and toleran
 the user says that a tool finishes.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import isinf
 
 from optimiser.along_path.caps import CapName, CutBounds
-from optimiser.bar_grip import BarGrip
 from optimiser.chip_load import catalogue_feed
-from optimiser.conditions import CuttingConditions, PermittedDeflection
+from optimiser.conditions import BarGrip, CuttingConditions, PermittedDeflection
 from optimiser.cut import Cut, CutKind, Texture
-from optimiser.depth_limits import depth_at_shoulder
+from optimiser.errors import Infeasible
+from optimiser.limits import depth_at_shoulder
 from optimiser.optimise import DEFAULT_QUALITY
 from optimiser.plunge_feed import permitted_plunge
-from optimiser.problem import BoundSide, Setting
+from optimiser.problem import BoundSide, LimitName, Setting
 from optimiser.roughness import surface_limits
 from optimiser.safety import safety_factor
+from optimiser.speed_limits import SourcedBound, cutting_speed_window
 from optimiser.tolerance import GREATEST_AT_WALL
-from simulator.removal.cutter import Cutter, Insert
-from simulator.removal.tool_shape import ENDS, THREADS
+from simulator.library import find_window
+from simulator.removal.cutter import ENDS, THREADS, Cutter, Insert
 from simulator.spec import Machine, ToolGrade, ToolKind, WorkMaterial
-from simulator.table_grade import grade_of_table_tool
-from simulator.tool_table import TableTool
-from simulator.tool_windows import why_unsuited
+from simulator.tool_table import TableTool, grade_of_table_tool, why_unsuited
 from simulator.work_holding import Holding
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.tool import Tool
+from stepnc_model.units import um_from_mm
 
 TEXTURES = {
     ToolKind.FACEMILL: (Texture.CORNER_PER_REVOLUTION,),
@@ -41,7 +41,7 @@ TEXTURES = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KnownOfJob:
-    """What is known of a job beyond the tool table."""
+    """Facts about a job beyond the tool table."""
 
     force_factor: float = 1.0
     """Accepted correction of k_c for the tool."""
@@ -117,12 +117,32 @@ def bounds_of_tool(  # noqa: PLR0913 (a tool, its machine and material, and what
     )
 
 
+def bounds_of_all(found: Sequence[CutBounds]) -> CutBounds:
+    """Bounds of a tool of which something is guessed.
+
+    Parameters
+    ----------
+    found : sequence of CutBounds
+        Bounds of each tool that it may be, the one with the fewest teeth first: its feed of
+        plunges is the least.
+    """
+    return replace(
+        found[0],
+        plausible=tuple(found[1:]),
+        plunge=min((each.plunge for each in found if each.plunge is not None), default=None),
+        keeps_programmed=any(each.keeps_programmed for each in found),
+    )
+
+
 def is_unsourced(cut: Cut, at: CuttingConditions) -> bool:
-    """Whether no source gives a greatest feed, or the tool cannot cut the material at all."""
-    if at.machine.only_stated_limits:
-        return False
-    is_unsuited = why_unsuited(at.cutting_material, at.material) != ""
-    return is_unsuited or catalogue_feed(cut, at) is None
+    """True if no source gives a greatest feed."""
+    return not at.machine.only_stated_limits and catalogue_feed(cut, at) is None
+
+
+def is_unable(tool: TableTool, machine: Machine, material: WorkMaterial) -> bool:
+    """True if a tool cannot cut a material at all: no limit says how fast it should."""
+    is_stated = machine.only_stated_limits
+    return not is_stated and why_unsuited(tool.cutting_material, material) != ""
 
 
 def window_findings(
@@ -141,17 +161,44 @@ def window_findings(
         if tool.kind in THREADS or machine.only_stated_limits:
             continue
         grade = grade_of_table_tool(tool, material)
-        unsuited = why_unsuited(tool.cutting_material, material)
+        is_never = is_unable(tool, machine, material)
         text = f"tool '{tool.id}' "
-        if unsuited:
-            text += f"keeps its feeds: {unsuited}"
+        if is_never:
+            text += f"keeps its feeds: {why_unsuited(tool.cutting_material, material)}"
         elif grade is None or not (grade.has_feeds or material.max_feed_per_tooth):
             text += "raises no feed: no source says how far; give max_feed_mm in its table"
         elif grade.borrowed:
             text += f"has {grade.borrowed}"
         else:
             continue
-        yield Finding(severity=Severity.ERROR if unsuited else Severity.WARNING, message=text)
+        yield Finding(severity=Severity.ERROR if is_never else Severity.WARNING, message=text)
+
+
+def cutting_speed_bound(
+    tool: TableTool, machine: Machine, material: WorkMaterial
+) -> SourcedBound:
+    """Greatest cutting speed of a tool in a material, mm/s, and where it comes from."""
+    if machine.only_stated_limits:
+        return SourcedBound()
+    if tool.max_cutting_speed is not None:
+        return SourcedBound(bound=tool.max_cutting_speed, origin="its row of the tool table")
+    grade = grade_of_table_tool(tool, material)
+    at = CuttingConditions(
+        machine=machine,
+        material=material,
+        cutting_material=tool.cutting_material,
+        grade=grade,
+        roughness=None,
+    )
+    bound = cutting_speed_window(at)[1]
+    if grade is None or bound is None:
+        return SourcedBound()
+    is_own = bound == grade.max_cutting_speed
+    window = find_window(material, tool.kind, tool.cutting_material)
+    of_material = f"{tool.cutting_material} in {material.title}"
+    if window is not None and not is_own:
+        return SourcedBound(bound=bound, origin=of_material)
+    return SourcedBound(bound=bound, origin=grade.borrowed or grade.source)
 
 
 def _without_feeds(material: WorkMaterial) -> WorkMaterial:
@@ -161,13 +208,13 @@ def _without_feeds(material: WorkMaterial) -> WorkMaterial:
 
 def _cut(tool: TableTool, grade: ToolGrade | None, *, is_finishing: bool) -> Cut:
     """Cut of a tool of the table; its setting has no meaning."""
-    shape = tool.shape
+    shape, known = tool.shape, _tool(tool, tool.shape)
     helix = tool.helix_angle
     if helix is None:
         helix = 0.0 if grade is None else grade.helix_angle
     return Cut(
         kind=_kind(tool),
-        tool=_tool(tool, shape),
+        tool=known,
         tool_kind=tool.kind,
         diameter=shape.diameter if isinstance(shape, Cutter) else 0.0,
         # Feeds of a block raise no window that is borrowed from another group.
@@ -177,6 +224,7 @@ def _cut(tool: TableTool, grade: ToolGrade | None, *, is_finishing: bool) -> Cut
         is_depth_free=False,
         helix_angle=helix,
         corner_radius=_corner(shape),
+        depth_bound=known.cutting_edge_length,
         parallel_land=grade.parallel_land if grade and tool.kind is ToolKind.FACEMILL else 0.0,
         is_finishing=is_finishing,
     )
@@ -210,6 +258,7 @@ def _tool(tool: TableTool, shape: Cutter | Insert) -> Tool:
         teeth=tool.teeth,
         corner_radius=shape.corner_radius,
         cutting_edge_length=None if isinf(shape.edge_length) else shape.edge_length,
+        overhang=shape.overhang,
         cutting_edge_angle=shape.cutting_edge_angle,
         point_angle=shape.point_angle,
         centre_cutting=tool.centre_cutting,
@@ -224,4 +273,11 @@ def _surface_feed(cut: Cut, at: CuttingConditions) -> float | None:
         for limit in surface_limits(replace(cut, texture=texture), at)
         if limit.sense is BoundSide.AT_MOST
     ]
-    return min(feeds, default=None)
+    least = min(feeds, default=None)
+    if least is not None and least <= 0.0:
+        wanted = at.roughness or 0.0
+        raise Infeasible(
+            f"tool '{cut.tool.id}': no feed leaves a roughness of Ra {um_from_mm(wanted):g} µm",
+            limits=(LimitName.ROUGHNESS,),
+        )
+    return least

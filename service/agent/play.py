@@ -1,4 +1,7 @@
-"""Hands the observations of a run to an agent when they are due."""
+"""Runs that an agent plays: it is handed observations when they are due.
+
+Apart from what reads recorded runs, which needs the packages of an extra.
+"""
 
 import asyncio
 import time
@@ -9,11 +12,10 @@ from simulator.agent.agent import Agent
 from simulator.agent.buffer import Value
 from simulator.agent.machine_feed import RunFeed
 from simulator.agent.model import DeviceModel
+from stepnc_model.units import US_PER_SECOND
 
 STEP = 0.02
 """Wall-clock time between looks at what is due, in s."""
-
-MICRO = 1_000_000
 
 PART_COUNT = "PART_COUNT"
 
@@ -85,11 +87,11 @@ async def _play_part(
     agent: Agent, feed: RunFeed, *, begin: int, anchor: int, speed: float
 ) -> None:
     at, total = 0, len(feed.values)
-    stamps = anchor + (feed.times * MICRO).astype(int)
+    stamps = anchor + (feed.times * US_PER_SECOND).astype(int)
     while at < total:
         end = total
         if speed > 0.0:
-            due = speed * (now() - begin) / MICRO
+            due = speed * (now() - begin) / US_PER_SECOND
             end = int(feed.times.searchsorted(due, side="right"))
         agent.add(feed.items[at:end], stamps[at:end], feed.values[at:end])
         at = end
@@ -98,7 +100,7 @@ async def _play_part(
 
 def _anchor(run: PlayableRun, speed: float) -> int:
     """Stamp of the beginning of a run that is played from now on, in µs since 1970."""
-    duration = int(run.duration * MICRO)
+    duration = int(run.duration * US_PER_SECOND)
     if speed == 0.0:
         return now() - duration
     return now() - (duration - int(duration / speed) if speed > 1.0 else 0)

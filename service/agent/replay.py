@@ -12,9 +12,8 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
-from service.agent.play import MICRO
 from service.files import require_regular
-from service.reading import Tell
+from service.progress import Tell
 from service.recording.table import TABLES, batches, headings
 from simulator.agent.agent import Agent
 from simulator.agent.buffer import Value
@@ -26,6 +25,7 @@ from simulator.client.columns import TIME, column_name
 from simulator.client.connection import items_of
 from simulator.motion.segments import Floats, Ints
 from stepnc_model.errors import StepNcError
+from stepnc_model.units import US_PER_SECOND
 
 DOCUMENTS = frozenset({".xml"})
 LINES = frozenset({".shdr", ".log"})
@@ -230,7 +230,7 @@ def _document(path: Path, model: DeviceModel, tell: Tell) -> RecordedRun:
     streams = read_streams(path, model)
     _require_some(path, streams.values, list(streams.unknown))
     _tell_left_out(tell, path, list(streams.unknown))
-    seconds = (streams.times - streams.times[0]) / MICRO
+    seconds = (streams.times - streams.times[0]) / US_PER_SECOND
     feed = RunFeed(items=streams.items, times=seconds, values=streams.values)
     return RecordedRun(devices=model, duration=feed.duration, read=lambda: iter((feed,)))
 
@@ -252,9 +252,9 @@ def _lines(path: Path, model: DeviceModel, tell: Tell) -> RecordedRun:
 
     def read() -> Iterator[RunFeed]:
         for items, times, values in _line_pieces(path, model):
-            yield RunFeed(items=items, times=(times - begin) / MICRO, values=values)
+            yield RunFeed(items=items, times=(times - begin) / US_PER_SECOND, values=values)
 
-    return RecordedRun(devices=model, duration=(end - begin) / MICRO, read=read)
+    return RecordedRun(devices=model, duration=(end - begin) / US_PER_SECOND, read=read)
 
 
 def _line_pieces(path: Path, model: DeviceModel) -> Iterator[tuple[Ints, Ints, list[Value]]]:

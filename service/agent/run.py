@@ -11,35 +11,40 @@ from typing import Any
 
 import uvicorn
 
-from service.agent.play import MICRO, PlayableRun, begun, now, play
+from service.agent.play import PlayableRun, begun, now, play
 from service.agent.run_routes import Application, with_runs
 from service.extras import missing_extras_named
-from service.file_names import LOGS, plain_name
-from service.files import require_place, write_atomically
+from service.files import LOGS, plain_name, require_place, write_atomically
 from service.http_protocol import BoundedHttpProtocol
 from service.known_hosts import for_known_hosts, known_hosts
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.requests.agent import AgentRequest
 from service.requests.fields import require_bounds
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, Simulation, simulate
 from service.web_server import WebServer
 from simulator.agent.adapters import AdapterAddress, AdapterIntake, ShdrServer, listen_to
-from simulator.agent.agent import Agent
+from simulator.agent.agent import Agent, StreamQuery
 from simulator.agent.buffer import Value
 from simulator.agent.http import application
 from simulator.agent.machine_feed import RunFeed, beginning, run_feed
-from simulator.agent.machine_model import MachineModel, device_uuid, machine_model
+from simulator.agent.machine_model import (
+    MachineModel,
+    NameSet,
+    SchemaVersion,
+    device_uuid,
+    machine_model,
+)
 from simulator.agent.model import DeviceModel, read_model
-from simulator.agent.names import NameSet, SchemaVersion
-from simulator.agent.requests import StreamQuery
 from simulator.agent.schemas import SchemaFiles, read_schemas
 from simulator.agent.tool_assets import tool_asset
 from simulator.library import load_machine
 from simulator.machine.samples import Samples, joined
 from simulator.machine.virtual import LoadedTool
 from simulator.spec import Machine
+from stepnc_model.counted import counted
 from stepnc_model.errors import StepNcError
+from stepnc_model.units import US_PER_SECOND
 
 FAREWELL = 10
 """s that answers may still take at the end; streams end at once"""
@@ -356,7 +361,7 @@ def simulated_with_document(
     run = shown_run(simulation, collector, version=shown.version, names=shown.names)
     run = replace(run, part=shown.part, batch=shown.batch)
     write_atomically(output, streams_document(run))
-    tell(f"MTConnect document: {output} ({len(run.feed.values)} observations)")
+    tell(f"MTConnect document: {output} ({counted(len(run.feed.values), 'observation')})")
     return simulation
 
 
@@ -366,7 +371,7 @@ def streams_document(run: PublishedRun) -> bytes:
     agent = begun(run, speed=0.0, size=max(LEAST_BUFFER, count))
     begin = agent.buffer.last_time
     agent.tell(run.first(0), time=begin)
-    stamps = begin + (run.feed.times * MICRO).astype(int)
+    stamps = begin + (run.feed.times * US_PER_SECOND).astype(int)
     agent.add(run.feed.items, stamps, run.feed.values)
     return agent.sample(StreamQuery(chosen=None, count=agent.buffer.size))[0]
 

@@ -22,8 +22,8 @@ import numpy as np
 import pyarrow as pa
 from pyarrow import parquet
 
-from service.file_names import plain_name
-from service.reading import Tell, silent
+from service.files import plain_name
+from service.progress import Tell, silent
 from simulator.agent.agent import Agent
 from simulator.agent.buffer import (
     AssetReference,
@@ -71,7 +71,7 @@ class KeptWorkingstep:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KeptRun:
-    """What a run of the repository can be found by."""
+    """Properties by which a run of the repository is found."""
 
     id: str
     machine: str

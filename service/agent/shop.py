@@ -14,7 +14,7 @@ import structlog
 
 from service.agent.play import now
 from service.extras import has_package
-from service.live.folder import LiveFolder
+from service.live.journal import LiveFolder
 from service.live.series import open_series
 from service.storage import jobs, library
 from service.storage.folder import DataFolder

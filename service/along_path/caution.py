@@ -3,12 +3,14 @@
 A tool that is fed at cutting feed and meets nothing says that there is material where the given
 stock has none. Such a move keeps its feed, unless it goes through what the program itself has
 removed, or lies outside the stock with clearance. The latter holds for no drill: nobody feeds a
-drill through air on purpose, however far from the stock.
+drill through air on purpose, however far from the stock. A mill must go through what was
+removed with its whole width: a pass beside the stock that overlaps the one before does not.
 """
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Set
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -22,9 +24,10 @@ from optimiser.along_path.cautious import (
 )
 from optimiser.along_path.stretch import PathStretch
 from optimiser.greatest_rise import USUAL_RISE
-from service.simulation.code_paths import BRIDGE
+from service.along_path.misuse import MisuseWatch
+from service.simulation.detour import BRIDGE
 from service.simulation.line_spans import spans
-from simulator.machine.virtual import Shape, VirtualMachine
+from simulator.machine.virtual import Shape, StockMap, VirtualMachine
 from simulator.motion.segments import Bools, Floats, Ints, Segments
 from simulator.removal.cutter import Cutter
 from simulator.removal.stations import Stations
@@ -35,6 +38,9 @@ from stepnc_model.nc.written_lines import WrittenLines
 CLEARANCE = 5.0
 """Distance from the stock from which a move that meets nothing is no doubt, mm; that of the
 stock margin if it is more."""
+
+MOST_WAITING = 50_000
+"""Number of segments that wait for the larger stock to be cut, to bound memory."""
 
 MARK = re.compile(rb"AT MOST ([0-9.]+) TIMES THE PROGRAMMED FEED", re.I)
 """Comment in code that was advised before: its feeds have risen already."""
@@ -80,6 +86,9 @@ class Caution:
     allows_plunge: bool = False
     """Whether straight plunges may be faster than programmed."""
     clearance: float = CLEARANCE
+    unraised: Set[int] = frozenset()
+    """Numbers of the tools whose feeds may only fall."""
+    misuse: MisuseWatch | None = None
     base: Mapping[int, float] | None = None
     """Programmed feeds by block in the unit of the block; None: those of the program itself."""
     seen: dict[int, float] = field(default_factory=dict)
@@ -87,26 +96,69 @@ class Caution:
     doubts: dict[str, Doubts] = field(default_factory=dict)
     """Doubts by part of the program."""
     _stocks: dict[float, TrialStock] = field(default_factory=dict)
+    _larger: "LargerStock | None" = None
 
     def of_written(self, lines: WrittenLines) -> "Caution":
         """Caution with code that was written from this program: its feeds are the base."""
-        return replace(self, base=_Origins(self.seen, lines), seen={}, doubts={})
+        return replace(
+            self,
+            base=_Origins(self.seen, lines),
+            misuse=None if self.misuse is None else self.misuse.of_written(),
+            seen={},
+            doubts={},
+        )
+
+    def end_run(self) -> None:
+        """Forget the stock as a run left it, at its end."""
+        self._larger = None
 
     def bounded(self, stretch: PathStretch, machine: VirtualMachine) -> PathStretch:
         """Return a stretch with bounds on how its programmed feeds may change."""
-        if stretch.bounds is None or machine.tool is None or machine.tool.shape is None:
+        if machine.tool is None or machine.tool.shape is None:
+            if self.misuse is not None:
+                self.misuse.watched_tap(stretch, machine.state.tool, self._meeting)
             return stretch
+        move = LargerMove(
+            segments=stretch.segments,
+            shape=machine.tool.shape,
+            is_clockwise=machine.state.spindle_programmed >= 0.0,
+        )
+        if self._larger is None:
+            # Not a lambda: it would keep this object, and its stocks, alive in a circle.
+            self._larger = LargerStock(partial(self.fresh, self.clearance))
+        self._larger.add(move)
+        watched = stretch
+        if self.misuse is not None:
+            watched = self.misuse.watched(stretch, machine.state.tool)
+        if stretch.bounds is None:
+            return watched
         shape, base = machine.tool.shape, self._base(stretch)
         is_mill = isinstance(shape, Cutter) and not shape.is_drill
         is_mill &= machine.machine.kind is MachineKind.MILL
-        is_kept = self._doubted(stretch, shape, is_mill=is_mill)
+        is_kept = self._doubted(watched, shape, is_mill=is_mill)
+        if watched.is_kept is not None:
+            is_kept |= watched.is_kept
+        programmed = risen(stretch, base, 1.0)
         plunge = plunge_feeds(stretch, base, is_allowed=self.allows_plunge) if is_mill else None
         return replace(
-            stretch,
+            watched,
             is_kept=is_kept,
             rise=risen(stretch, base, self.rise),
             plunge=plunge,
+            programmed=programmed,
+            unraised=programmed if machine.state.tool in self.unraised else None,
         )
+
+    def as_programmed(self, stretch: PathStretch, lines: Ints) -> PathStretch:
+        """Return a stretch of a plan with the programmed feeds of its source lines, (N,)."""
+        known = self.seen if self.base is None else self.base
+        rates = programmed_rates(stretch)
+        base = np.array([
+            known.get(line, rate)
+            for line, rate in zip(lines.tolist(), rates.tolist(), strict=True)
+        ])
+        judged = replace(stretch, programmed=risen(stretch, base, 1.0))
+        return judged if self.misuse is None else self.misuse.as_kept(judged, lines)
 
     def _base(self, stretch: PathStretch) -> Floats:
         """Programmed feeds of the segments, (N,); noted by block."""
@@ -122,10 +174,9 @@ class Caution:
         ])
 
     def _doubted(self, stretch: PathStretch, shape: Shape, *, is_mill: bool) -> Bools:
-        """Whether blocks meet nothing where there might be material, (N,)."""
+        """True if blocks meet nothing where there might be material, (N,)."""
         segments = stretch.segments
-        met = np.zeros(len(segments))
-        np.maximum.at(met, stretch.met.segment, stretch.met.peak_section)
+        met = _greatest(stretch.met, len(segments))
         is_drill = isinstance(shape, Cutter) and not is_mill
         is_asked = stretch.is_free & (segments.length > 0.0)
         is_asked &= ~np.isin(segments.block, segments.block[met > 0.0])
@@ -140,6 +191,9 @@ class Caution:
         if not len(rows):
             return np.zeros(len(segments), dtype=np.bool_)
         removed = self._meeting(segments, rows, shape, 0.0)
+        if is_mill and self._larger is not None and len(removed):
+            through = rows[np.isin(segments.block[rows], removed)]
+            removed = np.setdiff1d(removed, segments.block[self._larger.met(through)])
         blocks = np.setdiff1d(segments.block[rows], removed)
         self._note(stretch.workingstep, blocks, is_drill=is_drill)
         doubted: Bools = np.isin(segments.block, blocks) & ~segments.is_rapid
@@ -172,7 +226,9 @@ class Caution:
         )
 
     def findings(self) -> Iterator[Finding]:
-        """Doubts by part of the program."""
+        """Moves that the tools are not made for, and doubts by part of the program."""
+        if self.misuse is not None:
+            yield from self.misuse.findings()
         for part, doubt in self.doubts.items():
             for lines, what, where in (
                 (doubt.moves, "move", f" within {self.clearance:g} mm of it"),
@@ -180,6 +236,63 @@ class Caution:
             ):
                 if lines:
                     yield _finding(part, sorted(lines), what, where)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LargerMove:
+    """Moves of one tool that are still to be cut into the larger stock."""
+
+    segments: Segments
+    shape: Shape
+    is_clockwise: bool
+
+
+class LargerStock:
+    """Stock larger by the clearance, as the program leaves it. Running state.
+
+    It is cut when it is first asked for, since many programs never ask.
+
+    Parameters
+    ----------
+    fresh : callable
+        Function that gives the uncut larger stock.
+    """
+
+    def __init__(self, fresh: Callable[[], StockMap]) -> None:
+        self._fresh = fresh
+        self._stock: StockMap | None = None
+        self._waiting: list[LargerMove] = []
+        self._count = 0
+        """Number of segments that wait."""
+        self._last: Floats | None = None
+        """Sections that the last moves met; None: they are still to be cut."""
+
+    def add(self, move: LargerMove) -> None:
+        """Take the next moves of the program."""
+        if self._count > MOST_WAITING:
+            self._cut()
+        self._waiting.append(move)
+        self._count += len(move.segments)
+        self._last = None
+
+    def met(self, rows: Ints) -> Ints:
+        """Rows of the last moves that meet the larger stock."""
+        if self._last is None:
+            self._cut()
+        found: Ints = rows[:0] if self._last is None else rows[self._last[rows] > 0.0]
+        return found
+
+    def _cut(self) -> None:
+        """Cut all moves that wait."""
+        if self._stock is None:
+            self._stock = self._fresh()
+        for each in self._waiting:
+            stations = self._stock.cut(
+                each.segments, each.shape, is_clockwise=each.is_clockwise
+            )
+            self._last = _greatest(stations, len(each.segments))
+        self._waiting.clear()
+        self._count = 0
 
 
 def _finding(part: str, lines: list[int], what: str, where: str) -> Finding:
@@ -195,7 +308,12 @@ def _finding(part: str, lines: list[int], what: str, where: str) -> Finding:
 def _sections(stock: TrialStock, segments: Segments, shape: Shape) -> Floats:
     """Greatest section that each segment would cut, (N,), mm²."""
     stations, _ = stock.tried(segments, shape)
-    found = np.zeros(len(segments))
+    return _greatest(stations, len(segments))
+
+
+def _greatest(stations: Stations, count: int) -> Floats:
+    """Greatest section at the stations of each segment, (N,), mm²."""
+    found = np.zeros(count)
     np.maximum.at(found, stations.segment, stations.peak_section)
     return found
 

@@ -1,4 +1,4 @@
-"""What is known of an NC program's job: accepted corrections of k_c, and its work-holding."""
+"""Job of an NC program: accepted corrections of k_c, and work-holding."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from optimiser.along_path.tool_bounds import KnownOfJob
-from optimiser.bar_grip import grip_of_bar
+from optimiser.conditions import grip_of_bar
 from service.knowledge.corrected import factors_for_tools, finding_of
 from service.raw_stock import raw_stock_of
 from service.requests.advice import AdviceRequest
@@ -34,7 +34,7 @@ class CodeJob:
     faults: tuple[Finding, ...] = ()
 
     def of_tool(self, id: str) -> KnownOfJob:
-        """What is known for a tool."""
+        """Facts that hold for a tool."""
         return self.corrections.get(id, self.others)
 
 

@@ -13,8 +13,9 @@ from service.simulation.setup import PreparedRun
 from simulator.machine.acts import MoveStretch, ProgramAct
 from simulator.machine.interpreter import Numbered, interpret
 from simulator.machine.samples import Episode
-from simulator.machine.virtual import MachineSetup, VirtualMachine
-from simulator.motion.segments import Bools, ControlModel, Floats, Ints
+from simulator.machine.virtual import MachineSetup, StockMap, VirtualMachine
+from simulator.motion.segments import Bools, ControlModel, Floats, Ints, Segments
+from simulator.removal.stations import Stations
 from stepnc_model.errors import Finding
 from stepnc_model.nc.written_lines import WrittenLines
 from stepnc_model.post.blocks import Circular, DrillingCycle, Linear
@@ -37,11 +38,11 @@ class NumberedBlocks(Protocol):
         ...
 
     def can_change(self, numbers: Ints) -> Bools:
-        """Whether blocks that were yielded may have another feed."""
+        """True if blocks that were yielded may have another feed."""
         ...
 
     def can_split(self, numbers: Ints) -> Bools:
-        """Whether blocks that were yielded may be split."""
+        """True if blocks that were yielded may be split."""
         ...
 
     def line(self, number: int) -> int:
@@ -71,11 +72,11 @@ class BlockLog:
             yield len(self._lines) - 1, block
 
     def can_change(self, numbers: Ints) -> Bools:
-        """Whether blocks are moves or cycles."""
+        """True if blocks are moves or cycles."""
         return np.array(self._can_change)[numbers]
 
     def can_split(self, numbers: Ints) -> Bools:
-        """Whether blocks are moves."""
+        """True if blocks are moves."""
         return np.array(self._can_split)[numbers]
 
     def line(self, number: int) -> int:
@@ -87,10 +88,18 @@ Choose = Callable[[Part], CutBounds | None]
 
 
 class Cautious(Protocol):
-    """What bounds a program beyond the limits of its cuts."""
+    """Bounds of a program beyond the limits of its cuts."""
 
     def bounded(self, stretch: PathStretch, machine: VirtualMachine) -> PathStretch:
         """Return a stretch with bounds on how its programmed feeds may change."""
+        ...
+
+    def end_run(self) -> None:
+        """Forget what only a run in progress needs."""
+        ...
+
+    def as_programmed(self, stretch: PathStretch, lines: Ints) -> PathStretch:
+        """Return a stretch of a plan with the programmed feeds of the lines it comes from."""
         ...
 
     def findings(self) -> Iterable[Finding]:
@@ -132,7 +141,8 @@ def stretches_of(  # noqa: PLR0913 (a run, its larger stock, and who watches it)
     ----------
     prepared : PreparedRun
     larger : PreparedRun or None
-        The same program in a larger stock; None: what is air is known exactly.
+        The same program in a larger stock, of which only the stock is used; None: what is air
+        is known exactly.
     control : ControlModel
     bounds : callable
         Bounds of a part of the program; None if its feed may not be chosen.
@@ -149,16 +159,13 @@ def stretches_of(  # noqa: PLR0913 (a run, its larger stock, and who watches it)
         When the machine cannot run the program.
     """
     run = _CourseRun(prepared, control, log, watch)
-    others = None
-    if larger is not None:
-        others = _CourseRun(larger, control, BlockLog(larger.blocks), _ignore).stretches()
+    beside = None if larger is None else _LargerStock(larger)
     for episode, stretch in run.stretches():
-        near = None if others is None else next(others)[0]
         course = episode.course
         if course is None:
             continue
         machine, state = run.machine, episode.state
-        name = machine.workingsteps[state.workingstep - 1] if state.workingstep else ""
+        name = _workingstep(episode, machine)
         part = Part(name=name, tool=state.tool)
         chosen = bounds(part) if _meets_stock(prepared, part) else None
         blocks, spindle = course.segments.block, _spindle(episode)
@@ -170,22 +177,40 @@ def stretches_of(  # noqa: PLR0913 (a run, its larger stock, and who watches it)
             is_free=can_change & ~course.segments.is_rapid,
             can_split=log.can_split(blocks),
             met=course.stations,
-            near=None if near is None or near.course is None else near.course.stations,
+            near=None if beside is None else beside.met(course.segments, name, machine),
             bounds=chosen,
             workingstep=name,
         )
         yield found if caution is None else caution.bounded(found, machine)
+    if caution is not None:
+        caution.end_run()
 
 
 def _meets_stock(prepared: PreparedRun, part: Part) -> bool:
-    """Whether tool and stock are known, so that a path without contact is in air."""
+    """True if tool and stock are known, so that a path without contact is in air."""
     tool = (prepared.tools or {}).get(part.tool)
     is_known = tool is not None and tool.shape is not None
     return is_known and prepared.stock(part.name) is not None
 
 
-def _ignore(_episode: Episode, _machine: VirtualMachine) -> None:
-    """Ignore an episode."""
+def _workingstep(episode: Episode, machine: VirtualMachine) -> str:
+    """Name of the workingstep of an episode; empty before the first."""
+    number = episode.state.workingstep
+    return machine.workingsteps[number - 1] if number else ""
+
+
+class _LargerStock:
+    """Stock that is larger by a margin, cut beside a run. Running state."""
+
+    def __init__(self, prepared: PreparedRun) -> None:
+        self._stock_of = prepared.stock
+        self._known: dict[str, StockMap | None] = {}
+
+    def met(self, segments: Segments, workingstep: str, machine: VirtualMachine) -> Stations:
+        """Cut the stock where the machine has just moved; return what its tool would meet."""
+        if workingstep not in self._known:
+            self._known[workingstep] = self._stock_of(workingstep)
+        return machine.cut(self._known[workingstep], segments)
 
 
 class _CourseRun:

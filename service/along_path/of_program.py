@@ -12,7 +12,7 @@ from service.along_path.run import FeedsAlongPath, along_path
 from service.along_path.task import least_feed, task_of
 from service.chosen import require_axes
 from service.paths.toolpaths import paths_of, with_feeds
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.requests.advice import AdviceRequest
 from service.simulation.setup import PreparedRun, prepared_program
 from stepnc_model.post import block_feeds

@@ -6,6 +6,7 @@ from typing import Any
 from service.along_path.run import AlongPathStep, FeedsAlongPath
 from service.rendering.columns import Change, Column
 from service.rendering.view import Item, Table, TextLine
+from stepnc_model.counted import counted
 from stepnc_model.units import kw_from_watts, mm_min_from_speed, um_from_mm
 
 STEP: tuple[Column[AlongPathStep], ...] = (
@@ -72,8 +73,8 @@ def along_path_items(along: FeedsAlongPath) -> Iterator[Item]:
     ratio = along.time_after / along.time_before if along.time_before else 1.0
     to_plan = along.time_after / along.planned_time if along.planned_time else 1.0
     yield TextLine(
-        text=f"time × {ratio:.3f}; {len(along.feeds)} blocks changed, {along.parts} splits; "
-        f"run/plan {to_plan:.4f}"
+        text=f"time × {ratio:.3f}; {counted(len(along.feeds), 'block')} changed, "
+        f"{counted(along.parts, 'split')}; run/plan {to_plan:.4f}"
     )
     yield TextLine(text=free_words(along))
     shares = ", ".join(f"{words} {share:.0%}" for words, share in active_shares(along))

@@ -18,7 +18,7 @@ from optimiser.along_path.stretch import PathStretch
 from service.along_path.course import NumberedBlocks, PathSource, stretches_of
 from service.along_path.trace import PathTrace, PathTraceKeeper
 from service.progress import Ticker, bar
-from service.simulation.code_paths import BRIDGE
+from service.simulation.detour import BRIDGE
 from simulator.machine.samples import Episode
 from simulator.machine.totals import Total, added
 from simulator.machine.virtual import VirtualMachine
@@ -159,6 +159,9 @@ def run_plan(
                 source_number = emitted.origin[number][0]
                 blocks[source_number] = block.plus(blocks.get(source_number))
         judged = replace(stretch, can_split=stretch.can_split & splits)
+        if source.caution is not None:
+            lines = emitted.origins(stretch.segments.block)
+            judged = source.caution.as_programmed(judged, lines)
         pieces = slower_pieces(judged, task.machine, task.rules)
         if pieces is None:
             continue
@@ -221,19 +224,19 @@ class _EmittedBlocks:
             yield len(self.origin) - 1, fed.block
 
     def can_change(self, numbers: Ints) -> Bools:
-        """Whether the blocks that some come from may have another feed."""
-        return self._blocks.can_change(self._origins(numbers))
+        """True if the blocks that some come from may have another feed."""
+        return self._blocks.can_change(self.origins(numbers))
 
     def can_split(self, numbers: Ints) -> Bools:
-        """Whether the blocks that some come from may be split."""
-        return self._blocks.can_split(self._origins(numbers))
+        """True if the blocks that some come from may be split."""
+        return self._blocks.can_split(self.origins(numbers))
 
     def line(self, number: int) -> int:
         """Line of the program; 0 without one."""
         origin = self.origin[number][0]
         return self._blocks.line(origin) if origin else 0
 
-    def _origins(self, numbers: Ints) -> Ints:
+    def origins(self, numbers: Ints) -> Ints:
         """Blocks of the program that some blocks come from."""
         known, row = np.unique(numbers, return_inverse=True)
         return np.array([self.origin[number][0] for number in known.tolist()])[row]

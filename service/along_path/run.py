@@ -5,9 +5,11 @@ one that is larger by a margin. Then the plan runs; where a block that was split
 more than the whole block did, its feed is lowered, and the plan runs once more.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from optimiser.along_path.caps import CapName
+from optimiser.along_path.deep_places import DeepPlaces
 from optimiser.along_path.free import FASTEST_ALONE, FreeProfile, FreeTask
 from optimiser.along_path.pieces import PieceRules
 from optimiser.along_path.plan import (
@@ -21,12 +23,13 @@ from optimiser.along_path.plan import (
     lowered,
 )
 from optimiser.along_path.runs import MachineFeeds
+from optimiser.along_path.slower import slower_part
+from optimiser.reasons import broken_words
 from service.along_path.course import PathSource, stretches_of
 from service.along_path.plan_run import LimitStretch, PartTotals, PlanRun, run_plan
 from service.along_path.trace import PathTrace
 from service.overload_bounds import overload_bounds
-from service.progress import Ticker
-from service.reading import Tell, silent
+from service.progress import Tell, Ticker, silent
 from simulator.machine.totals import Total
 from simulator.motion.segments import ControlModel, axis_limits
 from simulator.spec import Machine
@@ -42,7 +45,7 @@ the tools meet, is then the same in all of them."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AlongPathTask:
-    """How the feeds along the paths are to be planned."""
+    """Settings for planning the feeds along the paths."""
 
     control: ControlModel
     levels: int | None = None
@@ -106,11 +109,37 @@ class FeedsAlongPath:
     """Signals of the run at the planned feeds."""
     limits: tuple[LimitStretch, ...] = ()
     """Active limits along the path."""
+    deep: Mapping[str, DeepPlaces] = field(default_factory=dict)
+    """Places where mills cut deeper than their tools allow, by part of the program."""
 
     @property
     def shown(self) -> tuple[AlongPathStep, ...]:
         """Parts of the program that take time."""
         return tuple(step for step in self.steps if step.before.duration > 0.0)
+
+    @property
+    def slower_than_programmed(self) -> tuple[str, ...]:
+        """Sentences on the parts of NC code that take longer than programmed, and on why."""
+        told = (
+            slower_part(step.plan, step.before.duration, step.after.duration)
+            for step in self.shown
+            if step.plan is not None
+        )
+        return tuple(text for text in told if text)
+
+    @property
+    def too_deep(self) -> tuple[Finding, ...]:
+        """Warnings of NC code whose mills cut deeper than their tools allow."""
+        return tuple(
+            Finding(
+                severity=Severity.WARNING,
+                message=f"{name}: as programmed {broken_words(deep.load)}, on "
+                f"{deep.length:.4g} mm of its path: no feed makes it less deep; program more "
+                "passes, or a narrower cut",
+                line=deep.block,
+            )
+            for name, deep in self.deep.items()
+        )
 
     @property
     def above_limits(self) -> tuple[Finding, ...]:
@@ -284,6 +313,7 @@ def run_of(
         before_trace=before.trace(),
         after_trace=after.trace(),
         limits=run.limits,
+        deep=dict(path_plan.planner.deep),
     )
 
 
@@ -335,7 +365,7 @@ def _idle(totals: PartTotals) -> frozenset[str]:
 
 
 def _rules(machine: Machine, block_time: float) -> PieceRules:
-    """How finely blocks may be split, as the machine's file says."""
+    """Rules for splitting blocks, from the machine's file."""
     usual = PieceRules()
     length, change = machine.least_block, machine.least_feed_change
     return PieceRules(

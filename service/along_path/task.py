@@ -19,7 +19,7 @@ def task_of(request: AdviceRequest, machine: Machine) -> AlongPathTask:
         When no control model follows from the machine's axes.
     """
     try:
-        control = control_model(request.motion, axis_limits(machine))
+        control = control_model(request.motion, axis_limits(machine), planner=machine.planner)
     except ValueError as error:
         raise StepNcError(
             f"machine '{machine.name}', control {request.motion.value}: {error}"

@@ -24,8 +24,7 @@ from service.along_path.run import (
     planned,
     run_of,
 )
-from service.progress import Ticker
-from service.reading import Tell, silent
+from service.progress import Tell, Ticker, silent
 from service.simulation.code_paths import CodePaths
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.nc.advice import BlockAdvice, RewrittenCode
@@ -140,10 +139,7 @@ def _broken(plan: PathPlan, lines: WrittenLines | None = None) -> tuple[Finding,
     """Faults of the parts of a program whose feeds are above what the process permits."""
     found = []
     for name, worst in plan.planner.broken.items():
-        text = (
-            f"{name}: its feed is {worst.ratio:.3g} times what {worst.name.words} permits, and "
-            "could not be lowered"
-        )
+        text = f"{name}: {worst.words}, and could not be lowered"
         line = worst.block if lines is None else lines.origin(worst.block).line
         found.append(Finding(severity=Severity.ERROR, message=text, line=line))
     return tuple(found)
@@ -182,10 +178,9 @@ def composed(feeds: BlockFeeds, more: BlockFeeds, lines: WrittenLines) -> BlockF
 
 
 def block_advice(
-    code: CodePaths, line: int, parts: tuple[BlockPart, ...], *, note: str = ""
+    code: CodePaths, block: int, parts: tuple[BlockPart, ...], *, note: str = ""
 ) -> BlockAdvice:
-    """Advice for a line of the file; feeds per revolution at its greatest speed."""
-    block = code.block_at(line)
+    """Advice for a block of the file; feeds per revolution at its greatest speed."""
     fastest = code.fastest(block) if parts[0].is_per_revolution else 1.0
     reasons = dict.fromkeys(part.reason for part in parts)
     return BlockAdvice(
@@ -208,21 +203,21 @@ def _rewritten(source: CodeSource, code: CodePaths, feeds: BlockFeeds) -> Rewrit
         if any(part.reason == CapName.RISE.words for part in parts)
     ]
     mark = mark_of(source.rise)
-    found = _fed(source, code, feeds)
     for line in bounded[:MOST_NOTES]:
         found = _fed(source, code, feeds, notes={line: mark})
         if mark.encode() in found.data:
-            break
-    return found
+            return found
+    return _fed(source, code, feeds)
 
 
 def _fed(
     source: CodeSource, code: CodePaths, feeds: BlockFeeds, notes: Mapping[int, str] = NO_NOTES
 ) -> RewrittenCode:
     """Program with some feeds, and with comments on some lines."""
+    blocks = code.blocks_at(list(feeds)).tolist()
     advice = (
-        block_advice(code, line, parts, note=notes.get(line, ""))
-        for line, parts in feeds.items()
+        block_advice(code, block, parts, note=notes.get(line, ""))
+        for block, (line, parts) in zip(blocks, feeds.items(), strict=True)
     )
     return rewrite(source.program, advice, mark=source.mark)
 
@@ -236,6 +231,7 @@ def _paths_of_written(source: CodeSource, rewritten: RewrittenCode) -> CodePaths
             dialect=program.dialect,
             machine=program.machine,
             most_repeats=program.most_repeats,
+            keeps_state=program.keeps_state,
         )
     )
 
@@ -291,6 +287,8 @@ def _refined_step(step: AlongPathStep, plans: Sequence[PathPlan]) -> AlongPathSt
     plan = replace(
         found[-1],
         programmed_time=step.plan.programmed_time,
+        lost=step.plan.lost,
+        broken=step.plan.broken,
         window_change=sum(part.window_change for part in (step.plan, *found)),
     )
     return replace(step, plan=plan)

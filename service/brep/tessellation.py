@@ -78,7 +78,7 @@ class Tessellation:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Choice:
-    """What is read of a file, and which of its solids is tessellated.
+    """Selection from a file: what is read and which solid is tessellated.
 
     Numbers count the instances of the file from 1.
     """

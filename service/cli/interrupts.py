@@ -44,7 +44,7 @@ class Interrupts:
 
     @property
     def has_come(self) -> bool:
-        """Whether the process was asked to end."""
+        """True if the process was asked to end."""
         return self._count > 0
 
     def install(self) -> None:
@@ -105,7 +105,7 @@ class Interrupts:
 
 
 def _is_within(frame: FrameType | None, code: CodeType) -> bool:
-    """Whether a function is one of those that were called."""
+    """True if a function is one of those that were called."""
     while frame is not None and frame.f_code is not code:
         frame = frame.f_back
     return frame is not None

@@ -5,6 +5,7 @@ interrupted. An interrupt ends a command without a traceback whenever it comes: 
 imports nothing of the project until the signals are taken (:mod:`service.cli.interrupts`).
 """
 
+import os
 import signal
 import sys
 from collections.abc import Sequence
@@ -31,6 +32,9 @@ def _run(name: str, arguments: Sequence[str] | None) -> None:
     if is_process and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         # There is nothing to undo yet: the system ends the process.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
+    if is_process:
+        # Matrices are small here; threads of BLAS spin, and sums depend on their number.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from service.cli.interrupts import INTERRUPTED, Interrupts
 
     interrupts = Interrupts()

@@ -13,8 +13,7 @@ from controller.record import RunRecord
 from service.control.facts import ControlRow, rows
 from service.control.loads import CutKey, ReferenceLoad, key_of, taught_load
 from service.control.run import ControlRun
-from service.rendering.columns import Column
-from service.rendering.records import records
+from service.rendering.columns import Column, records
 from stepnc_model.units import mm_min_from_speed
 
 PER_CENT = 100.0

@@ -11,6 +11,7 @@ from optimiser.advice import Advice
 from service.control.disturbances import time_of
 from service.control.holding import ends_of
 from service.control.run import ControlRun
+from stepnc_model.counted import counted
 
 STAYED = 0.1
 """Share of the cutting time above the set point from which the force counts as staying above;
@@ -65,7 +66,7 @@ class ControlRow:
 
     @property
     def has_stayed_over(self) -> bool:
-        """Whether the force stayed above its set point."""
+        """True if the force stayed above its set point."""
         record = self.record
         return record.over_time > STAYED * record.cutting_time
 
@@ -230,7 +231,7 @@ def law_words(run: ControlRun) -> str:
         return f"none, recorded run {run.recorded}"
     if not run.has_preview:
         return run.law.value
-    return f"{run.law.value} with preview of {run.settings.look_ahead} revolutions"
+    return f"{run.law.value} with preview of {counted(run.settings.look_ahead, 'revolution')}"
 
 
 def mode_words(run: ControlRun) -> str:

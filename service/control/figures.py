@@ -37,6 +37,7 @@ from service.panels import (
     line,
 )
 from simulator.motion.segments import Floats
+from stepnc_model.units import SECONDS_PER_MINUTE
 
 GRAVE = frozenset({
     EventKind.STOP,
@@ -188,13 +189,13 @@ def _marks(times: Sequence[float], words: Sequence[str], colours: Sequence[str])
 def _feed(panels: Panels, trace: BucketedRun) -> None:
     """Add the panel of programmed and actual feed; rapids leave its frame."""
     keys = f"{key('programmed', GREY)} {key('actual', BLUE)}"
-    most = 60.0 * _greatest(trace.curve(ControlSignal.FEED_PROGRAMMED).high)
+    most = SECONDS_PER_MINUTE * _greatest(trace.curve(ControlSignal.FEED_PROGRAMMED).high)
     title = f"<b>Feed rate</b>, mm/min<br>{keys} (rapids leave the frame)"
     # A band above 100 % lets the actual feed rise above the programmed.
     shown = [0.0, ROOM * 1.2 * most] if most > 0.0 else None
     panels.begin(title, height=150, range=shown)
-    panels.peaks("actual", BLUE, ControlSignal.FEED_ACTUAL, scale=60.0)
-    panels.peaks("programmed", GREY, ControlSignal.FEED_PROGRAMMED, scale=60.0)
+    panels.peaks("actual", BLUE, ControlSignal.FEED_ACTUAL, scale=SECONDS_PER_MINUTE)
+    panels.peaks("programmed", GREY, ControlSignal.FEED_PROGRAMMED, scale=SECONDS_PER_MINUTE)
 
 
 def _force(panels: Panels, trace: BucketedRun) -> None:

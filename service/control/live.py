@@ -13,8 +13,15 @@ from service.control.run import ControlRun, Session
 from service.control.setup import hardness_against
 from service.requests.fields import loaded, require_bounds
 from service.requests.runs import ControlChanges
-from service.session.rows import CM3_MIN, LiveRows, RunUpdate, known
-from service.session.status import SessionStatus, over_percent, over_seconds
+from service.session.runner import (
+    CM3_MIN,
+    LiveRows,
+    RunUpdate,
+    SessionStatus,
+    known,
+    over_percent,
+    over_seconds,
+)
 from simulator.library import material_names
 from simulator.physics.spindle import available_power
 from simulator.plant.hidden import HiddenChange, HiddenQuantity

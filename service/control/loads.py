@@ -27,7 +27,7 @@ MOST_BYTES = 10_000_000
 
 
 class CutKey(NamedTuple):
-    """What a reference load belongs to."""
+    """Key of a reference load: tool and cut."""
 
     machine: str
     material: str

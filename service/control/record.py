@@ -10,8 +10,8 @@ from itertools import count
 from pathlib import Path
 
 from controller.orders import EventKind
+from kbe.connection import parsed_place, require_openable
 from kbe.rows import CIRCUMSTANCES, OUTCOME, Value
-from kbe.store_location import parsed_place, require_openable
 from service.control.cuts import cuts_csv, taught_by
 from service.control.loads import write_loads
 from service.control.outcomes import RecordingContext, outcomes_of
@@ -19,7 +19,7 @@ from service.control.run import ControlRun, Watcher, control
 from service.files import require_place, require_places, write_atomically
 from service.knowledge.place import make_folder, named_place, require_apart
 from service.knowledge.verbs import record
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.requests.runs import ControlRequest
 from service.simulation.run import RunFiles
 from stepnc_model.errors import StepNcError

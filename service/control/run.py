@@ -34,18 +34,18 @@ from service.control.setup import (
 )
 from service.control.trace import COLUMNS, ControlTrace
 from service.paths.remarks import tell_remarks
-from service.progress import Ticker, bar
-from service.reading import Tell, silent
+from service.progress import Tell, Ticker, bar, silent
 from service.requests.fields import require_bounds
 from service.requests.runs import ControlRequest, SensorChoice, SimulationRequest
 from service.run_file import RunFile
-from service.session.rows import Moment
+from service.session.runner import Moment
 from service.simulation.run import RunFiles, waiting_machine
 from simulator.errors import MachineSilent
-from simulator.plant.controlled import ControlledMachine, TrueState
+from simulator.plant.controlled import ControlledMachine, Instrumentation, TrueState
 from simulator.plant.recorded import RecordedMachine, RecordedSignals
 from simulator.reading import Reading
 from simulator.spec import Machine, MaterialMatch
+from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, StepNcError
 from stepnc_model.program import Program
 
@@ -139,7 +139,7 @@ def control(
                 tell(_told(session.events[-1]))
     finally:
         if trace.file is not None and trace.file.place is not None:
-            tell(f"written: {trace.file.place} ({trace.rows} rows)")
+            tell(f"written: {trace.file.place} ({counted(trace.rows, 'row')})")
     return session.result(trace)
 
 
@@ -169,7 +169,7 @@ def prepare(
     require_bounds(request)
     signals = None
     if files.recorded is not None:
-        from service.recording.signals import read_signals  # noqa: PLC0415 (an extra)
+        from service.recording.table import read_signals  # noqa: PLC0415 (an extra)
 
         signals = read_signals(files.recorded)
         request = _evaluating(request, signals)
@@ -191,14 +191,8 @@ def prepare(
         tell(f"left as programmed: '{each.id}' ({each.ref}): {each.reason}")
     course = planned_course(prepared, virtual, tell)
     require_teeth(found.hidden, course)
-    bench = replace(
-        found.bench,
-        efficiency=virtual.machine.spindle.efficiency,
-        has_normal=request.sensor is SensorChoice.COMPONENTS,
-        seed=request.seed,
-    )
     machine = (
-        ControlledMachine(course, found.hidden, bench)
+        ControlledMachine(course, found.hidden, _bench(found.bench, virtual.machine, request))
         if signals is None
         else RecordedMachine(course, signals)
     )
@@ -241,6 +235,18 @@ def prepare(
             *(f"'{each.id}' ({each.ref}): {each.reason}" for each in plan.refused),
         ),
         virtual=virtual.machine,
+    )
+
+
+def _bench(
+    bench: Instrumentation, machine: Machine, request: ControlRequest
+) -> Instrumentation:
+    """Return the bench of the run: the drive of its machine, its sensor and its seed."""
+    return replace(
+        bench,
+        efficiency=machine.spindle.efficiency,
+        has_normal=request.sensor is SensorChoice.COMPONENTS,
+        seed=request.seed,
     )
 
 

@@ -20,8 +20,7 @@ from service.chosen import library_material
 from service.control.loads import ReferenceLoad
 from service.control.planned import PlannedWorkingstep
 from service.knowledge.corrected import factors_for
-from service.progress import Ticker, bar
-from service.reading import Tell
+from service.progress import Tell, Ticker, bar
 from service.simulation.gathering import require_sense
 from service.simulation.run import place_in
 from service.simulation.setup import PreparedRun

@@ -18,7 +18,7 @@ from controller.orders import LoopEvent
 from service.buckets import BucketedRun, Buckets
 from service.control.holding import HoldTallies
 from service.run_file import ColumnKind, RunColumn, RunFile, Values, words_of
-from service.session.rows import Moment
+from service.session.runner import Moment
 from simulator.plant.controlled import TrueState
 from simulator.plant.course import NominalCourse
 

@@ -65,9 +65,13 @@ export function duration(seconds, like = seconds) {
   if (seconds === null || seconds === undefined) return "–";
   if (like < 120) return `${fixed(seconds, 1)} s`;
   const whole = Math.round(seconds), minutes = Math.floor(whole / 60);
+  if (whole < 60) return `${whole} s`;
   if (like < 3600) return `${minutes} min ${two(whole % 60)} s`;
   return `${Math.floor(minutes / 60)} h ${two(minutes % 60)} min`;
 }
+
+/** Return a number with its noun, which takes an s unless there is one of it. */
+export const counted = (count, noun) => `${count.toLocaleString("en-GB")} ${noun}${count === 1 ? "" : "s"}`;
 
 export const percent = (share, places = 0) =>
   share === null || share === undefined ? "–" : `${fixed(100 * share, places)} %`;

@@ -1,6 +1,6 @@
 // The floor of a live shop: machines by stage with their states, and buffers between them.
 
-import { el, fill, fixed, number } from "/dashboard/app.js";
+import { counted, el, fill, fixed, number } from "/dashboard/app.js";
 import { COLOURS, DOWN, span } from "/dashboard/factory_states.js";
 
 /** most batches of a buffer that are drawn one by one */
@@ -73,7 +73,7 @@ export class Floor {
     if (machine.progress === null) parts.bar.value = 0;
     else parts.bar.value = machine.progress;
     text(parts.power, `${fixed(machine.power_kw, 2)} kW · ${number(machine.energy_kwh, 3)} kWh`);
-    text(parts.made, `${machine.parts} parts`);
+    text(parts.made, counted(machine.parts, "part"));
     const isDown = DOWN.includes(machine.state);
     parts.fail.hidden = !mayFail;
     parts.fail.disabled = isDown;

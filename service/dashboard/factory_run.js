@@ -1,6 +1,6 @@
 // One run of a shop: its floor while it runs live, its figures at the end.
 
-import { AWAY_WORDS, Problem, announce, api, byId, el, figure, fill, fixed, number, save, show, tell, watch }
+import { AWAY_WORDS, Problem, announce, api, byId, counted, el, figure, fill, fixed, number, save, show, tell, watch }
   from "/dashboard/app.js";
 import { bar, confirmed, isOver, saying, stateBadge } from "/dashboard/records.js";
 import { Floor } from "/dashboard/factory_floor.js";
@@ -192,6 +192,6 @@ export const runTitle = (job) => {
   const { request } = job;
   const name = request.sample || (typeof request.shop === "string"
     ? /^\s*title\s*=\s*"([^"]*)"/m.exec(request.shop)?.[1] : request.shop?.title) || "own shop";
-  return `${name}, ${request.pace > 0 ? "live" : `${request.replications} replication${request.replications === 1 ? "" : "s"}`}`;
+  return `${name}, ${request.pace > 0 ? "live" : counted(request.replications, "replication")}`;
 };
 

@@ -31,6 +31,7 @@ export function weekTime(seconds) {
 
 /** Return a time in hours and minutes, or shorter ones in minutes and seconds. */
 export function span(seconds) {
+  if (seconds < 60) return `${Math.floor(seconds)} s`;
   if (seconds < 3600) return `${Math.floor(seconds / 60)} min ${two(Math.floor(seconds % 60))} s`;
   return `${Math.floor(seconds / 3600)} h ${two(Math.floor((seconds % 3600) / 60))} min`;
 }

@@ -1,6 +1,6 @@
 // The knowledge page: planned against measured values, and learned factors on k_c.
 
-import { api, byId, done, el, figure, fill, moment, number, save, show, tell, words } from "/dashboard/app.js";
+import { api, byId, counted, done, el, figure, fill, moment, number, save, show, tell, words } from "/dashboard/app.js";
 import { factors } from "/dashboard/knowledge_factors.js";
 import { outcomePlots } from "/dashboard/knowledge_plots.js";
 import { evaluationTable } from "/dashboard/knowledge_table.js";
@@ -79,7 +79,7 @@ function build(known, all) {
   fill(byId("content"),
     el("section", { class: "card", "aria-label": "summary" }, el("div", { class: "figures", id: "known" },
       figure("Outcomes", number(all.total, 7)),
-      figure("Runs", number(distinct("run", all.outcomes).length, 7), all.total > all.outcomes.length ? `of the last ${all.outcomes.length} outcomes` : ""),
+      figure("Runs", number(distinct("run", all.outcomes).length, 7), all.total > all.outcomes.length ? `of the last ${counted(all.outcomes.length, "outcome")}` : ""),
       figure("Contexts", String(known.length), "machine, material, tool"),
       el("div", { class: "figure" }, el("div", { class: "name" }, "open k_c proposals"),
         el("div", {}, el("a", { href: "#factors", class: "value", id: "known-proposals" }, "–"))))),
@@ -124,7 +124,7 @@ async function open(job) {
   const isOld = newest && new Date(newest) > new Date(table.made_at);
   fill(byId("table-place"),
     el("p", { class: "soft small", id: "table-facts" },
-      `Computed ${moment(table.made_at)} from ${table.outcomes} outcomes: rows ${table.rows.length}` +
+      `Computed ${moment(table.made_at)} from ${counted(table.outcomes, "outcome")}: rows ${table.rows.length}` +
       `${table.rows_left_out ? ` and ${table.rows_left_out} not shown` : ""}.`,
       isOld ? el("span", { class: "warn" }, " There are newer outcomes: compute it again.") : null),
     evaluationTable(table));

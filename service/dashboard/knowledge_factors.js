@@ -1,6 +1,6 @@
 // Factors on k_c, proposed and accepted, with their uncertainty; a person accepts or withdraws them.
 
-import { announce, api, done, el, fill, fixed, moment, percent, tell } from "/dashboard/app.js";
+import { announce, api, counted, done, el, fill, fixed, moment, percent, tell } from "/dashboard/app.js";
 import { colour, layout, plot } from "/dashboard/charts.js";
 import { confirmed, framed } from "/dashboard/records.js";
 
@@ -114,7 +114,7 @@ export async function factors(place, { review, told }) {
     return el("tr", { id: `factor-${latest.id}` },
       el("th", { scope: "row" }, latest.tool, el("div", { class: "soft small thin" }, `${latest.material} on ${latest.machine}`)),
       el("td", { class: "proposal", "data-label": HEAD[1] }, `× ${fixed(latest.factor, 2)} ± ${fixed(half(latest), 2)} `, standing(latest, inForce),
-        el("div", { class: "soft small" }, `next run ${fixed(latest.factor_low, 2)} to ${fixed(latest.factor_high, 2)}; ${latest.outcomes} outcomes`)),
+        el("div", { class: "soft small" }, `next run ${fixed(latest.factor_low, 2)} to ${fixed(latest.factor_high, 2)}; ${counted(latest.outcomes, "outcome")}`)),
       el("td", { class: "n", "data-label": HEAD[2] }, percent(latest.confidence)),
       el("td", { "data-label": HEAD[3] }, inForce ? [`× ${fixed(inForce.factor, 2)} ± ${fixed(half(inForce), 2)}`,
         el("div", { class: "soft small" }, `${inForce.decided_by}, ${moment(inForce.decided_at)}`)] : el("span", { class: "soft" }, "the catalogue's")),
@@ -143,7 +143,7 @@ export async function factors(place, { review, told }) {
     const { latest } = entry;
     return decided("Accept a factor", [
       el("strong", {}, `${factorWords(latest)} for ${contextWords(latest)}: the next plan uses it.`),
-      `Learned from ${latest.outcomes} outcomes; the next run lies between ${fixed(latest.factor_low, 2)} and ${fixed(latest.factor_high, 2)} in 9 of 10 cases. Plans use the upper end, so that one run in ten needs more force than planned.`,
+      `Learned from ${counted(latest.outcomes, "outcome")}; the next run lies between ${fixed(latest.factor_low, 2)} and ${fixed(latest.factor_high, 2)} in 9 of 10 cases. Plans use the upper end, so that one run in ten needs more force than planned.`,
       before(entry),
       ...entry.objections.map(({ message }) => el("span", { class: "warn" }, `Objection: ${message}`)),
     ], "Accept", `/v1/corrections/${latest.id}/accept`, `${factorWords(latest)} for ${contextWords(latest)} is in force`);

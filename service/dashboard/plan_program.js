@@ -1,6 +1,6 @@
 // The program of the plan page: upload, example or earlier upload, and its findings.
 
-import { Problem, announce, api, byId, el, fill, number, tell } from "/dashboard/app.js";
+import { Problem, announce, api, byId, counted, el, fill, number, tell } from "/dashboard/app.js";
 import { programTitle } from "/dashboard/records.js";
 
 const RANK = ["error", "warning", "note"];
@@ -63,8 +63,8 @@ export function programChoice(chosen, { takesCode = false } = {}) {
       if (mine !== wanted) return;
       shown(program, contents);
       chosen(program, contents);
-      announce(isCode(program) ? `${program.name}: NC code, ${contents.blocks} blocks`
-        : `${program.name}: ${contents.workingsteps.length} workingsteps`);
+      announce(isCode(program) ? `${program.name}: NC code, ${counted(contents.blocks, "block")}`
+        : `${program.name}: ${counted(contents.workingsteps.length, "workingstep")}`);
       await list(program.id);
     } catch (error) {
       if (mine !== wanted) return;
@@ -138,8 +138,8 @@ function shownCode(program, contents) {
     (least === null ? "–" : least === greatest ? number(least) : `${number(least)} to ${number(greatest)}`);
   fill(byId("program-shown"),
     el("p", {}, el("b", { id: "program-name" }, program.name), " ", el("span", { class: "soft" },
-      `NC code for ${contents.control} (${contents.machine}${guessed}), ${contents.units}, ${contents.blocks} blocks, `
-      + `${contents.executed_moves} moves, ${sizeWords(program)}`)),
+      `NC code for ${contents.control} (${contents.machine}${guessed}), ${contents.units}, ${counted(contents.blocks, "block")}, `
+      + `${counted(contents.executed_moves, "move")}, ${sizeWords(program)}`)),
     el("div", { class: "scroll moves", tabindex: "0", role: "region", "aria-label": "Moves by tool" },
       el("table", { class: "small", id: "moves" },
         el("thead", {}, el("tr", {}, heads.map((title, at) => el("th", { scope: "col", class: at > 1 ? "n" : undefined }, title)))),
@@ -154,7 +154,7 @@ function shown(program, contents) {
   const count = contents.workingsteps.length;
   fill(byId("program-shown"),
     el("p", {}, el("b", { id: "program-name" }, program.name), " ", el("span", { class: "soft" },
-      `${count} workingstep${count === 1 ? "" : "s"}, ${contents.instances} instances, ${sizeWords(program)}`)),
+      `${counted(count, "workingstep")}, ${counted(contents.instances, "instance")}, ${sizeWords(program)}`)),
     contents.is_usable ? null
       : el("div", { class: "banner bad", role: "alert" }, "This program cannot be optimised: see its errors."),
     findingsList(contents.findings, "in the file"));

@@ -1,6 +1,6 @@
 // An advice: its figures, downloads, times as bars; the table is in plan_table.js.
 
-import { api, byId, duration, el, fill, fixed, number, save, show, tell } from "/dashboard/app.js";
+import { api, byId, counted, duration, el, fill, fixed, number, save, show, tell } from "/dashboard/app.js";
 import { showAlong } from "/dashboard/plan_along.js";
 import { findingsList } from "/dashboard/plan_program.js";
 import { showConfirmation } from "/dashboard/plan_confirm.js";
@@ -46,6 +46,8 @@ export function showResult(asked, found) {
   for (const card of document.querySelectorAll(".of-advised")) card.hidden = isCode;
   for (const name of ["download-program", "download-csv"]) byId(name).hidden = isCode;
   byId("download-feeds").hidden = !found.along_path;
+  byId("compare-link").hidden = isCode;
+  byId("compare-link").href = `/dashboard/compare.html?program=${job.program_id}&advice=${job.id}`;
   byId("download-nc").disabled = !found.nc_control;
   byId("download-nc").title = found.nc_control ? `for ${found.nc_control}` : "choose a control and optimise again";
   byId("download-nc").textContent = found.nc_control ? `NC code, ${found.nc_control}` : "NC code";
@@ -57,10 +59,15 @@ export function showResult(asked, found) {
 function showCode(found) {
   const { before, after } = found.along_path.time_s, { changed, added, restored, unchanged } = found.blocks;
   byId("result-of").textContent = [found.program, found.machine, found.material, `stock in ${found.frame}`].join(" · ");
-  fill(byId("figures"), times("Machining time, simulated", before, after, "big"), saving("Time", before, after, false));
-  fill(byId("result-findings"), el("p", { class: "soft small" },
-    `${changed} blocks changed, ${added} added by splitting, ${restored} got the programmed feed back, ${unchanged.length} not as advised.`),
-  findingsList(found.findings, "of the plan"));
+  fill(byId("figures"), times("Machining time, simulated", before, after, "big"),
+    saving("Time", before, after, found.is_checked === false));
+  const slower = found.slower_than_programmed ?? [], deep = found.depth_risks ?? [];
+  fill(byId("result-findings"), slower.map((text) => el("div", { class: "banner warn", role: "alert" }, text)),
+    deep.length ? el("div", { class: "banner warn", role: "alert" },
+      `Not fully checked: too deep in ${deep.map((each) => each.id).join(", ")}. The findings name depth and bound.`) : null,
+    el("p", { class: "soft small" },
+      `${counted(changed, "block")} changed, ${added} added by splitting, ${restored} got the programmed feed back, ${unchanged.length} not as advised.`),
+    findingsList(found.findings, "of the plan"));
   showConfirmation(null);
 }
 

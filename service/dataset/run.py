@@ -19,12 +19,18 @@ from typing import Any
 import pyarrow as pa
 
 from service.chosen import material_for
-from service.dataset.folder import PARTITION, DatasetFolder
-from service.dataset.rows import UNITS, DatasetRow, DatasetSource, table_of
+from service.dataset.folder import (
+    PARTITION,
+    UNITS,
+    DatasetFolder,
+    DatasetRow,
+    DatasetSource,
+    table_of,
+)
 from service.execution.executors import LOST, Losses, Pools, processes
 from service.files import write_atomically
-from service.progress import Ticker
-from service.reading import Tell, read_program
+from service.progress import Tell, Ticker
+from service.reading import read_program
 from service.rendering.columns import clock
 from simulator.factory.design_file import DesignFile, read_design
 from stepnc_model.errors import StepNcError
@@ -45,7 +51,7 @@ PARQUET_BYTES, CSV_BYTES, BLOCK_BYTES = 200, 300, 4096
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DatasetFiles:
-    """What is written beside the partitions."""
+    """Files written beside the partitions."""
 
     has_csv: bool = False
     """Whether to write ``data.csv``."""
@@ -325,7 +331,7 @@ def _require_space(
 
 
 def _manifest(file: DesignFile, source: DatasetSource, partition: int) -> Mapping[str, Any]:
-    """What determines the rows."""
+    """Everything that determines the rows."""
     design = file.design
     ranges = {
         "feed_mm_s": design.feed,

@@ -187,7 +187,7 @@ def _require_certificates(address: str) -> None:
 
 
 def _is_loopback(host: str) -> bool:
-    """Whether a host is this machine."""
+    """True if a host is this machine."""
     try:
         return ip_address(host).is_loopback
     except ValueError:

@@ -1,4 +1,4 @@
-"""Where long work runs, as asked for: a Dask cluster, or processes of this machine."""
+"""Choice of the executor of long work: a Dask cluster, or processes of this machine."""
 
 from service.execution.executors import Pools, processes
 

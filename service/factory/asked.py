@@ -3,32 +3,135 @@
 A program is the id of an uploaded one or the name of a sample; of a path only its last part is
 taken, and looked up. A machine is one of the library or of the shop. So no file of the server
 is named by a client.
+
+Where a shop comes from: a file, or content that a client of the service sent.
+
+Comparison of values of keys of a shop file: all combinations of them.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import deepcopy
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from itertools import product
 from pathlib import Path, PurePosixPath
 
 import orjson
 
 from service.errors import NotFound, TooLarge, Unreadable
-from service.factory.source import Changes, ShopSource, chosen_shop
-from service.factory.sweep import combinations, swept_keys
 from service.ids import PATTERN
 from service.program_kind import ProgramKind
-from service.requests.factory import FactoryOrder
+from service.requests.factory import FactoryOrder, ShopTimes
 from service.storage import programs
 from service.storage.folder import DataFolder
 from service.storage.library import machine_word
+from simulator.factory.measures import MeasureInterval
 from simulator.factory.shop import Counting, Shop
-from simulator.factory.shop_file import content_of, shop_of
+from simulator.factory.shop_file import content_of, read_shop, shop_of
 from simulator.library import load_machine
 from simulator.spec import Machine
 from simulator.toml_file import read_text
 from stepnc_model.errors import StepNcError
-from stepnc_model.units import hours_from_seconds
+from stepnc_model.units import hours_from_seconds, seconds_from_hours
+
+Changes = Mapping[str, float | str]
+"""Values by key of a shop file."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShopSource:
+    """Shop that can be read with changes."""
+
+    name: str
+    """Name of the file, for messages."""
+    read: Callable[[Changes | None], Shop]
+    programs: Mapping[str, str] = field(default_factory=dict)
+    """Names of programs for display, by their path; known once the shop was read."""
+
+
+def source_of_file(file: Path) -> ShopSource:
+    """Shop of a file."""
+    return ShopSource(name=file.name, read=lambda changes: read_shop(file, changes=changes))
+
+
+def chosen_shop(source: ShopSource, times: ShopTimes, changes: Changes | None = None) -> Shop:
+    """Read a shop with the times and changes of a request.
+
+    Raises
+    ------
+    StepNcError
+        When the shop or a change is invalid.
+    """
+    shop = source.read(changes)
+    if times.hours is not None:
+        shop = replace(shop, duration=seconds_from_hours(times.hours))
+    if times.warm_up_hours is not None:
+        shop = replace(shop, warm_up=seconds_from_hours(times.warm_up_hours))
+    if shop.warm_up >= shop.duration:
+        raise StepNcError(
+            f"{source.name}: warm-up {hours_from_seconds(shop.warm_up):g} h: it must be below "
+            f"{hours_from_seconds(shop.duration):g} h, the whole time"
+        )
+    return shop
+
+
+MOST = 1_000
+"""Most combinations."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SweptKey:
+    """Key of a shop file with the values to compare."""
+
+    key: str
+    values: tuple[float | str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SweptCase:
+    """Combination of values with the figures of its runs."""
+
+    changes: tuple[tuple[str, float | str], ...]
+    measures: tuple[MeasureInterval, ...]
+
+
+def swept_keys(texts: Sequence[str]) -> tuple[SweptKey, ...]:
+    """Keys and values of texts such as ``product[1].batch=1,5,10``.
+
+    Raises
+    ------
+    StepNcError
+        When a text has another form, or there are too many combinations.
+    """
+    keys = []
+    count = 1
+    for text in texts:
+        key, sign, values = text.partition("=")
+        words = [word.strip() for word in values.split(",") if word.strip()]
+        if not sign or not key.strip() or not words:
+            raise StepNcError(f"sweep '{text}': expected KEY=VALUE,VALUE")
+        keys.append(SweptKey(key=key.strip(), values=tuple(_value(word) for word in words)))
+        count *= len(words)
+    if count > MOST:
+        raise StepNcError(f"sweep: {count} combinations: at most {MOST}")
+    return tuple(keys)
+
+
+def combinations(keys: Sequence[SweptKey]) -> list[dict[str, float | str]]:
+    """All combinations of the values of keys."""
+    names = [each.key for each in keys]
+    return [
+        dict(zip(names, values, strict=True))
+        for values in product(*(each.values for each in keys))
+    ]
+
+
+def _value(word: str) -> float | str:
+    try:
+        return float(word)
+    except ValueError:
+        return word
+
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 """Folder of the sample shops and programs; an installed wheel has none."""

@@ -8,7 +8,7 @@ from collections.abc import Hashable
 from dataclasses import dataclass, field, replace
 from hashlib import sha256
 
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.requests.runs import SimulationRequest
 from service.simulation.run import machine_of
 from service.simulation.setup import PreparedRun, prepared_program
@@ -33,7 +33,7 @@ from stepnc_model.units import (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CycleKey:
-    """What determines a machining cycle."""
+    """Everything that determines a machining cycle."""
 
     program: bytes
     """Digest of the program's bytes."""

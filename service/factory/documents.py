@@ -19,10 +19,9 @@ from service.agent.run import PublishedRun, streams_document
 from service.chosen import material_for
 from service.factory.cycles import place_text
 from service.factory.devices import device_names
-from service.file_names import plain_name
-from service.files import write_atomically
-from service.progress import Ticker, bar
-from service.reading import Tell, read_program, silent
+from service.files import plain_name, write_atomically
+from service.progress import Tell, Ticker, bar, silent
+from service.reading import read_program
 from service.requests.runs import SimulationRequest
 from service.simulation.run import machine_of
 from service.simulation.setup import prepared_program

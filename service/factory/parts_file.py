@@ -15,7 +15,7 @@ from pathlib import Path
 from types import TracebackType
 
 from service.formula import disarmed
-from service.growing_file import GrowingFile
+from service.run_file import GrowingFile
 from simulator.factory.records import PartMade
 from simulator.factory.shop import Shop
 from stepnc_model.units import m_s_from_speed, ms_from_seconds

@@ -4,16 +4,28 @@ While a machine works on a program with fixed settings, its axes, spindle, feeds
 powers are those of the virtual machine at that moment of the part; powers are scaled by one
 factor, so that they add up to the energy that was drawn for the part. Parts with drawn settings
 and steps with times show their mean power, and no axes.
+
+Timelines of parts: what the axes of a machine do while it machines a program.
+
+A timeline is a run of the virtual machine with the settings as programmed, without deviation.
+Parts whose settings are drawn have none.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
+from service.chosen import material_for
+from service.factory.cycles import place_text
 from service.factory.devices import ShopDevices, first_values, state_values
-from service.factory.live_status import ShopView
-from service.factory.timelines import PartTimeline
+from service.factory.live import ShopView
+from service.progress import Tell, silent
+from service.reading import read_program
+from service.requests.runs import SimulationRequest
+from service.simulation.run import machine_of
+from service.simulation.setup import prepared_program
 from simulator.agent.buffer import Value
 from simulator.agent.machine_feed import RunFeed, run_feed
 from simulator.factory.machining import MachiningPlan, Place
@@ -21,6 +33,84 @@ from simulator.factory.records import Listeners, PartMade, StateSpent
 from simulator.factory.shop import Shop
 from simulator.factory.states import MachineState
 from simulator.factory.station import Station
+from simulator.machine.interpreter import interpret
+from simulator.machine.samples import Samples, joined
+from simulator.machine.sensing import Sampler
+from simulator.spec import Machine, MaterialMatch
+from stepnc_model.errors import StepNcError
+from stepnc_model.program import Program
+
+FASTEST = 10.0
+"""Highest rate of a timeline, in samples per simulated second."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PartTimeline:
+    """Samples of the machining of a part."""
+
+    samples: Samples
+    workingsteps: Sequence[str]
+
+
+def part_timelines(
+    shop: Shop, plan: MachiningPlan, *, rate: float, tell: Tell
+) -> Mapping[Place, PartTimeline]:
+    """Run each program of a shop with fixed settings once on each kind of machine.
+
+    Parameters
+    ----------
+    shop : Shop
+    plan : MachiningPlan
+    rate : float, 1/s
+        Samples per simulated second, at most :data:`FASTEST`.
+    tell : callable
+
+    Raises
+    ------
+    StepNcError
+        When a program cannot be read or run.
+    """
+    known: dict[tuple[str, str, str], PartTimeline] = {}
+    found: dict[Place, PartTimeline] = {}
+    for place in plan.cycles:
+        product, step, row = place
+        spec = shop.machines[row].machine
+        if spec is None:
+            continue
+        path = shop.products[product].steps[step].program
+        key = (path, shop.products[product].material, spec.name)
+        if key not in known:
+            tell(f"timeline of {Path(path).name} on {spec.name}")
+            program = read_program(Path(path), units="iso")
+            material = material_for(shop.products[product].material, program)
+            known[key] = part_timeline(program, spec, material, rate=min(rate, FASTEST))
+        found[place] = known[key]
+    return found
+
+
+def part_timeline(
+    program: Program, machine: Machine, material: MaterialMatch, *, rate: float
+) -> PartTimeline:
+    """Run a program with its own settings and return its samples.
+
+    Raises
+    ------
+    StepNcError
+        When the machine cannot run the program.
+    """
+    prepared = prepared_program(program, machine, material, tell=silent)
+    virtual = machine_of(SimulationRequest(), prepared)
+    sampler = Sampler(machine, rate=rate)
+    try:
+        parts = [
+            samples
+            for episode in virtual.run(interpret(prepared.blocks, machine))
+            for samples in sampler.samples(episode)
+        ]
+    except StepNcError as error:
+        raise StepNcError(f"{place_text(program, machine)}: {error}") from error
+    return PartTimeline(samples=joined(parts), workingsteps=tuple(virtual.workingsteps))
+
 
 DOWN = (MachineState.FAILED, MachineState.REPAIR)
 
@@ -90,7 +180,7 @@ class ShopPublisher:
         """Begin with the first values of a shop."""
         self._view = view
         for row, shown in enumerate(self._devices.shown):
-            power = view.floor.stations[row].power
+            power = view.floor.stations[row].book.power
             own = first_values(shown, self._devices.names[row], power)
             self._tell(0.0, own)
 
@@ -113,13 +203,13 @@ class ShopPublisher:
         if view is None:
             return
         station = view.floor.stations[row]
-        now, state = view.time, station.state
+        now, state = view.time, station.book.state
         self._follow(row, now)
         self._cutting.pop(row, None)
         if state not in DOWN:
             self._before[row] = state
         values = state_values(state, self._before[row])
-        power: Value = None if state is MachineState.OFF else round(station.power, DIGITS)
+        power: Value = None if state is MachineState.OFF else round(station.book.power, DIGITS)
         batch = station.held
         values |= {"watt": power, "program": view.program_of(station) or None}
         values |= {
@@ -148,7 +238,7 @@ class ShopPublisher:
                 (*AT_REST, "basewatt", "coolant", "xpos", "ypos", "zpos"), None
             )
         energy = self._plan.cycles[place].cycle.energy
-        begun = station.elapsed
+        begun = station.book.elapsed(now)
         self._cutting[row] = Cutting(
             feed=feed,
             begin=now - begun,

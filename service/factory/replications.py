@@ -5,13 +5,12 @@ from dataclasses import dataclass
 from math import inf
 
 from service.execution.executors import Pools, results
-from service.progress import Ticker
-from service.reading import Tell
+from service.progress import Tell, Ticker
 from simulator.factory.floor import Floor
 from simulator.factory.machining import MachiningPlan
 from simulator.factory.measured import measures_of
 from simulator.factory.measures import Measure
-from simulator.factory.records import Listeners, PartMade
+from simulator.factory.records import Listeners
 from simulator.factory.shop import Shop
 from simulator.factory.streams import Streams
 from simulator.factory.tally import Tally
@@ -46,17 +45,17 @@ class PartBound:
         self._most, self._count = most, 0
         self._at, self._at_once = -1.0, 0
 
-    def part(self, part: PartMade) -> None:
-        """Count a part.
+    def count(self, count: int, time: float) -> None:
+        """Count parts that left a machine at a time in s.
 
         Raises
         ------
         StepNcError
             When there are too many, or too many at one time.
         """
-        self._count += 1
-        self._at_once = self._at_once + 1 if part.end == self._at else 0
-        self._at = part.end
+        self._count += count
+        self._at_once = self._at_once + count if time == self._at else 0
+        self._at = time
         if self._at_once > MOST_AT_ONCE:
             raise StepNcError(f"no time passes: {MOST_AT_ONCE} parts are made at once")
         if self._count > self._most:
@@ -138,5 +137,5 @@ def _measures(
     shop: Shop, plan: MachiningPlan, streams: Streams, most_parts: float
 ) -> tuple[Measure, ...]:
     bound = PartBound(most_parts)
-    listeners = Listeners(part=(bound.part,)) if most_parts < inf else Listeners()
+    listeners = Listeners(count=(bound.count,)) if most_parts < inf else Listeners()
     return run_shop(shop, plan, streams, listeners=listeners).measures

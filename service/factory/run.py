@@ -7,6 +7,14 @@ from math import inf
 from pathlib import Path
 
 from service.execution.executors import Pools, processes
+from service.factory.asked import (
+    ShopSource,
+    SweptCase,
+    chosen_shop,
+    combinations,
+    source_of_file,
+    swept_keys,
+)
 from service.factory.cycles import PartCycles
 from service.factory.documents import ChosenPart, FirstParts, PartDocuments
 from service.factory.parts_file import PartTables
@@ -17,11 +25,8 @@ from service.factory.replications import (
     ShopRun,
     run_shop,
 )
-from service.factory.source import ShopSource, chosen_shop, source_of_file
 from service.factory.states_file import ShownStates, StateFile
-from service.factory.sweep import SweptCase, combinations, swept_keys
-from service.progress import Ticker, bar
-from service.reading import Tell, silent
+from service.progress import Tell, Ticker, bar, silent
 from service.requests.factory import FactoryRequest
 from service.requests.fields import require_bounds
 from service.staged_folder import staged_folder
@@ -196,7 +201,7 @@ def _first(
     if request.documents:
         listeners = listeners.plus(Listeners(part=(chosen.part,)))
     if most_parts < inf:
-        listeners = listeners.plus(Listeners(part=(PartBound(most_parts).part,)))
+        listeners = listeners.plus(Listeners(count=(PartBound(most_parts).count,)))
 
     def told(share: float) -> None:
         ticker(lambda: f"{bar(share)}  {share * hours:.0f} of {hours:g} h")

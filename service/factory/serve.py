@@ -3,23 +3,22 @@
 import asyncio
 from pathlib import Path
 
-from service.agent.play import MICRO, now
+from service.agent.play import now
 from service.agent.run import listening, place_of, run_server
+from service.factory.asked import chosen_shop, source_of_file
 from service.factory.cycles import PartCycles
 from service.factory.devices import shop_devices
 from service.factory.live import LiveShop
 from service.factory.plan import machining_plan
-from service.factory.published import ShopPublisher
-from service.factory.source import chosen_shop, source_of_file
-from service.factory.timelines import FASTEST, part_timelines
+from service.factory.published import FASTEST, ShopPublisher, part_timelines
 from service.known_hosts import for_known_hosts, known_hosts
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.requests.factory import FactoryRequest, LiveFactoryRequest
 from service.requests.fields import require_bounds
 from simulator.agent.agent import Agent
 from simulator.agent.http import application
 from stepnc_model.errors import StepNcError
-from stepnc_model.units import hours_from_seconds
+from stepnc_model.units import US_PER_SECOND, hours_from_seconds
 
 STEP = 0.05
 """Wall-clock time between two looks at what is due, in s."""
@@ -93,7 +92,7 @@ def require_live(request: FactoryRequest) -> None:
 def begin_of(duration: float, speed: float) -> int:
     """Stamp of the beginning of a run, µs since 1970: its end is not after the clock then."""
     ahead = duration - duration / speed if speed > 1.0 else 0.0
-    return now() - int(ahead * MICRO)
+    return now() - int(ahead * US_PER_SECOND)
 
 
 class ShopPlayer:
@@ -118,7 +117,7 @@ class ShopPlayer:
         shop = self._shop
         self._hand_on(0.0)
         while goes_on:
-            due = self._speed * (now() - begin) / MICRO
+            due = self._speed * (now() - begin) / US_PER_SECOND
             until = min(due, shop.time + AT_ONCE)
             try:
                 goes_on = shop.advance(until) if until > shop.time else True
@@ -133,5 +132,5 @@ class ShopPlayer:
 
     def _hand_on(self, until: float) -> None:
         feed = self._publisher.taken(until)
-        stamps = self._anchor + (feed.times * MICRO).astype(int)
+        stamps = self._anchor + (feed.times * US_PER_SECOND).astype(int)
         self._agent.add(feed.items, stamps, feed.values)

@@ -9,6 +9,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from pkgutil import resolve_name
 from threading import Timer, main_thread
 from time import monotonic, sleep
 from types import FrameType
@@ -17,17 +18,28 @@ from typing import Any, TypeVar
 from kbe.errors import StoreFull
 from service.errors import StorageFull, Unavailable
 from service.extras import missing_extras_named
-from service.jobs.task import LARGE, UNFINISHED, RunningJob, clear
+from service.jobs.task import RunningJob, clear
 from service.lifeline import end_with_parent
-from service.live.storage import has_room
+from service.live.journal import has_room
 from service.problem import plain_problem, problem_of
 from service.process_limits import GIB, ProcessLimits, limit_process
 from service.storage import jobs
 from service.storage.folder import FolderAddress, known_data_folder
 from service.storage.jobs import Job, JobKind, JobState
+from service.storage.results import LARGE, UNFINISHED
 from stepnc_model.errors import StepNcError, WriteError
 
 T = TypeVar("T")
+
+VERB = "service.jobs.verb_job:run"
+"""Function that runs the verb of a job."""
+
+WORK = {
+    JobKind.CONTROL: "service.jobs.steer:run_control",
+    JobKind.TRIAL: "service.jobs.steer:run_trial",
+    JobKind.FACTORY: "service.jobs.produce:run",
+}
+"""Functions that do the work of live sessions; a shop may also run as fast as possible."""
 
 WITHOUT_ROOM = (StorageFull, StoreFull, WriteError)
 """Errors after which large files of the job are removed, because the disk is full."""
@@ -71,7 +83,7 @@ class Cancelled(BaseException):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JobEnd:
-    """How a job has ended."""
+    """End of a job: state and error."""
 
     state: JobState
     problem: Mapping[str, Any] | None = None
@@ -156,7 +168,7 @@ def _tried(task: RunningJob) -> tuple[JobEnd, StepNcError | None]:
 
 
 def _memory() -> str:
-    """What a job may take, in words."""
+    """Memory limit of a job, in words."""
     most = resource.getrlimit(resource.RLIMIT_AS)[0]
     if most == resource.RLIM_INFINITY:
         return "is available"
@@ -222,39 +234,8 @@ def _insisting(root: Path, ask: Callable[[], T]) -> T:
 
 def _work(job: Job) -> Callable[[RunningJob], None]:
     """Return the function that runs a kind of job; its modules are loaded on demand."""
-    match job.kind:
-        case JobKind.ADVICE:
-            from service.jobs import advise  # noqa: PLC0415
-
-            return advise.run
-        case JobKind.SIMULATION:
-            from service.jobs import simulate  # noqa: PLC0415
-
-            return simulate.run
-        case JobKind.CONTROL | JobKind.TRIAL:
-            from service.jobs import steer  # noqa: PLC0415
-
-            return steer.run_trial if job.kind is JobKind.TRIAL else steer.run_control
-        case JobKind.EVALUATION:
-            from service.jobs import evaluate  # noqa: PLC0415
-
-            return evaluate.run
-        case JobKind.REVIEW:
-            from service.jobs import review  # noqa: PLC0415
-
-            return review.run
-        case JobKind.FACTORY:
-            from service.jobs import produce  # noqa: PLC0415
-
-            return produce.run
-        case JobKind.VERIFICATION:
-            from service.jobs import verify  # noqa: PLC0415
-
-            return verify.run
-        case JobKind.CYCLE_TIME:
-            from service.jobs import cycle_time  # noqa: PLC0415
-
-            return cycle_time.run
+    work: Callable[[RunningJob], None] = resolve_name(WORK.get(job.kind, VERB))
+    return work
 
 
 def _cancel(_signal: int, _frame: FrameType | None) -> None:

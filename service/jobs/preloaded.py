@@ -1,19 +1,16 @@
 """Modules loaded once in the fork server, so that job processes start quickly."""
 
 from importlib import import_module
+from pkgutil import resolve_name
 
+from service.jobs.child import WORK
+from service.jobs.verb_job import STORED
+
+for name in WORK.values():
+    resolve_name(name)
 for name in (
-    "service.jobs.advise",
-    "service.jobs.child",
-    "service.jobs.cycle_time",
-    "service.jobs.evaluate",
-    "service.jobs.produce",
-    "service.jobs.review",
-    "service.jobs.simulate",
-    "service.jobs.steer",
-    "service.jobs.verify",
     "service.paths.toolpaths",
-    "service.verbs.optimise.plan_result",
-    "service.verbs.simulate.result",
+    "service.verbs.optimise.code",
+    *(f"service.verbs.{stored.name}.run" for stored in STORED.values()),
 ):
     import_module(name)

@@ -5,18 +5,23 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from service.factory.asked import MOST_PARTS, asked_source, require_asked, require_small
+from service.factory.asked import (
+    MOST_PARTS,
+    ShopSource,
+    asked_source,
+    require_asked,
+    require_small,
+)
 from service.factory.cycles import PartCycles
 from service.factory.live import LiveShop
 from service.factory.parts_file import PartTables
 from service.factory.plan import machining_plan
 from service.factory.replications import PartBound, ShopRun
 from service.factory.run import STATES, FactoryResult, require_folder, run_source
-from service.factory.source import ShopSource
 from service.factory.state_log import COLUMNS
 from service.factory.states_file import ShownStates, StateFile
 from service.files import write_atomically
-from service.jobs.task import REPORT, RunningJob
+from service.jobs.task import RunningJob
 from service.live.series import SeriesWriter
 from service.requests.factory import FactoryOrder, FactoryRequest
 from service.session.runner import LiveRunner
@@ -66,7 +71,7 @@ def run(task: RunningJob) -> None:
             require=require_small,
         )
     shown = ShopResult(found=result)
-    write_atomically(task.folder / REPORT, shown.page().encode(errors="replace"))
+    task.keep_report(shown.page())
     write_atomically(task.folder / FIGURES, shown.csv().encode())
     task.keep(shown.record())
 
@@ -89,7 +94,8 @@ def _live(task: RunningJob, order: FactoryOrder, source: ShopSource) -> FactoryR
             seed=order.seed,
             programs=source.programs,
             listeners=Listeners(
-                part=(tables.part, PartBound(MOST_PARTS).part),
+                part=(tables.part,),
+                count=(PartBound(MOST_PARTS).count,),
                 state=(shown.state, states.state),
             ),
         )

@@ -33,14 +33,16 @@ from service.errors import Conflict, Unavailable
 from service.files import write_atomically
 from service.ids import new_id
 from service.jobs import child
-from service.jobs.task import UNFINISHED, clear
+from service.jobs.task import clear
 from service.knowledge.verbs import require_usable
-from service.live.storage import storing
+from service.live.journal import storing
 from service.problem import plain_problem
 from service.process_limits import GIB, ProcessLimits
 from service.storage import jobs
 from service.storage.folder import DataFolder, FolderAddress, known_data_folder
 from service.storage.jobs import Job, JobState
+from service.storage.results import UNFINISHED
+from stepnc_model.units import hours_from_seconds
 
 LOOK = 0.05
 """Interval between two looks at the queue, in s."""
@@ -190,7 +192,7 @@ class Runner:
             _ask_to_end(each)
 
     def _has_room(self, *, is_paced: bool) -> bool:
-        """Whether one more paced, or one more other job may start."""
+        """True if one more paced, or one more other job may start."""
         count = sum(each.job.is_paced == is_paced for each in self.running.values())
         return count < (MOST_PACED if is_paced else self.workers)
 
@@ -246,8 +248,8 @@ class Runner:
             problem = plain_problem(
                 422,
                 "Too long",
-                f"took more than {_processor(job) / 3600.0:g} h of processor time, the limit "
-                "of such a job",
+                f"took more than {hours_from_seconds(_processor(job)):g} h of processor time, "
+                "the limit of such a job",
             )
             end = SilentEnd(job=job, state=JobState.FAILED, problem=problem)
         else:
@@ -279,7 +281,8 @@ def _processor(job: Job) -> int:
 
 def _too_long(job: Job) -> dict[str, Any]:
     """Return the problem of a job that exceeded its time limit."""
-    detail = f"not finished after {_longest(job) / 3600.0:g} h, the time limit of such a job"
+    hours = hours_from_seconds(_longest(job))
+    detail = f"not finished after {hours:g} h, the time limit of such a job"
     return plain_problem(422, "Too long", detail)
 
 
@@ -312,7 +315,7 @@ def beat(data_folder: DataFolder, name: str = "") -> None:
 
 
 def is_alive(data_folder: DataFolder) -> bool:
-    """Whether a runner, of this host or another one, has recorded a heartbeat recently."""
+    """True if a runner, of this host or another one, has recorded a heartbeat recently."""
     query = "SELECT 1 FROM runner WHERE seen > wall_clock() - ? LIMIT 1"
     with data_folder.database.reading() as connection:
         return connection.execute(query, (LEASE * BEAT,)).fetchone() is not None

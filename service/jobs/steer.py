@@ -7,11 +7,11 @@ from service.control.facts import exceeded, rows
 from service.control.live import LiveControl
 from service.control.record import keep
 from service.control.run import prepare
-from service.files import write_atomically
-from service.jobs.task import REPORT, RunningJob, samples_place
+from service.jobs.task import RunningJob, samples_place
 from service.requests.runs import ControlRequest
 from service.session.runner import LiveRunner
 from service.simulation.run import RunFiles
+from service.storage.results import REPORT
 from service.trial.request import TrialRequest
 from service.trial.run import TrialRun
 from service.verbs.control.result import ControlResult
@@ -56,7 +56,7 @@ def run_control(task: RunningJob) -> None:
         run = live.finish()
     found = ControlResult(run=run)
     if run.trace is not None:
-        write_atomically(task.folder / REPORT, found.page().encode(errors="replace"))
+        task.keep_report(found.page())
     if request.is_recorded:
         trace = f"/v1/control-runs/{task.job.id}/samples"
         keep(run, task.data_folder.knowledge, by=task.job.owner, trace=trace, tell=task.tell)

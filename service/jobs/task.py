@@ -1,52 +1,29 @@
 """A running job: its request, its result folder, and its progress."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import orjson
 
 from service.errors import NotFound, Unavailable
 from service.extras import has_package
-from service.files import write_atomically
-from service.live.folder import LiveFolder
+from service.files import with_names, write_atomically
+from service.live.journal import LiveFolder
 from service.progress import share_in
 from service.requests.fields import R, loaded
-from service.requests.given import ProgramRequest
-from service.requests.stock import StockFile
-from service.storage import jobs
+from service.requests.given import ProgramRequest, StockFile
+from service.storage import files, jobs
+from service.storage.files import FileKind
 from service.storage.folder import DataFolder
 from service.storage.jobs import Job, JobKind
-
-if TYPE_CHECKING:
-    from service.requests.stored_advice import StoredAdviceRequest
-    from service.requests.stored_verification import QueuedVerification
+from service.storage.results import OPTIMISED, REPORT, RESULT, SAMPLES, UNFINISHED
 
 P = TypeVar("P", bound=ProgramRequest)
-
-S = TypeVar("S", bound="StoredAdviceRequest | QueuedVerification")
-"""Type of requests that may name an uploaded raw part."""
-
-RESULT = "result.json"
-OPTIMISED = "optimised.stpnc"
-REPORT = "report.html"
-SAMPLES = "samples.parquet"
-NC_CODE = "program.nc"
-FEEDS = "feeds.csv"
-CURVES = "curves.json"
-PLACES = "places"
-"""Name of the files of places, without their suffixes."""
-SURFACE = "surface.parquet"
-LOG = "log.parquet"
-
-UNFINISHED = (".*", "*.partial.*")
-"""File name patterns of incomplete files, which no client can request."""
-
-LARGE = (*UNFINISHED, "series.bin", SAMPLES, f"{PLACES}.*", SURFACE, LOG)
-"""File name patterns of large files, removed to recover from a full disk."""
 
 APART = 0.5
 """Shortest time between two progress reports, in s."""
@@ -63,18 +40,21 @@ class RunningJob:
 
     data_folder: DataFolder
     job: Job
+    names: dict[Path, str] = field(default_factory=dict)
+    """Files that the job reads, with the names that their owners gave them."""
     _said: float = field(default=0.0)
 
     def request(self, kind: type[R]) -> R:
-        """Return the request of the job, with machine and material of library or shop.
+        """Return the request of the job, with machine, material and raw part of the service.
 
         What a client names is looked up here, in the one place through which every request
         comes: the code behind it takes paths too.
 
         Raises
         ------
-        UnknownMachine, Unreadable
-            When the machine is not known, or the material is no name.
+        UnknownMachine, Unreadable, NotFound
+            When the machine is not known, the material is no name, or the file of the raw part
+            was deleted.
         """
         found = loaded(kind, self.job.request)
         return self._named(found) if isinstance(found, ProgramRequest) else found
@@ -85,28 +65,29 @@ class RunningJob:
         from service.storage.library import machine_word, material_word  # noqa: PLC0415
 
         words = {"machine": machine_word, "material": material_word}
-        own = {
+        own: dict[str, object] = {
             name: word(self.data_folder, getattr(request, name))
             for name, word in words.items()
             if hasattr(request, name)
         }
+        stock = self.upload(getattr(request, "stock_id", None), FileKind.STOCK)
+        if stock is not None:
+            own["stock"] = StockFile(path=stock, solid=getattr(request, "stock_solid", ""))
         return replace(request, **own)  # type: ignore[arg-type]
 
-    def with_stock(self, request: S, names: dict[Path, str]) -> S:
-        """Return the request with the file of an uploaded raw part, and note its name.
+    def upload(self, id: str | None, kind: FileKind) -> Path | None:
+        """Return an uploaded file, and note its name; None without an id.
 
         Raises
         ------
         NotFound
             When the file was deleted.
         """
-        if request.stock_id is None:
-            return request
-        from service.storage import files  # noqa: PLC0415 (used by those who name one)
-
-        path = files.require_file(self.data_folder, request.stock_id, files.FileKind.STOCK)
-        names[path] = files.get(self.data_folder, request.stock_id).name
-        return replace(request, stock=StockFile(path=path, solid=request.stock_solid))
+        if id is None:
+            return None
+        path = files.require_file(self.data_folder, id, kind)
+        self.names[path] = files.get(self.data_folder, id, kind).name
+        return path
 
     @property
     def folder(self) -> Path:
@@ -124,6 +105,22 @@ class RunningJob:
         if share is not None:
             self.progress(share, message.split("]", 1)[-1].strip())
 
+    def say(self, message: str) -> None:
+        """Report a message with the owners' names of files, also one without a share."""
+        named = with_names(message, self.names)
+        if share_in(named) is None:
+            self.progress(0.0, named)
+        else:
+            self.tell(named)
+
+    def named(self, found: Any) -> Any:
+        """Return a record with the owners' names of files."""
+        if isinstance(found, str):
+            return with_names(found, self.names)
+        if isinstance(found, Mapping):
+            return {key: self.named(value) for key, value in found.items()}
+        return [*map(self.named, found)] if isinstance(found, list | tuple) else found
+
     def progress(self, share: float, message: str) -> None:
         """Record the progress of the job; a failed report is not repeated."""
         now = time.monotonic()
@@ -136,6 +133,12 @@ class RunningJob:
         """Write the result, or another JSON file; arrays become lists, NaN becomes null."""
         option = orjson.OPT_SERIALIZE_NUMPY | orjson.OPT_NON_STR_KEYS
         write_atomically(self.folder / name, orjson.dumps(result, option=option))
+
+    def keep_report(self, page: str) -> None:
+        """Write the report, with the owners' names of files."""
+        names = {path: escape(name) for path, name in self.names.items()}
+        data = with_names(page, names).encode(errors="replace")
+        write_atomically(self.folder / REPORT, data)
 
     def make_folder(self) -> bool:
         """Create the result folder and remove unfinished files of an earlier attempt.
@@ -169,7 +172,11 @@ class RunningJob:
         NotFound
             When the program was deleted.
         """
-        return program_file(self.data_folder, program=self.job.program, source=self.job.source)
+        file, name = program_file(
+            self.data_folder, program=self.job.program, source=self.job.source
+        )
+        self.names[file] = name
+        return file, name
 
 
 def clear(folder: Path, patterns: Sequence[str]) -> None:

@@ -114,7 +114,7 @@ def _value(leaf: AttributeColumn, value: Any, where: str) -> Any:
 
 
 def _is_too_large(value: object) -> bool:
-    """Whether a value is an integer that is too large for a column."""
+    """True if a value is an integer that is too large for a column."""
     return isinstance(value, int) and abs(value) > LARGEST
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from optimiser.safety import USUAL_QUANTILE
 from simulator.spec import Machine, MaterialMatch
+from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.tool import tool_of
@@ -92,9 +93,9 @@ def finding_of(factor: "AcceptedFactor", *, safety: float) -> Finding:
     """Return a note that tells the user about an applied factor."""
     when = factor.accepted_at.date().isoformat()
     text = (
-        f"tool '{factor.tool}': learned k_c × {factor.centre:.3f} from {factor.outcomes} "
-        f"outcomes, accepted by {factor.accepted_by} on {when}; bounds are kept at its "
-        f"{100.0 * safety:g} % quantile, × {factor.factor:.3f}"
+        f"tool '{factor.tool}': learned k_c × {factor.centre:.3f} from "
+        f"{counted(factor.outcomes, 'outcome')}, accepted by {factor.accepted_by} on {when}; "
+        f"bounds are kept at its {100.0 * safety:g} % quantile, × {factor.factor:.3f}"
     )
     return Finding(severity=Severity.NOTE, message=text)
 

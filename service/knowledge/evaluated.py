@@ -9,19 +9,13 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from kbe.corrections import learned
-from kbe.evaluation import (
-    EvaluationRow,
-    evaluation,
-    ordered,
-    selected,
-)
-from kbe.groups import Group
-from kbe.selection import Selection
-from kbe.side import Knowledge
+from kbe.evaluation import EvaluationRow, Knowledge, evaluation, ordered, selected
+from kbe.queries import Group, Selection
 from kbe.store import Store
 from service.knowledge.verbs import readable, shown
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.requests.knowledge import EvaluationRequest
+from stepnc_model.counted import counted
 from stepnc_model.outcome import Context
 
 MANY = 100_000
@@ -71,7 +65,9 @@ def table(place: str, request: EvaluationRequest, *, tell: Tell = silent) -> Eva
         if store is not None:
             outcomes = store.count(request.selection)
             if outcomes > MANY:
-                tell(f"reading {outcomes} outcomes; use --summary for a fast overview")
+                tell(
+                    f"reading {counted(outcomes, 'outcome')}; use --summary for a fast overview"
+                )
             rows = _rows(store, request, at=now)
     kept = ordered(selected(rows, request.only), request.sort)
     return EvaluationTable(

@@ -14,11 +14,10 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 
-from kbe.evaluation import EvaluationRow
+from kbe.evaluation import TYPES, EvaluationRow, Side
 from kbe.factor import FactorInterval
-from kbe.grade import EvaluationGrade
-from kbe.groups import Group, Spread
-from kbe.side import TYPES, Side
+from kbe.queries import Group, Spread
+from kbe.remarks import EvaluationGrade
 from kbe.statistics import DeviationStatistics, Evaluated
 from service.rendering.columns import BLANK, Cell, Change, Column, shown
 from stepnc_model.outcome import EvaluatedQuantity

@@ -58,7 +58,7 @@ def usual_file() -> Path:
 
 
 def is_usual(place: str) -> bool:
-    """Whether a location is the default file."""
+    """True if a location is the default file."""
     try:
         return place == str(usual_file())
     except StepNcError:

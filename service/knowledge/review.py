@@ -12,8 +12,7 @@ from math import expm1
 
 from kbe.acceptance import AcceptanceBounds, Objection, objections
 from kbe.corrections import LearnedFactor, learned
-from kbe.ledger import Standing, StoredCorrection
-from kbe.selection import Selection
+from kbe.queries import Selection, Standing, StoredCorrection
 from kbe.store import Store
 from service.knowledge.verbs import readable
 from service.requests.knowledge import ReviewRequest
@@ -136,7 +135,7 @@ def _reviewed(
 
 
 def is_changed(proposed: LearnedCorrection, before: LearnedCorrection) -> bool:
-    """Whether a proposal differs from the last one."""
+    """True if a proposal differs from the last one."""
     change = abs(expm1(proposed.log_centre - before.log_centre))
     return proposed.outcomes > before.outcomes or change > SAME
 

@@ -15,13 +15,13 @@ from pathlib import Path
 
 from kbe import backup as copies
 from kbe.backup import Content
+from kbe.connection import parsed_place
 from kbe.errors import StoreFull, StoreReadOnly, UnknownCorrection
 from kbe.factor import SAFE, factor_at
-from kbe.ledger import StoredCorrection
-from kbe.selection import EVERYTHING, Selection
+from kbe.queries import EVERYTHING, Selection, StoredCorrection
 from kbe.store import Store, open_store, open_to_read
-from kbe.store_location import parsed_place
 from service.knowledge.place import is_usual, make_folder
+from stepnc_model.counted import counted
 from stepnc_model.errors import StepNcError
 from stepnc_model.outcome import Context, LearnedCorrection, ProcessOutcome
 
@@ -123,7 +123,7 @@ class RecordCount:
     def __str__(self) -> str:
         known = self.total - self.new
         known_text = f" (already recorded: {known} of {self.total})" if known else ""
-        return f"{self.new} outcome{'' if self.new == 1 else 's'}{known_text}"
+        return f"{counted(self.new, 'outcome')}{known_text}"
 
 
 def record(place: str, outcomes: Sequence[ProcessOutcome]) -> RecordCount:

@@ -19,11 +19,9 @@ import sklearn
 import skops.io
 
 from service.files import read_bytes, write_atomically
-from service.learning.learned import Baseline, LearnedModel
-from service.learning.models import ModelKind
-from service.learning.power_law import PowerLaw
+from service.learning.models import Baseline, LearnedModel, ModelKind, PowerLaw
 from service.learning.table import PHYSICS, Features
-from service.rendering.records import dump
+from service.rendering.columns import dump
 from stepnc_model.errors import StepNcError
 from stepnc_model.zip_member import DAMAGES, read_member, require_sizes
 

@@ -10,8 +10,7 @@ from pathlib import Path
 import pyarrow as pa
 from pyarrow import csv
 
-from service.dataset.folder import MANIFEST, DatasetFolder
-from service.dataset.rows import SCHEMA
+from service.dataset.folder import MANIFEST, SCHEMA, DatasetFolder
 from service.files import read_bytes, require_regular
 from service.parquet_pieces import parquet_file, parquet_pieces
 from stepnc_model.errors import StepNcError

@@ -17,7 +17,7 @@ from types import TracebackType
 import numpy as np
 
 from service.errors import NotFound
-from service.live.storage import storing, write_whole
+from service.live.journal import storing, write_whole
 from simulator.motion.segments import Floats, Ints
 
 BLOCK = 16 << 20
@@ -135,7 +135,7 @@ class Window:
 
     @property
     def is_reduced(self) -> bool:
-        """Whether rows were merged."""
+        """True if rows were merged."""
         return self.rows > len(self.time)
 
 

@@ -18,7 +18,7 @@ REMEMBERED = 50
 
 
 class Freshness(StrEnum):
-    """Whether the shown values of a machine can be trusted."""
+    """True if the shown values of a machine can be trusted."""
 
     NONE = "none"
     """No observation has come yet."""

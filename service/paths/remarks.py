@@ -1,18 +1,20 @@
 """Warnings about a program, the same for every command that reads it."""
 
-from service.reading import Tell
+from service.progress import Tell
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.plausibility import implausible, unit_findings
 from stepnc_model.program import Program
 from stepnc_model.tolerance import tolerance_findings
-from stepnc_model.toolpath.generate import generate
+from stepnc_model.toolpath.generate import PathOf, generate, workingstep_path
 from stepnc_model.toolpath.path import ToolPath
 from stepnc_model.toolpath.remarks import remarks
 
 
-def program_remarks(program: Program) -> tuple[Finding, ...]:
+def program_remarks(
+    program: Program, path_of: PathOf = workingstep_path
+) -> tuple[Finding, ...]:
     """Warnings about a program and the tool paths that can be made for it."""
-    paths = generate(program, lambda _executable, _error: None)
+    paths = generate(program, lambda _executable, _error: None, path_of=path_of)
     return remarks(program, (path for path in paths if isinstance(path, ToolPath)))
 
 

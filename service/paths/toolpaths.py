@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from service.paths.remarks import tell_check, tell_remarks
-from service.progress import Progress
-from service.reading import Tell, silent
+from service.progress import Progress, Tell, silent
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import Setup
 from stepnc_model.errors import Finding, SchemaError
@@ -16,9 +15,10 @@ from stepnc_model.post.blocks import Cycles
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.dialects import with_exact_stops, write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Program, ProgramLine, ResolvedWorkingstep, Stock
+from stepnc_model.program import Program, ResolvedWorkingstep, Stock
+from stepnc_model.program_listing import ProgramLine
 from stepnc_model.technology import programmed
-from stepnc_model.toolpath.generate import generate, raised
+from stepnc_model.toolpath.generate import PathOf, generate, raised, workingstep_path
 from stepnc_model.toolpath.left_out import LeftOut
 from stepnc_model.toolpath.path import LEFT_OUT, Function, Point, ToolPath
 from stepnc_model.toolpath.remarks import remarks
@@ -74,7 +74,13 @@ def with_remarks(paths: Paths, tell: Tell) -> Paths:
     return replace(paths, told=told)
 
 
-def paths_of(program: Program, *, keep_going: bool = False, tell: Tell = silent) -> Paths:
+def paths_of(
+    program: Program,
+    *,
+    keep_going: bool = False,
+    tell: Tell = silent,
+    path_of: PathOf = workingstep_path,
+) -> Paths:
     """Generate the tool paths of a program, or take those that it contains."""
     faults: list[SchemaError] = []
     progress = Progress(tell, total=len(program.workingsteps))
@@ -85,7 +91,7 @@ def paths_of(program: Program, *, keep_going: bool = False, tell: Tell = silent)
         items.append(_left_out(executable.ref, executable.id))
         tell(f"left out: '{executable.id}': {fault}")
 
-    for item in generate(program, left_out if keep_going else raised):
+    for item in generate(program, left_out if keep_going else raised, path_of=path_of):
         items.append(item)
         progress()
     if not any(isinstance(item, ToolPath) for item in items):

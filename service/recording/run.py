@@ -1,18 +1,35 @@
-"""Records what a machine's MTConnect agent tells into a Parquet or CSV file."""
+"""Records what a machine's MTConnect agent tells into a Parquet or CSV file.
 
+Rows of a recording as lines of a CSV file, on the disk before they are announced.
+
+A Parquet file can only be read once its last bytes are written. So a recording writes its rows
+here too, as they come; the file goes when that of the recording has its name. What is left
+after a power cut or ``kill -9`` is a table that every command reads which reads a recording,
+but for a last line that may be cut off.
+"""
+
+import os
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from service.reading import Tell, silent
-from service.recording.row_journal import RowJournal
+from service.progress import Tell, silent
 from service.requests.fields import require_bounds
 from service.requests.recording import RecordingRequest
-from service.run_file import ColumnKind, RunColumn, RunFile, Values, require_suffix, words_of
+from service.run_file import (
+    ColumnKind,
+    CsvRows,
+    RunColumn,
+    RunFile,
+    Values,
+    require_suffix,
+    words_of,
+)
 from simulator.client.columns import (
     EXECUTION,
     RUNNING,
@@ -24,7 +41,88 @@ from simulator.client.columns import (
 )
 from simulator.client.connection import AgentClient, ClientObservation, StreamPart
 from simulator.errors import AgentError
-from stepnc_model.errors import StepNcError
+from stepnc_model.counted import counted
+from stepnc_model.errors import StepNcError, WriteError
+
+if TYPE_CHECKING:
+    from io import BufferedWriter
+
+
+class RowJournal:
+    """Open journal of a recording. Running state.
+
+    Parameters
+    ----------
+    path : Path
+        File that the recording will have; the journal stands beside it, as ``.partial.csv``.
+    columns : sequence of RunColumn
+
+    Raises
+    ------
+    WriteError
+        When the disk refuses.
+    """
+
+    def __init__(self, path: Path, columns: Sequence[RunColumn]) -> None:
+        self.place = path
+        try:
+            self.place, self._stream = _opened(path)
+            self._rows = CsvRows(self._stream, columns)
+        except OSError as error:
+            raise self._refused(error) from error
+
+    def write(self, values: Sequence[Values]) -> None:
+        """Hand rows over to the operating system, which keeps them when this process dies.
+
+        Raises
+        ------
+        WriteError
+            When the disk refuses.
+        """
+        try:
+            self._rows.write(values)
+            self._stream.flush()
+        except OSError as error:
+            raise self._refused(error) from error
+
+    def sync(self) -> None:
+        """Wait until all rows are on the disk, which keeps them when the power fails.
+
+        Raises
+        ------
+        WriteError
+            When the disk refuses.
+        """
+        try:
+            os.fsync(self._stream.fileno())
+        except OSError as error:
+            raise self._refused(error) from error
+
+    def close(self) -> None:
+        """Close the file and leave it."""
+        # What the disk has refused once it refuses again.
+        with suppress(OSError):
+            self._stream.close()
+
+    def remove(self) -> None:
+        """Remove the file: its rows stand in that of the recording."""
+        self.close()
+        self.place.unlink(missing_ok=True)
+
+    def _refused(self, error: OSError) -> WriteError:
+        return WriteError(error.strerror or str(error), path=str(self.place))
+
+
+def _opened(path: Path) -> "tuple[Path, BufferedWriter]":
+    """First free name beside a file, opened: that of a broken-off recording stays as it is."""
+    number = 1
+    while True:
+        ending = ".partial.csv" if number == 1 else f".partial-{number}.csv"
+        place = path.with_suffix(ending)
+        with suppress(FileExistsError):
+            return place, place.open("xb")
+        number += 1
+
 
 EVERY = 5.0
 """s between lines of progress"""
@@ -190,7 +288,7 @@ class _Keeper:
         self._flush()
 
     def recording(self, output: Path) -> Recording:
-        """What was recorded."""
+        """Summary of a recording."""
         return Recording(
             file=output,
             rows=self.file.rows,
@@ -208,7 +306,7 @@ class _Keeper:
             self.tell(f"no connection: {part.fault}")
         if part.lost:
             self.lost += part.lost
-            self.tell(f"{part.lost} observations are lost: the agent's buffer ran over")
+            self.tell(f"lost {counted(part.lost, 'observation')}: the agent's buffer ran over")
         if part.is_restarted:
             self.restarts += 1
             self.tell("the agent has begun anew")
@@ -239,7 +337,7 @@ class _Keeper:
                 self._waiting.append(row)
 
     def _is_completed(self, observations: Sequence[ClientObservation]) -> bool:
-        """Whether a program is completed of which some was seen, or its start."""
+        """True if a program is completed of which some was seen, or its start."""
         for each in observations:
             if each.id != self._execution or each.value is None:
                 continue
@@ -256,7 +354,7 @@ class _Keeper:
             self._told = self.clock()
             if self.journal is not None:
                 self.journal.sync()
-            self.tell(f"{self.file.rows + len(self._waiting)} rows")
+            self.tell(counted(self.file.rows + len(self._waiting), "row"))
 
     def _flush(self) -> None:
         if not self._waiting:

@@ -3,14 +3,22 @@
 A result is a sequence of rows, which are frozen dataclasses. A column defines how one value of
 a row is named and shown: its key in files, its heading on screens, its format, and a help text
 with the symbol used in the papers.
+
+Rendering of rows as JSON and as lines of files.
+
+Keys carry their units and never change, because other programs read them.
 """
 
-from collections.abc import Callable, Sequence
+import json
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import groupby
 from math import isfinite
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar, cast
+
+from service.flat_file import FileColumn, Row, Value
+from stepnc_model.errors import Finding
 
 R = TypeVar("R")
 
@@ -153,3 +161,89 @@ def clock(seconds: float) -> str:
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours} h {minutes:02d} min" if hours else f"{minutes} min {rest:02d} s"
+
+
+def record(columns: Sequence[Column[R]], row: R) -> dict[str, Any]:
+    """Return a row as an object; keys with dots nest.
+
+    Examples
+    --------
+    >>> columns = [Column(key="force_n.mean", value=lambda row: row)]
+    >>> record(columns, 12.0)
+    {'force_n': {'mean': 12.0}}
+    """
+    found: dict[str, Any] = {}
+    for column in columns:
+        if column.key:
+            *path, last = column.key.split(".")
+            place = found
+            for name in path:
+                place = place.setdefault(name, {})
+            place[last] = plain(column.value(row))
+    return found
+
+
+def records(columns: Sequence[Column[R]], rows: Iterable[R]) -> list[dict[str, Any]]:
+    """Return an object for each row."""
+    return [record(columns, row) for row in rows]
+
+
+def file_columns(columns: Sequence[Column[R]]) -> tuple[FileColumn, ...]:
+    """Return the columns of a CSV or Parquet file."""
+    return tuple(FileColumn(name=each.key, kind=each.kind) for each in columns if each.key)
+
+
+def file_rows(columns: Sequence[Column[R]], rows: Iterable[R]) -> Iterator[Row]:
+    """Yield the rows of a CSV or Parquet file."""
+    keyed = [each for each in columns if each.key]
+    for row in rows:
+        yield {each.key: cast(Value, each.value(row)) for each in keyed}
+
+
+def finding_record(finding: Finding) -> dict[str, Any]:
+    """Return a finding as an object."""
+    return {
+        "severity": finding.severity.value,
+        "message": finding.message,
+        "entity": finding.entity,
+        "attribute": finding.attribute,
+        "line": finding.line,
+        "rule": finding.rule,
+    }
+
+
+def plain(value: Any) -> Any:
+    """Convert a value for JSON; numbers that are not finite become null."""
+    match value:
+        case float():
+            return float(value) if isfinite(value) else None
+        case datetime():
+            return value.isoformat()
+        case Change(before=before, after=after):
+            return {"before": plain(before), "after": plain(after)}
+        case dict():
+            return {key: plain(each) for key, each in value.items()}
+        case list() | tuple():
+            return [plain(each) for each in value]
+    return value
+
+
+def bare(value: Any) -> Any:
+    """Convert numbers of Part 21 files to those of Python, in containers too."""
+    match value:
+        case bool():
+            return value
+        case float():
+            return float(value)
+        case int():
+            return int(value)
+        case dict():
+            return {key: bare(each) for key, each in value.items()}
+        case list() | tuple():
+            return [bare(each) for each in value]
+    return value
+
+
+def dump(value: object) -> str:
+    """Return readable JSON without NaN."""
+    return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False, default=str)

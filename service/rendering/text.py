@@ -14,6 +14,7 @@ from typing import Any
 
 from service.rendering.columns import Column, R, visible
 from service.terminal import clean
+from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, Severity
 
 GAP = "  "
@@ -54,8 +55,10 @@ def table(  # noqa: PLR0913 (each is a choice of the caller)
     row_of: Callable[[R], object] = id,
     colour: Callable[[R], str] | None = None,
     foot: Mapping[str, str] | None = None,
-) -> Iterator[str]:
-    """Yield the lines of a table: header, rule, rows; in blocks if it is too wide.
+) -> Iterator[tuple[str, str]]:
+    """Yield the lines of a table with their ANSI colours: header, rule, rows.
+
+    A table that is too wide is yielded in blocks.
 
     Parameters
     ----------
@@ -81,25 +84,16 @@ def table(  # noqa: PLR0913 (each is a choice of the caller)
         colours.append("")
     for index, block in enumerate(blocks(laid, width=width)):
         if index:
-            yield ""
+            yield "", ""
         yield from _block(block, colours)
-
-
-def print_table(
-    columns: Sequence[Column[R]],
-    rows: Sequence[R],
-    *,
-    nothing: str = "",
-    foot: Mapping[str, str] | None = None,
-) -> None:
-    """Print a table to stdout."""
-    for line in table(columns, rows, width=screen_width(), nothing=nothing, foot=foot):
-        print_line(line)
 
 
 def print_line(text: str, colour: str = "") -> None:
     """Print a line of data to stdout; coloured only on a terminal that allows colours."""
-    sys.stdout.write(coloured(clean(text), colour if wants_colours() else "") + "\n")
+    shown = clean(text)
+    if colour and wants_colours():
+        shown = f"\x1b[{colour}m{shown}\x1b[0m"
+    sys.stdout.write(f"{shown}\n")
 
 
 def finding_lines(
@@ -113,17 +107,15 @@ def finding_lines(
     unique = {text: colour for text, colour in unique.items() if text not in said}
     yield from list(unique.items())[:MOST_FINDINGS]
     if len(unique) > MOST_FINDINGS:
-        yield f"... and {len(unique) - MOST_FINDINGS} more findings (--json has all)", ""
+        yield (
+            f"... and {counted(len(unique) - MOST_FINDINGS, 'more finding')} (--json has all)",
+            "",
+        )
 
 
 def one_line(text: str) -> str:
     """Return a name on one line without control characters; a dash where it is empty."""
     return clean(" ".join(text.split())) or "–"
-
-
-def coloured(text: str, colour: str) -> str:
-    """Return the text in an ANSI colour; unchanged without a colour."""
-    return f"\x1b[{colour}m{text}\x1b[0m" if colour else text
 
 
 def screen_width() -> int:
@@ -134,7 +126,7 @@ def screen_width() -> int:
 
 
 def wants_colours() -> bool:
-    """Whether stdout is a terminal and colours are not disabled."""
+    """True if stdout is a terminal and colours are not disabled."""
     return sys.stdout.isatty() and not os.environ.get("NO_COLOR")
 
 
@@ -186,7 +178,7 @@ def _widened(laid: Sequence[TextColumn]) -> list[TextColumn]:
     return wide
 
 
-def _block(laid: Sequence[TextColumn], colours: Sequence[str]) -> Iterator[str]:
+def _block(laid: Sequence[TextColumn], colours: Sequence[str]) -> Iterator[tuple[str, str]]:
     """Yield a block: header (of two levels if columns are grouped), rule, lines."""
     laid = _widened(laid)
     if any(each.column.group for each in laid):
@@ -194,12 +186,12 @@ def _block(laid: Sequence[TextColumn], colours: Sequence[str]) -> Iterator[str]:
             (name, list(members))
             for name, members in groupby(laid, key=lambda each: each.column.group)
         )
-        yield GAP.join(
+        over = GAP.join(
             name.ljust(sum(each.width for each in group) + len(GAP) * (len(group) - 1))
             for name, group in names
-        ).rstrip()
-    yield GAP.join(each.place(each.column.heading) for each in laid).rstrip()
-    yield GAP.join("-" * each.width for each in laid)
+        )
+        yield over.rstrip(), ""
+    yield GAP.join(each.place(each.column.heading) for each in laid).rstrip(), ""
+    yield GAP.join("-" * each.width for each in laid), ""
     for row, colour in enumerate(colours):
-        line = GAP.join(each.place(each.cells[row]) for each in laid).rstrip()
-        yield coloured(line, colour)
+        yield GAP.join(each.place(each.cells[row]) for each in laid).rstrip(), colour

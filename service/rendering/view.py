@@ -4,15 +4,16 @@ An item with a key is a member of the JSON object; an item with a text, a headin
 shown to people. So most items are both.
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
+from textwrap import wrap
 from typing import Any, TypeVar
 
-from service.rendering.columns import Column, visible
-from service.rendering.records import bare, finding_record, record, records
-from service.rendering.text import finding_lines, table
-from stepnc_model.errors import Finding, StepNcError
+from service.rendering.columns import Column, bare, finding_record, record, records, visible
+from service.rendering.text import finding_lines, one_line, table
+from stepnc_model.errors import Finding, Severity, StepNcError
 
 R = TypeVar("R")
 
@@ -26,6 +27,15 @@ class TextLine:
     """ANSI colour on terminals."""
     is_told: bool = False
     """True if it was told while the work was done; shown where messages were not."""
+    is_wrapped: bool = False
+    """True for a sentence that goes on in the next line where the terminal ends."""
+
+    def lines(self, width: int) -> Iterator[str]:
+        """Yield the lines of a terminal of some width."""
+        if not self.is_wrapped:
+            yield self.text
+            return
+        yield from wrap(one_line(self.text), width=max(width, 20), subsequent_indent="   ")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,7 +110,7 @@ class ResultView:
         for item in self.items:
             match item:
                 case TextLine() if not (item.is_told and is_told):
-                    yield item.text, item.colour
+                    yield from ((line, item.colour) for line in item.lines(width))
                 case Table() if item.is_shown:
                     yield from _table_lines(item, width)
                 case Findings():
@@ -148,10 +158,18 @@ class ResultView:
                     parts.append(f"<p>{escape(item.text)}</p>")
                 case Table() if item.is_shown and item.rows:
                     parts.append(_html_table(item))
-                case Findings():
-                    found = finding_lines(item.found)
-                    parts += [f"<p><small>{escape(text)}</small></p>" for text, _ in found]
+                case Findings() if item.found:
+                    parts.append(_html_findings(item.found))
         return "\n".join(parts)
+
+
+def _html_findings(found: Sequence[Finding]) -> str:
+    """Return findings folded under their numbers; open where one is an error."""
+    counts = Counter(each.severity for each in found)
+    summary = ", ".join(f"{severity}: {counts[severity]}" for severity in counts)
+    is_open = " open" if Severity.ERROR in counts else ""
+    texts = "".join(f"<p><small>{escape(text)}</small></p>" for text, _ in finding_lines(found))
+    return f"<details{is_open}><summary>{summary}</summary>{texts}</details>"
 
 
 def _table_lines(item: Table, width: int) -> Iterator[tuple[str, str]]:
@@ -163,8 +181,7 @@ def _table_lines(item: Table, width: int) -> Iterator[tuple[str, str]]:
         item.columns, item.shown_rows, width=width, nothing=item.nothing, foot=item.foot,
         row_of=item.row_of, colour=item.colour,
     )  # fmt: skip
-    for line in lines:
-        yield line, ""
+    yield from lines
 
 
 def _html_table(item: Table) -> str:

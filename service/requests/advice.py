@@ -184,7 +184,7 @@ class AdviceRequest(ProgramRequest):
         ControlModelName,
         About(
             "motion control along the path, which decides how early a feed is commanded: fir, "
-            "junction or exact-stop",
+            "junction, exact-stop or linuxcnc",
             group="along the path",
             flag="--motion",
         ),
@@ -202,7 +202,7 @@ class AdviceRequest(ProgramRequest):
         Interval(gt=0.0, le=1.0),
         About(
             "also compute the smoothest profile along the path that takes at most this share "
-            "of time more than the fastest",
+            "longer than the fastest",
             group="along the path", flag="--smooth", metavar="SHARE",
         ),
     ] = None  # fmt: skip
@@ -274,6 +274,24 @@ class AdviceRequest(ProgramRequest):
         About(
             "of NC code: a tool whose feeds stay as programmed; repeatable",
             group="NC code", flag="--keep", metavar="TOOL",
+        ),
+    ] = ()  # fmt: skip
+    keeps_state: Annotated[
+        tuple[Name, ...],
+        MaxLen(1000),
+        About(
+            "of NC code: a program that it calls by M98 or G65, that is not in its file, and "
+            "that leaves modal state and offsets as they were; repeatable",
+            group="NC code", flag="--keeps-state", metavar="PNUMBER",
+        ),
+    ] = ()  # fmt: skip
+    spindle: Annotated[
+        tuple[Name, ...],
+        MaxLen(1000),
+        About(
+            "of NC code: speed in rpm of a tool that turns at one which the code does not "
+            "state, T1=18000, or 18000 for all such tools; repeatable",
+            group="NC code", flag="--spindle", metavar="TOOL=RPM",
         ),
     ] = ()  # fmt: skip
     is_unrolled: Annotated[

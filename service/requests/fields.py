@@ -6,7 +6,7 @@ help, the OpenAPI schemas, and the checks of values. Field names are keys in JSO
 """
 
 import argparse
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, Field, dataclass, fields, replace
 from enum import StrEnum
 from pathlib import Path
@@ -65,6 +65,8 @@ class About:
     """Name of a set of options of which exactly one must be given; empty: of none."""
     metavar: str | None = None
     examples: tuple[object, ...] = ()
+    is_word: bool = False
+    """True for a value that the command line takes without an option, as it does files."""
     read: Callable[[str], object] | None = None
     """Reads the text of the option; None: its type tells how. Values in JSON never pass it."""
 
@@ -94,7 +96,19 @@ class RequestField:
     is_optional: bool
     about: About
     bounds: tuple[Any, ...]
+    member_bounds: tuple[Any, ...]
+    """Bounds of the members of a sequence."""
     default: Any
+
+    @property
+    def is_word(self) -> bool:
+        """True for what the command line takes without an option."""
+        return (self.about.is_word or self.about.use is not None) and not self.about.flag
+
+    @property
+    def is_typed(self) -> bool:
+        """True for what the command line takes."""
+        return self.is_word or bool(self.about.flag)
 
     @property
     def label(self) -> str:
@@ -121,8 +135,9 @@ def _field(field: Field[Any], hint: Any) -> RequestField | None:
     is_sequence = get_origin(kind) is tuple
     if is_sequence:
         kind = get_args(kind)[0]
+    members: Sequence[Any] = ()
     if get_origin(kind) is Annotated:
-        kind = get_args(kind)[0]
+        kind, *members = get_args(kind)
     default = field.default if field.default_factory is MISSING else field.default_factory()
     return RequestField(
         name=field.name,
@@ -131,15 +146,31 @@ def _field(field: Field[Any], hint: Any) -> RequestField | None:
         is_optional=is_optional,
         about=about,
         bounds=tuple(extras),
+        member_bounds=tuple(members) if is_sequence else (),
         default=default,
     )
+
+
+def text(word: str) -> str:
+    """Type of an argument that is text.
+
+    Raises
+    ------
+    ArgumentTypeError
+        When it cannot be encoded as UTF-8.
+    """
+    try:
+        word.encode()
+    except UnicodeEncodeError as error:
+        raise argparse.ArgumentTypeError(f"{word!r} is not valid text") from error
+    return word
 
 
 def output_path(word: str) -> Path:
     """Type of an argument that names a file or folder to be written.
 
     The places of a command's outputs are told from those of its inputs by this type, and
-    compared before it starts (:mod:`service.cli.places`).
+    compared before it starts (:mod:`service.cli.commands`).
     """
     return Path(word)
 
@@ -163,7 +194,7 @@ def add_options(
     for each in fields_of(kind):
         field = replace(each, default=(usual or {}).get(each.name, each.default))
         about = field.about
-        if not (about.flag or about.use is not None):
+        if not field.is_typed:
             continue
         if about.group not in groups:
             groups[about.group] = _group(parser, about.group)
@@ -184,17 +215,22 @@ def _group(parser: argparse.ArgumentParser, title: str) -> Any:
 
 
 def _add_option(parser: Any, field: RequestField) -> None:
-    """Add one option, or a file that is named without an option."""
+    """Add one option, or a word that is named without an option."""
     about = field.about
     words: dict[str, Any] = {"metavar": about.metavar, "help": _help(field)}
     if field.kind is Path:
         words["type"] = output_path if about.use is FileUse.OUTPUT else Path
-    elif not field.is_sequence and field.kind in NUMBERS:
+    elif (
+        field.kind in NUMBERS
+        and about.read is None
+        and (field.is_word or not field.is_sequence)
+    ):
         words["type"] = field.kind
     elif field.kind is not bool:
-        words["type"] = str
-    if not about.flag:
-        nargs = "*" if field.is_sequence else "?" if field.is_optional else None
+        words["type"] = text
+    if field.is_word:
+        least = "+" if field.default is MISSING else "*"
+        nargs = least if field.is_sequence else "?" if field.is_optional else None
         parser.add_argument(field.name, nargs=nargs, **words)
         return
     words |= {"dest": field.name, "default": None}
@@ -237,8 +273,7 @@ def from_options(kind: type[R], options: argparse.Namespace, **values: object) -
         When a word is not a value of its field.
     """
     for field in fields_of(kind):
-        is_typed = bool(field.about.flag) or field.about.use is not None
-        typed = getattr(options, field.name, None) if is_typed else None
+        typed = getattr(options, field.name, None) if field.is_typed else None
         if typed is not None and typed != []:
             values[field.name] = _read(field, typed)
     return kind(**values)
@@ -272,13 +307,15 @@ def _member(field: RequestField, typed: Any) -> Any:
 def member_of(kind: type[E], word: str, label: str) -> E:
     """Return the enumeration member with the given value, ignoring case.
 
+    A hyphen stands for a space, which needs quotes on the command line.
+
     Raises
     ------
     StepNcError
         When no member has this value.
     """
     for member in kind:
-        if member.value.lower() == word.lower():
+        if member.value.lower().replace(" ", "-") == word.lower().replace(" ", "-"):
             return member
     known = ", ".join(member.value for member in kind)
     raise StepNcError(f"unknown {label} '{word}'; known: {known}")
@@ -296,11 +333,20 @@ def require_bounds(request: Request) -> None:
     _require_one_of_each_set(request)
     for field in fields_of(type(request)):
         value = getattr(request, field.name)
-        unit = f" {field.about.unit}" if field.about.unit else ""
+        if value is None:
+            continue
         for bound in field.bounds:
-            if value is not None and (words := _broken(value, bound)):
-                shown = f"{value:g}" if isinstance(value, int | float) else f"of {len(value)}"
-                raise StepNcError(f"{field.label} {shown}{unit}: it must be {words}{unit}")
+            _require_within(value, bound, field)
+        for bound in field.member_bounds:
+            for member in value:
+                _require_within(member, bound, field)
+
+
+def _require_within(value: Any, bound: Any, field: RequestField) -> None:
+    if words := _broken(value, bound):
+        unit = f" {field.about.unit}" if field.about.unit else ""
+        shown = f"{value:g}" if isinstance(value, int | float) else f"of {len(value)}"
+        raise StepNcError(f"{field.label} {shown}{unit}: it must be {words}{unit}")
 
 
 def _require_one_of_each_set(request: Request) -> None:

@@ -49,6 +49,15 @@ Report = Annotated[
     ),
 ]  # fmt: skip
 
+NamedTools = Annotated[
+    Path | None,
+    About(
+        "tool table of the tools that a program only names: TOML or CSV, LinuxCNC's tool.tbl, "
+        "a library of Fusion (.json, .tools), HSMWorks (.hsmlib) or FreeCAD (.fctl)",
+        flag="--tools", use=FileUse.INPUT, metavar="TABLE",
+    ),
+]  # fmt: skip
+
 ToolsUnit = Annotated[
     FileUnit | None,
     About(
@@ -83,5 +92,14 @@ EntryName = Annotated[
     About(
         "show only this one, in full: its name or the path of its file",
         use=FileUse.INPUT, metavar="NAME",
+    ),
+]  # fmt: skip
+
+SetupOfCode = Annotated[
+    Path | None,
+    About(
+        "setup of NC code: tools, stock, material and machine, as `stepnc setup` drafts it "
+        "(default: PART.setup.toml beside PART.nc)",
+        group="NC code", flag="--setup", use=FileUse.INPUT, metavar="TOML",
     ),
 ]  # fmt: skip

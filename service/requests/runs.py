@@ -102,8 +102,9 @@ class MotionRequest(ProgramRequest):
     control: Annotated[
         ControlModelName,
         About(
-            "motion control of the path: exact-stop (every block from rest to rest), junction "
-            "or fir; none was identified on a machine of the library",
+            "motion control of the path: exact-stop (every block from rest to rest), junction, "
+            "fir or linuxcnc (its planner, within the path tolerances that post writes); none "
+            "was identified on a machine of the library",
             flag="--control",
         ),
     ] = ControlModelName.FIR

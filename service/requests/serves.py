@@ -1,4 +1,4 @@
-"""Which options serve which kind of program: one declaration for command line and REST.
+"""Options by kind of program: one declaration for command line and REST.
 
 An option that a kind of program cannot use is refused with its reason. An option that is not
 named here serves both kinds.
@@ -64,11 +64,13 @@ SERVES: Mapping[str, Serves] = {
         for name, why in {
             "finish": _OWN_TOOLS,
             "keep": _OWN_TOOLS,
+            "keeps_state": "a STEP-NC program calls no other one",
+            "spindle": "a STEP-NC program states the speeds of its technologies",
+            "setup": "a STEP-NC program has its own tools, stock and material",
             "is_unrolled": "a STEP-NC program has no calls and repeats",
             "dialect": "a STEP-NC program is for no control",
             "is_marked": "a STEP-NC program has records instead",
             "greatest_rise": "advice for a STEP-NC program follows from its own limits",
-            "tools_unit": "of a STEP-NC program, the tool table tells edges and wipers alone",
             "most_repeats": "a STEP-NC program has no calls and repeats",
         }.items()
     },

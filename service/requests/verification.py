@@ -7,8 +7,7 @@ from annotated_types import Interval
 
 from service.requests.advice import MachineName, MaterialName
 from service.requests.fields import About
-from service.requests.given import Name, ProgramRequest
-from service.requests.stock import StockText, raw_part_in
+from service.requests.given import Name, ProgramRequest, StockText, raw_part_in
 
 INCH_THOUSANDTH = 0.0254
 """0.001 inch in mm, which paper 004 resolves."""

@@ -19,32 +19,23 @@ from starlette.routing import Match, Route
 from starlette.types import Scope
 
 from service.errors import Conflict, NotFound
-from service.jobs.task import (
-    CURVES,
-    FEEDS,
-    NC_CODE,
-    OPTIMISED,
-    REPORT,
-    RESULT,
-    optimised_name,
-)
+from service.jobs.task import optimised_name
 from service.rest.advice_views import AdviceView, AdvisedView, CodeAdviceView, CurvesView
 from service.rest.asking import answered, result_file
 from service.rest.bodies import Id
-from service.rest.context import InDataFolder, OnPage, data_folder_of, page_reply
+from service.rest.context import InDataFolder, data_folder_of
 from service.rest.replies import (
     JSON,
     PreparedResponse,
     file_reply,
     matches,
-    report_reply,
     tag_of,
     tagged,
 )
-from service.rest.views import JobView, PageView, job_view
 from service.storage import jobs, programs
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobKind, JobState
+from service.storage.results import CURVES, FEEDS, NC_CODE, OPTIMISED, RESULT
 from stepnc_model.post.dialect import SUFFIXES, Dialect
 
 ROUTES = APIRouter(prefix="/v1/advice", tags=["advice"])
@@ -179,14 +170,10 @@ def _missing(data_folder: DataFolder, id: str) -> Exception:
     return Conflict(f"advice '{id}' has {job.state.value}: its job says why")
 
 
-def _cache(request: Request) -> AdviceCache:
-    found: AdviceCache = request.app.state.advice
-    return found
-
-
-async def _found(request: Request, id: str) -> CachedAdvice:
+async def found_advice(request: Request, id: str) -> CachedAdvice:
     """Return a result; in most cases from the cache, without a thread."""
-    cache, data_folder = _cache(request), data_folder_of(request)
+    cache: AdviceCache = request.app.state.advice
+    data_folder = data_folder_of(request)
     ready = cache.ready(data_folder, id)
     if ready is not None:
         return ready
@@ -200,7 +187,7 @@ async def _found(request: Request, id: str) -> CachedAdvice:
 )
 async def advised(request: Request, id: str, workingstep: str) -> Response:
     """Show the advice for a workingstep, by its id or its instance number without ``#``."""
-    parts = (await _found(request, id)).workingsteps
+    parts = (await found_advice(request, id)).workingsteps
     found = parts.get(workingstep) or parts.get(f"#{workingstep}")
     if found is None:
         raise NotFound("workingstep", workingstep)
@@ -226,20 +213,13 @@ async def _look_up(request: Request) -> Response:
     return await advised(request, **request.path_params)
 
 
-@ROUTES.get("", response_model=PageView[JobView], summary="List advice, newest first")
-async def list_advice(request: Request, data_folder: InDataFolder, cursor: OnPage) -> Response:
-    """List the advice jobs page by page."""
-    page = await answered(jobs.listed, data_folder, cursor, kind=JobKind.ADVICE)
-    return page_reply(request, page, [job_view(job) for job in page.items])
-
-
 @ROUTES.get("/{id}", response_model=AdviceView | CodeAdviceView, summary="Show advice")
 async def advice(request: Request, id: Id) -> Response:
     """Show all workingsteps with programmed and advised feed, limits and reason.
 
     Advice on NC code has the parts of the program by tool, with feeds along their paths.
     """
-    return (await _found(request, id)).whole.reply(request)
+    return (await found_advice(request, id)).whole.reply(request)
 
 
 @ROUTES.get(
@@ -253,7 +233,7 @@ async def optimised(request: Request, data_folder: InDataFolder, id: Id) -> Resp
 
     NC code that was rewritten is at ``nc``.
     """
-    result = await run_in_threadpool(_result, request, data_folder, id)
+    result = (await found_advice(request, id)).result
     if _is_code(result):
         raise NotFound("optimised STEP-NC program (the advice is on NC code)", id)
     name = _name(result, ".stpnc")
@@ -271,7 +251,7 @@ async def optimised(request: Request, data_folder: InDataFolder, id: Id) -> Resp
 )
 async def nc_code(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download NC code for the control that was named in the request, or the rewritten code."""
-    result = await run_in_threadpool(_result, request, data_folder, id)
+    result = (await found_advice(request, id)).result
     control = result["nc_control"]
     if control is None:
         raise NotFound("NC code (ask for advice with nc_control)", id)
@@ -291,7 +271,7 @@ async def nc_code(request: Request, data_folder: InDataFolder, id: Id) -> Respon
 )
 async def feeds(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download the feeds of the changed blocks and their parts, with the active limits."""
-    result = await run_in_threadpool(_result, request, data_folder, id)
+    result = (await found_advice(request, id)).result
     _require_along(result, id)
     name = f"{Path(programs.shown_name(result['program'])).stem}.feeds.csv"
     file = await result_file(data_folder, id, FEEDS)
@@ -304,7 +284,7 @@ async def curves(request: Request, data_folder: InDataFolder, id: Id) -> Respons
 
     Each stretch of a curve has the minimum and the maximum within it.
     """
-    result = await run_in_threadpool(_result, request, data_folder, id)
+    result = (await found_advice(request, id)).result
     _require_along(result, id)
     file = await result_file(data_folder, id, CURVES)
     try:
@@ -314,22 +294,8 @@ async def curves(request: Request, data_folder: InDataFolder, id: Id) -> Respons
     return tagged(request, body, tag_of(body))
 
 
-@ROUTES.get("/{id}/report", summary="Show the report as a page", response_class=Response,
-            responses={200: {"content": {"text/html": {}}}})  # fmt: skip
-async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """Show the self-contained HTML report, which can be saved, printed and sent."""
-    await answered(jobs.get, data_folder, id, JobKind.ADVICE)
-    file = await result_file(data_folder, id, REPORT)
-    return report_reply(request, file, id=id)
-
-
-def _result(request: Request, data_folder: DataFolder, id: str) -> dict[str, Any]:
-    """Return the result of an advice job."""
-    return _cache(request).get(data_folder, id).result
-
-
 def _is_code(result: dict[str, Any]) -> bool:
-    """Whether the advice is on NC code."""
+    """True if the advice is on NC code."""
     return "control" in result
 
 

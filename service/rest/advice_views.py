@@ -187,6 +187,17 @@ class MoveCountView(View):
     splittable: int = Field(description="number of moves whose block may be split")
 
 
+class FoundToolView(View):
+    """Tool that comments of NC code describe."""
+
+    number: int
+    kind: str
+    diameter_mm: float
+    teeth: int
+    guessed: str = Field(description="values that are guessed; empty: none")
+    line: int = Field(description="line of the comment")
+
+
 class CodeContentsView(View):
     """Contents and findings of NC code."""
 
@@ -199,6 +210,11 @@ class CodeContentsView(View):
     executed_moves: int
     frames: list[str]
     moves: list[MoveCountView]
+    tools: list[FoundToolView] = Field(description="tools that the comments describe")
+    stock: str = Field(description="stock that the code states or suggests; empty: none")
+    is_stock_guessed: bool
+    missing: list[str] = Field(description="what optimise still needs, in words")
+    command: str = Field(description="command with a name in capitals for what is missing")
     is_lossless: bool = Field(description="whether rewriting gives the file byte for byte")
     findings: list[FindingView]
 
@@ -318,6 +334,12 @@ class CodeAdviceView(View):
     machine: str
     material: str
     frame: str = Field(description="frame in which the stock stands")
+    is_checked: bool = Field(
+        default=True, description="whether no mill cuts deeper than its tool allows"
+    )
+    slower_than_programmed: list[str] = Field(
+        default=[], description="why parts of the program take longer than programmed"
+    )
     along_path: AlongPathView
     blocks: RewrittenView
     findings: list[FindingView]

@@ -21,7 +21,7 @@ from service.problem import plain_problem, problem_of, retry_after
 from service.rest import (
     advice,
     agent,
-    cycle_times,
+    comparisons,
     factories,
     files,
     health,
@@ -38,10 +38,13 @@ from service.rest import (
 from service.rest.access import AccessMiddleware
 from service.rest.context import PROBLEMS
 from service.rest.replies import problem_reply
+from service.rest.resource import routes_of
+from service.rest.resources import RESOURCES
 from service.rest.rights import is_protected, role_for
 from service.rest.settings import Settings, handed_on
 from service.rest.streams import StreamHub
 from service.storage.folder import DataFolder, known_data_folder, open_data_folder
+from service.storage.library import LibrarySection
 from stepnc_model.errors import StepNcError
 
 LOG = structlog.get_logger("app")
@@ -111,11 +114,10 @@ def _routed() -> FastAPI:
     )
     # The most frequently used first: routes are tried in this order.
     for routes in (
-        advice.ROUTES, jobs.ROUTES, live.CONTROL, live.TRIALS, programs.ROUTES,
-        simulations.ROUTES, factories.ROUTES, factories.SHOPS,
-        verifications.ROUTES, cycle_times.ROUTES, files.ROUTES,
-        knowledge.EVALUATIONS, knowledge.REVIEWS, knowledge.CORRECTIONS, knowledge.OUTCOMES,
-        library.MACHINES, library.MATERIALS, monitors.ROUTES,
+        advice.ROUTES, jobs.ROUTES, *map(routes_of, RESOURCES), live.ROUTES, programs.ROUTES,
+        comparisons.ROUTES, simulations.ROUTES, factories.ROUTES, factories.SHOPS,
+        verifications.ROUTES, files.ROUTES, knowledge.CORRECTIONS, knowledge.OUTCOMES,
+        *map(library.routes_of, LibrarySection), monitors.ROUTES,
         health.ROUTES, pages.ROUTES,
     ):  # fmt: skip
         app.include_router(routes)

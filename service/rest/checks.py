@@ -5,10 +5,14 @@ change: recent answers are cached, up to a total size.
 """
 
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from threading import BoundedSemaphore
 from typing import TypeVar
 
 from anyio import CapacityLimiter, to_thread
+
+from service.errors import Unavailable
 
 T = TypeVar("T")
 
@@ -20,10 +24,35 @@ MOST_BYTES = 32 << 20
 READERS = CapacityLimiter(MOST_AT_ONCE)
 """Limit of threads that read programs, each of which is held in memory."""
 
+READING = BoundedSemaphore(2)
+"""Limits how many programs are read at once to check requests; each is held in memory."""
+
+READING_WAIT = 30.0
+"""Longest time to wait for one of them, in s: readers that hang must not hold all threads."""
+
 
 async def in_turn(read: Callable[[], T]) -> T:
     """Read a program in a thread, while few other threads do."""
     return await to_thread.run_sync(read, limiter=READERS)
+
+
+@contextmanager
+def reading_in_turn() -> Iterator[None]:
+    """Block in which a program is read, while few others are.
+
+    Raises
+    ------
+    Unavailable
+        When no other reading ends in time.
+    """
+    if not READING.acquire(timeout=READING_WAIT):
+        raise Unavailable(
+            f"other programs are still being read after {READING_WAIT:g} s; try again"
+        )
+    try:
+        yield
+    finally:
+        READING.release()
 
 
 class CheckCache:

@@ -7,7 +7,7 @@ from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from service.errors import Unreadable
-from service.file_names import naming
+from service.files import naming
 from service.rest.asking import answered
 from service.rest.bodies import Id
 from service.rest.checks import in_turn

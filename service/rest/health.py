@@ -9,7 +9,7 @@ from starlette.concurrency import run_in_threadpool
 
 from service.errors import ServiceError
 from service.jobs.runner import is_alive
-from service.live.storage import has_room
+from service.live.journal import has_room
 from service.rest.asking import answered
 from service.rest.context import data_folder_of, owner_of, settings_of
 from service.rest.metrics import JOBS, TYPE, exposition

@@ -1,25 +1,21 @@
 """Routes of ``/v1/jobs``: state, progress, events, cancellation and deletion of jobs."""
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from service.rest.asking import answered
 from service.rest.bodies import Id
-from service.rest.context import InDataFolder, OnPage, key_of, page_reply
+from service.rest.context import InDataFolder, OnPage, key_of
 from service.rest.replies import json_reply
-from service.rest.results import stream_reply
+from service.rest.results import EVENTS, jobs_reply, stream_reply
 from service.rest.rights import require, role_to_end
 from service.rest.views import JobView, PageView, job_view
 from service.storage import jobs
 from service.storage.jobs import JobKind, JobState
 
 ROUTES = APIRouter(prefix="/v1/jobs", tags=["jobs"])
-
-EVENTS: dict[int | str, dict[str, Any]] = {
-    200: {"content": {"text/event-stream": {}}, "description": "server-sent events"}
-}
 
 
 @ROUTES.get("", response_model=PageView[JobView], summary="List jobs, newest first")
@@ -31,8 +27,7 @@ async def list_jobs(
     state: Annotated[JobState | None, Query(description="only jobs in this state")] = None,
 ) -> Response:
     """List jobs page by page."""
-    page = await answered(jobs.listed, data_folder, cursor, kind=kind, state=state)
-    return page_reply(request, page, [job_view(job) for job in page.items])
+    return await jobs_reply(request, data_folder, cursor, kind=kind, state=state)
 
 
 @ROUTES.get("/{id}", response_model=JobView, summary="Show a job")

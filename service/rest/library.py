@@ -8,12 +8,11 @@ from fastapi import APIRouter, Path, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from service.errors import Unreadable
-from service.rendering.records import dump
+from service.rendering.columns import dump
 from service.rest.context import InDataFolder
 from service.rest.replies import json_reply, matches, tag_of, tagged
 from service.rest.views import EntryView
 from service.storage import library
-from service.storage.folder import DataFolder
 from service.storage.library import (
     NAME,
     Condition,
@@ -22,9 +21,6 @@ from service.storage.library import (
     LibrarySection,
 )
 from service.verbs.library import entry_record
-
-MACHINES = APIRouter(prefix="/v1/machines", tags=["library"])
-MATERIALS = APIRouter(prefix="/v1/materials", tags=["library"])
 
 Known = Annotated[str, Path(max_length=200)]
 Own = Annotated[str, Path(pattern=NAME)]
@@ -38,54 +34,52 @@ TOML = {
 }
 
 
-@MACHINES.get("", response_model=list[EntryView], summary="List machines")
-async def machines(request: Request, data_folder: InDataFolder) -> Response:
-    """List all machines by name; a machine of the shop with an unreadable file says why."""
-    return await _all(request, data_folder, LibrarySection.MACHINES)
+def routes_of(section: LibrarySection) -> APIRouter:
+    """Return the routes of a section of the library."""
+    thing, place = section.one, section.value
+    routes = APIRouter(prefix=f"/v1/{place}", tags=["library"])
 
+    @routes.get(
+        "", response_model=list[EntryView], summary=f"List {place}", name=place,
+        description=f"List all {place} by name; one with an unreadable file says why.",
+    )  # fmt: skip
+    async def entries(request: Request, data_folder: InDataFolder) -> Response:
+        found = await run_in_threadpool(library.entries_of, data_folder, section)
+        return json_reply(request, [_view(each) for each in found])
 
-@MACHINES.get("/{name}", summary="Show a machine")
-async def machine(request: Request, data_folder: InDataFolder, name: Known) -> Response:
-    """Show a machine in canonical units: mm, s, N, W, rev/s."""
-    return await _one(request, data_folder, LibrarySection.MACHINES, name)
+    @routes.get("/{name}", summary=f"Show a {thing}", name=thing)
+    async def entry(request: Request, data_folder: InDataFolder, name: Known) -> Response:
+        """Show all values in canonical units: mm, s, N, W, rev/s."""
+        held = await run_in_threadpool(library.one, data_folder, section, name)
+        record = json.loads(dump(entry_record(held.entry)))
+        shown = orjson.dumps({**record, "name": name, "is_own": held.is_own})
+        if not held.is_own:
+            return json_reply(request, shown)
+        # The tag of the file, so that a client that has read it may change it with If-Match.
+        return tagged(request, shown, tag_of(held.text))
 
+    @routes.put("/{name}", summary=f"Store a {thing} of the shop", name=f"put_{thing}",
+                openapi_extra=TOML, response_model=EntryView)  # fmt: skip
+    async def put(request: Request, data_folder: InDataFolder, name: Own) -> Response:
+        """Store a valid file; with If-Match, only if the stored one is unchanged."""
+        data = await request.body()
+        if not data:
+            raise Unreadable("the body is empty: send the bytes of the file")
+        kept = await run_in_threadpool(
+            library.put, data_folder, section, name, data, condition=_condition(request)
+        )
+        return json_reply(request, _view(kept), headers={"etag": tag_of(data)})
 
-@MACHINES.put("/{name}", summary="Store a machine of the shop", openapi_extra=TOML,
-              response_model=EntryView)  # fmt: skip
-async def put_machine(request: Request, data_folder: InDataFolder, name: Own) -> Response:
-    """Store a valid machine file; with If-Match, only if the stored one is unchanged."""
-    return await _put(request, data_folder, LibrarySection.MACHINES, name)
+    @routes.delete("/{name}", status_code=204, summary=f"Delete a {thing} of the shop",
+                   name=f"delete_{thing}")  # fmt: skip
+    async def delete(request: Request, data_folder: InDataFolder, name: Own) -> Response:
+        """Delete what the shop has stored; the library itself stays. Honours If-Match."""
+        await run_in_threadpool(
+            library.remove, data_folder, section, name, condition=_condition(request)
+        )
+        return Response(status_code=204)
 
-
-@MACHINES.delete("/{name}", status_code=204, summary="Delete a machine of the shop")
-async def delete_machine(request: Request, data_folder: InDataFolder, name: Own) -> Response:
-    """Delete a machine of the shop; library machines cannot be deleted. Honours If-Match."""
-    return await _delete(request, data_folder, LibrarySection.MACHINES, name)
-
-
-@MATERIALS.get("", response_model=list[EntryView], summary="List materials")
-async def materials(request: Request, data_folder: InDataFolder) -> Response:
-    """List all materials by name."""
-    return await _all(request, data_folder, LibrarySection.MATERIALS)
-
-
-@MATERIALS.get("/{name}", summary="Show a material")
-async def material(request: Request, data_folder: InDataFolder, name: Known) -> Response:
-    """Show a material in canonical units: mm, s, N, W, rev/s."""
-    return await _one(request, data_folder, LibrarySection.MATERIALS, name)
-
-
-@MATERIALS.put("/{name}", summary="Store a material of the shop", openapi_extra=TOML,
-               response_model=EntryView)  # fmt: skip
-async def put_material(request: Request, data_folder: InDataFolder, name: Own) -> Response:
-    """Store a valid material file; with If-Match, only if the stored one is unchanged."""
-    return await _put(request, data_folder, LibrarySection.MATERIALS, name)
-
-
-@MATERIALS.delete("/{name}", status_code=204, summary="Delete a material of the shop")
-async def delete_material(request: Request, data_folder: InDataFolder, name: Own) -> Response:
-    """Delete a material of the shop; library materials cannot be deleted. Honours If-Match."""
-    return await _delete(request, data_folder, LibrarySection.MATERIALS, name)
+    return routes
 
 
 def _view(found: LibraryEntry | LibraryListing) -> dict[str, object]:
@@ -99,44 +93,6 @@ def _view(found: LibraryEntry | LibraryListing) -> dict[str, object]:
         "is_own": found.is_own,
         "problem": problem or None,
     }
-
-
-async def _all(request: Request, data_folder: DataFolder, section: LibrarySection) -> Response:
-    found = await run_in_threadpool(library.entries_of, data_folder, section)
-    return json_reply(request, [_view(each) for each in found])
-
-
-async def _one(
-    request: Request, data_folder: DataFolder, section: LibrarySection, name: str
-) -> Response:
-    held = await run_in_threadpool(library.one, data_folder, section, name)
-    entry = json.loads(dump(entry_record(held.entry)))
-    shown = orjson.dumps({**entry, "name": name, "is_own": held.is_own})
-    if not held.is_own:
-        return json_reply(request, shown)
-    # The tag of the file, so that a client that has read it may change it with If-Match.
-    return tagged(request, shown, tag_of(held.text))
-
-
-async def _put(
-    request: Request, data_folder: DataFolder, section: LibrarySection, name: str
-) -> Response:
-    data = await request.body()
-    if not data:
-        raise Unreadable("the body is empty: send the bytes of the file")
-    kept = await run_in_threadpool(
-        library.put, data_folder, section, name, data, condition=_condition(request)
-    )
-    return json_reply(request, _view(kept), headers={"etag": tag_of(data)})
-
-
-async def _delete(
-    request: Request, data_folder: DataFolder, section: LibrarySection, name: str
-) -> Response:
-    await run_in_threadpool(
-        library.remove, data_folder, section, name, condition=_condition(request)
-    )
-    return Response(status_code=204)
 
 
 def _condition(request: Request) -> Condition:

@@ -3,9 +3,8 @@
 from math import isnan
 from typing import Any
 
-from service.monitor.comparison import Comparison, StepComparison
 from service.monitor.monitor import MonitorStatus
-from service.monitor.observed import ObservedRun
+from service.monitor.observed import Comparison, ObservedRun, StepComparison
 from service.rest.replies import moment
 
 

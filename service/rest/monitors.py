@@ -1,31 +1,29 @@
 """Routes of ``/v1/monitors``: real machines, watched through their MTConnect agents."""
 
-from collections.abc import AsyncIterator
 from functools import partial
 from typing import Annotated, Any
 
 import orjson
 from fastapi import APIRouter, Path, Query, Request, Response
-from fastapi.responses import StreamingResponse
 from starlette.concurrency import run_in_threadpool
 
 from service.errors import NotFound
 from service.ids import PATTERN
-from service.jobs.task import RESULT
-from service.monitor.comparison import compared, predicted_steps
 from service.monitor.monitor import MachineMonitor
+from service.monitor.observed import compared, predicted_steps
 from service.rest.context import InDataFolder, hub_of, monitors_of
-from service.rest.jobs import EVENTS
 from service.rest.monitor_stream import MonitorReader
 from service.rest.monitor_views import comparison_view, monitor_view, status_view
 from service.rest.replies import json_reply
 from service.rest.results import (
+    EVENTS,
     SERIES_POINTS,
     Begin,
     End,
     Points,
     Signals,
-    require_done,
+    messages_reply,
+    result_of,
     window_reply,
 )
 from service.rest.views import ComparisonView, MonitorStatusView, MonitorView, SeriesView
@@ -106,19 +104,9 @@ async def comparison(
 
 
 def _result(data_folder: DataFolder, id: str) -> dict[str, Any]:
-    """Return the result of a simulation.
-
-    Raises
-    ------
-    NotFound, Conflict
-        When the simulation does not exist, or has no result.
-    """
-    require_done(jobs.get(data_folder, id, JobKind.SIMULATION))
-    try:
-        text = data_folder.fetched(data_folder.job_folder(id) / RESULT).read_bytes()
-    except FileNotFoundError:
-        raise NotFound("result of job", id) from None
-    found: dict[str, Any] = orjson.loads(text)
+    """Return the result of a simulation."""
+    job = jobs.get(data_folder, id, JobKind.SIMULATION)
+    found: dict[str, Any] = orjson.loads(result_of(data_folder, job))
     return found
 
 
@@ -130,13 +118,5 @@ def _result(data_folder: DataFolder, id: str) -> dict[str, Any]:
 )
 async def monitor_events(request: Request, name: Name) -> Response:
     """Stream events ``status``, ``rows`` and ``gap`` without end."""
-    watched, hub = monitor_of(request, name), hub_of(request)
-    hub.require_room()
-
-    async def messages() -> AsyncIterator[bytes]:
-        yield b"retry: 2000\n\n"
-        async for message in hub.watch_by(f"monitor {name}", partial(MonitorReader, watched)):
-            yield message
-
-    headers = {"cache-control": "no-store", "x-accel-buffering": "no"}
-    return StreamingResponse(messages(), media_type="text/event-stream", headers=headers)
+    reader = partial(MonitorReader, monitor_of(request, name))
+    return messages_reply(request, hub_of(request).watch_by(f"monitor {name}", reader))

@@ -10,12 +10,10 @@ from starlette.concurrency import run_in_threadpool
 from service.code_check import checked_code
 from service.errors import Unreadable
 from service.files import read_bytes
-from service.numbers import tool_numbers_in
 from service.program_kind import ProgramKind, kind_of
-from service.rendering.records import dump
-from service.requests.fields import dumped, loaded
+from service.rendering.columns import dump
+from service.requests.fields import dumped
 from service.requests.given import ISO, Name, Units
-from service.requests.serves import OF_PATHS, given_values, require_options_served
 from service.requests.stored_advice import StoredAdviceRequest
 from service.rest.advice_views import CodeContentsView
 from service.rest.asking import answered
@@ -28,23 +26,20 @@ from service.rest.context import (
     OnPage,
     idempotency_of,
     page_reply,
-    queued,
-    runnable,
     settings_of,
 )
-from service.rest.raw_part import require_stock
+from service.rest.orders import advisable, queued
 from service.rest.replies import file_reply, json_reply, matches, tagged
+from service.rest.results import jobs_reply
 from service.rest.uploads import pieces
 from service.rest.views import (
     ContentsView,
     JobView,
     PageView,
     ProgramView,
-    job_view,
     program_view,
 )
-from service.storage import files, jobs, library, programs
-from service.storage.files import FileKind
+from service.storage import programs
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobKind, JobRequest
 from service.storage.pages import Page
@@ -53,12 +48,8 @@ from service.verbs.check.request import CheckFiles, CheckRequest
 from service.verbs.check.run import run as check
 from stepnc_model.errors import StepNcError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.post.dialect import Dialect
 
 ROUTES = APIRouter(prefix="/v1/programs", tags=["programs"])
-
-OF_CODE = ("tools_id", "stock", "material")
-"""Fields that advice on NC code needs."""
 
 EXAMPLES = FilePath(__file__).parents[2] / "examples" / "parts"
 """Folder of the sample programs; an installed wheel has none."""
@@ -189,45 +180,11 @@ async def ask_advice(
 ) -> Response:
     """Queue a job that optimises the feeds; its result will be at ``/v1/advice/{job}``.
 
-    For NC code the request names ``tools_id``, ``stock`` or ``stock_id``, and ``material``; the
-    feeds are chosen along its paths.
+    For NC code the request names ``material``, and, where the code tells no tools or no stock,
+    ``tools_id``, ``stock`` or ``stock_id``; the feeds are chosen along its paths.
     """
     asked = JobRequest(kind=JobKind.ADVICE, request=dumped(body), program=id, owner=owner)
     return await queued(request, asked, key, require=advisable)
-
-
-def advisable(data_folder: DataFolder, asked: JobRequest) -> None:
-    """Check that all that advice needs exists and is valid.
-
-    Raises
-    ------
-    StepNcError
-        When the job would raise the same error.
-    """
-    words = asked.request
-    if words["tools_id"] is not None:
-        files.require_file(data_folder, words["tools_id"], FileKind.TOOLS)
-    require_stock(data_folder, words)
-    kind = programs.get(data_folder, asked.program).kind
-    named = given_values(loaded(StoredAdviceRequest, words))
-    require_options_served(named, kind, flags={})
-    if kind is ProgramKind.STEP_NC:
-        for name in OF_PATHS:
-            if name in named and not words["is_along_path"]:
-                raise StepNcError(f"{name} has no effect without is_along_path")
-        runnable(data_folder, asked)
-        return
-    programs.require_file(data_folder, asked.program)
-    given = {**words, "stock": words["stock"] or words["stock_id"]}
-    missing = [name for name in OF_CODE if not given[name]]
-    if missing:
-        raise StepNcError(f"advice on NC code needs {', '.join(OF_CODE)}; missing: "
-                          f"{', '.join(missing)}")  # fmt: skip
-    library.require(data_folder, machine=words["machine"], material=words["material"])
-    if words["dialect"] == Dialect.CANONICAL:
-        raise StepNcError("dialect canonical: canonical commands are no NC code")
-    tool_numbers_in(tuple(words["finish"]))
-    tool_numbers_in(tuple(words["keep"]))
 
 
 @ROUTES.get(
@@ -238,8 +195,7 @@ async def advice_of(
 ) -> Response:
     """List the advice jobs of a program, newest first."""
     await answered(programs.get, data_folder, id)
-    page = await answered(jobs.listed, data_folder, cursor, kind=JobKind.ADVICE, program=id)
-    return page_reply(request, page, [job_view(job) for job in page.items])
+    return await jobs_reply(request, data_folder, cursor, kind=JobKind.ADVICE, program=id)
 
 
 def samples() -> list[str]:

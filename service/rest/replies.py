@@ -63,7 +63,7 @@ def tag_of(body: bytes) -> str:
 
 
 def matches(condition: str | None, tag: str) -> bool:
-    """Whether a tag is among those of an If-None-Match header, RFC 9110 §13.1.2."""
+    """True if a tag is among those of an If-None-Match header, RFC 9110 §13.1.2."""
     if condition is None:
         return False
     tags = {each.strip().removeprefix("W/") for each in condition.split(",")}

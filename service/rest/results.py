@@ -13,17 +13,27 @@ from fastapi.responses import StreamingResponse
 from starlette.concurrency import run_in_threadpool
 
 from service.errors import Conflict, NotFound, Unreadable
-from service.jobs.task import RESULT
-from service.live.folder import LiveFolder
+from service.live.journal import LiveFolder, read_on
 from service.live.series import TIME, Series, Window, open_series, window
 from service.rest.asking import answered
-from service.rest.context import data_folder_of, fetched, hub_of
+from service.rest.context import data_folder_of, hub_of, page_reply
 from service.rest.replies import json_reply, tag_of, tagged
+from service.rest.views import job_view
 from service.storage import jobs
 from service.storage.folder import DataFolder
 from service.storage.jobs import Job, JobKind, JobState
+from service.storage.pages import PageCursor
+from service.storage.results import RESULT
 
 SERIES_POINTS = 1000
+
+SHOWN_EVENTS = 500
+"""Most past events that are listed."""
+
+EVENTS: dict[int | str, dict[str, Any]] = {
+    200: {"content": {"text/event-stream": {}}, "description": "server-sent events"}
+}
+"""Response of a stream in the OpenAPI document."""
 
 Begin = Annotated[float | None, Query(description="start time, s", allow_inf_nan=False)]
 End = Annotated[float | None, Query(description="end time, s", allow_inf_nan=False)]
@@ -55,13 +65,36 @@ async def result_reply(request: Request, id: str, kind: JobKind) -> Response:
     """
     data_folder = data_folder_of(request)
     job = await answered(jobs.get, data_folder, id, kind)
-    require_done(job)
-    try:
-        file = await fetched(data_folder, data_folder.run_folder(id, job.attempt) / RESULT)
-        body = await run_in_threadpool(file.read_bytes)
-    except FileNotFoundError:
-        raise NotFound("result of job", id) from None
+    body = await run_in_threadpool(result_of, data_folder, job)
     return tagged(request, body, tag_of(body))
+
+
+def result_of(data_folder: DataFolder, job: Job) -> bytes:
+    """Return the result of a job as JSON.
+
+    Raises
+    ------
+    Conflict, NotFound
+        When the job has not succeeded, or has lost its result.
+    """
+    require_done(job)
+    return file_of(data_folder, job, RESULT, thing="result of job").read_bytes()
+
+
+async def jobs_reply(
+    request: Request,
+    data_folder: DataFolder,
+    cursor: PageCursor,
+    *,
+    kind: JobKind | None = None,
+    state: JobState | None = None,
+    program: str = "",
+) -> Response:
+    """Reply with a page of jobs, newest first."""
+    page = await answered(
+        jobs.listed, data_folder, cursor, kind=kind, state=state, program=program
+    )
+    return page_reply(request, page, [job_view(job) for job in page.items])
 
 
 def require_done(job: Job) -> None:
@@ -87,7 +120,8 @@ async def series_reply(
     points: int,
 ) -> Response:
     """Reply with signals over a time range, thinned to as many points as a screen shows."""
-    series = await run_in_threadpool(_series, data_folder_of(request), job)
+    data_folder = data_folder_of(request)
+    series = await run_in_threadpool(lambda: open_series(live_folder(data_folder, job).series))
     if series is None:
         raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: it has no rows yet")
     is_growing = not job.state.is_finished
@@ -142,10 +176,6 @@ def _window(found: Window, series: Series, *, is_growing: bool) -> dict[str, Any
     }
 
 
-def _series(data_folder: DataFolder, job: Job) -> Series | None:
-    return open_series(live_folder(data_folder, job).series)
-
-
 def live_folder(data_folder: DataFolder, job: Job, *more: str) -> LiveFolder:
     """Return the folder of a run, with its rows, events and status, and files named besides.
 
@@ -180,16 +210,30 @@ async def status_reply(request: Request, job: Job) -> Response:
 
 async def stream_reply(request: Request, job: Job) -> Response:
     """Reply with the events of a run as a stream."""
-    hub = hub_of(request)
-    hub.require_room()
+    return messages_reply(request, hub_of(request).watch(job.id))
+
+
+def messages_reply(request: Request, found: AsyncIterator[bytes]) -> Response:
+    """Reply with messages as a stream, if there is room for one more."""
+    hub_of(request).require_room()
 
     async def messages() -> AsyncIterator[bytes]:
         yield b"retry: 2000\n\n"
-        async for message in hub.watch(job.id):
+        async for message in found:
             yield message
 
     headers = {"cache-control": "no-store", "x-accel-buffering": "no"}
     return StreamingResponse(messages(), media_type="text/event-stream", headers=headers)
+
+
+def past_events(data_folder: DataFolder, job: Job) -> list[dict[str, Any]]:
+    """Return the last events of a run, oldest first."""
+    folder = live_folder(data_folder, job)
+    found: list[dict[str, Any]] = []
+    offset = 0
+    while (read := read_on(folder.events, offset)).lines:
+        found, offset = [*found, *read.lines][-SHOWN_EVENTS:], read.offset
+    return found
 
 
 def file_of(data_folder: DataFolder, job: Job, name: str, *, thing: str) -> Path:

@@ -37,7 +37,7 @@ def role_to_end(kind: JobKind) -> Role:
 
 
 def is_protected(path: str) -> bool:
-    """Whether a path needs a key, where the service requires keys."""
+    """True if a path needs a key, where the service requires keys."""
     return path.startswith(KEPT) and path != DOCUMENT
 
 

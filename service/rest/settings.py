@@ -50,12 +50,12 @@ class Settings:
 
     @property
     def has_request_log(self) -> bool:
-        """Whether each request is logged."""
+        """True if each request is logged."""
         return self.level in {"debug", "info"}
 
     @property
     def is_loopback(self) -> bool:
-        """Whether only this computer can connect."""
+        """True if only this computer can connect."""
         return self.host in LOOPBACK
 
     @property

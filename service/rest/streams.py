@@ -17,8 +17,7 @@ import orjson
 import structlog
 
 from service.errors import NotFound, ServiceError, TooMany
-from service.live.folder import LiveFolder
-from service.live.journal import read_on
+from service.live.journal import LiveFolder, read_on
 from service.live.series import open_series
 from service.rest.asking import answered
 from service.rest.metrics import STREAMS

@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field
 from service.rest.replies import moment
 from service.rest.views import FindingView, View
 from service.storage.files import FileKind, StoredFile
-from service.verification.surface_map import SurfaceMap
+from service.verification.facts import SurfaceMap
 
 
 class FileView(View):
@@ -75,7 +75,7 @@ class BandView(View):
 
 
 class ResolutionView(View):
-    """What the log can resolve normal to a surface."""
+    """Resolution of a log normal to a surface."""
 
     step_mm: float = Field(description="way of the tool between samples")
     straight_mm: float

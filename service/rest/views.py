@@ -4,9 +4,9 @@ from typing import Any, Generic, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.monitor.comparison import StepState
 from service.monitor.freshness import Freshness
 from service.monitor.monitor import ConnectionState
+from service.monitor.observed import StepState
 from service.program_kind import ProgramKind
 from service.rest.replies import moment
 from service.storage.jobs import Job, JobKind, JobState

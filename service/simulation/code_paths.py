@@ -6,7 +6,7 @@ remove nothing from the stock, so that later moves meet more material, never les
 are left out, the tool goes around the stock.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from re import IGNORECASE, compile
@@ -14,7 +14,8 @@ from re import IGNORECASE, compile
 import numpy as np
 
 from service.raw_stock import GivenStock, larger_stock_map, raw_stock_of, stock_map
-from service.requests.stock import RawPart
+from service.requests.given import RawPart
+from service.simulation.detour import Detour
 from service.simulation.line_spans import spans
 from service.simulation.setup import CountedIterator, PreparedRun
 from simulator.machine.interpreter import Numbered
@@ -22,10 +23,13 @@ from simulator.machine.tooling import table_tool
 from simulator.machine.virtual import LoadedTool, StockMap
 from simulator.motion.segments import Bools, Floats, Ints
 from simulator.removal.cutter import Cutter, Insert
+from simulator.removal.engage import MillingStock
+from simulator.removal.kept_marches import KeptMarches
 from simulator.spec import Machine, MachineKind, MaterialMatch
 from simulator.tool_table import TableTool
 from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.nc.compensation import tool_moves
+from stepnc_model.nc.fed_blocks import DEFINED_CYCLES, cycle_feed_blocks
 from stepnc_model.nc.moves import (
     REASONS,
     UNADVISED,
@@ -34,26 +38,16 @@ from stepnc_model.nc.moves import (
     MoveKind,
     NcMoves,
 )
-from stepnc_model.nc.neutral_blocks import neutral_blocks
+from stepnc_model.nc.neutral_blocks import FED, neutral_blocks
 from stepnc_model.nc.program import NcProgram
-from stepnc_model.nc.rewrite import DEFINED_CYCLES, cycle_feed_blocks
 from stepnc_model.post.blocks import (
-    Circular,
     Comment,
-    Linear,
     MachineType,
-    Rapid,
-    ToolChange,
 )
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.program import Stock
-from stepnc_model.toolpath.path import Point
 
 SURFACE = compile(rb"[(;][^)\r\n]*?(FINISH|ROUGH)", IGNORECASE)
 """Comment that says whether what follows leaves final surfaces."""
-
-BRIDGE = 0
-"""Line of moves that stand for those that are left out: what they meet is no fault."""
 
 NOT_PLACED = (
     MoveFlag.COMPENSATED
@@ -64,9 +58,6 @@ NOT_PLACED = (
     | MoveFlag.SKIPPABLE
 )
 """Flags of moves whose place over the stock is not known, or that may not be executed."""
-
-CLEARANCE = 5.0
-"""Distance from the stock at which the tool goes around moves that are left out, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,18 +98,21 @@ class CodePaths:
         tools: dict[int, TableTool] | None,
         stock: RawPart,
     ) -> None:
-        self.machine, self.material = machine, material
-        self.name, self.stock = name, stock
-        self.tools = tools or {}
+        self.machine, self.material, self.name = machine, material, name
+        self.marches: KeptMarches | None = None
+        """Marches of other runs, from which a mill reads again what its tools met before."""
+        self.stock, self.tools = stock, tools or {}
+        self._has_any_tool = tools is None
         self._mesh: GivenStock | None = None
         """Stock that serves several runs: only its map is cut."""
-        self._is_linuxcnc = program.dialect is Dialect.LINUXCNC
-        moves = program.moves
+        stream, self._is_linuxcnc = program.stream, program.dialect is Dialect.LINUXCNC
         if program.machine is MachineType.MILL:
-            moves = tool_moves(moves, self._radius, is_square=self._is_linuxcnc)
-        moves = _with_length_wear(_defined(moves, program.dialect))
-        self.program = replace(program, moves=moves)
-        is_fed = np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC, MoveKind.THREAD))
+            stream = tool_moves(stream, self._radius, is_square=self._is_linuxcnc)
+        stream = _with_length_wear(_defined(stream, program.dialect))
+        self.program = replace(program, stream=stream)
+        moves = self.program.moves
+        self._is_fed = is_fed = np.isin(moves.kind, list(FED))
+        is_thread = moves.kind == MoveKind.THREAD
         fed = np.flatnonzero(moves.is_advisable)
         frame = int(moves.frame[fed[0]]) if len(fed) else 0
         self.frame = moves.frames[frame]
@@ -128,8 +122,7 @@ class CodePaths:
         is_sure = ~_is_uncertain(moves)
         is_placed = is_here & ((moves.flags & int(NOT_PLACED)) == 0) & is_sure
         is_placed &= (moves.kind != MoveKind.UNKNOWN) & ~np.isnan(_length_wear(moves))
-        has_feed = ~np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC)) | (moves.feed > 0.0)
-        self._is_run = is_placed & is_known & has_feed
+        self._is_run = is_placed & is_known & (~is_fed | moves.has_rate)
         self.parts = tuple(self._parts())
         """Parts in the order of execution."""
         lines = program.text.lines[moves.block]
@@ -154,8 +147,12 @@ class CodePaths:
             "the operator may skip them": (moves.flags & int(MoveFlag.SKIPPABLE)) != 0,
             "they begin where moves end that the operator may skip": ~is_sure,
             "the feed of a cycle serves other moves as well": is_defined,
-            "their feed is the lead of a thread": moves.kind == MoveKind.THREAD,
-            "the spindle speed is not known": np.isnan(moves.spindle),
+            "their feed is the lead of a thread": is_thread & moves.has_rate,
+            "a feed per revolution while the spindle is stopped": (moves.word > 0.0)
+            & ~is_thread
+            & ~moves.has_rate,
+            "their lead is not known, or the spindle stands": is_thread & ~moves.has_rate,
+            "the spindle speed is not known (--spindle T1=RPM)": np.isnan(moves.spindle),
             "the length of the tool (DL) is not known": np.isnan(_length_wear(moves)),
             "their start or end is not known": ~moves.is_known,
         } | {
@@ -175,8 +172,7 @@ class CodePaths:
     def left_out(self) -> tuple[Finding, ...]:
         """Lines of feed moves that do not run, and why."""
         moves = self.program.moves
-        is_fed = np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC, MoveKind.THREAD))
-        is_left = is_fed & ~(self._is_run & moves.is_known)
+        is_left = self._is_fed & ~(self._is_run & moves.is_known)
         return tuple(self._findings(is_left, "{} left out of the run: {}"))
 
     @property
@@ -220,18 +216,20 @@ class CodePaths:
             When the stock is invalid.
         """
         raw = self._raw()
-        moves = replace(self.program.moves, rows=self.program.moves.rows[self._is_run])
+        stream = self._run_stream()
+        begins = zip(_part_rows(stream, self.parts), self.parts, strict=True)
         beginning = {
-            part.row: Comment(text=part.name, workingstep=part.name) for part in self.parts
+            row: Comment(text=part.name, workingstep=part.name) for row, part in begins
         }
-        blocks = CountedIterator(
-            neutral_blocks(replace(self.program, moves=moves), name=self.name, before=beginning)
-        )
+        code = replace(self.program, stream=stream)
+        blocks = CountedIterator(neutral_blocks(code, name=self.name, before=beginning))
         material = self.material
         tools = None
         if material is not None:
             tools = {n: table_tool(tool, material.material) for n, tool in self.tools.items()}
         clamped = None if raw is None else self._map(raw, margin)
+        if isinstance(clamped, MillingStock):
+            clamped.marches = self.marches
         return PreparedRun(
             name=self.name,
             machine=self.machine,
@@ -240,9 +238,17 @@ class CodePaths:
             tools=tools or None,
             stock=lambda _: clamped,
             raw=None if raw is None else raw.bounds,
-            done=lambda: blocks.share(len(moves)),
+            done=lambda: blocks.share(len(stream)),
             read=lambda: blocks.count,
         )
+
+    def _run_stream(self) -> NcMoves:
+        """Moves that run, with the switches between them that the operator cannot skip."""
+        stream = self.program.stream
+        is_run = (stream.flags & int(MoveFlag.CONDITIONAL | MoveFlag.SKIPPABLE)) == 0
+        is_run &= np.isin(stream.tool, [-1, *self.tools]) | self._has_any_tool
+        is_run[~stream.is_switch] = self._is_run
+        return replace(stream, rows=stream.rows[is_run])
 
     def uncut(self, margin: float) -> StockMap:
         """Stock as given, larger by a margin, mm.
@@ -271,20 +277,24 @@ class CodePaths:
             return larger_stock_map(self.machine, raw, margin)
         return stock_map(self.machine, raw)
 
-    def _detour(self, raw: GivenStock, tools: dict[int, LoadedTool] | None) -> "_Detour":
+    def _detour(self, raw: GivenStock, tools: dict[int, LoadedTool] | None) -> "Detour":
         is_lathe = self.machine.kind is MachineKind.LATHE
-        known = (tools or {}).items()
-        inserts = {number for number, tool in known if is_lathe and _is_outside(tool.shape)}
-        return _Detour(raw.bounds, inserts)
+        # Inserts that come to the stock from outside, across the axis.
+        inserts = {
+            number
+            for number, tool in (tools or {}).items()
+            if is_lathe and isinstance(tool.shape, Insert) and not tool.shape.is_inside
+        }
+        return Detour(raw.bounds, inserts)
 
     def line(self, part: ToolPart) -> int:
         """Line of the first move of a part."""
         rows = np.flatnonzero(self._is_run)
         return self.program.text.line(int(self.program.moves.block[rows[part.row]]))
 
-    def block_at(self, line: int) -> int:
-        """Index of the block on a line."""
-        return int(np.searchsorted(self.program.text.lines, line))
+    def blocks_at(self, lines: Sequence[int]) -> Ints:
+        """Indices of the blocks on some lines."""
+        return np.searchsorted(self.program.text.lines, np.array(lines, dtype=np.int64))
 
     def fastest(self, block: int) -> float:
         """Greatest spindle speed at which a block moves at a feed, rev/s; 0 if not known."""
@@ -377,6 +387,16 @@ def _defined(moves: NcMoves, dialect: Dialect) -> NcMoves:
     return replace(moves, rows=table)
 
 
+def _part_rows(stream: NcMoves, parts: Sequence[ToolPart]) -> Iterator[int]:
+    """Rows where parts begin: at the switches before their first move that have its tool."""
+    moving, tools = np.flatnonzero(~stream.is_switch), stream.tool
+    for part in parts:
+        row = int(moving[part.row])
+        while row and stream.is_switch[row - 1] and tools[row - 1] == tools[row]:
+            row -= 1
+        yield row
+
+
 def _part_name(tool: int, count: int) -> str:
     """Name of the n-th part with a tool; a negative number is none."""
     name = f"T{tool}" if tool >= 0 else "no tool"
@@ -402,7 +422,7 @@ def _with_length_wear(moves: NcMoves) -> NcMoves:
 
 
 def _is_uncertain(moves: NcMoves) -> Bools:
-    """Whether a move begins or ends where moves that the operator may skip have led, (N,)."""
+    """True if a move begins or ends where moves that the operator may skip have led, (N,)."""
     uncertain = np.zeros(len(moves), dtype=np.bool_)
     is_skipped = (moves.flags & int(MoveFlag.SKIPPABLE)) != 0
     doubtful = np.zeros(3, dtype=np.bool_)
@@ -424,53 +444,6 @@ def _is_uncertain(moves: NcMoves) -> Bools:
     return uncertain
 
 
-def _is_outside(shape: object) -> bool:
-    """Whether a tool comes to the stock from outside, across the axis."""
-    return isinstance(shape, Insert) and not shape.is_inside
-
-
-class _Detour:
-    """Ways around the stock in place of moves that are left out. Running state.
-
-    Where a move begins, the tool has been in truth: it comes there along its axis, or from
-    outside if it turns, so that it removes nothing but what its own body fills.
-    """
-
-    def __init__(self, stock: Stock, inserts: set[int]) -> None:
-        self._inserts = inserts
-        self._over = stock.high[2] + CLEARANCE
-        self._beside = max(stock.high[0], stock.radius or 0.0) + CLEARANCE
-        self._at: Point | None = None
-        self._tool = 0
-
-    def led_around(self, blocks: Iterable[Numbered]) -> Iterator[Numbered]:
-        """Yield the blocks with detours, whose line is :data:`BRIDGE`."""
-        for line, block in blocks:
-            if isinstance(block, Rapid) and block.is_way:
-                for end in self._ways(block.end):
-                    yield BRIDGE, Rapid(end=end, is_way=True)
-            else:
-                yield line, block
-            if isinstance(block, ToolChange):
-                self._tool = block.number
-            elif isinstance(block, (Rapid, Linear, Circular)):
-                self._at = block.end
-
-    def _ways(self, end: Point) -> Iterator[Point]:
-        """Ends of the moves from the last position around the stock to another."""
-        x, y, z = end
-        start = self._at or end
-        if self._tool in self._inserts:
-            beside = max(self._beside, start[0], x)
-            yield beside, y, start[2]
-            yield beside, y, z
-        else:
-            over = max(self._over, start[2], z)
-            yield start[0], start[1], over
-            yield x, y, over
-        yield end
-
-
 class CodeBlocks:
     """Blocks of NC code numbered by their line: a line has one feed, however often it runs."""
 
@@ -482,12 +455,12 @@ class CodeBlocks:
         return iter(self._blocks)
 
     def can_change(self, numbers: Ints) -> Bools:
-        """Whether the feeds of lines may change."""
+        """True if the feeds of lines may change."""
         changes: Bools = self._code.can_change[numbers]
         return changes
 
     def can_split(self, numbers: Ints) -> Bools:
-        """Whether lines may be split."""
+        """True if lines may be split."""
         splits: Bools = self._code.can_split[numbers]
         return splits
 

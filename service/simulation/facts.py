@@ -1,4 +1,12 @@
-"""Figures of a simulated run for table, page and JSON. Units s, J, W, N, mm³."""
+"""Figures of a simulated run for table, page and JSON. Units s, J, W, N, mm³.
+
+Carbon dioxide emission of electric energy, by a stated factor. Units J, g.
+
+References
+----------
+.. [1] Ember, "Global Electricity Review 2024": 480 g/kWh, world average of 2023, including the
+   effects of other gases and of the construction of plants and supply of fuel.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,6 +14,8 @@ from dataclasses import dataclass
 from service.overload_bounds import overload_bounds
 from service.simulation.run import Simulation
 from simulator.machine.totals import Total
+from stepnc_model.errors import StepNcError
+from stepnc_model.units import kwh_from_joules
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,3 +69,46 @@ def exceeded(simulation: Simulation, found: Sequence[SimulationRow]) -> tuple[st
         for row in found
         if row.total.overload_time > 0.0
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CarbonFactor:
+    """Carbon dioxide emission per kilowatt-hour from the mains.
+
+    Raises
+    ------
+    ValueError
+        When the factor is negative or not a number.
+    """
+
+    grams_per_kwh: float
+    source: str
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.grams_per_kwh < float("inf"):
+            raise ValueError(f"carbon factor {self.grams_per_kwh:g} g/kWh must be at least 0")
+
+    def grams(self, energy: float) -> float:
+        """Return the carbon dioxide emission of an energy in J, in g."""
+        return kwh_from_joules(energy) * self.grams_per_kwh
+
+
+def stated(grams_per_kwh: float) -> CarbonFactor:
+    """Build a carbon factor from a user's value.
+
+    Raises
+    ------
+    StepNcError
+        When the value is negative or not a number.
+    """
+    try:
+        return CarbonFactor(grams_per_kwh=grams_per_kwh, source="as requested")
+    except ValueError as error:
+        raise StepNcError(str(error)) from error
+
+
+WORLD = CarbonFactor(
+    grams_per_kwh=480.0,
+    source="Ember, Global Electricity Review 2024, world average of 2023",
+)
+"""World average, [1]_."""

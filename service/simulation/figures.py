@@ -25,7 +25,8 @@ from service.panels import (
     line,
 )
 from service.simulation.facts import SimulationRow
-from service.simulation.trace import SimulationSignal
+from service.simulation.gathering import SimulationSignal
+from stepnc_model.units import SECONDS_PER_MINUTE, WATTS_PER_KILOWATT
 
 AXES = (
     ("X", ORANGE, SimulationSignal.X_POWER),
@@ -59,7 +60,7 @@ def run_figure(found: Sequence[SimulationRow], trace: BucketedRun) -> go.Figure:
     _axes(panels, trace)
     _feed(panels, trace)
     panels.begin("<b>Spindle speed</b>, rpm", height=90)
-    panels.peaks("rpm", BLUE, SimulationSignal.SPINDLE_SPEED, scale=60.0)
+    panels.peaks("rpm", BLUE, SimulationSignal.SPINDLE_SPEED, scale=SECONDS_PER_MINUTE)
     panels.begin("<b>Cutting force</b>, tangential, N", height=140)
     panels.peaks("N", RED, SimulationSignal.FORCE)
     panels.begin("<b>Removal rate</b>, cm³/min", height=140)
@@ -85,11 +86,12 @@ def _power(panels: Panels, trace: BucketedRun) -> None:
     panels.begin(f"<b>Power</b>, kW<br>{' '.join(keys)}", height=230)
     middle = 0.5 * (trace.begin + trace.end) * panels.second
     for name, colour, signal in shown:
-        shown_line = line(name, colour, middle, trace.curve(signal).mean * 1e-3)
+        shown_line = line(name, colour, middle, trace.curve(signal).mean / WATTS_PER_KILOWATT)
         panels.add(shown_line.update(stackgroup="power", line_width=0, fillcolor=colour))
-    panels.add(line("peak of the total", DIM, middle, total.high * 1e-3))
+    high = total.high / WATTS_PER_KILOWATT
+    panels.add(line("peak of the total", DIM, middle, high))
     if loaded.any():
-        marks = line("above a limit", RED, middle[loaded], total.high[loaded] * 1e-3)
+        marks = line("above a limit", RED, middle[loaded], high[loaded])
         panels.add(marks.update(mode="markers", marker={"color": RED, "size": 5}))
 
 
@@ -106,13 +108,12 @@ def _feed(panels: Panels, trace: BucketedRun) -> None:
     """Add the panel of commanded and actual feed; rapids leave its frame."""
     keys = f"{key('commanded', GREY)} {key('actual', BLUE)}"
     # fmax ignores missing values.
-    most = (
-        np.fmax.reduce(trace.curve(SimulationSignal.FEED_PROGRAMMED).high, initial=0.0) * 60.0
-    )
+    fastest = np.fmax.reduce(trace.curve(SimulationSignal.FEED_PROGRAMMED).high, initial=0.0)
+    most = SECONDS_PER_MINUTE * fastest
     title = f"<b>Feed</b>, mm/min<br>{keys} (rapids leave the frame)"
     panels.begin(title, height=150, range=[0.0, ROOM * most] if most > 0.0 else None)
-    panels.peaks("actual", BLUE, SimulationSignal.FEED_ACTUAL, scale=60.0)
-    panels.peaks("commanded", GREY, SimulationSignal.FEED_PROGRAMMED, scale=60.0)
+    panels.peaks("actual", BLUE, SimulationSignal.FEED_ACTUAL, scale=SECONDS_PER_MINUTE)
+    panels.peaks("commanded", GREY, SimulationSignal.FEED_PROGRAMMED, scale=SECONDS_PER_MINUTE)
 
 
 def _is_used(trace: BucketedRun, signal: SimulationSignal) -> bool:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from simulator.motion.segments import Ints
+from stepnc_model.counted import counted
 
 MOST_SPANS = 6
 """Greatest number of ranges of lines that a message lists."""
@@ -16,6 +17,10 @@ def spans(lines: Ints) -> str:
         f"{first}" if first == last else f"{first}–{last}"
         for first, last in zip(firsts.tolist(), lasts.tolist(), strict=True)
     ]
-    more = f" and {len(spans) - MOST_SPANS} more ranges" if len(spans) > MOST_SPANS else ""
+    more = (
+        f" and {counted(len(spans) - MOST_SPANS, 'more range')}"
+        if len(spans) > MOST_SPANS
+        else ""
+    )
     word = "line" if len(lines) == 1 else "lines"
     return f"{word} {', '.join(spans[:MOST_SPANS])}{more}"

@@ -1,12 +1,14 @@
 """Live data of a simulated run: samples as rows in the user's units, for other processes."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from math import inf
 from typing import Any
 
 import numpy as np
 
-from service.live.folder import LiveFolder
+from service.live.journal import LiveFolder
+from service.live.playback import PlaybackClock
 from service.live.series import SeriesWriter
 from simulator.errors import SimulationError
 from simulator.machine.samples import Samples
@@ -46,6 +48,9 @@ COLUMNS: Mapping[str, Callable[[Samples], Floats]] = {
 }
 """Columns of a row; enumerations are those of :mod:`simulator.machine.samples`."""
 
+
+SHOWN = 0.1
+"""Wall-clock time between two updates of a paced run, in s."""
 
 MOST_SAMPLES = 20_000_000
 """Largest number of samples of a run, some gigabytes in a file."""
@@ -108,3 +113,12 @@ class LiveSamples:
             "workingsteps": list(self._workingsteps),
             "is_series_full": self.writer.is_full,
         }
+
+
+@contextmanager
+def watched(folder: LiveFolder, pace: float) -> Iterator[LiveSamples]:
+    """Watch a run at a pace, in simulated seconds per wall-clock second; 0: no waiting."""
+    clock = PlaybackClock(pace)
+    live = LiveSamples(folder, clock.wait_for, apart=clock.factor * SHOWN or inf)
+    with live.writer:
+        yield live

@@ -1,7 +1,11 @@
 """Setup of a simulation from NC code, of our own or of any origin.
 
-Code that is made of plain words is read line by line. Any other is read as a whole by the
-tolerant reader that ``optimise`` uses, which leaves out what cannot be run and says so.
+What cannot be run is refused, or left out with a finding.
+
+Tools of NC code that a table knows otherwise than by a number in the code.
+
+Sinumerik and Heidenhain may call a tool by its name, which is then the ``id`` of the table.
+Code of small machines, on which tools are changed by hand, calls none.
 """
 
 from collections.abc import Iterator
@@ -11,33 +15,92 @@ from pathlib import Path
 import numpy as np
 
 from service.chosen import load_material_named, machine_for, material_for
-from service.files import open_lines, read_bytes
-from service.raw_stock import raw_stock_of, stock_map
+from service.files import read_bytes
 from service.reading import one_of, read_given
+from service.requests.given import RawPart
 from service.requests.runs import RunRequest
-from service.requests.stock import RawPart
-from service.simulation.called_tools import called_tool_findings, with_called_tools
 from service.simulation.code_paths import CodePaths
-from service.simulation.setup import (
-    ClampedStock,
-    CountedIterator,
-    PreparedRun,
-    loaded_tools,
-)
+from service.simulation.setup import ClampedStock, CountedIterator, PreparedRun, loaded_tools
+from service.simulation.spindle_hand import turned_against
 from simulator.library import load_machine
 from simulator.machine.interpreter import Numbered
-from simulator.machine.tooling import table_tool
 from simulator.spec import Machine, MachineKind, MaterialMatch
 from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.read import ToolLibrary, read_tools
 from stepnc_model.errors import Finding, PostError, Severity, StepNcError
-from stepnc_model.nc.program import read_program
+from stepnc_model.nc.exact import read_exactly
+from stepnc_model.nc.moves import ModalSetting
+from stepnc_model.nc.neutral_blocks import UNKNOWN, stream_blocks
+from stepnc_model.nc.program import NcProgram, read_program
 from stepnc_model.nc.recognise import recognise
 from stepnc_model.nc.remarks import NOT_UNDERSTOOD
 from stepnc_model.post.blocks import Comment, MachineType
 from stepnc_model.post.dialect import SUFFIXES, Dialect
-from stepnc_model.post.dialects import read_blocks
 from stepnc_model.toolpath.task import stock_of
+
+
+def with_called_tools(program: NcProgram, library: ToolLibrary) -> NcProgram:
+    """Return the program with numbers for the tools that it names or leaves out."""
+    names = _numbers_by_name(library)
+    settings = program.moves.settings
+    if _is_without_tools(program) and len(library.tools) == 1:
+        only = library.tools[0].number
+        found = tuple(replace(each, tool=only) for each in settings)
+    else:
+        found = tuple(_numbered(each, names) for each in settings)
+    return replace(program, stream=replace(program.stream, settings=found))
+
+
+def called_tool_findings(program: NcProgram, library: ToolLibrary) -> Iterator[Finding]:
+    """Findings on tools that the program calls by name, or not at all."""
+    names = _numbers_by_name(library)
+    for name in dict.fromkeys(each.tool_name for each in program.moves.settings):
+        if not name:
+            continue
+        number = names.get(name.casefold())
+        if number is None:
+            text = f"tool '{name}' is the id of no tool of the table: its feeds stay"
+            yield Finding(severity=Severity.WARNING, message=text)
+        else:
+            text = f"tool '{name}' is T{number} of the table, by its id"
+            yield Finding(severity=Severity.NOTE, message=text)
+    if _is_without_tools(program):
+        if len(library.tools) == 1:
+            text = (
+                f"the program calls no tool: T{library.tools[0].number}, the only one of the "
+                "table, is taken"
+            )
+        else:
+            text = (
+                f"the program calls no tool, and the table has {len(library.tools)}: name a "
+                "table with the one that cuts"
+            )
+        yield Finding(severity=Severity.WARNING, message=text)
+
+
+def _numbers_by_name(library: ToolLibrary) -> dict[str, int]:
+    """Numbers of the tools by their ids in small letters; ids of several tools are left out."""
+    found: dict[str, int] = {}
+    several = set()
+    for tool in library.tools:
+        name = tool.id.casefold()
+        if name in found:
+            several.add(name)
+        found[name] = tool.number
+    return {name: number for name, number in found.items() if name not in several}
+
+
+def _numbered(setting: ModalSetting, names: dict[str, int]) -> ModalSetting:
+    """Return the setting with the number of the tool that it names, if there is one."""
+    if setting.tool is not None:
+        return setting
+    return replace(setting, tool=names.get(setting.tool_name.casefold()))
+
+
+def _is_without_tools(program: NcProgram) -> bool:
+    """True if the program calls no tool at all."""
+    return all(each.tool is None and not each.tool_name for each in program.moves.settings)
+
 
 IDLE = Finding(
     severity=Severity.WARNING,
@@ -56,10 +119,15 @@ class CodeRequest:
     """Tool table, in any format that is read."""
     tools_unit: FileUnit | None = None
     """Unit of a tool table that names none; None: mm."""
+    library: ToolLibrary | None = None
+    """Tools of the code's setup, in place of a table."""
     stock: RawPart = ""
     """Raw part, as :func:`service.raw_stock.raw_stock_of` reads it; empty: unknown."""
     most_repeats: int | None = None
     """Blocks and moves that may be executed beyond those of the file; None: as usual."""
+    is_stock_guessed: bool = False
+    findings: tuple[Finding, ...] = ()
+    """Findings on the code's setup."""
 
 
 def from_code(
@@ -87,66 +155,23 @@ def from_code(
         raise StepNcError("NC code without a program: name a machine with --machine")
     machine = load_machine(run.machine)
     material = load_material_named(run.material) if run.material else None
-    library = None
-    if request.tools is not None:
+    library = request.library
+    if library is None and request.tools is not None:
         if material is None:
             raise StepNcError("a tool table without a material: name one with --material")
         library = read_tools(request.tools, unit=request.tools_unit)
-    refusal = _refusal(request, machine)
-    if refusal is None:
-        prepared = _plain_code(request, machine, material, library)
-    else:
-        if request.dialect.lower() == Dialect.CANONICAL.value:
-            raise StepNcError(f"{request.code.name}: {refusal}")
-        paths = _paths_of_any_origin(request, machine, material, library)
-        error = _fault(paths, refusal)
-        if error is not None and not keep_going:
-            raise StepNcError(f"{request.code.name}: {error} (--keep-going leaves it out)")
-        prepared = _foreign_code(paths, refusal)
-    findings = prepared.findings if library is None else (*library.findings, *prepared.findings)
+    paths = _paths_of_any_origin(request, machine, material, library)
+    error = _fault(paths)
+    if error is not None and not keep_going:
+        raise StepNcError(f"{request.code.name}: {error} (--keep-going leaves it out)")
+    prepared = _prepared(paths)
+    findings = (*request.findings, *prepared.findings)
+    if library is not None:
+        wrong = (each for _, each in turned_against(paths.program, paths.tools))
+        findings = (*library.findings, *findings, *wrong)
     if library is None or not request.stock:
         findings += (IDLE,)
-    return replace(prepared, findings=findings)
-
-
-def _refusal(request: CodeRequest, machine: Machine) -> PostError | None:
-    """Why code is not plain; None if it is."""
-    _size(request.code)
-    if not request.dialect and _dialect_by_suffix(request.code) is None:
-        return PostError("the file extension names no control")
-    try:
-        for _ in _read(request, CountedIterator(_lines(request.code)), machine, {}):
-            pass
-    except PostError as error:
-        return error
-    return None
-
-
-def _plain_code(
-    request: CodeRequest,
-    machine: Machine,
-    material: MaterialMatch | None,
-    library: ToolLibrary | None,
-) -> PreparedRun:
-    """Prepare code of plain words, which is read while it runs."""
-    tools = None
-    if library is not None and material is not None:
-        tools = {tool.number: table_tool(tool, material.material) for tool in library.tools}
-    raw = raw_stock_of(request.stock) if request.stock else None
-    size = _size(request.code)
-    lines = CountedIterator(_lines(request.code), len)
-    clamped = None if raw is None else stock_map(machine, raw)
-    return PreparedRun(
-        name=request.code.name,
-        machine=machine,
-        material=material,
-        blocks=_read(request, lines, machine, {}),
-        tools=tools,
-        stock=lambda _: clamped,
-        raw=None if raw is None else raw.bounds,
-        done=lambda: lines.share(size),
-        read=lambda: lines.count,
-    )
+    return replace(prepared, findings=findings, is_stock_guessed=request.is_stock_guessed)
 
 
 def _paths_of_any_origin(
@@ -156,10 +181,11 @@ def _paths_of_any_origin(
     library: ToolLibrary | None,
 ) -> CodePaths:
     """Moves of code of any origin, of which some may not run."""
-    dialect = one_of(Dialect, request.dialect.lower(), "dialect") if request.dialect else None
     data = read_bytes(request.code)
-    found = recognise(data).machine
-    most = request.most_repeats
+    guess, dialect = recognise(data), None
+    if request.dialect or not guess.hints:
+        dialect = dialect_of(request.code, request.dialect)
+    found, most = guess.machine, request.most_repeats
     program = read_program(data, dialect=dialect, machine=found, most_repeats=most)
     is_without_y = bool((np.nan_to_num(program.moves.end[:, 1]) == 0.0).all())
     if is_without_y and found is MachineType.MILL and machine.kind is MachineKind.LATHE:
@@ -187,24 +213,22 @@ def _paths_of_any_origin(
     )
 
 
-def _fault(paths: CodePaths, refusal: PostError) -> str | None:
-    """What cannot be run of code of any origin, in the words that say most; None: nothing."""
+def _fault(paths: CodePaths) -> str | None:
+    """First fault that prevents code from running, in the most specific words, or None."""
     faults = {each.line: each.message for each in reversed(paths.left_out)}
     for each in reversed(paths.program.findings):
         if each.message.startswith(NOT_UNDERSTOOD):
             faults[each.line] = f"line {each.line}: {each.message}"
-    if not faults:
-        return None
-    first = min(faults)
-    return str(refusal) if first == refusal.line else faults[first]
+    return faults[min(faults)] if faults else None
 
 
-def _foreign_code(paths: CodePaths, refusal: PostError) -> PreparedRun:
-    """Prepare code of any origin, without the moves that cannot be run."""
+def _prepared(paths: CodePaths) -> PreparedRun:
+    """Prepare code without the moves that cannot be run."""
     code = paths.program
-    text = f"read as code of any origin, for {code.dialect.value}: {refusal}"
-    how = Finding(severity=Severity.NOTE, message=text)
-    findings = (how, *code.findings, *paths.left_out, *paths.beside)
+    findings = (*code.findings, *paths.left_out, *paths.beside)
+    if code.hints and code.dialect is not _dialect_by_suffix(Path(paths.name)):
+        text = f"read as code for {code.dialect.value}, guessed from {', '.join(code.hints)}"
+        findings = (Finding(severity=Severity.NOTE, message=text), *findings)
     return replace(paths.prepared(0.0), code=code, findings=findings)
 
 
@@ -216,57 +240,36 @@ def _code_of_program(request: CodeRequest, file: Path, run: RunRequest) -> Prepa
     used = dict.fromkeys(step.tool_ref for step in program.workingsteps)
     numbers = {ref: number for number, ref in enumerate(used, 1)}
     ids = {_plain(step.id): step.id for step in program.workingsteps}
-    size = _size(request.code)
-    lines = CountedIterator(_lines(request.code), len)
+    dialect = dialect_of(request.code, request.dialect)
+    try:
+        code = read_exactly(
+            read_bytes(request.code), dialect, machine=_kind(machine), start=UNKNOWN
+        )
+    except PostError as error:
+        raise StepNcError(f"{request.code.name}: {error}") from error
+    blocks = CountedIterator(_named_workingsteps(code, ids))
     setup = next((step.setup for step in program.workingsteps), None)
     return PreparedRun(
         name=request.code.name,
         machine=machine,
         material=match,
-        blocks=_named(request.code, _read(request, lines, machine, ids)),
+        blocks=iter(blocks),
         tools=loaded_tools(program, numbers, match),
         stock=ClampedStock(program, machine).stock,
         raw=stock_of(program, setup),
-        done=lambda: lines.share(size),
-        read=lambda: lines.count,
+        done=lambda: blocks.share(len(code.stream)),
+        read=lambda: blocks.count,
         program=program,
     )
 
 
-def _size(path: Path) -> int:
-    """Size of a file, in bytes; raises an error of the project if it does not exist."""
-    try:
-        return path.stat().st_size
-    except OSError as error:
-        raise StepNcError(f"{path}: {error.strerror}") from error
-    except ValueError as error:
-        raise StepNcError(f"{str(path)!r} is not a valid file name: {error}") from error
-
-
-def _lines(path: Path) -> Iterator[str]:
-    """Yield the lines of a file, which is opened only when the first is requested."""
-    yield from open_lines(path)
-
-
-def _read(
-    request: CodeRequest, lines: CountedIterator[str], machine: Machine, ids: dict[str, str]
-) -> Iterator[Numbered]:
+def _named_workingsteps(code: NcProgram, ids: dict[str, str]) -> Iterator[Numbered]:
     """Yield the blocks of NC code; comments that name a workingstep start it."""
-    dialect = dialect_of(request.code, request.dialect)
-    for block in read_blocks(lines, dialect, machine=_kind(machine)):
+    for line, block in stream_blocks(code):
         if isinstance(block, Comment) and _plain(block.text) in ids:
-            name = ids[_plain(block.text)]
-            yield lines.count, Comment(text=block.text, workingstep=name)
+            yield line, replace(block, workingstep=ids[_plain(block.text)])
         else:
-            yield lines.count, block
-
-
-def _named(code: Path, blocks: Iterator[Numbered]) -> Iterator[Numbered]:
-    """Blocks of a file that its errors name."""
-    try:
-        yield from blocks
-    except PostError as error:
-        raise StepNcError(f"{code.name}: {error}") from error
+            yield line, block
 
 
 def _kind(machine: Machine) -> MachineType:

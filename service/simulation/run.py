@@ -1,4 +1,7 @@
-"""Run of a program on the virtual machine, for the command ``simulate``."""
+"""Run of a program on the virtual machine, for the command ``simulate``.
+
+Stock that a run leaves: whether a tool touched it, and the file that keeps it.
+"""
 
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
@@ -7,22 +10,19 @@ from pathlib import Path
 
 from service.buckets import BucketedRun
 from service.chosen import require_axes
-from service.files import require_places
+from service.files import require_places, write_atomically
 from service.numbers import numbers_in
 from service.paths.remarks import tell_remarks
-from service.progress import Ticker, bar
+from service.progress import Tell, Ticker, bar, silent
 from service.raw_stock import file_of_stock
-from service.reading import Tell, silent
 from service.requests.fields import require_bounds
+from service.requests.given import KEPT_SUFFIX, RawPart
 from service.requests.runs import ForceView, SimulationRequest
-from service.requests.stock import KEPT_SUFFIX, RawPart
 from service.run_file import require_suffix
-from service.simulation.gathering import RunCollector, SampleWatcher
+from service.simulation.gathering import RunCollector, SampleWatcher, TimelineFile, TraceKeeper
 from service.simulation.of_code import CodeRequest, from_code
-from service.simulation.remaining import keep_stock, untouched
+from service.simulation.placement import in_guessed_stock
 from service.simulation.setup import PreparedRun, from_program, prepared_program
-from service.simulation.timeline_file import TimelineFile
-from service.simulation.trace import TraceKeeper
 from simulator.errors import SimulationError
 from simulator.machine.deviation import SeededDeviation
 from simulator.machine.disturbance import Disturbance
@@ -36,10 +36,61 @@ from simulator.motion.control import control_model
 from simulator.motion.fir import FixedTimeFilter
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import ControlModel, axis_limits
+from simulator.removal.engage import MillingStock
+from simulator.removal.lathe import TurningStock
+from simulator.removal.stock_file import stock_bytes
 from simulator.spec import Machine, MaterialMatch
+from simulator.tool_files.read import ToolLibrary
+from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError, WriteError
 from stepnc_model.program import Program
 from stepnc_model.units import mm_from_um
+
+TRACE = 0.1
+"""Volume that counts as none, mm³: edges of a stock that was cut before are known to a cell."""
+
+
+def keep_stock(virtual: VirtualMachine, path: Path) -> None:
+    """Write the stock that was clamped last, as it is now.
+
+    Raises
+    ------
+    StepNcError
+        When no stock was clamped, or the file cannot be written.
+    """
+    kept = [each for each in virtual.stocks if isinstance(each, MillingStock | TurningStock)]
+    if not kept:
+        raise StepNcError(f"{path}: no stock was clamped that could be kept")
+    write_atomically(path, stock_bytes(kept[-1]))
+
+
+def untouched(
+    prepared: PreparedRun, virtual: VirtualMachine, run: RunCollector
+) -> tuple[Finding, ...]:
+    """Finding that no feed move of the run met the stock; none if one did."""
+    raw, reach = prepared.raw, virtual.reach
+    if raw is None or prepared.tools is None or reach is None:
+        return ()
+    if sum(total.volume for total in run.totals) > TRACE:
+        return ()
+    low, high = reach[0].tolist(), reach[1].tolist()
+    is_apart = any(
+        one > end or begin > other
+        for begin, end, one, other in zip(raw.low, raw.high, low, high, strict=True)
+    )
+    text = (
+        f"no tool touched the stock, which spans {_box(raw.low, raw.high)}; the feed moves "
+        f"span {_box(low, high)}: "
+        f"{'is it in coordinates of the program?' if is_apart else 'is it cut already?'}"
+    )
+    return (Finding(severity=Severity.WARNING, message=text),)
+
+
+def _box(low: tuple[float, ...] | list[float], high: tuple[float, ...] | list[float]) -> str:
+    """Span on each axis, for a message."""
+    spans = zip("xyz", low, high, strict=True)
+    return ", ".join(f"{axis} {one:g} to {other:g}" for axis, one, other in spans) + " mm"
+
 
 LEAST_FILTER, MOST_FILTER = 1e-6, 100.0
 """Bounds of the filter times, in s."""
@@ -52,6 +103,8 @@ class RunFiles:
     file: Path | None = None
     name: str = ""
     """Name of the program; empty: the name of its file."""
+    tools: ToolLibrary | None = None
+    """Tools of which the program may have nothing but the name."""
     code: CodeRequest | None = None
     """NC code to run instead of the program's own paths."""
     output: Path | None = None
@@ -134,10 +187,14 @@ def simulate(
         _run(prepared, virtual, run, tell=tell)
     finally:
         if run.file is not None and run.file.place is not None:
-            tell(f"written: {run.file.place} ({run.file.rows} samples)")
+            tell(f"written: {run.file.place} ({counted(run.file.rows, 'sample')})")
     if files.kept is not None:
         keep_stock(virtual, files.kept)
         tell(f"written: {files.kept} (remaining stock, in coordinates of its setup)")
+    met = tuple(virtual.findings)
+    if prepared.is_stock_guessed:
+        faults = [each for each in met if each.severity is Severity.ERROR]
+        met = (*(each for each in met if each not in faults), *in_guessed_stock(faults))
     return Simulation(
         program=prepared.name,
         machine=virtual.machine,
@@ -147,11 +204,11 @@ def simulate(
         findings=(
             *prepared.findings,
             *(each for each in prepared.remarks if each not in prepared.findings),
-            *virtual.findings,
+            *met,
             *untouched(prepared, virtual, run),
         ),
         told=prepared.remarks,
-        collisions=tuple(each for each in virtual.findings if each.severity is Severity.ERROR),
+        collisions=tuple(each for each in met if each.severity is Severity.ERROR),
         tools=virtual.setup.tools or {},
         samples=0 if run.file is None else run.file.rows,
         trace=None if run.trace is None else run.trace.trace(),
@@ -230,7 +287,12 @@ def _prepared(request: SimulationRequest, files: RunFiles, tell: Tell) -> Prepar
     if files.file is None:
         raise StepNcError("name a STEP-NC program, or NC code with --nc")
     return from_program(
-        files.file, request, name=files.name, keep_going=request.keep_going, tell=tell
+        files.file,
+        request,
+        name=files.name,
+        tools=files.tools,
+        keep_going=request.keep_going,
+        tell=tell,
     )
 
 
@@ -296,7 +358,9 @@ def _control(request: SimulationRequest, machine: Machine) -> ControlModel:
 def _by_axes(kind: ControlModelName, machine: Machine, *, deviation: float) -> ControlModel:
     """Return a control model with parameters from the limits of the axes."""
     try:
-        return control_model(kind, axis_limits(machine), deviation=deviation)
+        return control_model(
+            kind, axis_limits(machine), deviation=deviation, planner=machine.planner
+        )
     except ValueError as error:
         raise StepNcError(f"machine '{machine.name}', control {kind.value}: {error}") from error
 

@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated, Generic, TypeVar
 
 from service.program_kind import ProgramKind, kind_of_file
+from service.reading import tool_library
 from service.requests.fields import About, FileUse, Request
-from service.requests.files import MostRepeats, Report, ToolsUnit
+from service.requests.files import MostRepeats, Report, SetupOfCode, ToolsUnit
 from service.requests.runs import RunRequest
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles
@@ -33,6 +34,8 @@ class CodeOfRun(Request):
     """Program of a run, and NC code with the data that it lacks."""
 
     file: ProgramOfRun = None
+    name: str = ""
+    """Name of the program; empty: the name of its file."""
     nc: Annotated[
         Path | None,
         About(
@@ -50,12 +53,14 @@ class CodeOfRun(Request):
     tools: Annotated[
         Path | None,
         About(
-            "tool table, for NC code without a program: TOML or CSV, LinuxCNC's tool.tbl, a "
-            "library of Fusion (.json, .tools), HSMWorks (.hsmlib) or FreeCAD (.fctl)",
+            "tool table, of NC code, or of tools that a program only names: TOML "
+            "or CSV, LinuxCNC's tool.tbl, a library of Fusion (.json, .tools), HSMWorks "
+            "(.hsmlib) or FreeCAD (.fctl)",
             flag="--tools", use=FileUse.INPUT, metavar="TABLE", group="NC code",
         ),
     ] = None  # fmt: skip
     tools_unit: ToolsUnit = None
+    setup: SetupOfCode = None
     most_repeats: MostRepeats = None
 
     @property
@@ -74,36 +79,60 @@ class RunOutputs(CodeOfRun):
     report: Report = None
 
 
-def run_files(files: CodeOfRun, request: RunRequest) -> RunFiles:
-    """Return the files of a run; a stock that is named for NC code goes with the code.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlacedRun(Generic[N]):
+    """Files of a run, and its request without what belongs to NC code."""
+
+    files: RunFiles
+    request: N
+
+
+def placed_run(files: CodeOfRun, request: N) -> PlacedRun[N]:
+    """Return the files and the request of a run, with the setup of its NC code.
 
     Raises
     ------
     StepNcError
-        When options of NC code alone are given without it.
+        When options of NC code alone are given without it, or its setup is not valid.
     """
     code = files.code
-    if code is None and (files.dialect or files.tools):
-        raise StepNcError("--dialect and --tools need NC code: name it with --nc")
+    if code is None and files.dialect:
+        raise StepNcError("--dialect needs NC code: name it with --nc")
+    if code is None and files.setup is not None:
+        raise StepNcError("--setup needs NC code: a STEP-NC program has its own setup")
     if files.tools_unit and files.tools is None:
         raise StepNcError("--tools-unit needs a tool table: name it with --tools")
-    return RunFiles(
-        file=None if code == files.file else files.file,
-        code=None
-        if code is None
-        else CodeRequest(
-            code=code,
-            dialect=files.dialect,
-            tools=files.tools,
-            tools_unit=files.tools_unit,
-            stock=request.stock,
-            most_repeats=files.most_repeats,
-        ),
+    places = RunFiles(
+        name=files.name,
         output=getattr(files, "output", None),
         report=getattr(files, "report", None),
     )
+    if code is None:
+        tools = tool_library(files.tools, files.tools_unit)
+        return PlacedRun(files=replace(places, file=files.file, tools=tools), request=request)
+    given = CodeRequest(
+        code=code,
+        dialect=files.dialect,
+        tools=files.tools,
+        tools_unit=files.tools_unit,
+        stock=request.stock,
+        most_repeats=files.most_repeats,
+    )
+    request = replace(request, stock="")
+    if code != files.file and files.file is not None:
+        places = replace(places, file=files.file, code=given)
+        return PlacedRun(files=places, request=request)
+    return _with_setup(given, request, files.setup, places)
 
 
-def run_request(request: N, files: CodeOfRun) -> N:
-    """Return the request of a run, without the stock that is named for NC code."""
-    return request if files.code is None else replace(request, stock="")
+def _with_setup(
+    given: CodeRequest, request: N, named: Path | None, places: RunFiles
+) -> PlacedRun[N]:
+    """Add what the setup file, or the code itself, says of tools, stock, material, machine."""
+    from service.simulation.code_run import code_of_run  # noqa: PLC0415 (numpy)
+
+    found = code_of_run(given, material=request.material, machine=request.machine, named=named)
+    return PlacedRun(
+        files=replace(places, code=found.code),
+        request=replace(request, material=found.material, machine=found.machine),
+    )

@@ -7,18 +7,21 @@ from typing import Generic, TypeVar
 
 from service.chosen import machine_for, material_for
 from service.paths.toolpaths import paths_of, with_feeds
+from service.program_needs import needs_of
+from service.progress import Tell
 from service.raw_stock import (
     GivenStock,
     larger_stock_map,
     raw_triangles,
     stock_map,
 )
-from service.reading import Tell, read_given
+from service.reading import read_given
 from service.requests.runs import RunRequest
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import loaded_tool
 from simulator.machine.virtual import LoadedTool, StockMap
 from simulator.spec import Machine, MaterialMatch
+from simulator.tool_files.read import ToolLibrary
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import Setup
 from stepnc_model.errors import Finding, SchemaError
@@ -54,7 +57,8 @@ class PreparedRun:
     program: Program | None = None
     """STEP-NC program; None for NC code alone."""
     code: NcProgram | None = None
-    """NC code that is not plain; None for any other."""
+    """NC code without a program; None for any other."""
+    is_stock_guessed: bool = False
     findings: tuple[Finding, ...] = ()
     remarks: tuple[Finding, ...] = ()
     """Warnings about the program, the same for every command."""
@@ -85,7 +89,13 @@ class CountedIterator(Generic[T]):
 
 
 def from_program(
-    file: Path, request: RunRequest, *, name: str = "", keep_going: bool = False, tell: Tell
+    file: Path,
+    request: RunRequest,
+    *,
+    name: str = "",
+    tools: ToolLibrary | None = None,
+    keep_going: bool = False,
+    tell: Tell,
 ) -> PreparedRun:
     """Prepare a STEP-NC program on a suitable machine.
 
@@ -95,6 +105,8 @@ def from_program(
     request : RunRequest
     name : str
         Name of the program; empty: the name of its file.
+    tools : ToolLibrary or None
+        Tools of which the file may have nothing but the name.
     keep_going : bool
         Whether workingsteps that cannot be run, and what depends on them, are left out.
     tell : callable
@@ -105,7 +117,9 @@ def from_program(
     StepNcError
         When a name is invalid, or the program cannot be prepared.
     """
-    program = read_given(file, request, name=name, tell=tell).program
+    program = read_given(file, request, name=name, tools=tools, tell=tell).program
+    if not keep_going:
+        needs_of(program, request, file=name or str(file)).require_whole()
     match = material_for(request.material, program)
     tell(f"material: {match.reason}")
     machine = machine_for(request.machine, program)

@@ -1,4 +1,4 @@
-"""What the storage needs of a database: the same few calls for SQLite and PostgreSQL.
+"""Database calls of the storage, the same for SQLite and PostgreSQL.
 
 Statements are written once, with ``?`` for values and names for columns. Both databases know
 the function ``wall_clock()`` (s since 1970; a server's clock is the same for all hosts) and
@@ -65,7 +65,7 @@ class Database(Protocol):
 
     @property
     def is_shared(self) -> bool:
-        """Whether several hosts may use the database at once."""
+        """True if several hosts may use the database at once."""
         ...
 
     def reading(self) -> AbstractContextManager[Connection]:

@@ -171,12 +171,12 @@ class FileDatabase:
         return found
 
     def _is_without_log(self) -> bool:
-        """Whether all that was stored stands in the file itself."""
+        """True if all that was stored stands in the file itself."""
         log = self.file.with_name(f"{self.file.name}-wal")
         return self.file.is_file() and not (log.exists() and log.stat().st_size)
 
     def _is_current(self) -> bool:
-        """Whether the file can be read, and has the version of this program."""
+        """True if the file can be read, and has the version of this program."""
         try:
             with self.reading() as connection:
                 (version,) = connection.execute("PRAGMA user_version").fetchone()

@@ -37,7 +37,7 @@ PRIVATE = frozenset({"memory"})
 
 
 def is_store(files: str) -> bool:
-    """Whether a location of files is a URL instead of a folder."""
+    """True if a location of files is a URL instead of a folder."""
     return "://" in files
 
 
@@ -66,7 +66,7 @@ class FileStore:
 
     @property
     def is_private(self) -> bool:
-        """Whether other processes do not see the files."""
+        """True if other processes do not see the files."""
         return self.protocol in PRIVATE
 
     def read(self, name: str) -> bytes | None:

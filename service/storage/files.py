@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import BinaryIO
 
 from service.errors import Conflict, NotFound, Unreadable
-from service.file_names import LOGS
+from service.files import LOGS
 from service.ids import new_id
-from service.live.storage import storing
+from service.live.journal import storing
 from service.storage.connection import StoredRow
 from service.storage.folder import DataFolder
 from service.storage.idempotency import IdempotencyKey, made_before, remember

@@ -15,7 +15,7 @@ from typing import Any
 
 from service.errors import Conflict, NotFound, TooMany
 from service.ids import new_id
-from service.live.storage import storing
+from service.live.journal import storing
 from service.storage.connection import Connection, StoredRow
 from service.storage.files import FIELDS
 from service.storage.folder import DataFolder, remove_results, show_again, show_attempt
@@ -49,7 +49,7 @@ class JobState(StrEnum):
 
     @property
     def is_finished(self) -> bool:
-        """Whether the job has ended."""
+        """True if the job has ended."""
         return self not in {JobState.QUEUED, JobState.RUNNING}
 
 
@@ -68,7 +68,7 @@ class JobKind(StrEnum):
 
     @property
     def is_live(self) -> bool:
-        """Whether all jobs of the kind steer a machine and can be changed while they run."""
+        """True if all jobs of the kind steer a machine and can be changed while they run."""
         return self in {JobKind.CONTROL, JobKind.TRIAL}
 
 
@@ -107,12 +107,12 @@ class Job:
 
     @property
     def is_live(self) -> bool:
-        """Whether the job can be changed while it runs; such a job is not run twice."""
+        """True if the job can be changed while it runs; such a job is not run twice."""
         return self.kind.is_live or (self.kind is JobKind.FACTORY and self.is_paced)
 
     @property
     def is_paced(self) -> bool:
-        """Whether the job mostly waits for people, or for the clock."""
+        """True if the job mostly waits for people, or for the clock."""
         return self.kind.is_live or bool(self.request.get("pace"))
 
 

@@ -42,7 +42,7 @@ class Key:
     revoked: float | None
 
     def opens(self, role: Role) -> bool:
-        """Whether the key has a role; every key has the role viewer."""
+        """True if the key has a role; every key has the role viewer."""
         return role is Role.VIEWER or role in self.roles
 
 

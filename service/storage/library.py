@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from service.chosen import load_material_named
 from service.errors import Conflict, NotFound, PreconditionFailed, TooLarge, Unreadable
 from service.files import write_atomically
-from service.live.storage import storing
+from service.live.journal import storing
 from service.storage.file_lock import locked
 from service.storage.folder import DataFolder
 from simulator.errors import LibraryError, UnknownMachine

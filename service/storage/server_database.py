@@ -20,8 +20,7 @@ from psycopg.abc import PQGen
 from psycopg.pq import TransactionStatus
 from psycopg.rows import DictRow, dict_row
 
-from kbe.faults import fault
-from kbe.store_location import StoreLocation, parsed_place
+from kbe.connection import StoreLocation, fault, parsed_place
 from service.errors import StorageFull, Unavailable
 from service.storage.connection import StatementAnswer
 from service.storage.server_schema import SCHEMA, SPACE
@@ -253,7 +252,7 @@ class ServerDatabase:
 
 
 def _has_news(raw: Raw) -> bool:
-    """Whether an idle connection has something to read: most often that it was closed."""
+    """True if an idle connection has something to read: most often that it was closed."""
     probe = select.poll()
     probe.register(raw.fileno(), select.POLLIN)
     return bool(probe.poll(0))

@@ -1,14 +1,31 @@
-"""Calling a verb with values of Python: its request and files from keywords."""
+"""Calling a verb with values of Python: its request and files from keywords.
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import MISSING
+Verbs by name: each is a folder below this one.
+
+A folder holds
+
+- ``__init__.py``, whose docstring is the help: a sentence, then examples and details;
+- ``request.py`` with ``REQUEST``, the type of the values that every door takes, and ``FILES``,
+  that of the files that command line and Python name (``USUAL``: values that differ from those
+  of REST where nothing is asked for);
+- ``run.py`` with ``run(request, files, *, tell)``, which returns a
+- :class:`~service.verbs.result.Result`, declared in ``result.py``.
+
+A folder is all that a verb needs: doors find it by its name. Verbs of two words, as
+``kbe review``, share the folder of the first, whose docstring is the help of the group.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import MISSING, dataclass
 from difflib import get_close_matches
 from enum import StrEnum
+from functools import cache
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
-from service.program_kind import ProgramKind, kind_of_file
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.requests.fields import (
     NUMBERS,
     FileUse,
@@ -18,10 +35,84 @@ from service.requests.fields import (
     member_of,
     require_bounds,
 )
+from service.requests.output import OutputFiles
 from service.requests.serves import require_options_served
-from service.verbs.result import Result
-from service.verbs.verb import Verb
+from service.verbs.result import DoneResult, Result
 from stepnc_model.errors import StepNcError
+
+HERE = Path(__file__).parent
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verb:
+    """A verb, whose parts are imported when they are needed; or a group, of its help alone."""
+
+    folder: str
+    """Its folder below this one, with a dot between two names."""
+
+    @property
+    def name(self) -> str:
+        """Name on the command line, such as ``kbe review``."""
+        return self.folder.replace(".", " ")
+
+    @property
+    def function(self) -> str:
+        """Name in Python, such as ``kbe_review``."""
+        return self.folder.replace(".", "_")
+
+    @property
+    def group(self) -> str:
+        """First word of the name."""
+        return self.folder.partition(".")[0]
+
+    @property
+    def about(self) -> str:
+        """Help: a sentence, and details after an empty line."""
+        return import_module(f"service.verbs.{self.folder}").__doc__ or ""
+
+    @property
+    def line(self) -> str:
+        """First sentence of the help, without its full stop."""
+        return " ".join(self.about.partition("\n\n")[0].split()).removesuffix(".")
+
+    @property
+    def details(self) -> str:
+        """The rest of the help; empty if there is none."""
+        return self.about.partition("\n\n")[2].strip()
+
+    @property
+    def request(self) -> type[Request]:
+        """Type of its request."""
+        found: type[Request] = self._part("request").REQUEST
+        return found
+
+    @property
+    def files(self) -> type[Request]:
+        """Type of its files."""
+        found: type[Request] = self._part("request").FILES
+        return found
+
+    @property
+    def usual(self) -> Mapping[str, object]:
+        """Values of the request that are usual on the command line and in Python."""
+        found: Mapping[str, object] = getattr(self._part("request"), "USUAL", {})
+        return found
+
+    @property
+    def run(self) -> Callable[..., Result]:
+        """Function that does the work."""
+        found: Callable[..., Result] = self._part("run").run
+        return found
+
+    def _part(self, name: str) -> ModuleType:
+        return import_module(f"service.verbs.{self.folder}.{name}")
+
+
+@cache
+def verbs() -> dict[str, Verb]:
+    """Return all verbs by the names of their folders, in alphabetical order."""
+    folders = (each.parent.relative_to(HERE).parts for each in HERE.rglob("request.py"))
+    return {name: Verb(folder=name) for name in sorted(map(".".join, folders))}
 
 
 def call(
@@ -33,7 +124,7 @@ def call(
     ----------
     verb : Verb
     args : sequence
-        Files that the command line takes without an option, in its order.
+        Words that the command line takes without an option, in its order.
     words : mapping
         Values by the names of the fields of its request and its files.
     tell : callable
@@ -47,19 +138,19 @@ def call(
         When a value is not valid; and as the verb.
     """
     of_files, of_request = fields_of(verb.files), fields_of(verb.request)
-    places = [each.name for each in of_files if each.about.use and not each.about.flag]
+    places = [each.name for each in (*of_files, *of_request) if each.is_word]
     if len(args) > len(places):
-        raise TypeError(f"{verb.folder}() takes {len(places)} positional arguments")
+        raise TypeError(f"{verb.function}() takes {len(places)} positional arguments")
     given = dict(zip(places, args, strict=False))
     if twice := sorted(given.keys() & words.keys()):
-        raise TypeError(f"{verb.folder}() got {twice[0]} twice")
+        raise TypeError(f"{verb.function}() got {twice[0]} twice")
     given |= words
     known = {each.name for each in (*of_files, *of_request)}
     for name in given:
         if name not in known:
             near = get_close_matches(name, known, n=3)
             hint = f"; near to it: {', '.join(near)}" if near else ""
-            raise TypeError(f"{verb.folder}() has no argument '{name}'{hint}")
+            raise TypeError(f"{verb.function}() has no argument '{name}'{hint}")
     request = _built(verb.request, of_request, {**verb.usual, **given})
     require_bounds(request)
     files = _built(verb.files, of_files, given)
@@ -75,7 +166,7 @@ def ran(
     given: Mapping[str, object],
     tell: Tell,
 ) -> Result:
-    """Run a verb with its request and files, and write its page if one is named.
+    """Run a verb with its request and files, and write its result where a file is named.
 
     Parameters
     ----------
@@ -93,7 +184,13 @@ def ran(
         When a value does not serve the program; and as the verb.
     """
     _require_given_served((*fields_of(verb.files), *fields_of(verb.request)), files, given)
+    if isinstance(files, OutputFiles):
+        files.require_format()
     result = verb.run(request, files, tell=tell)
+    if isinstance(files, OutputFiles) and files.output is not None:
+        tell(f"written: {result.save(files.output, files.format)}")
+    if isinstance(result, DoneResult):
+        tell(result.said)
     report: Path | None = getattr(files, "report", None)
     if report is not None:
         from service.files import write_atomically  # noqa: PLC0415 (only where one is written)
@@ -111,6 +208,8 @@ def _require_given_served(
     for field in fields:
         program = getattr(files, field.name, None)
         if field.about.use is FileUse.PROGRAM and isinstance(program, Path):
+            from service.program_kind import ProgramKind, kind_of_file  # noqa: PLC0415 (help)
+
             kind = ProgramKind.STEP_NC if program.is_dir() else kind_of_file(program)
             require_options_served(given, kind, flags=flags)
 

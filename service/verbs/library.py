@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from service.rendering.columns import Column
-from service.rendering.records import plain
+from service.rendering.columns import Column, plain
 from service.rendering.view import Fact, ResultView, Table, TextLine
 from service.verbs.result import Result
 from simulator.spec import Machine, WorkMaterial

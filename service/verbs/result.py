@@ -1,17 +1,21 @@
 """Result of a verb: the base of what every verb returns."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from service.exit_codes import OK
+from service.output_format import OutputFormat, format_of
 from service.rendering.columns import Change, Column
-from service.rendering.view import ResultView
+from service.rendering.view import Fact, ResultView, TextLine
 from stepnc_model.errors import StepNcError
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
     import pyarrow as pa
+
+    from service.flat_file import FileColumn, Row
 
 WIDE = 10_000
 """Characters per line of a text that no terminal limits."""
@@ -21,6 +25,10 @@ class Result:
     """Base of the results of verbs; each declares its view, and a page if it has one."""
 
     __slots__ = ()
+
+    def __init_subclass__(cls) -> None:
+        # A prompt shows the text, not the fields that a dataclass would list.
+        cls.__repr__ = Result.__str__  # type: ignore[assignment]
 
     @property
     def exit_code(self) -> int:
@@ -48,6 +56,11 @@ class Result:
     def record(self) -> dict[str, Any]:
         """Return the result as the JSON object that ``--json`` prints."""
         return self.view().record()
+
+    def kept(self, folder: Path) -> dict[str, Any]:
+        """Write what a job keeps beside result and report; return the result of the job."""
+        del folder
+        return self.record()
 
     def table(self, key: str = "") -> "pa.Table":
         """Return a table of the result, with units in the names of its columns.
@@ -84,37 +97,56 @@ class Result:
             raise StepNcError(f"{type(self).__name__} has no figure")
         return figures[0]
 
-    def save(self, path: str | Path) -> Path:
-        """Write the result as a page (``.html``), JSON (``.json``), table (``.csv``) or text.
+    def save(self, path: str | Path, form: OutputFormat | None = None) -> Path:
+        """Write the result to a file, in the format that its name ends with or another.
 
         Raises
         ------
         StepNcError
-            When the name ends otherwise.
+            When the name tells no format, or the result has no page or no table.
         """
         # Imported late, as what writes files is not needed where none is written.
         from service.files import write_atomically  # noqa: PLC0415
-        from service.flat_file import Format, write_rows  # noqa: PLC0415
-        from service.rendering.records import dump, file_columns, file_rows  # noqa: PLC0415
 
         place = Path(path)
-        match place.suffix.lower():
-            case ".html":
-                write_atomically(place, self.page().encode())
-            case ".json":
-                write_atomically(place, dump(self.record()).encode())
-            case ".csv" | ".parquet" as suffix:
-                found = self.view().table()
-                rows = file_rows(found.columns, found.rows)
-                form = Format(suffix[1:])
-                write_rows(place, file_columns(found.columns), rows, form=form)
-            case ".txt":
-                write_atomically(place, f"{self}\n".encode())
-            case suffix:
-                raise StepNcError(
-                    f"{place}: '{suffix}' is none of .html, .json, .csv, .parquet and .txt"
-                )
+        form = form or format_of(place)
+        if form is OutputFormat.PARQUET:
+            from service.flat_file import Format, write_rows  # noqa: PLC0415
+
+            write_rows(place, *self._rows(), form=Format.PARQUET)
+        else:
+            write_atomically(place, f"{self.printed(form)}\n".encode(errors="replace"))
         return place
+
+    def printed(self, form: OutputFormat) -> str:
+        """Return the result as text of a format.
+
+        Raises
+        ------
+        StepNcError
+            When the result has no page or no table, or the format is not of text.
+        """
+        match form:
+            case OutputFormat.TEXT:
+                return str(self)
+            case OutputFormat.JSON:
+                from service.rendering.columns import dump  # noqa: PLC0415
+
+                return dump(self.record())
+            case OutputFormat.HTML:
+                return self.page()
+            case OutputFormat.CSV:
+                from service.flat_file import csv_lines  # noqa: PLC0415
+
+                return "\n".join(csv_lines(*self._rows()))
+        raise StepNcError(f"{form.value} is not text")
+
+    def _rows(self) -> "tuple[Sequence[FileColumn], Iterator[Row]]":
+        """Columns and rows of the first table, for files."""
+        from service.rendering.columns import file_columns, file_rows  # noqa: PLC0415
+
+        found = self.view().table()
+        return file_columns(found.columns), file_rows(found.columns, found.rows)
 
     def __str__(self) -> str:
         return "\n".join(text for text, _ in self.view().lines(width=WIDE, is_told=False))
@@ -122,6 +154,27 @@ class Result:
     def _repr_html_(self) -> str:
         """Return what notebooks show."""
         return self.view().html()
+
+
+class DoneResult(Result):
+    """Base of the results of what was written or changed: fields, and a line that is told."""
+
+    __slots__ = ()
+
+    @property
+    def said(self) -> str:
+        """Summary in one line."""
+        raise NotImplementedError
+
+    def view(self) -> ResultView:
+        """Return the fields for programs, and the line where it was not told."""
+        names = [each.name for each in fields(cast(Any, self))]
+        values = {name: getattr(self, name) for name in names}
+        facts = (
+            Fact(key=name, value=str(value) if isinstance(value, Path) else value)
+            for name, value in values.items()
+        )
+        return ResultView([*facts, TextLine(text=self.said, is_told=True)])
 
 
 class ServedResult(Result):

@@ -42,7 +42,7 @@ def without_held(position: Floats) -> Floats:
 
 
 def _in_turn(has_changed: Bools) -> Bools:
-    """Whether rows belong to a run in which single axes change in turn, (N,)."""
+    """True if rows belong to a run in which single axes change in turn, (N,)."""
     is_single = has_changed.sum(axis=1) == 1
     axis = has_changed.argmax(axis=1)
     turns = is_single[1:] & is_single[:-1] & (axis[1:] != axis[:-1])
@@ -55,7 +55,7 @@ def _in_turn(has_changed: Bools) -> Bools:
 
 
 def _before(changes: Bools) -> Bools:
-    """Whether there is a change in one of the rows before each, (N,)."""
+    """True if there is a change in one of the rows before each, (N,)."""
     found = np.zeros_like(changes)
     for shift in range(1, AROUND + 1):
         found[shift:] |= changes[:-shift]

@@ -3,8 +3,8 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from service.verification.facts import shown_rows
 from service.verification.run import Verification
-from service.verification.surface_map import shown_rows
 from simulator.motion.segments import Floats, Ints
 from simulator.verification.deviation import SurfacePlaces
 

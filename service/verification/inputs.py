@@ -9,8 +9,7 @@ from service.agent.replay import LONGEST_LINE
 from service.files import require_regular
 from service.parquet_pieces import parquet_file
 from service.part_file import require_part, require_part_form
-from service.recording.signals import POSITIONS
-from service.recording.table import TABLES, headings
+from service.recording.table import POSITIONS, TABLES, headings
 from service.storage.files import FileKind
 from simulator.client.columns import TIME
 from simulator.tool_files.read import ToolFormat, read_tools

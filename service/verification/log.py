@@ -2,6 +2,10 @@
 
 Axes that have no value at a time are interpolated over time between their own values. Pieces
 are bounded, so that logs of any length need the memory of one piece.
+
+MTConnect documents and SHDR logs as tables of positions, tools and workingsteps.
+
+A row stands for a time at which something was told; other columns hold their last value.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,15 +16,110 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
-from service.recording.signals import POSITIONS
-from service.recording.table import TABLES, batches, headings
+from service.agent.replay import BY_MACHINE, DOCUMENTS, LINES, items_by_column, read_log
+from service.progress import silent
+from service.recording.table import POSITIONS, TABLES, batches, headings
 from service.verification.axes import without_held
-from service.verification.document import SUFFIXES, table_of
-from simulator.client.columns import EXECUTION, RUNNING, TIME
+from simulator.agent.buffer import Value
+from simulator.agent.machine_feed import RunFeed
+from simulator.agent.machine_model import NameSet, machine_model
+from simulator.agent.model import DeviceModel
+from simulator.client.columns import EXECUTION, RUNNING, TIME, WORDS, read_document
 from simulator.motion.segments import AXES, Floats, Ints
 from simulator.spec import Machine
 from simulator.verification.logged import LoggedSamples, joined
 from stepnc_model.errors import StepNcError
+
+SUFFIXES = DOCUMENTS | LINES
+"""Suffixes of documents and logs."""
+
+
+def table_of(path: Path, machine: Machine, columns: Sequence[str]) -> pa.Table:
+    """Read columns of a document of streams of any agent, or an SHDR log of a machine.
+
+    Parameters
+    ----------
+    path : Path
+    machine : Machine
+        Machine whose data items, in modern names or those of the papers, the log has.
+    columns : sequence of str
+        Names of columns; those that the log does not tell are left out.
+
+    Raises
+    ------
+    StepNcError
+        When the file cannot be read, or has nothing of this machine.
+    """
+    refused: StepNcError | None = None
+    for names in NameSet:
+        model = machine_model(machine, names=names).model
+        try:
+            feeds = read_log(path, model, tell=silent, option=BY_MACHINE).feeds()
+            return _table(_joined(feeds), model, columns)
+        except StepNcError as error:
+            refused = refused or error
+    if path.suffix.lower() in DOCUMENTS:
+        return _of_any_agent(path, columns)
+    raise refused or StepNcError(f"{path}: no observations")
+
+
+def _of_any_agent(path: Path, columns: Sequence[str]) -> pa.Table:
+    """Rows of a document of another agent, by the types of its data items."""
+    rows = read_document(path).rows()
+    known = [name for name in (TIME, *columns) if rows and name in rows[0]]
+    return pa.table({
+        name: pa.array(
+            [row[name] for row in rows], pa.string() if name in WORDS else pa.float64()
+        )
+        for name in known
+    })
+
+
+def _joined(feeds: Iterator[RunFeed]) -> RunFeed:
+    parts = list(feeds)
+    return RunFeed(
+        items=np.concatenate([part.items for part in parts]),
+        times=np.concatenate([part.times for part in parts]),
+        values=[value for part in parts for value in part.values],
+    )
+
+
+def _table(feed: RunFeed, model: DeviceModel, columns: Sequence[str]) -> pa.Table:
+    """Rows at the times of a feed, with the columns that it tells."""
+    times, row = np.unique(feed.times, return_inverse=True)
+    items = items_by_column(model)
+    found = {TIME: pa.array(times)}
+    for name in columns:
+        told = np.flatnonzero(feed.items == items.get(name, -1))
+        if len(told):
+            values = [feed.values[each] for each in told.tolist()]
+            found[name] = _held(values, row[told], len(times), is_text=name in WORDS)
+    return pa.table(found)
+
+
+def _held(values: Sequence[Value], rows: Ints, count: int, *, is_text: bool) -> pa.Array:
+    """Values at some rows, held until the next one."""
+    place = np.searchsorted(rows, np.arange(count), side="right") - 1
+    kept = [None, *values]
+    if is_text:
+        return pa.array(
+            [
+                None if kept[each + 1] is None else str(kept[each + 1])
+                for each in place.tolist()
+            ],
+            pa.string(),
+        )
+    numbers = np.array([_number(each) for each in kept])
+    return pa.array(numbers[place + 1])
+
+
+def _number(value: Value) -> float:
+    """A number; NaN where it is none or unavailable."""
+    try:
+        return float(value) if isinstance(value, str | int | float) else float("nan")
+    except ValueError:
+        return float("nan")
+
 
 TOOL, WORKINGSTEP = "tool_number", "workingstep"
 WORK_POSITIONS = tuple(f"path_position_{axis}" for axis in "xyz")
@@ -47,7 +146,7 @@ LONGEST_WAIT = 1_000_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramNames:
-    """What a log may name: workingsteps of the program with their tools."""
+    """Names that a log may use: workingsteps of the program with their tools."""
 
     workingsteps: Mapping[str, int]
     """Index of each workingstep by its id."""
@@ -145,7 +244,7 @@ class LogFile:
 
     @property
     def zero_source(self) -> str:
-        """Where the zero comes from, if the log tells it."""
+        """Source of the zero, if the log states it."""
         if self._has_work_positions and not self.is_zero_given:
             return "the tip of the tool in work coordinates, as PATH_POSITION tells it"
         if self._has_offsets and not self.is_zero_given:
@@ -174,7 +273,7 @@ class LogFile:
         return table_of(self.path, self.machine, COLUMNS)
 
     def _has_values(self, columns: tuple[str, ...]) -> bool:
-        """Whether the log has some columns, and a value in each."""
+        """True if the log has some columns, and a value in each."""
         if not set(columns) <= set(self._names):
             return False
         missing = set(columns)

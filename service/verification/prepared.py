@@ -8,8 +8,9 @@ import numpy as np
 from service.brep.bodies import body_triangles
 from service.chosen import machine_for, material_for
 from service.part_file import PartMesh, read_part
+from service.progress import Tell, silent
 from service.raw_stock import given_stock, placed_triangles, raw_triangles
-from service.reading import Tell, read_given, silent
+from service.reading import read_given, tool_library
 from service.requests.verification import VerificationRequest
 from service.simulation.setup import PreparedRun, prepared_program
 from service.verification.log import ProgramNames
@@ -25,8 +26,7 @@ from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.program import Program, Stock
 from stepnc_model.toolpath.frame import workpiece_frame
 from stepnc_model.toolpath.task import finished_body
-
-MM_PER_INCH = 25.4
+from stepnc_model.units import MM_PER_INCH
 
 LIKE = 0.1
 """Relative difference of sizes that count as the same."""
@@ -76,7 +76,7 @@ class PreparedProgram:
 
     @property
     def is_turned(self) -> bool:
-        """Whether the part is turned."""
+        """True if the part is turned."""
         return self.machine.kind is MachineKind.LATHE
 
     @property
@@ -92,7 +92,7 @@ class PreparedProgram:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RequiredSetup:
-    """What a log is compared with where there is no program."""
+    """Required part to compare a log with where there is no program."""
 
     name: str
     """Name of the file of the required part."""
@@ -106,12 +106,16 @@ class RequiredSetup:
 
     @property
     def is_turned(self) -> bool:
-        """Whether the part is turned."""
+        """True if the part is turned."""
         return self.machine.kind is MachineKind.LATHE
 
 
 def prepared(
-    program: Path, request: VerificationRequest, *, tell: Tell = silent
+    program: Path,
+    request: VerificationRequest,
+    *,
+    tools: Path | None = None,
+    tell: Tell = silent,
 ) -> PreparedProgram:
     """Prepare a program for verification.
 
@@ -120,7 +124,7 @@ def prepared(
     StepNcError
         When the program cannot be run, has several setups, or has no stock.
     """
-    read = read_given(program, request, tell=tell).program
+    read = read_given(program, request, tools=tool_library(tools), tell=tell).program
     match = material_for(request.material, read)
     tell(f"material: {match.reason}")
     run = prepared_program(read, machine_for(request.machine, read), match, tell=tell)
@@ -130,7 +134,7 @@ def prepared(
         raise StepNcError(f"{program}: several setups: only one can be verified at a time")
     features = {step.id: _feature(run, step.features) for step in run.program.workingsteps}
     runs, names = _runs(run)
-    tools = {each.workingstep: each.tool for each in runs}
+    used = {each.workingstep: each.tool for each in runs}
     return PreparedProgram(
         program=run.program,
         name=run.name,
@@ -140,7 +144,7 @@ def prepared(
         raw=raw_triangles(run.program, run.program.workingsteps[0].setup),
         path=programmed_path(runs),
         steps=tuple(
-            StepName(workingstep=name, feature=features[name], tool=tools.get(row, 0))
+            StepName(workingstep=name, feature=features[name], tool=used.get(row, 0))
             for row, name in enumerate(names)
         ),
         cutters={number: _cutter(run, number) for number in run.tools or {}},

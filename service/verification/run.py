@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from service.numbers import numbers_in
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.recording.run import record_kept
 from service.requests.fields import require_bounds
 from service.requests.verification import VerificationRequest
@@ -18,7 +18,6 @@ from service.verification.comparison import compared_with_program, compared_with
 from service.verification.log import LogFile, LogSteps, thinned
 from service.verification.prepared import (
     LIKE,
-    MM_PER_INCH,
     PreparedProgram,
     RequiredFile,
     RequiredSetup,
@@ -33,9 +32,10 @@ from simulator.motion.segments import Floats
 from simulator.spec import Machine
 from simulator.verification.deviation import ComparedVolumes, SurfacePlaces
 from simulator.verification.logged import LogFacts
-from simulator.verification.path import ProgrammedPath
-from simulator.verification.zero import distance_from, fitted_zero
+from simulator.verification.path import ProgrammedPath, distance_from, fitted_zero
+from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, Severity, StepNcError
+from stepnc_model.units import MM_PER_INCH
 
 FAR = 5.0
 """Distance from the programmed path at which a position is not of this program, mm."""
@@ -87,7 +87,7 @@ class Verification:
 
     @property
     def has_errors(self) -> bool:
-        """Whether a deviation exceeds both its uncertainty and the tolerance."""
+        """True if a deviation exceeds both its uncertainty and the tolerance."""
         size = np.abs(self.places.deviation)
         return bool((self.places.is_beyond & (size >= self.tolerance - 1e-9)).any())
 
@@ -145,7 +145,7 @@ def verify(
         setup = required_setup(request, given.tools, given.part)
         with log_file(log, tell=tell) as (path, name):
             return verified_without_program(path, setup, request, name=name, tell=tell)
-    ready = prepared(program, request, tell=tell)
+    ready = prepared(program, request, tools=given.tools, tell=tell)
     if given.tools is not None:
         ready = with_tools(ready, given.tools)
     if given.part is not None:
@@ -347,7 +347,7 @@ def _findings(file: LogFile, facts: LogFacts, tools: set[int]) -> list[Finding]:
     """Say what the log lacks."""
     found = []
     if file.equal_times:
-        found.append(f"{file.equal_times} rows have the time of the row before")
+        found.append(f"{counted(file.equal_times, 'row')} with the time of the row before")
     if file.completed > 1:
         found.append(
             f"{file.completed} programs were completed: their cuts are verified as those of "
@@ -359,7 +359,9 @@ def _findings(file: LogFile, facts: LogFacts, tools: set[int]) -> list[Finding]:
         shown = ", ".join(sorted(file.foreign)[:MOST_SHOWN])
         found.append(f"the log names workingsteps that the program does not have: {shown}")
     if file.unknown:
-        found.append(f"{file.unknown} rows lack a position: interpolated over time")
+        found.append(
+            f"{counted(file.unknown, 'row')} without a position: interpolated over time"
+        )
     if facts.gaps:
         found.append(
             f"{facts.gaps} gaps of up to {facts.longest_gap:.3g} s in which the tool moved: "

@@ -35,7 +35,7 @@ MOST_WAITING = 100_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AdapterAddress:
-    """Where an adapter listens."""
+    """Address of an adapter."""
 
     host: str
     port: int
@@ -43,7 +43,7 @@ class AdapterAddress:
 
 @dataclass(kw_only=True)
 class AdapterIntake:
-    """What adapters tell: repeated values and small changes are dropped. Running state."""
+    """Intake of adapters' values; repeats and small changes are dropped. Running state."""
 
     agent: Agent
     tell: Callable[[str], None] = field(default=lambda _: None)
@@ -172,7 +172,7 @@ async def _listen_once(
 
 
 def _skewed(address: AdapterAddress, seconds: float) -> str:
-    """What is told of a clock that is wrong."""
+    """Warning about a clock that is wrong."""
     how = "behind" if seconds > 0.0 else "ahead of"
     return (
         f"adapter {address.host}:{address.port}: its clock is {abs(seconds):.1f} s {how} that "

@@ -183,7 +183,7 @@ class ObservationBuffer:
         return text
 
     def state_at(self, sequence: int) -> State:
-        """What held after an observation that is kept."""
+        """State after an observation that is kept."""
         start = max(each for each in self._checkpoints if each <= sequence)
         state = list(self._checkpoints[start])
         span = np.arange(start, sequence + 1)

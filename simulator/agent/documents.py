@@ -361,7 +361,7 @@ def timestamp(time: int) -> str:
 
 
 def has_observations(document: bytes) -> bool:
-    """Whether there is an observation in a document of streams."""
+    """True if there is an observation in a document of streams."""
     return b"<DeviceStream " in document
 
 

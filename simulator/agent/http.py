@@ -10,7 +10,13 @@ from typing import Any, NamedTuple
 from urllib.parse import parse_qsl, unquote
 from uuid import uuid4
 
-from simulator.agent.agent import Agent
+from simulator.agent.agent import (
+    Agent,
+    RequestRefused,
+    StreamQuery,
+    current_query,
+    sample_query,
+)
 from simulator.agent.documents import (
     RequestFault,
     as_json,
@@ -19,20 +25,14 @@ from simulator.agent.documents import (
     indented,
     packed,
 )
-from simulator.agent.puts import (
+from simulator.agent.schemas import PLACE
+from simulator.agent.shdr import (
     MOST_BODY,
     put_asset,
     put_observations,
     remove_all_assets,
     remove_assets,
 )
-from simulator.agent.requests import (
-    RequestRefused,
-    StreamQuery,
-    current_query,
-    sample_query,
-)
-from simulator.agent.schemas import PLACE
 
 LONGEST_URI = 8192
 """bytes of a path with its query"""
@@ -74,7 +74,7 @@ KINDS = {
 
 
 class HttpRequest(NamedTuple):
-    """What a request says of itself; a tuple, as making it is a good part of an answer."""
+    """An HTTP request; a tuple, as making it is a good part of an answer."""
 
     method: str
     path: str
@@ -90,7 +90,7 @@ class HttpRequest(NamedTuple):
 
     @property
     def is_pretty(self) -> bool:
-        """Whether documents are to be indented."""
+        """True if documents are to be indented."""
         return self.values.get("pretty", "").lower() in {"true", "1", "yes"}
 
 

@@ -1,4 +1,4 @@
-"""What a run of the virtual machine tells an agent: observations from its samples."""
+"""Observations for an agent from the samples of the virtual machine."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from simulator.agent.buffer import ConditionValue, Value
-from simulator.agent.machine_model import MachineItem, MachineModel
-from simulator.agent.names import SchemaVersion
+from simulator.agent.machine_model import MachineItem, MachineModel, SchemaVersion
 from simulator.agent.tool_assets import asset_id
 from simulator.machine.samples import Condition, Samples
 from simulator.motion.segments import Floats, Ints

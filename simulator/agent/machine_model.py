@@ -1,8 +1,12 @@
-"""The device model of a machine of the library, by its file."""
+"""The device model of a machine of the library, by its file.
+
+Names that an agent goes by: schema versions, and sets of ids.
+"""
 
 from collections.abc import Collection, Iterable, Iterator
 from copy import deepcopy
 from dataclasses import dataclass
+from enum import StrEnum
 from functools import cache
 from math import isfinite
 from uuid import NAMESPACE_DNS, uuid5
@@ -10,9 +14,32 @@ from uuid import NAMESPACE_DNS, uuid5
 from lxml import etree
 
 from simulator.agent.model import DeviceModel, model_of
-from simulator.agent.names import NameSet, SchemaVersion
 from simulator.spec import Machine, MachineKind
-from stepnc_model.units import mm_min_from_speed, rpm_from_rev_s
+from stepnc_model.units import SECONDS_PER_MINUTE, rpm_from_rev_s
+
+
+class SchemaVersion(StrEnum):
+    """Schema version of documents."""
+
+    V1_3 = "1.3"
+    V2_0 = "2.0"
+    V2_7 = "2.7"
+
+    @property
+    def key(self) -> tuple[int, int]:
+        """Number by which versions are ordered."""
+        major, minor = map(int, self.value.split("."))
+        return major, minor
+
+
+class NameSet(StrEnum):
+    """Ids of data items."""
+
+    MODERN = "modern"
+    """short ids after the device"""
+    PAPERS = "papers"
+    """as printed in the papers on the virtual machine, where they have one"""
+
 
 AGENT_UUID = uuid5(NAMESPACE_DNS, "agent.stepnc-optimiser")
 
@@ -50,7 +77,7 @@ class MachineItem:
     """the sum of others, as a meter shows it: not among the data items of the papers"""
 
     def is_in(self, version: str) -> bool:
-        """Whether a schema version knows it."""
+        """True if a schema version knows it."""
         return _key(self.since) <= _key(version) and (
             not self.until or _key(version) < _key(self.until)
         )
@@ -65,7 +92,6 @@ SIGNS = ("NEGATIVE", "", "POSITIVE")
 
 EXECUTIONS = ("READY", "ACTIVE", "WAIT", "PROGRAM_STOPPED", "PROGRAM_COMPLETED")
 TURNS = ("COUNTER_CLOCKWISE", "", "CLOCKWISE")
-RPM = 60.0
 
 
 def _linear(axis: str, row: int) -> tuple[MachineItem, ...]:
@@ -131,11 +157,11 @@ ITEMS = (
     *(item for row, axis in enumerate("XYZ") for item in _linear(axis, row)),
     MachineItem(
         place=SPINDLE, id="speed", type="ROTARY_VELOCITY", sub_type="ACTUAL",
-        units="REVOLUTION/MINUTE", source="spindle_speed", scale=RPM,
+        units="REVOLUTION/MINUTE", source="spindle_speed", scale=SECONDS_PER_MINUTE,
     ),
     MachineItem(
         place=SPINDLE, id="speed_prog", type="ROTARY_VELOCITY", sub_type="PROGRAMMED",
-        units="REVOLUTION/MINUTE", source="spindle_programmed", scale=RPM,
+        units="REVOLUTION/MINUTE", source="spindle_programmed", scale=SECONDS_PER_MINUTE,
     ),
     MachineItem(
         place=SPINDLE, id="cwatt", type="WATTAGE", sub_type="ACTUAL", units="WATT",
@@ -383,7 +409,7 @@ def _add_specifications(element: etree._Element, machine: Machine, tag: str, nam
             if axis.name.upper() == name:
                 low, high = axis.travel
                 rows.append(("travel", "POSITION", "MILLIMETER", high, low))
-                feed = mm_min_from_speed(axis.max_feed) / 60.0
+                feed = axis.max_feed
                 rows.append(("max_feed", "AXIS_FEEDRATE", "MILLIMETER/SECOND", feed, None))
     if tag == "Rotary":
         high_speed, low_speed = machine.spindle.max_speed, machine.spindle.min_speed

@@ -3,6 +3,8 @@
 A model is a ``Devices`` element without namespaces, as XPath expressions of clients are written
 without prefixes. Data items are numbered in document order; observations refer to the number.
 
+Choice of data items by an XPath expression of a client, within bounds.
+
 References
 ----------
 .. [1] ANSI/MTC1.4-2018, MTConnect Standard, Part 2, Device Information Model.
@@ -11,7 +13,7 @@ References
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -355,3 +357,57 @@ def _number(text: str | None) -> float:
         return float(text or 0.0)
     except ValueError:
         return 0.0
+
+
+LONGEST = 1024
+"""characters of an expression"""
+
+MOST_STEPS = 8
+"""descendant steps, whose cost multiplies"""
+
+FUNCTIONS = frozenset(["contains", "starts-with", "not", "name", "local-name", "text", "node"])
+"""functions that an expression may call: none that goes through the document"""
+
+_CALL = re.compile(r"([\w-]+)\s*\(")
+_TEXT = re.compile(r"'[^']*'|\"[^\"]*\"")
+
+
+class PathFault(ValueError):
+    """An expression that is not valid, too costly, or finds nothing."""
+
+
+@lru_cache(maxsize=256)
+def selected(model: DeviceModel, path: str) -> frozenset[int]:
+    """Numbers of the data items that an expression finds, with those of components below.
+
+    Raises
+    ------
+    PathFault
+        For an expression that is not valid, costs too much, or finds nothing.
+    """
+    bare = _TEXT.sub("''", path)
+    if len(path) > LONGEST:
+        raise PathFault(f"longer than {LONGEST} characters")
+    if bare.count("//") + bare.count("descendant") + bare.count("*") > MOST_STEPS:
+        raise PathFault(f"more than {MOST_STEPS} descendant steps or wildcards")
+    inside = re.findall(r"\[([^\]]*)", bare)
+    if any("//" in each or "descendant" in each or "::" in each for each in inside):
+        raise PathFault("descendant steps or axes in a condition")
+    for name in _CALL.findall(bare):
+        if name not in FUNCTIONS and name not in {"or", "and"}:
+            raise PathFault(f"function {name}() is not supported")
+    try:
+        found = model.root.xpath(path)
+    except (etree.XPathError, ValueError) as error:
+        raise PathFault(f"is not valid: {error}") from error
+    if not isinstance(found, list):
+        raise PathFault("finds no elements")
+    ids: set[str] = set()
+    for element in found:
+        if not isinstance(getattr(element, "tag", None), str):
+            raise PathFault("finds no elements")
+        ids.update(each.get("id", "") for each in element.iter("DataItem"))
+    numbers = frozenset(at for at, item in enumerate(model.items) if item.id in ids)
+    if not numbers:
+        raise PathFault("finds no data items")
+    return numbers

@@ -21,9 +21,9 @@ from typing import Any
 from paho.mqtt import client as mqtt
 from paho.mqtt.enums import CallbackAPIVersion
 
-from simulator.agent.agent import Agent, Asset
+from simulator.agent.agent import Agent, Asset, StreamQuery
 from simulator.agent.documents import as_json, has_observations
-from simulator.agent.requests import StreamQuery
+from stepnc_model.counted import counted
 
 COUNT = 1000
 """observations of a message"""
@@ -166,7 +166,9 @@ class MqttPublisher:
             while self._next[at] < end:
                 lost = agent.buffer.first - self._next[at]
                 if lost > 0:
-                    self._tell_fault(f"{lost} observations left the buffer unpublished")
+                    self._tell_fault(
+                        f"{counted(lost, 'observation')} left the buffer unpublished"
+                    )
                 start = max(self._next[at], agent.buffer.first)
                 query = StreamQuery(chosen=chosen, start=start, count=COUNT)
                 document, following = agent.sample(query)

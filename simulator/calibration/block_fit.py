@@ -56,7 +56,7 @@ FEWEST_POINTS = 3
 
 
 class FeedCause(StrEnum):
-    """What holds the feed at a spacing."""
+    """Cause that limits the feed at a spacing."""
 
     BLOCK_RATE = "block rate"
     COMMANDED = "commanded feed"

@@ -10,7 +10,7 @@ the efficiency of the spindle::
     base     P = P_b                      coolant  P = P_k while it flows
     total    the sum
 
-as in :mod:`simulator.physics.spindle_motion` and :mod:`simulator.physics.axis`. Parameters of
+as in :mod:`simulator.physics.spindle` and :mod:`simulator.physics.axis`. Parameters of
 an axis are as seen from the mains: friction ``F_0`` in N, ``B`` in N·s/mm and mass ``m`` in kg,
 each divided by the efficiency of the drive. The module also defines priors and estimates of the
 parameters. Units mm, s, N, W, rev/s, kg·m².
@@ -25,8 +25,8 @@ import numpy as np
 
 from simulator.calibration.measured_run import Component
 from simulator.motion.segments import Floats
+from stepnc_model.units import NMM_S_PER_WATT
 
-_NMM_S_PER_WATT = 1000.0
 _MM2_PER_M2 = 1e6
 
 
@@ -133,8 +133,8 @@ def design(run: RunFeatures, *, efficiency: float) -> Design:
     ):
         pace = np.abs(run.velocity[:, axis])
         push = run.velocity[:, axis] * run.acceleration[:, axis]
-        put(part, parameters[0], pace / _NMM_S_PER_WATT)
-        put(part, parameters[1], pace**2 / _NMM_S_PER_WATT)
+        put(part, parameters[0], pace / NMM_S_PER_WATT)
+        put(part, parameters[1], pace**2 / NMM_S_PER_WATT)
         put(part, parameters[2], push / _MM2_PER_M2)
     return table
 
@@ -174,7 +174,7 @@ class Estimate:
 
     @property
     def is_identified(self) -> bool:
-        """Whether the data give more information than the prior."""
+        """True if the data give more information than the prior."""
         return not self.reason
 
     @property

@@ -26,6 +26,7 @@ from scipy.signal import find_peaks
 from simulator.calibration.measured_run import read_columns
 from simulator.errors import CalibrationError
 from simulator.motion.segments import Floats, Ints
+from stepnc_model.units import MM_PER_M
 
 Complex = NDArray[np.complex128]
 
@@ -34,7 +35,6 @@ MM_PER_N = {"m_n": 1e3, "mm_n": 1.0, "um_n": 1e-3}
 """Receptance in mm/N per unit."""
 ACCELERANCE = "m_s2_n"
 UNITS = (*MM_PER_N, ACCELERANCE)
-MM_PER_M = 1e3
 HIGHEST = 100_000.0
 """Highest plausible frequency, Hz; no tap excites more."""
 LOWEST = 1e-3

@@ -54,7 +54,7 @@ class FittedTaylor:
 
     @property
     def has_interval(self) -> bool:
-        """Whether there are more pairs than constants, so that an interval exists."""
+        """True if there are more pairs than constants, so that an interval exists."""
         return self.pairs > 2
 
 

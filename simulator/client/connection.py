@@ -145,7 +145,7 @@ class AgentClient:
         return () if devices is None else tuple(items_of(devices))
 
     def state(self) -> tuple[ClientObservation, ...]:
-        """What holds now; the stream goes on from there.
+        """Current state; the stream goes on from there.
 
         Raises
         ------
@@ -157,7 +157,7 @@ class AgentClient:
         return page.observations
 
     def oldest_state(self) -> tuple[ClientObservation, ...]:
-        """What held at the oldest observation that the agent keeps; the stream goes on there.
+        """State at the oldest observation that the agent keeps; the stream goes on there.
 
         Raises
         ------
@@ -235,7 +235,7 @@ class AgentClient:
             yield from self._resumed()
 
     def _resumed(self) -> Iterator[StreamPart]:
-        """What is new of the agent: begun anew, or farther than its buffer reaches."""
+        """News of an agent that began anew, or whose buffer no longer reaches back."""
         try:
             page = _page(self._document("/sample", {"count": "1"}))
         except (AgentError, OSError, http.client.HTTPException):
@@ -405,7 +405,7 @@ def _part_length(answer: http.client.HTTPResponse) -> int:
 
 
 def _reason(error: Exception) -> str:
-    """Why there is no answer, without the number of the error."""
+    """Reason why there is no answer, without the number of the error."""
     return getattr(error, "strerror", None) or str(error) or type(error).__name__
 
 

@@ -5,6 +5,8 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from stepnc_model.units import seconds_from_hours, seconds_from_minutes
+
 DAY = 86_400.0
 WEEK = 7 * DAY
 DAYS = ("Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun")
@@ -21,7 +23,7 @@ class Calendar:
     """Begin and end of each window within a week, s; ascending, apart from each other."""
 
     def is_open(self, time: float) -> bool:
-        """Whether a time lies within the working hours; an end does not."""
+        """True if a time lies within the working hours; an end does not."""
         at = time % WEEK
         row = bisect_right(self.windows, at, key=lambda window: window[0]) - 1
         return row >= 0 and at < self.windows[row][1]
@@ -99,7 +101,7 @@ def _day(word: str, line: str) -> int:
 
 
 def _clock(hours: str, minutes: str, line: str) -> float:
-    seconds = 3600.0 * int(hours) + 60.0 * int(minutes)
+    seconds = seconds_from_hours(int(hours)) + seconds_from_minutes(int(minutes))
     if int(minutes) >= 60 or seconds > DAY:
         raise ValueError(f"'{line}': {hours}:{minutes} is no time of a day")
     return seconds

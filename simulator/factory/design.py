@@ -34,7 +34,7 @@ FACTORS, CATEGORIES = 8, 3
 
 
 class DesignKind(StrEnum):
-    """How the rows of a design are chosen."""
+    """Kind of a design of experiments."""
 
     UNIFORM = "uniform"
     LATIN_HYPERCUBE = "latin-hypercube"

@@ -70,8 +70,19 @@ class Distribution:
 
     @property
     def is_zero(self) -> bool:
-        """Whether every number is 0."""
+        """True if every number is 0."""
         return self.average == 0.0
+
+    @property
+    def is_random(self) -> bool:
+        """True if two numbers differ."""
+        match self.kind:
+            case DistributionKind.CONSTANT:
+                return False
+            case DistributionKind.UNIFORM | DistributionKind.TRIANGULAR:
+                return self.low < self.high
+            case _:
+                return self.mean > 0.0
 
     def draw(self, generator: np.random.Generator, count: int) -> Floats:
         """Numbers of the distribution, (count,)."""

@@ -1,6 +1,6 @@
 """A running shop: its machines, buffers and crews on one SimPy clock. Running state."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 from math import inf
@@ -9,7 +9,7 @@ from simpy import Environment, Event
 
 from simulator.errors import Deadlock
 from simulator.factory.crews import CrewOnDuty
-from simulator.factory.machining import Machining, MachiningPlan
+from simulator.factory.machining import MachiningPlan, PartSource
 from simulator.factory.records import Listeners
 from simulator.factory.shifts import changes_of_shift
 from simulator.factory.shop import Shop
@@ -19,6 +19,8 @@ from simulator.factory.store import Batch, BatchBuffer, RawStock
 from simulator.factory.streams import Streams
 from simulator.factory.surroundings import Steps, Surroundings
 from simulator.factory.tally import Tally
+
+_STARVED = MachineState.STARVED
 
 
 @dataclass(slots=True, eq=False)
@@ -93,7 +95,7 @@ class Floor:
 
     @property
     def is_finished(self) -> bool:
-        """Whether all orders are finished."""
+        """True if all orders are finished."""
         return self._end.triggered and self._deadlock is None
 
     def close(self) -> None:
@@ -110,7 +112,7 @@ class Floor:
     def _station(self, index: int, crews: Sequence[CrewOnDuty]) -> Station:
         shop, spec = self.shop, self.shop.machines[index]
         behind: dict[tuple[int, int], BatchBuffer] = {}
-        machining: dict[tuple[int, int], Iterator[Machining]] = {}
+        machining: dict[tuple[int, int], PartSource] = {}
         steps: dict[str, set[tuple[int, int]]] = {}
         raw: list[RawStock] = []
         supplies: list[tuple[BatchBuffer, Steps]] = []
@@ -155,13 +157,12 @@ class Floor:
     def _wake_taker(self, buffer: BatchBuffer) -> None:
         """Wake the machine that has waited longest for a batch."""
         takers = [each for each in self._takers.get(id(buffer), ()) if each.asleep is not None]
-        starved = [each for each in takers if each.state is MachineState.STARVED]
-        for each in sorted(starved, key=lambda station: station.since):
-            if each.wake():
-                return
-        for each in takers:
-            if each.wake():
-                return
+        starved = [each for each in takers if each.book.state is _STARVED]
+        if starved:
+            min(starved, key=lambda station: station.book.since).wake()
+        elif takers:
+            # Off shift: it looks whether it may begin.
+            takers[0].wake()
 
     def _entered(self, batch: Batch) -> None:
         self.in_shop += 1
@@ -197,7 +198,7 @@ class Floor:
             self._end.succeed()
 
     def _can_move(self, station: Station, seen: dict[int, Station]) -> bool:
-        """Whether a machine will give its batch away, as others take what it waits for."""
+        """True if a machine will give its batch away, as others take what it waits for."""
         buffer = station.holding_for
         if buffer is None or station.held is None or station.held.offered is None:
             return True
@@ -213,7 +214,7 @@ class Floor:
         return any(self._can_move(each, seen) for each in takers)
 
     def _waits(self, station: Station) -> str:
-        """What a blocked machine waits for."""
+        """Reason why a machine is blocked, in words."""
         buffer, batch = station.holding_for, station.held
         if buffer is None or batch is None:
             return station.spec.name

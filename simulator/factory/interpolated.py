@@ -446,7 +446,7 @@ class _Cube:
         )
 
     def _depth_matters(self) -> bool:
-        """Whether the depth changes the cycle while the layers stay the same."""
+        """True if the depth changes the cycle while the layers stay the same."""
         middle = 0.5 * (self.low + self.high)
         ends = [
             self.cycle(np.array([middle[0], middle[1], depth]))

@@ -13,13 +13,17 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from simulator.factory.cycle import PartCycle, drawn_energies
+from simulator.factory.distribution import Floats
 from simulator.factory.interpolated import CycleTable
-from simulator.factory.shop import Shop, StateLoad
-from simulator.factory.streams import BLOCK, Streams
+from simulator.factory.shop import Shop
+from simulator.factory.streams import Streams
 from simulator.spec import PowerDeviation
 from stepnc_model.cut_settings import CutSettings
 
 AS_PROGRAMMED = CutSettings()
+
+BLOCK = 64
+"""Parts whose settings and deviations are drawn at a time; a seed gives others with another."""
 
 
 class Machining(NamedTuple):
@@ -32,6 +36,42 @@ class Machining(NamedTuple):
     peak_power: float
     """W"""
     settings: CutSettings = AS_PROGRAMMED
+
+    @property
+    def power(self) -> float:
+        """Mean power, W."""
+        return self.energy / self.time if self.time > 0.0 else 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PartSource:
+    """Machining of one part after another, without end."""
+
+    blocks: Iterator[Floats]
+    """Time in s, energy in J and peak power in W of parts, (3, N); where settings are drawn,
+    then feed in mm/s, spindle speed in rev/s and depth in mm of each, NaN: as programmed."""
+    settings: CutSettings | None = AS_PROGRAMMED
+    """Settings of all parts; None: they are drawn for each."""
+    is_random: bool = False
+    """Whether times are drawn."""
+
+    def parts(self) -> Iterator[Machining]:
+        """Machining of one part after another."""
+        for block in self.blocks:
+            yield from self.machined(block)
+
+    def machined(self, block: Floats) -> Iterator[Machining]:
+        """Machining of the parts of a block."""
+        if self.settings is not None:
+            settings, new = self.settings, tuple.__new__
+            for time, energy, peak in block.T.tolist():
+                # Half the time of the constructor of a named tuple.
+                yield new(Machining, (time, energy, peak, settings))
+            return
+        for time, energy, peak, *drawn in block.T.tolist():
+            feed, speed, depth = (None if isnan(each) else each for each in drawn)
+            chosen = CutSettings(feed=feed, spindle_speed=speed, depth=depth)
+            yield Machining(time, energy, peak, chosen)
 
 
 Place: TypeAlias = tuple[int, int, int]
@@ -57,20 +97,24 @@ class MachiningPlan:
     materials: Mapping[int, str] = field(default_factory=dict)
     """Work material of each product, by its index."""
 
-    def parts(self, shop: Shop, place: Place, streams: Streams) -> Iterator[Machining]:
+    def parts(self, shop: Shop, place: Place, streams: Streams) -> PartSource:
         """Machining of one part after another, without end."""
         product, step, machine = place
         spec = shop.machines[machine]
         load = shop.products[product].steps[step].load
         purpose = purpose_of(shop, place)
         if load is not None:
-            return _timed(load, streams, spec.name, purpose)
+            times = streams.blocks(load.time, spec.name, purpose)
+            return PartSource(blocks=_timed(load.power, times), is_random=load.time.is_random)
         deviation = None if spec.machine is None else spec.machine.deviation
         draw = streams.generator(spec.name, purpose)
         if place in self.tables:
-            return _drawn(self.tables[place], deviation, draw)
+            blocks = _drawn(self.tables[place], deviation, draw)
+            return PartSource(blocks=blocks, settings=None, is_random=True)
         found = self.cycles[place]
-        return _repeated(found) if deviation is None else _deviating(found, deviation, draw)
+        return PartSource(
+            blocks=_repeated(found.cycle, deviation, draw), settings=found.settings
+        )
 
 
 def purpose_of(shop: Shop, place: Place) -> str:
@@ -79,34 +123,27 @@ def purpose_of(shop: Shop, place: Place) -> str:
     return f"machining {shop.products[product].name} {step}"
 
 
-def _timed(load: StateLoad, streams: Streams, owner: str, purpose: str) -> Iterator[Machining]:
+def _timed(power: float, times: Iterator[Floats]) -> Iterator[Floats]:
     """Machining of which only time and power are known."""
-    power, new = load.power, tuple.__new__
-    for time in streams.numbers(load.time, owner, purpose):
-        # Half the time of the constructor of a named tuple.
-        yield new(Machining, (time, power * time, power, AS_PROGRAMMED))
+    for time in times:
+        yield np.array((time, power * time, np.full(len(time), power)))
 
 
-def _repeated(found: ProgramCycle) -> Iterator[Machining]:
-    cycle = found.cycle
-    machining = Machining(cycle.time, cycle.energy, cycle.peak_power, found.settings)
+def _repeated(
+    cycle: PartCycle, deviation: PowerDeviation | None, draw: np.random.Generator
+) -> Iterator[Floats]:
+    """Parts with the settings as programmed, whose movements may deviate in power."""
     while True:
-        yield machining
-
-
-def _deviating(
-    found: ProgramCycle, deviation: PowerDeviation, draw: np.random.Generator
-) -> Iterator[Machining]:
-    """Parts whose movements deviate in power."""
-    cycle = found.cycle
-    while True:
-        for energy in drawn_energies(cycle, deviation, draw, BLOCK).tolist():
-            yield Machining(cycle.time, energy, cycle.peak_power, found.settings)
+        block = np.empty((3, BLOCK))
+        block[:] = np.array(((cycle.time,), (cycle.energy,), (cycle.peak_power,)))
+        if deviation is not None:
+            block[1] = drawn_energies(cycle, deviation, draw, BLOCK)
+        yield block
 
 
 def _drawn(
     table: CycleTable, deviation: PowerDeviation | None, draw: np.random.Generator
-) -> Iterator[Machining]:
+) -> Iterator[Floats]:
     """Parts whose settings are drawn uniformly from the ranges of a design."""
     design = table.design
     ranges = (design.feed, design.spindle_speed, design.depth)
@@ -120,12 +157,4 @@ def _drawn(
         energy = found.energy
         if deviation is not None:
             energy = table.drawn_energies(feed, speed, depth, deviation=deviation, rng=draw)
-        rows = zip(
-            *(each.tolist() for each in (found.time, energy, found.peak_power)),
-            *(each.tolist() for each in (feed, sense * speed, depth)),
-            strict=True,
-        )
-        for time, joules, peak, *settings in rows:
-            one, two, three = (None if isnan(each) else each for each in settings)
-            chosen = CutSettings(feed=one, spindle_speed=two, depth=three)
-            yield Machining(time, joules, peak, chosen)
+        yield np.array((found.time, energy, found.peak_power, feed, sense * speed, depth))

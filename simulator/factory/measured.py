@@ -13,7 +13,12 @@ from simulator.factory.floor import Floor
 from simulator.factory.measures import Level, Measure, Quantity
 from simulator.factory.states import HANDLING, MachineState
 from simulator.factory.tally import ProcessTally
-from stepnc_model.units import hours_from_seconds, kw_from_watts, kwh_from_joules
+from stepnc_model.units import (
+    hours_from_seconds,
+    kj_from_joules,
+    kw_from_watts,
+    kwh_from_joules,
+)
 
 _S = MachineState
 
@@ -138,7 +143,7 @@ def _processes(floor: Floor) -> Iterable[Measure]:
         values = {
             Quantity.PARTS: found.parts,
             Quantity.TIME: _ratio(found.time, found.parts),
-            Quantity.PART_ENERGY: _ratio(found.energy, found.parts) / 1000.0,
+            Quantity.PART_ENERGY: kj_from_joules(_ratio(found.energy, found.parts)),
             Quantity.MEAN_POWER: kw_from_watts(_ratio(found.energy, found.time)),
             Quantity.PEAK_POWER: kw_from_watts(found.peak),
         }

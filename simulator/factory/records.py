@@ -1,4 +1,4 @@
-"""What a running shop tells: parts made, and times that machines spent in their states."""
+"""Records of a running shop: parts made, and times that machines spent in their states."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -54,6 +54,9 @@ class Listeners:
 
     part: tuple[Callable[[PartMade], None], ...] = ()
     """Called with each part that leaves a machine."""
+    count: tuple[Callable[[int, float], None], ...] = ()
+    """Called with the number of parts that left a machine, and the time in s; parts of which
+    nobody else hears may be told together, as their batch leaves."""
     state: tuple[Callable[[StateSpent], None], ...] = ()
     """Called when a machine leaves a state."""
     began: tuple[Callable[[int], None], ...] = ()
@@ -67,6 +70,7 @@ class Listeners:
         """All functions of both."""
         return Listeners(
             part=self.part + other.part,
+            count=self.count + other.count,
             state=self.state + other.state,
             began=self.began + other.began,
             entered=self.entered + other.entered,

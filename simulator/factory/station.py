@@ -6,20 +6,30 @@ maintenance begin between two parts. A failure interrupts whatever the machine d
 it goes on where it stopped, unless the part is spoilt.
 """
 
-from array import array
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Generator, Iterator, Mapping
 from dataclasses import dataclass, field
+from math import inf
 from typing import Any
 
 from simpy import Environment, Event, Interrupt, Process
 
 from simulator.factory.crews import CrewOnDuty
 from simulator.factory.machining import Machining
-from simulator.factory.records import PartMade, StateSpent
+from simulator.factory.passage import (
+    DrawnPart,
+    PartTimes,
+    Passage,
+    PreparedParts,
+    Step,
+    drawn_parts,
+    prepared_parts,
+)
+from simulator.factory.records import PartMade
 from simulator.factory.shifts import changes_of_shift
 from simulator.factory.shop import Counting, ShopMachine
+from simulator.factory.state_book import StateBook
 from simulator.factory.states import HANDLING, TRANSITIONS, MachineState
-from simulator.factory.store import Batch, BatchBuffer, Course, oldest
+from simulator.factory.store import Batch, BatchBuffer, Course, next_batch
 from simulator.factory.streams import Streams
 from simulator.factory.surroundings import Surroundings
 from simulator.factory.tally import MachineTally, ProcessTally
@@ -33,9 +43,9 @@ from simulator.factory.upkeep import (
     wakes_when_due,
 )
 
-WAITING = 3 * 2_000
-"""Numbers of states whose energies are added to the power over time together."""
-
+# Names of the module: the attribute of an enumeration takes ten times as long.
+_IDLING, _STARVED = MachineState.IDLING, MachineState.STARVED
+_BATCH_SETUP, _BATCH_EJECTION = MachineState.BATCH_SETUP, MachineState.BATCH_EJECTION
 _PART_SETUP, _MACHINING, _PART_EJECTION = (
     MachineState.PART_SETUP, MachineState.MACHINING, MachineState.PART_EJECTION,
 )  # fmt: skip
@@ -52,11 +62,7 @@ class Station:
     streams: Streams
     start: float = 0.0
     """Time of the week at which the run begins, s."""
-    state: MachineState = MachineState.IDLING
-    since: float = 0.0
-    """Time at which the state began, s."""
-    power: float = 0.0
-    """Power in the state, W."""
+    book: StateBook = field(init=False)
     held: Batch | None = None
     """Batch on the machine."""
     holding_for: BatchBuffer | None = None
@@ -65,23 +71,16 @@ class Station:
     """Number of the part on the machine, in its batch."""
     work: Machining | None = None
     """Machining of the part."""
-    cut: float = 0.0
-    """Machining time of the part before the present state, s."""
     machined: float = 0.0
     """Machining time so far, s."""
     process: Process | None = None
     _counts: MachineTally = field(init=False)
-    _seconds: dict[MachineState, float] = field(init=False)
-    _joules: dict[MachineState, float] = field(init=False)
-    _spent: "array[float]" = field(init=False)
-    _passing: tuple[float, float, Machining] | None = None
-    """Begin of machining and of ejection, s, and work, of the part that passes in one go."""
+    _passing: tuple[PartTimes, Machining] | None = None
+    """Part that passes in one go."""
+    _passage: Passage | None = None
+    """Batch that passes in one go."""
     _is_plain: bool = False
     """Whether nothing can happen within a part, so that it passes in one go."""
-    _listeners: tuple[Callable[[StateSpent], None], ...] = ()
-    _began: tuple[Callable[[int], None], ...] = ()
-    _is_heard: bool = False
-    """Whether anybody listens to its states."""
     _has_crews: bool = False
     _has_pauses: bool = False
     """Whether shifts or maintenance may begin between two parts."""
@@ -91,6 +90,11 @@ class Station:
     _repaired: Event | None = None
     _upkeep: Upkeep = field(init=False)
     _times: dict[MachineState, Iterator[float]] = field(default_factory=dict)
+    """Times of set-up and ejection of batches, s."""
+    _parts: Mapping[Step, Iterator[DrawnPart]] = field(default_factory=dict)
+    """One part after another of each step."""
+    _prepared: Mapping[Step, PreparedParts] = field(default_factory=dict)
+    """The same, of a machine through which whole batches pass in one go."""
     _scrap: Iterator[float] = field(init=False)
     _part_spoilt: bool = False
     _member_of: CrewOnDuty | None = None
@@ -100,22 +104,24 @@ class Station:
 
     def __post_init__(self) -> None:
         name, spec = self.spec.name, self.spec
-        self.power = spec.idle_power
-        tally = self.around.tally
+        tally, listeners = self.around.tally, self.around.listeners
         self._counts = tally.machines[self.index]
-        self._seconds, self._joules = self._counts.seconds, self._counts.joules
-        self._spent = tally.power.waiting
-        self._listeners, self._began = self.around.listeners.state, self.around.listeners.began
-        self._is_heard = bool(self._listeners or self._began)
+        self.book = StateBook(
+            self.index, name, self._counts, tally.power, listeners, spec.idle_power
+        )
         for step in self.around.machining:
             self._counts.processes[step] = ProcessTally()
-        for state in HANDLING:
+        self._powers = {state: spec.handling[state].power for state in HANDLING}
+        for state in (_BATCH_SETUP, _BATCH_EJECTION):
             self._times[state] = self.streams.numbers(spec.handling[state].time, name, state)
-            self._powers[state] = spec.handling[state].power
         self._upkeep = upkeep_of(spec, self.streams)
         self._has_crews = bool(self.around.crews)
-        self._is_plain = not (self._has_crews or self._began or self._upkeep.by_clock)
+        self._is_plain = not (self._has_crews or listeners.began or self._upkeep.by_clock)
         self._has_pauses = spec.calendar is not None or bool(self._upkeep.maintenance)
+        if self._joins_parts():
+            self._prepared = prepared_parts(spec, self.around.machining, self.streams)
+        else:
+            self._parts = drawn_parts(spec, self.around.machining, self.streams)
         self._scrap = iter(self.streams.generator(name, "scrap").random, None)
         self.process = self.env.process(self._run())
         for pending in self._upkeep.by_clock:
@@ -126,60 +132,60 @@ class Station:
             if due.counts is Counting.CLOCK:
                 self.env.process(wakes_when_due(self.env, due, self.wake))
 
-    # States
+    def _joins_parts(self) -> bool:
+        """True if whole batches pass in one event, as nobody can tell the difference.
 
-    def enter(self, state: MachineState, power: float, now: float) -> None:
-        """Leave the present state for another at a time in s.
-
-        Raises
-        ------
-        RuntimeError
-            If the transition is not legal.
+        Who hears of states or parts hears of those of all machines in order. And where no time
+        is random, machines are often ready at the same time, and go on in the order in which
+        their last events began.
         """
-        if state not in TRANSITIONS[self.state]:
-            raise RuntimeError(f"{self.spec.name}: no transition {self.state} -> {state}")
-        self._record(now)
-        self.state, self.power = state, power
-        if self._is_heard:
-            for begin in self._began:
-                begin(self.index)
+        if not self._is_plain or self.book.is_heard or self._has_pauses:
+            return False
+        is_random = any(each.time.is_random for each in self.spec.handling.values())
+        return not self.around.listeners.part and all(
+            is_random or each.is_random for each in self.around.machining.values()
+        )
+
+    # States
 
     def close(self) -> None:
         """Record the time in the present state so far."""
-        self._advance(self.env.now)
-        self._record(self.env.now)
+        now = self.env.now
+        if self._passing is not None:
+            self._advance(*self._passing, now)
+        if self._passage is not None:
+            self._advance_batch(self._passage, now)
+        self.book.record(now)
 
-    def _record(self, now: float) -> None:
-        """Record the time in the present state until a time in s."""
-        state, since = self.state, self.since
-        if now <= since:
-            return
-        spent = now - since
-        energy = self.power * spent
-        self._seconds[state] += spent
-        self._joules[state] += energy
-        self._spent.extend((since, now, energy))
-        self.since = now
-        if self._is_heard:
-            for tell in self._listeners:
-                tell(StateSpent(self.index, state, since, now, energy))
-            if state is _MACHINING:
-                self.cut += spent
-
-    def _advance(self, now: float) -> None:
+    def _advance(self, times: PartTimes, work: Machining, now: float) -> None:
         """Enter the states of a part that passes in one go, until a time in s."""
-        if self._passing is None:
-            return
-        machining, ejection, work = self._passing
-        if self.state is _PART_SETUP and machining <= now:
-            self.enter(_MACHINING, _power(work), machining)
-        if self.state is _MACHINING and ejection <= now:
-            self.enter(_PART_EJECTION, self._powers[_PART_EJECTION], ejection)
+        book = self.book
+        if book.state is _PART_SETUP and times.machining <= now:
+            book.enter(_MACHINING, work.power, times.machining)
+        if book.state is _MACHINING and times.ejection <= now:
+            book.enter(_PART_EJECTION, self._powers[_PART_EJECTION], times.ejection)
 
-    @property
-    def elapsed(self) -> float:
-        """Machining time of the part so far, s."""
-        return self.cut + (self.env.now - self.since if self.state is _MACHINING else 0.0)
+    def _advance_batch(self, passage: Passage, now: float) -> None:
+        """Enter the states of a batch that passes in one go, until a time in s."""
+        if now < passage.start:
+            return
+        watched = passage.watch()
+        while watched.ahead:
+            part, times, work = watched.ahead[0]
+            if now < times.setup:
+                return
+            if not watched.is_begun:
+                self.book.enter(_PART_SETUP, self._powers[_PART_SETUP], times.setup)
+                watched.is_begun = True
+            self._advance(times, work, now)
+            if now < times.end:
+                return
+            del watched.ahead[0]
+            watched.is_begun = False
+            self.machined += work.time
+            watched.good += self._count(passage.step, [part], *work[:3])
+        if passage.end <= now and self.book.state is not _BATCH_EJECTION:
+            self.book.enter(_BATCH_EJECTION, self._powers[_BATCH_EJECTION], passage.end)
 
     def wake(self) -> bool:
         """Wake the machine if it waits for a batch or its shift; whether it did."""
@@ -187,6 +193,8 @@ class Station:
             return False
         self.asleep.succeed()
         self.asleep = None
+        for buffer, _ in self.around.supplies:
+            buffer.sleepers -= 1
         return True
 
     def fail(self, repair: float, *, spoils: bool = False) -> bool:
@@ -206,7 +214,9 @@ class Station:
         """
         if self._is_plain:
             raise ValueError(f"{self.spec.name} passes parts in one go: nobody listens")
-        can_fail = MachineState.FAILED in TRANSITIONS[self.state] and self._repaired is None
+        can_fail = (
+            MachineState.FAILED in TRANSITIONS[self.book.state] and self._repaired is None
+        )
         if can_fail and self.process is not None:
             self._repaired = self.env.event()
             self.process.interrupt(Breakdown(repair, spoils))
@@ -215,172 +225,166 @@ class Station:
     # Course
 
     def _run(self) -> Course:
+        around = self.around
         while True:
-            yield from self._between_parts()
-            found = self._next_batch()
-            if found is None:
-                if self.state is not MachineState.STARVED:
-                    self.enter(MachineState.STARVED, self.spec.idle_power, self.env.now)
+            if self._has_pauses:
+                yield from self._between_parts()
+            batch = next_batch(around.raw, around.supplies, around.products)
+            if batch is None:
+                if self.book.state is not _STARVED:
+                    self.book.enter(_STARVED, self.spec.idle_power, self.env.now)
                 yield from self._sleep()
                 continue
-            yield from self._make(*found)
+            if batch.step == 0:
+                around.started(batch)
+            self.held = batch
+            step = (batch.product, batch.step)
+            passage = self._prepared[step].take(batch) if self._prepared else None
+            if passage is None:
+                batch.parts = yield from self._make_parts(batch, step, self._parts[step])
+            elif self.machined + passage.totals.machining <= self._upkeep.failure_at:
+                yield self._begin_passage(passage)
+                batch.parts = self._end_passage(passage)
+            else:
+                batch.parts = yield from self._make_parts(batch, step, passage.drawn())
+            if (room := self._hand_over(batch, step)) is not None:
+                yield from self._wait_for(room)
+            self.held = None
+            self.book.enter(_IDLING, self.spec.idle_power, self.env.now)
 
-    def _next_batch(self) -> tuple[BatchBuffer, Batch] | None:
-        for stock in self.around.raw:
-            if not stock.buffer.items and stock.left > 0:
-                stock.release()
-        return oldest(self.around.supplies, lambda row: self.around.products[row].priority)
+    def _begin_passage(self, passage: Passage) -> Event:
+        """Let a batch pass in one event, which is returned."""
+        now, times = self.env.now, self._times
+        self.book.enter(_BATCH_SETUP, self._powers[_BATCH_SETUP], now)
+        passage.begin(now + next(times[_BATCH_SETUP]))
+        self._passage = passage
+        return self.env.timeout(passage.end + next(times[_BATCH_EJECTION]) - now)
 
-    def _make(self, buffer: BatchBuffer, batch: Batch) -> Course:
-        """Machine a batch."""
-        buffer.take(batch)
-        if batch.step == 0:
-            self.around.started(batch)
-        self.held = batch
-        step = (batch.product, batch.step)
-        setup = yield from self._handle(MachineState.BATCH_SETUP)
-        good, made = yield from self._make_parts(batch, step, setup)
-        self.part, self.work = None, None
-        ejection = yield from self._handle(MachineState.BATCH_EJECTION)
-        if made is not None:
-            self._tell(made._replace(batch_ejection=ejection))
-        batch.parts = good
-        yield from self._hand_over(batch, step)
+    def _end_passage(self, passage: Passage) -> list[int]:
+        """Record a batch that has passed; the good parts."""
+        self._passage = None
+        if passage.watched is not None:
+            self._advance_batch(passage, inf)
+            return passage.watched.good
+        _, _, time, energy, peak = passage.totals
+        self.book.pass_batch(passage, self._powers[_BATCH_EJECTION])
+        self.machined += time
+        self.around.tally.power.flush_many()
+        return self._count(passage.step, passage.batch.parts, time, energy, peak)
 
-    def _make_parts(  # noqa: PLR0912, PLR0915 (a call for each part is a tenth of its time)
-        self, batch: Batch, step: tuple[int, int], batch_setup: float
-    ) -> Generator[Event, Any, tuple[list[int], PartMade | None]]:
-        """Machine the parts of a batch; the good ones, and the last that is yet to be told."""
-        env, timeout, spent = self.env, self.env.timeout, self._spent
-        seconds, joules = self._seconds, self._joules
-        machining, process = self.around.machining[step], self._counts.processes[step]
-        setups, ejections = self._times[_PART_SETUP], self._times[_PART_EJECTION]
-        setup_power, ejection_power = self._powers[_PART_SETUP], self._powers[_PART_EJECTION]
+    def _count(
+        self, step: Step, parts: list[int], time: float, energy: float, peak: float
+    ) -> list[int]:
+        """Count parts that have left the machine; the good ones."""
+        good = [] if self._part_spoilt else parts
         scrap = self.around.products[step[0]].steps[step[1]].scrap
-        upkeep, is_plain, has_pauses = self._upkeep, self._is_plain, self._has_pauses
-        has_listeners, is_heard = bool(self.around.listeners.part), self._is_heard
+        if scrap:
+            good = [part for part in good if next(self._scrap) >= scrap]
+        self._part_spoilt = False
+        self._counts.processes[step].add(len(parts), len(good), time, energy, peak)
+        for tell in self.around.listeners.count:
+            tell(len(parts), self.env.now)
+        return good
+
+    def _make_parts(
+        self, batch: Batch, step: Step, parts: Iterator[DrawnPart]
+    ) -> Generator[Event, Any, list[int]]:
+        """Machine the parts of a batch one by one; the good ones."""
         good: list[int] = []
         made: PartMade | None = None
-        # Whether the part before has just passed in one go, and when.
-        follows, end = False, 0.0
-        for row, part in enumerate(batch.parts):
-            if has_pauses and row:
+        batch_setup = next(self._times[_BATCH_SETUP])
+        yield from self._handle(_BATCH_SETUP, batch_setup)
+        for row, (part, drawn) in enumerate(zip(batch.parts, parts, strict=False)):
+            if self._has_pauses and row:
                 yield from self._between_parts()
-                follows = False
-            work = next(machining)
-            time, energy, peak, _ = work
-            is_good, machined = True, self.machined + time
-            if not is_plain or upkeep.failure_at < machined:
-                self.part, self.work, self.cut = part, work, 0.0
-                setup, ejection = yield from self._part(work)
-                is_good, follows = not self._part_spoilt, False
+            setup, work, ejection = drawn
+            if self._is_plain and self.machined + work.time <= self._upkeep.failure_at:
+                yield from self._pass_part(drawn)
             else:
-                # Nobody looks and nothing interrupts: one event for the part instead of three.
-                setup, ejection = next(setups), next(ejections)
-                begin = end if follows else env.now
-                whole = setup + time + ejection
-                cutting, leaving, end = begin + setup, begin + (whole - ejection), begin + whole
-                if follows:
-                    self.state, self.power = _PART_SETUP, setup_power
-                else:
-                    self.enter(_PART_SETUP, setup_power, begin)
-                self._passing = (cutting, leaving, work)
-                yield timeout(whole)
-                follows = not is_heard and self.since == begin < cutting < leaving < end
-                if follows:
-                    # As entering one after the other would.
-                    setup_energy, ejection_energy = (
-                        setup_power * setup,
-                        ejection_power * ejection,
-                    )
-                    seconds[_PART_SETUP] += setup
-                    seconds[_MACHINING] += time
-                    seconds[_PART_EJECTION] += ejection
-                    joules[_PART_SETUP] += setup_energy
-                    joules[_MACHINING] += energy
-                    joules[_PART_EJECTION] += ejection_energy
-                    spent.extend((
-                        begin, cutting, setup_energy, cutting, leaving, energy,
-                        leaving, end, ejection_energy,
-                    ))  # fmt: skip
-                    self.state, self.power, self.since = _PART_EJECTION, ejection_power, end
-                else:
-                    self._advance(end)
-                self._passing = None
-                self.machined = machined
-            if scrap and is_good:
-                is_good = next(self._scrap) >= scrap
-            if is_good:
-                good.append(part)
-            process.parts += 1
-            process.good += is_good
-            process.time += time
-            process.energy += energy
-            process.peak = max(process.peak, peak)
-            if len(spent) > WAITING:
-                self.around.tally.power.flush()
-            if has_listeners:
+                self.part, self.work, self.book.cut = part, work, 0.0
+                yield from self._part(drawn)
+            found = self._count(step, [part], *work[:3])
+            self.around.tally.power.flush_many()
+            good += found
+            if self.around.listeners.part:
                 if made is not None:
                     self._tell(made)
                 made = PartMade(
-                    self.index, *step, batch.number, part, env.now, 0.0 if row else batch_setup,
-                    setup, time, ejection, 0.0, energy, peak, work.settings, is_good,
+                    self.index, *step, batch.number, part, self.env.now,
+                    0.0 if row else batch_setup, setup, work.time, ejection, 0.0,
+                    work.energy, work.peak_power, work.settings, bool(found),
                 )  # fmt: skip
-        return good, made
+        self.part, self.work = None, None
+        ejection = next(self._times[_BATCH_EJECTION])
+        yield from self._handle(_BATCH_EJECTION, ejection)
+        if made is not None:
+            self._tell(made._replace(batch_ejection=ejection))
+        return good
+
+    def _pass_part(self, part: DrawnPart) -> Course:
+        """Let a part pass in one event instead of three."""
+        setup, work, ejection = part
+        powers = self._powers[_PART_SETUP], self._powers[_PART_EJECTION]
+        begin, whole = self.env.now, setup + work.time + ejection
+        times = PartTimes(begin, begin + setup, begin + (whole - ejection), begin + whole)
+        self.book.enter(_PART_SETUP, powers[0], begin)
+        self._passing = times, work
+        yield self.env.timeout(whole)
+        self._passing = None
+        if not self.book.pass_part(part, times, powers):
+            self._advance(times, work, times.end)
+        self.machined += work.time
 
     def _tell(self, made: PartMade) -> None:
         for tell in self.around.listeners.part:
             tell(made)
 
-    def _hand_over(self, batch: Batch, step: tuple[int, int]) -> Course:
-        """Move a batch on; wait where there is no room."""
+    def _hand_over(self, batch: Batch, step: Step) -> Event | None:
+        """Move a batch on; the event for which it waits where there is no room."""
         behind = self.around.behind.get(step)
         if behind is None or not batch.parts:
             self.around.finished(batch)
-        else:
-            batch.step += 1
-            room = behind.put(batch)
-            if room is not None:
-                self.holding_for = behind
-                self.enter(MachineState.BLOCKED, self.spec.idle_power, self.env.now)
-                self.around.stuck(self.index)
-                yield from self._until(room)
-                self.holding_for = None
-        self.held = None
-        self.enter(MachineState.IDLING, self.spec.idle_power, self.env.now)
+            return None
+        batch.step += 1
+        room = behind.put(batch)
+        if room is not None:
+            self.holding_for = behind
+        return room
 
-    def _part(self, work: Machining) -> Generator[Event, Any, tuple[float, float]]:
-        """Set up, machine and eject a part; the times of set-up and ejection."""
+    def _wait_for(self, room: Event) -> Course:
+        """Wait for room in the buffer behind."""
+        self.book.enter(MachineState.BLOCKED, self.spec.idle_power, self.env.now)
+        self.around.stuck(self.index)
+        yield from self._until(room)
+        self.holding_for = None
+
+    def _part(self, part: DrawnPart) -> Course:
+        """Set up, machine and eject a part."""
+        setup, work, ejection = part
+        yield from self._handle(_PART_SETUP, setup)
         if self._has_crews:
-            setup = yield from self._handle(MachineState.PART_SETUP)
-            yield from self._claim(MachineState.MACHINING)
-            yield from self._machine(work)
-            self._release()
-            ejection = yield from self._handle(MachineState.PART_EJECTION)
-            return setup, ejection
-        setup = yield from self._handle(MachineState.PART_SETUP)
+            yield from self._claim(_MACHINING)
         yield from self._machine(work)
-        ejection = yield from self._handle(MachineState.PART_EJECTION)
-        return setup, ejection
+        if self._has_crews:
+            self._release()
+        yield from self._handle(_PART_EJECTION, ejection)
 
-    def _handle(self, state: MachineState) -> Generator[Event, Any, float]:
-        """Set up or eject, with a crew where the state needs one; the time that it took."""
+    def _handle(self, state: MachineState, seconds: float) -> Course:
+        """Set up or eject, with a crew where the state needs one."""
         if self._has_crews:
             yield from self._claim(state)
-        seconds = next(self._times[state])
-        self.enter(state, self._powers[state], self.env.now)
+        self.book.enter(state, self._powers[state], self.env.now)
         if self._is_plain:
             yield self.env.timeout(seconds)
         else:
             yield from self._spend(seconds)
             self._release()
-        return seconds
 
     def _machine(self, work: Machining) -> Course:
         """Machine a part, with the failures that come by machining time."""
         seconds = work.time
         self._part_spoilt = False
-        self.enter(_MACHINING, _power(work), self.env.now)
+        self.book.enter(_MACHINING, work.power, self.env.now)
         while self._upkeep.failure_at < self.machined + seconds:
             before = self._upkeep.failure_at - self.machined
             yield from self._spend(before)
@@ -397,7 +401,7 @@ class Station:
             return
         self._member_of, self._member = crew, crew.claim()
         if self._member is not None:
-            self.enter(MachineState.WAITING, self.spec.idle_power, self.env.now)
+            self.book.enter(MachineState.WAITING, self.spec.idle_power, self.env.now)
             yield from self._until(self._member)
 
     def _release(self) -> None:
@@ -429,29 +433,28 @@ class Station:
     def _sleep(self) -> Course:
         """Wait until the machine is woken."""
         self.asleep = self.env.event()
+        for buffer, _ in self.around.supplies:
+            buffer.sleepers += 1
         yield from self._until(self.asleep)
 
     # Between parts: shift and maintenance
 
     def _between_parts(self) -> Course:
-        while (due := self._due()) is not None or not self._is_open():
+        while (due := self._upkeep.due(self.machined, self.env.now)) or not self._is_open():
             if not self._is_open():
-                if self.state is not MachineState.OFF:
-                    self.enter(MachineState.OFF, 0.0, self.env.now)
+                if self.book.state is not MachineState.OFF:
+                    self.book.enter(MachineState.OFF, 0.0, self.env.now)
                 yield from self._sleep()
-            elif due is not None:
+            elif due:
                 yield from self._maintain(due)
 
     def _is_open(self) -> bool:
         calendar = self.spec.calendar
         return calendar is None or calendar.is_open(self.start + self.env.now)
 
-    def _due(self) -> DueMaintenance | None:
-        return self._upkeep.due(self.machined, self.env.now)
-
     def _maintain(self, due: DueMaintenance) -> Course:
         yield from self._claim(MachineState.MAINTENANCE)
-        self.enter(MachineState.MAINTENANCE, self.spec.idle_power, self.env.now)
+        self.book.enter(MachineState.MAINTENANCE, self.spec.idle_power, self.env.now)
         yield self.env.timeout(next(due.durations))
         self._release()
         self._upkeep.maintained(due, self.machined, self.env.now)
@@ -460,9 +463,9 @@ class Station:
 
     def _down(self, breakdown: Breakdown) -> Course:
         """Fail, and be repaired."""
-        state, power = self.state, self.power
+        state, power = self.book.state, self.book.power
         self._repaired = self._repaired or self.env.event()
-        self.enter(MachineState.FAILED, self.spec.idle_power, self.env.now)
+        self.book.enter(MachineState.FAILED, self.spec.idle_power, self.env.now)
         crew = self.around.crews.get(MachineState.REPAIR)
         if crew is not None and crew is self._member_of:
             # One member is enough: who works here, or was asked for, repairs.
@@ -471,11 +474,11 @@ class Station:
             member = None if crew is None else crew.claim()
         if member is not None and not member.processed:
             yield member
-        self.enter(MachineState.REPAIR, self.spec.idle_power, self.env.now)
+        self.book.enter(MachineState.REPAIR, self.spec.idle_power, self.env.now)
         yield self.env.timeout(breakdown.repair)
         if crew is not None:
             crew.release()
-        self.enter(state, power, self.env.now)
+        self.book.enter(state, power, self.env.now)
         is_spoilt = breakdown.spoils and state is MachineState.MACHINING
         self._part_spoilt = self._part_spoilt or is_spoilt
         self._repaired.succeed()
@@ -489,8 +492,3 @@ class Station:
             self.fail(breakdown.repair, spoils=breakdown.spoils)
             if self._repaired is not None:
                 yield self._repaired
-
-
-def _power(work: Machining) -> float:
-    """Mean power of machining, W."""
-    return work.energy / work.time if work.time > 0.0 else 0.0

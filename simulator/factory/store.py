@@ -51,13 +51,15 @@ class BatchBuffer:
     name: str
     capacity: float
     wake: Wake
-    """Called when a batch can be taken."""
+    """Called when a batch can be taken and a machine sleeps that might take it."""
     area: float = 0.0
     """Level times time so far, batches·s."""
     since: float = 0.0
     """Time of the last change, s."""
     items: deque[Batch] = field(default_factory=deque)
     """Batches in the order of arrival; those beyond the capacity are offered."""
+    sleepers: int = 0
+    """Machines that sleep and would take from it."""
 
     @property
     def level(self) -> int:
@@ -66,19 +68,23 @@ class BatchBuffer:
 
     def close(self) -> None:
         """Count the level so far."""
-        now = self.env.now
+        self._close(self.env.now)
+
+    def _close(self, now: float) -> None:
         if now > self.since:
             self.area += self.level * (now - self.since)
             self.since = now
 
     def put(self, batch: Batch) -> Event | None:
         """Put a batch; the event comes when there is room for it, None: at once."""
-        self.close()
-        batch.arrived = self.env.now
-        batch.offered = None if len(self.items) < self.capacity else self.env.event()
+        now = self.env.now
+        self._close(now)
+        batch.arrived = now
+        offered = None if len(self.items) < self.capacity else self.env.event()
+        batch.offered = offered
         self.items.append(batch)
-        offered = batch.offered
-        self.wake(self)
+        if self.sleepers:
+            self.wake(self)
         return offered
 
     def first(self, steps: Collection[tuple[int, int]]) -> Batch | None:
@@ -120,7 +126,7 @@ class RawStock:
 
     @property
     def is_endless(self) -> bool:
-        """Whether batches come as machines ask for them."""
+        """True if batches come as machines ask for them."""
         return self.product.arrival is None
 
     @property
@@ -130,16 +136,17 @@ class RawStock:
 
     def release(self) -> None:
         """Release the next batch."""
-        self.released += 1
-        batch = Batch(
-            number=next(self.numbers),
-            product=self.index,
-            released=self.buffer.env.now,
-            parts=list(range(self.product.batch)),
-        )
+        batch = self.cut()
         if not self.is_endless:
             self.entered(batch)
         self.buffer.put(batch)
+
+    def cut(self) -> Batch:
+        """Make the next batch, which goes to a machine at once or into the buffer."""
+        self.released += 1
+        now = self.buffer.env.now
+        parts = list(range(self.product.batch))
+        return Batch(next(self.numbers), self.index, now, parts, 0, now)
 
     def arrivals(self, intervals: Iterator[float]) -> Course:
         """SimPy process of arrivals."""
@@ -148,17 +155,47 @@ class RawStock:
             self.release()
 
 
-def oldest(
-    buffers: Sequence[tuple[BatchBuffer, Collection[tuple[int, int]]]],
-    priority: Callable[[int], float],
+Supply: TypeAlias = tuple[BatchBuffer, Collection[tuple[int, int]]]
+"""Buffer, and steps of its batches that a machine can do."""
+
+
+def next_batch(
+    raw: Sequence[RawStock], supplies: Sequence[Supply], products: Sequence[Product]
+) -> Batch | None:
+    """Take the batch of the highest priority that has waited longest; None: there is none.
+
+    Parameters
+    ----------
+    raw : sequence of RawStock
+        Raw stocks among the supplies whose batches come as machines ask for them.
+    supplies : sequence of Supply
+    products : sequence of Product
+        All products of the shop.
+    """
+    for stock in raw:
+        if not stock.buffer.items and stock.left > 0:
+            if len(supplies) == 1:
+                # It need not wait: a machine that sleeps has no raw stock that is left.
+                return stock.cut()
+            stock.release()
+    found = _oldest(supplies, products)
+    if found is None:
+        return None
+    buffer, batch = found
+    buffer.take(batch)
+    return batch
+
+
+def _oldest(
+    supplies: Sequence[Supply], products: Sequence[Product]
 ) -> tuple[BatchBuffer, Batch] | None:
-    """Batch of the highest priority that has waited longest; None: there is none."""
+    """Batch of the highest priority that has waited longest, with its buffer."""
     best: tuple[BatchBuffer, Batch] | None = None
     rank = (inf, inf)
-    for buffer, steps in buffers:
+    for buffer, steps in supplies:
         found = buffer.first(steps)
         if found is not None:
-            own = (-priority(found.product), found.arrived)
+            own = (-products[found.product].priority, found.arrived)
             if own < rank:
                 best, rank = (buffer, found), own
     return best

@@ -13,10 +13,36 @@ from itertools import chain, repeat
 
 import numpy as np
 
-from simulator.factory.distribution import Distribution, DistributionKind
+from simulator.factory.distribution import Distribution, DistributionKind, Floats
 
-BLOCK = 64
+BLOCK = 256
 """Numbers drawn at a time."""
+
+
+class Blocks:
+    """Numbers that come in blocks and are taken in other quantities. Running state.
+
+    Parameters
+    ----------
+    source : iterator of (..., N) arrays
+        Blocks, without end.
+    """
+
+    def __init__(self, source: Iterator[Floats]) -> None:
+        self._source = source
+        self._block, self._size, self._at = np.empty(0), 0, 0
+
+    def take(self, count: int) -> Floats:
+        """Next numbers, (..., count)."""
+        begin, end = self._at, self._at + count
+        while end > self._size:
+            block = next(self._source)
+            if begin < self._size:
+                block = np.concatenate((self._block[..., begin:], block), axis=-1)
+            self._block, self._size = block, block.shape[-1]
+            begin, end = 0, count
+        self._at = end
+        return self._block[..., begin:end]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,6 +63,12 @@ class Streams:
         """Numbers of a distribution, one after another without end."""
         if distribution.kind is DistributionKind.CONSTANT:
             return repeat(distribution.mean)
+        blocks = self.blocks(distribution, owner, purpose)
+        return chain.from_iterable(block.tolist() for block in blocks)
+
+    def blocks(self, distribution: Distribution, owner: str, purpose: str) -> Iterator[Floats]:
+        """Numbers of a distribution in blocks, without end."""
+        if distribution.kind is DistributionKind.CONSTANT:
+            return repeat(np.full(BLOCK, distribution.mean))
         generator = self.generator(owner, purpose)
-        blocks = (distribution.draw(generator, BLOCK).tolist() for _ in repeat(None))
-        return chain.from_iterable(blocks)
+        return (distribution.draw(generator, BLOCK) for _ in repeat(None))

@@ -1,11 +1,11 @@
-"""What a machine meets in its shop: buffers, crews, machining, counts, and who listens."""
+"""Surroundings of a machine in its shop: buffers, crews, machining, counts, listeners."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from simulator.factory.crews import CrewOnDuty
-from simulator.factory.machining import Machining
+from simulator.factory.machining import PartSource
 from simulator.factory.records import Listeners
 from simulator.factory.shop import Product
 from simulator.factory.states import MachineState
@@ -18,7 +18,7 @@ Steps: TypeAlias = frozenset[tuple[int, int]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Surroundings:
-    """What a machine meets in its shop."""
+    """Surroundings of a machine in its shop."""
 
     products: Sequence[Product]
     supplies: Sequence[tuple[BatchBuffer, Steps]]
@@ -27,7 +27,7 @@ class Surroundings:
     """Raw stocks among them that never run out."""
     behind: Mapping[tuple[int, int], BatchBuffer]
     """Buffer behind each step; none behind the last."""
-    machining: Mapping[tuple[int, int], Iterator[Machining]]
+    machining: Mapping[tuple[int, int], PartSource]
     """Machining of one part after another, by step."""
     crews: Mapping[MachineState, CrewOnDuty]
     """Crews by the states that need a member."""

@@ -24,6 +24,14 @@ class ProcessTally:
     peak: float = 0.0
     """W"""
 
+    def add(self, parts: int, good: int, time: float, energy: float, peak: float) -> None:
+        """Count parts, with the sums and the greatest power of their machining, in s, J, W."""
+        self.parts += parts
+        self.good += good
+        self.time += time
+        self.energy += energy
+        self.peak = max(self.peak, peak)
+
     def reset(self) -> None:
         """Begin anew."""
         self.parts = self.good = 0

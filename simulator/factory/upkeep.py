@@ -59,7 +59,7 @@ class DueMaintenance:
     """Machining time, or time, at which it is due, s."""
 
     def is_due(self, machined: float, now: float) -> bool:
-        """Whether it is due, by the machining time and the time in s."""
+        """True if it is due, by the machining time and the time in s."""
         return self.at <= (machined if self.counts is Counting.MACHINING else now)
 
 

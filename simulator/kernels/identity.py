@@ -16,7 +16,7 @@ from simulator.kernels import link
 
 COMPILERS = ("numba", "llvmlite", "numpy")
 
-FORM = "1"
+FORM = "2"
 """Version of how machine code is built and called; changing it rebuilds all kernels."""
 
 
@@ -28,12 +28,12 @@ def digest(function: Callable[..., object], types: object) -> str:
 
 
 def is_kernel(value: object) -> bool:
-    """Whether a value is a kernel, which other kernels may call."""
+    """True if a value is a kernel, which other kernels may call."""
     return hasattr(value, "is_kernel")
 
 
 def is_reordered(function: object) -> bool:
-    """Whether the sums of a kernel may be added up in any order."""
+    """True if the sums of a kernel may be added up in any order."""
     return hasattr(function, "is_reordered")
 
 

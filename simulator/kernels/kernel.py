@@ -7,24 +7,18 @@ machine code from a file (:mod:`simulator.kernels.store`), or numba compiles it
 (:mod:`simulator.kernels.build`). numba is imported only then, as this takes longer than most
 work done by kernels. Calls release the global interpreter lock.
 
-Machine code is called by numba's calling convention: the status is returned; the arguments are
-two pointers for the result and an error, then all numbers in order. An array is passed as two
-owner references (none here), its size, item size, address, shape and strides.
+Machine code gets the address of all numbers of the arguments in order, eight bytes each, and
+returns a status. An array is passed as two owner references (none here), its size, item size,
+address, shape and strides. Checking and collecting the numbers takes longer than a small kernel
+runs. A loop that calls a kernel again and again with the same arrays therefore binds them once
+(:meth:`KernelEntry.bound`) and writes into them what changes.
 """
 
 import logging
-from collections.abc import Callable, Iterable, Iterator
-from ctypes import (
-    CFUNCTYPE,
-    addressof,
-    c_char,
-    c_double,
-    c_int32,
-    c_int64,
-    c_void_p,
-    create_string_buffer,
-)
+from collections.abc import Callable, Iterable
+from ctypes import CFUNCTYPE, addressof, c_char, c_char_p, c_int32
 from functools import update_wrapper
+from struct import Struct
 from typing import Any, Generic, ParamSpec, TypeVar
 
 import numpy as np
@@ -39,11 +33,10 @@ Function = TypeVar("Function", bound=Callable[..., object])
 LOG = logging.getLogger(__name__)
 """Logger that explains a long wait; writes to stderr if logging is not configured."""
 
-NOTHING = create_string_buffer(64)
-"""Buffer to which a kernel would write a result or an error."""
-
 Number = int | float
-Code = Callable[..., int]
+Code = Callable[[bytes], int]
+BoundKernel = Callable[[], None]
+"""Kernel with arguments; raises a ``MemoryError`` if the kernel fails."""
 
 
 def kernel(function: Function) -> Function:
@@ -64,8 +57,8 @@ class KernelEntry(Generic[Parameters]):
     def __init__(self, function: Callable[Parameters, None]) -> None:
         self.function = function
         """The kernel as a plain Python function."""
-        self._codes: dict[object, Code] = {}
-        """Machine code by the types of the arguments."""
+        self._codes: dict[object, tuple[Code, Struct]] = {}
+        """Machine code, and the form of its numbers, by the types of the arguments."""
         update_wrapper(self, function)
 
     def __call__(self, *arguments: Parameters.args, **named: Parameters.kwargs) -> None:
@@ -80,13 +73,43 @@ class KernelEntry(Generic[Parameters]):
         """
         if named:
             raise TypeError(f"{self.function.__name__}: pass kernel arguments by position")
-        types = _type_of(arguments)
-        if types not in self._codes:
-            self._codes[types] = self._code(types, arguments)
-        if self._codes[types](NOTHING, NOTHING, *_numbers(arguments)):
+        code, form = self._code(arguments)
+        if code(form.pack(*_numbers(arguments))):
             raise MemoryError(f"kernel {self.function.__name__} failed")
 
-    def _code(self, types: object, arguments: tuple[object, ...]) -> Code:
+    def bound(self, *arguments: Parameters.args, **named: Parameters.kwargs) -> BoundKernel:
+        """Return the kernel with fixed arguments; a call then takes no time to convert them.
+
+        Each call reads the contents that the arrays have then. Their memory must stay where it
+        is: never resize such an array. Numbers keep their values; one that changes belongs into
+        an array.
+
+        Raises
+        ------
+        TypeError
+            As for a call.
+        """
+        if named:
+            raise TypeError(f"{self.function.__name__}: pass kernel arguments by position")
+        code, form = self._code(arguments)
+        numbers, name = form.pack(*_numbers(arguments)), self.function.__name__
+
+        # The default keeps the arrays, whose addresses are among the numbers.
+        def run(_alive: tuple[object, ...] = arguments) -> None:
+            if code(numbers):
+                raise MemoryError(f"kernel {name} failed")
+
+        return run
+
+    def _code(self, arguments: tuple[object, ...]) -> tuple[Code, Struct]:
+        """Return the machine code for arguments of these types, and the form of numbers."""
+        types = _type_of(arguments)
+        known = self._codes.get(types)
+        if known is None:
+            known = self._codes[types] = self._loaded(types, arguments), _form(arguments)
+        return known
+
+    def _loaded(self, types: object, arguments: tuple[object, ...]) -> Code:
         """Load or compile the machine code of this kernel for given argument types."""
         name, key = self.function.__name__, digest(self.function, types)
         found = store.load(name, key)
@@ -96,8 +119,8 @@ class KernelEntry(Generic[Parameters]):
 
             found = object_code(self.function, arguments, symbol=f"{name}_{key}")
             store.save(name, key, found)
-        prototype = CFUNCTYPE(c_int32, c_void_p, c_void_p, *_ctypes(arguments))
-        return prototype(link.address_of(found, f"{name}_{key}"))
+        # Bytes are passed as the address of what they hold.
+        return CFUNCTYPE(c_int32, c_char_p)(link.address_of(found, f"{name}_{key}"))
 
 
 def entry(function: Callable[Parameters, None]) -> KernelEntry[Parameters]:
@@ -140,7 +163,7 @@ def _address(array: NDArray[Any]) -> int:
     return int(array.ctypes.data)
 
 
-def _ctypes(values: tuple[object, ...]) -> Iterator[type[c_int64 | c_double]]:
-    """C types of the numbers of some values; addresses are integers."""
-    for number in _numbers(values):
-        yield c_double if isinstance(number, float) else c_int64
+def _form(values: tuple[object, ...]) -> Struct:
+    """Layout of the numbers of some values; addresses are integers."""
+    kinds = ("d" if isinstance(number, float) else "q" for number in _numbers(values))
+    return Struct("=" + "".join(kinds))

@@ -7,7 +7,7 @@ mm/s, cycles and threads are moves, and consecutive moves without a pause form o
 from dataclasses import dataclass, field
 
 from simulator.motion.segments import Floats, Segments
-from stepnc_model.post.blocks import Coolant
+from stepnc_model.post.blocks import Coolant, PathControl
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -23,6 +23,16 @@ class MoveStretch:
     """Number of segments at the beginning that lead to the path of the workingstep."""
     back: int = 0
     """Number of segments at the end that lead away from the path of the workingstep."""
+    is_drained: bool = True
+    """Whether something other than a move follows that waits for its end: a dwell, a change of
+    tool or coolant, a stop, the end; false if moves follow, or a wait for the spindle."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PathControlTo:
+    """Command to run corners otherwise from here on."""
+
+    control: PathControl
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,6 +88,7 @@ class EndOfProgram:
 
 Act = (
     MoveStretch
+    | PathControlTo
     | SpindleTo
     | SpindleReached
     | Wait

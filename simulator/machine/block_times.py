@@ -30,7 +30,7 @@ LEAST_ANGLE = 1e-4
 
 
 class LossCause(IntEnum):
-    """What makes a block take longer than programmed."""
+    """Cause that makes a block take longer than programmed."""
 
     NONE = 0
     BLOCK_RATE = 1

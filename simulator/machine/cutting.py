@@ -32,8 +32,10 @@ from simulator.physics.tooth_forces import arcs_of
 from simulator.physics.turning import turning_forces
 from simulator.removal.stations import StationKind, Stations
 from simulator.spec import DrillPoint, Kienzle
+from stepnc_model.units import NMM_S_PER_WATT
 
-NMM_S_PER_WATT = 1000.0
+STOPPED = "cut with a stopped spindle: its force is not modelled"
+"""Finding on such a cut."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -278,7 +280,7 @@ def _thrust(stations: Stations, rows: Ints, force: Floats, *, edge: CuttingEdge)
 
 
 def _is_solid(stations: Stations, point: DrillPoint) -> Bools:
-    """Whether the chisel edge of a drill meets material: any existing hole is narrower."""
+    """True if the chisel edge of a drill meets material: any existing hole is narrower."""
     # The middle of a lip and its width give the inner and outer diameter of the cut.
     inside = stations.diameter - stations.axial_depth
     outside = stations.diameter + stations.axial_depth

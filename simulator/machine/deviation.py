@@ -57,7 +57,7 @@ def movement_of(segments: Segments) -> Ints:
 
 
 def movement_kinds(segments: Segments) -> Bools:
-    """Whether each movement of a stretch is a rapid, (M,)."""
+    """True if each movement of a stretch is a rapid, (M,)."""
     _, begins = np.unique(movement_of(segments), return_index=True)
     return segments.is_rapid[begins]
 

@@ -175,7 +175,7 @@ class Disturbance:
 
     @property
     def is_none(self) -> bool:
-        """Whether the samples remain undisturbed."""
+        """True if the samples remain undisturbed."""
         is_silent = self.noise is NoiseKind.NONE and self.missing == 0.0
         return is_silent and self.response is None
 

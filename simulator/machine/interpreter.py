@@ -8,8 +8,8 @@ The rows of a stretch are mutable while it is collected.
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
-from math import atan2, ceil, copysign, cos, exp, inf, isfinite, isnan, log, nan, pi, sin
+from dataclasses import dataclass, replace
+from math import ceil, copysign, exp, inf, isfinite, isnan, log, nan, pi
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from simulator.machine.acts import (
     CoolantTo,
     EndOfProgram,
     MoveStretch,
+    PathControlTo,
     ProgramAct,
     SpindleReached,
     SpindleTo,
@@ -36,6 +37,7 @@ from stepnc_model.post.blocks import (
     Coolant,
     DrillingCycle,
     Linear,
+    PathControl,
     Pause,
     ProgramEnd,
     ProgramStopBlock,
@@ -53,8 +55,9 @@ from stepnc_model.post.blocks import (
     ToolChange,
 )
 from stepnc_model.post.canonical import synchronised
-from stepnc_model.toolpath.path import Arc, ArcPlane, Point, radius
-from stepnc_model.toolpath.path import radius as radius_of
+from stepnc_model.toolpath.arc import FULL, inner_points, point_at
+from stepnc_model.toolpath.arc import radius as radius_of
+from stepnc_model.toolpath.path import ArcPlane, Point
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,24 +106,12 @@ class Rows:
         self, start: Point, block: Circular, *, pieces: int, paces: Paces, line: int
     ) -> None:
         """Add an arc or helix divided into pieces."""
-        first, second, normal = block.plane.axes
-        size = radius(start, Arc(centre=block.centre, turn=block.turn, plane=block.plane))
-        angle = atan2(start[second] - block.centre[second], start[first] - block.centre[first])
-        rise = block.end[normal] - start[normal]
-
-        def at(part: float) -> Point:
-            point = [0.0, 0.0, 0.0]
-            point[first] = block.centre[first] + size * cos(angle + part * block.turn)
-            point[second] = block.centre[second] + size * sin(angle + part * block.turn)
-            point[normal] = start[normal] + part * rise
-            return point[0], point[1], point[2]
-
-        here, self._back = start, 0
-        for index in range(1, pieces + 1):
-            there = block.end if index == pieces else at(index / pieces)
-            pace = paces(at((index - 0.5) / pieces)[0], there[0])
-            points = here, there, block.centre
-            self._add(points, pace, turn=block.turn / pieces, normal=normal, line=line)
+        arc, here, self._back = block.arc, start, 0
+        turn, normal = arc.turn / pieces, arc.plane.axes[2]
+        for index, there in enumerate((*inner_points(start, block, pieces), block.end)):
+            middle = point_at(start, block, (index + 0.5) / pieces)
+            pace = paces(middle[0], there[0])
+            self._add((here, there, arc.centre), pace, turn=turn, normal=normal, line=line)
             here = there
 
     def _add(
@@ -193,7 +184,29 @@ def interpret(blocks: Iterable[Numbered], machine: Machine) -> Iterator[ProgramA
         With the line: for a feed that is not positive, a feed per revolution with a stopped
         spindle, or a constant surface speed at the axis without a spindle speed limit.
     """
-    return _Interpreter(machine).steps(blocks)
+    return _with_ends(_Interpreter(machine).steps(blocks))
+
+
+DRAINS = (CoolantTo, EndOfProgram, Stop, ToolTo, Wait)
+"""Actions for which the control waits until all moves before them have ended."""
+
+
+def _with_ends(acts: Iterable[ProgramAct]) -> Iterator[ProgramAct]:
+    """Actions, whose stretches know whether they are followed by one that waits for them."""
+    held: list[ProgramAct] = []
+    for step in acts:
+        is_drained = isinstance(step.act, DRAINS)
+        if is_drained or isinstance(step.act, MoveStretch | SpindleReached):
+            yield from held if is_drained else map(_undrained, held)
+            held = []
+        held.append(step)
+    yield from held
+
+
+def _undrained(step: ProgramAct) -> ProgramAct:
+    if not isinstance(step.act, MoveStretch):
+        return step
+    return replace(step, act=replace(step.act, is_drained=False))
 
 
 class _Interpreter:
@@ -209,9 +222,11 @@ class _Interpreter:
         self.is_awaited = False
         """Whether the next feed move waits for the spindle."""
         self.rows = Rows()
+        self.path_mode: PathControl | None = None
         self.line = 0
         self._readers: dict[type, Callable[..., Iterator[Act]]] = {
             Comment: self._comment,
+            PathControl: self._path_mode,
             ToolChange: self._tool,
             SpindleOn: self._spindle_on,
             SurfaceSpeed: self._surface_speed,
@@ -255,6 +270,13 @@ class _Interpreter:
         if block.workingstep:
             yield from self._flush()
             yield WorkingstepTo(id=block.workingstep)
+
+    def _path_mode(self, block: PathControl) -> Iterator[Act]:
+        if block == self.path_mode:
+            return
+        self.path_mode = block
+        yield from self._flush()
+        yield PathControlTo(control=block)
 
     def _tool(self, block: ToolChange) -> Iterator[Act]:
         yield from self._flush()
@@ -366,7 +388,7 @@ class _Interpreter:
         self.at = list(block.end)
 
     def _circular(self, block: Circular) -> Iterator[Act]:
-        turns = abs(block.turn) / (2.0 * pi)
+        turns = abs(block.arc.turn) / FULL
         if turns > MOST_TURNS:
             text = f"an arc has {turns:g} turns; at most {MOST_TURNS} are allowed"
             raise ProgramFault(text, self.line)
@@ -407,12 +429,13 @@ class _Interpreter:
 
     def _arc_pieces(self, start: Point, block: Circular) -> int:
         """Number of pieces into which an arc is split at constant surface speed."""
-        if self.surface is None or block.plane is ArcPlane.YZ:
+        arc = block.arc
+        if self.surface is None or arc.plane is ArcPlane.YZ:
             return 1
-        size = radius_of(start, Arc(centre=block.centre, turn=block.turn, plane=block.plane))
-        way = size * abs(block.turn)
+        size = radius_of(start, arc)
+        way = size * abs(arc.turn)
         # Lower bound of the distance from the axis; the arc itself may stay farther away.
-        nearest = max(abs(block.centre[0]) - size, self._least_radius(self.surface))
+        nearest = max(abs(arc.centre[0]) - size, self._least_radius(self.surface))
         fits = way < PIECE * nearest * MOST_PIECES
         return max(1, ceil(way / (PIECE * nearest))) if fits else MOST_PIECES
 

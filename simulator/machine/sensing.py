@@ -20,8 +20,7 @@ from simulator.machine.samples import (
 from simulator.machine.tooth_loads import bent, entered_loads, tooth_loads
 from simulator.motion.segments import AXES, Floats, Ints, Kinematics
 from simulator.physics.axis import axis_power
-from simulator.physics.spindle import curve_segments
-from simulator.physics.spindle_motion import spindle_power
+from simulator.physics.spindle import curve_segments, spindle_power
 from simulator.removal.stations import StationKind
 from simulator.spec import Machine
 

@@ -3,20 +3,16 @@
 from dataclasses import replace
 from math import isinf
 
-from simulator.edge_material import correction_of, edge_material
 from simulator.library import find_window
 from simulator.machine.cutting import CuttingEdge
 from simulator.machine.virtual import LoadedTool, Shape
 from simulator.physics.drilling import LIPS_ONLY
 from simulator.physics.flutes import CuttingEdges
 from simulator.physics.strength import end_mill
-from simulator.removal.cutter import Cutter
-from simulator.removal.tool_shape import THREADS, shape_of
+from simulator.removal.cutter import THREADS, Cutter, shape_of
 from simulator.spec import CuttingMaterial, Taylor, ToolGrade, ToolKind, WorkMaterial
-from simulator.table_grade import grade_of_table_tool
-from simulator.tool_kind import tool_kind
-from simulator.tool_table import TableTool
-from simulator.tool_windows import grade_for
+from simulator.tool_kind import correction_of, edge_material, tool_kind
+from simulator.tool_table import TableTool, grade_for, grade_of_table_tool
 from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
@@ -57,7 +53,13 @@ def loaded_tool(
     shape = shape_of(program, ref)
     grade = grade_for(kind, cutting_material, material)
     edge = _edge(
-        kind, cutting_material, tool.teeth, shape=shape, material=material, grade=grade
+        kind,
+        cutting_material,
+        tool.teeth,
+        shape=shape,
+        material=material,
+        grade=grade,
+        overhang=tool.overhang,
     )
     return LoadedTool(
         number=number,
@@ -77,6 +79,7 @@ def table_tool(tool: TableTool, material: WorkMaterial, *, factor: float = 1.0) 
         shape=tool.shape,
         material=material,
         grade=grade_of_table_tool(tool, material),
+        overhang=tool.shape.overhang if isinstance(tool.shape, Cutter) else None,
     )
     if edge.flutes is not None and tool.helix_angle is not None:
         edge = replace(edge, flutes=replace(edge.flutes, helix_angle=tool.helix_angle))
@@ -96,7 +99,7 @@ def _taylor(
     return None if window is None else window.taylor
 
 
-def _edge(
+def _edge(  # noqa: PLR0913 (a tool, what it cuts, and how far it stands out)
     kind: ToolKind,
     cutting_material: CuttingMaterial,
     teeth: int,
@@ -104,6 +107,7 @@ def _edge(
     shape: Shape | None,
     material: WorkMaterial,
     grade: ToolGrade | None,
+    overhang: float | None,
 ) -> CuttingEdge:
     """Cutting edge of a tool in a material, with the compliance of an end mill."""
     correction = correction_of(material, grade, cutting_material)
@@ -128,6 +132,9 @@ def _edge(
     if grade is not None and kind is ToolKind.ENDMILL:
         length = None if isinf(shape.edge_length) else shape.edge_length
         compliance = end_mill(
-            shape.diameter, cutting_edge_length=length, youngs_modulus=grade.youngs_modulus
+            shape.diameter,
+            cutting_edge_length=length,
+            youngs_modulus=grade.youngs_modulus,
+            overhang=overhang,
         ).compliance
     return replace(edge, flutes=flutes, compliance=compliance)

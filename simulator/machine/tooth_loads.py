@@ -21,7 +21,7 @@ from simulator.physics.tooth_forces import (
     forces,
 )
 from simulator.physics.uneven_teeth import Runout, eccentric_runout
-from simulator.removal.stations import StationKind, Stations, single_arcs
+from simulator.removal.stations import StationKind, Stations
 
 LAND = ForceLaw(exponent=0.0, radial_share=flank.NORMAL / flank.CUTTING)
 """Force law of a wear land, which rubs along the engaged edges whatever the chip."""
@@ -96,7 +96,7 @@ def wall_forces(stations: Stations, edge: CuttingEdge) -> Floats:
     at = np.flatnonzero(_has_arc(stations))
     if edge.compliance == 0.0 or not len(at):
         return found
-    arcs = single_arcs(stations)
+    arcs = stations.arcs
     columns = np.stack((arcs.entry_angle[at], arcs.exit_angle[at], arcs.depth[at]))
     for made, law in zip(found, (_law(edge), LAND), strict=True):
         made[at] = wall_at(_flutes(edge), law, columns)
@@ -175,7 +175,7 @@ def _has_arc(stations: Stations) -> Bools:
 
 
 def _places(stations: Stations, rows: Ints) -> Places:
-    arcs = single_arcs(stations)
+    arcs = stations.arcs
     return Places(
         entry_angle=arcs.entry_angle[rows],
         exit_angle=arcs.exit_angle[rows],
@@ -205,7 +205,7 @@ def _scale(
     """
     station = rows[at]
     per_tooth = mean.chip_thickness[at] / stations.chip_ratio[station]
-    fill = single_arcs(stations).fill[station] * mean.filled[at]
+    fill = stations.arcs.fill[station] * mean.filled[at]
     factor = edge.factor * edge.kienzle.k_c11
     scale: Floats = factor * per_tooth ** (1.0 - edge.kienzle.m_c) * fill
     return per_tooth, scale

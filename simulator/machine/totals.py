@@ -12,11 +12,11 @@ from math import pi, sqrt
 
 import numpy as np
 
-from simulator.machine.cutting import NMM_S_PER_WATT
 from simulator.machine.samples import Condition, Episode, PathMode, Samples
 from simulator.machine.sensing import main_power, sensed
 from simulator.motion.segments import Floats
 from simulator.spec import Machine
+from stepnc_model.units import NMM_S_PER_WATT
 
 PLACES = np.array([1e-6, 0.5 - 0.5 / sqrt(3.0), 0.5 + 0.5 / sqrt(3.0), 1.0 - 1e-6])
 """Sample points on 0 to 1: just inside the ends, and the abscissae of the two-point rule."""

@@ -3,23 +3,21 @@
 Units mm.
 """
 
-from math import isfinite, pi
+from math import isfinite
 
 import numpy as np
 
 from simulator.errors import OutOfTravel, ProgramFault
-from simulator.motion.segments import AXES, FIRST, SECOND, Floats, Ints, Segments
+from simulator.motion.segments import AXES, Floats, Ints, Segments
 from simulator.spec import Machine, MachineKind
 from stepnc_model.program import Stock
+from stepnc_model.toolpath.arc_columns import to_quadrants
 
 Zero = tuple[float, float, float]
 """Position of the program zero on the axes X, Y, Z, mm."""
 
 ROUNDING = 1e-6
 """Distance by which a position may exceed the travel because of rounding, mm."""
-
-QUARTERS = np.arange(4) * 0.5 * pi
-"""Angles at which an arc is farthest out along an axis, rad."""
 
 
 def zero_of(machine: Machine, stock: Stock) -> Zero:
@@ -83,9 +81,7 @@ def require_axes(machine: Machine, segments: Segments) -> None:
 def _farthest(segments: Segments) -> tuple[Ints, Floats]:
     """Rows of arcs, and the stations at which they are farthest out along an axis, mm."""
     rows = np.flatnonzero(segments.turn)
-    arm, at = segments.start[rows] - segments.centre[rows], np.arange(len(rows))
-    normal, turn = segments.normal[rows], segments.turn[rows]
-    angle = np.arctan2(arm[at, np.array(SECOND)[normal]], arm[at, np.array(FIRST)[normal]])
-    way = np.mod(np.sign(turn)[:, None] * (QUARTERS - angle[:, None]), 2.0 * pi)
-    part = np.minimum(way / np.abs(turn)[:, None], 1.0)
-    return np.repeat(rows, len(QUARTERS)), (part * segments.length[rows][:, None]).ravel()
+    turn = segments.turn[rows]
+    ways = to_quadrants(segments.start_angle[rows], turn)
+    part = np.minimum(ways / np.abs(turn)[:, None], 1.0)
+    return np.repeat(rows, part.shape[1]), (part * segments.length[rows][:, None]).ravel()

@@ -8,7 +8,7 @@ Feeds per revolution are kept even where the spindle cannot follow the radius fa
 lathe synchronises the feed with the encoder of its spindle, so that while the spindle ramps the
 axes follow its actual speed, and the chip stays as programmed.
 
-The module also creates findings for collisions with the stock. Units mm, s, rev/s.
+Units mm, s, rev/s.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -23,6 +23,7 @@ from simulator.machine.acts import (
     CoolantTo,
     EndOfProgram,
     MoveStretch,
+    PathControlTo,
     ProgramAct,
     SpindleReached,
     SpindleTo,
@@ -31,7 +32,8 @@ from simulator.machine.acts import (
     Wait,
     WorkingstepTo,
 )
-from simulator.machine.cutting import CuttingEdge
+from simulator.machine.contacts import ContactRecorder, contacts
+from simulator.machine.cutting import STOPPED, CuttingEdge
 from simulator.machine.deviation import (
     GivenDeviation,
     SeededDeviation,
@@ -44,71 +46,14 @@ from simulator.machine.spindle_course import SpindleCourse, following, ramped, s
 from simulator.machine.tooth_loads import ToothOptions
 from simulator.machine.travel import Zero, require_axes, require_travel
 from simulator.machine.wear import Wear, wearing_along
+from simulator.motion.linuxcnc_planner import LinuxCncPlanner
 from simulator.motion.segments import ControlModel, Floats, Motion, Segments, axis_limits
 from simulator.physics.tool_life import LIFE_CRITERION
-from simulator.removal.collision import Collision
 from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.stations import Stations, air
 from simulator.spec import Machine, MachineKind, Taylor
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.units import rpm_from_rev_s
-
-MOST = 20
-"""Largest number of findings of one kind; further ones are only counted."""
-
-LEAST_VOLUME = 1e-3
-"""Volume that a rapid may remove without a finding, mm³: rounding of the map."""
-
-
-class ContactRecorder(Protocol):
-    """Stock that records its collisions."""
-
-    collisions: list[Collision]
-    """Rapid moves through material."""
-    holder_collisions: list[Collision]
-    shank_collisions: list[Collision]
-
-
-def contacts(stock: ContactRecorder) -> list[Finding]:
-    """Findings for rapid moves through material and for holder and shank collisions."""
-    met = [hit for hit in stock.collisions if hit.volume > LEAST_VOLUME]
-    told = [
-        (hit, f"a rapid move cuts {hit.volume:.3g} mm³ of material near {_place(hit)}")
-        for hit in met
-    ]
-    findings = _first(told, "rapid moves through material", Severity.ERROR)
-    told = [
-        (hit, f"the holder is {hit.depth:.3g} mm deep in the material at {_place(hit)}")
-        for hit in stock.holder_collisions
-    ]
-    findings += _first(told, "moves with the holder in the material")
-    told = [
-        (
-            hit,
-            f"{hit.depth:.3g} mm of material above the cutting edge touches the shank at "
-            f"{_place(hit)}",
-        )
-        for hit in stock.shank_collisions
-    ]
-    return findings + _first(told, "moves with material at the shank")
-
-
-def _place(hit: Collision) -> str:
-    x, y, z = hit.position
-    return f"({x:.2f}, {y:.2f}, {z:.2f}) mm"
-
-
-def _first(
-    told: list[tuple[Collision, str]], kind: str, severity: Severity = Severity.WARNING
-) -> list[Finding]:
-    findings = [
-        Finding(severity=severity, message=text, line=hit.block) for hit, text in told[:MOST]
-    ]
-    if len(told) > MOST:
-        more = f"{len(told) - MOST} more {kind}"
-        findings.append(Finding(severity=severity, message=more))
-    return findings
-
 
 AGREED = 1e-3
 """Tolerated relative difference between a segment's feed and that from the spindle speed."""
@@ -240,6 +185,7 @@ class VirtualMachine:
         self.setup = setup
         self.machine = setup.machine
         self.limits = axis_limits(setup.machine)
+        self.control = setup.control
         self.now = 0.0
         self.position: Floats | None = None
         self.spindle = standing(0.0)
@@ -265,6 +211,13 @@ class VirtualMachine:
     def stocks(self) -> tuple[StockMap, ...]:
         """Stocks that were clamped, in order, as the program left them so far."""
         return tuple(self._stocks)
+
+    def cut(self, stock: StockMap | None, segments: Segments) -> Stations:
+        """Cut a stock with the loaded tool along segments; return what it meets."""
+        if stock is None or self.tool is None or self.tool.shape is None:
+            return air(np.arange(len(segments)), segments.length)
+        is_clockwise = self.state.spindle_programmed >= 0.0
+        return stock.cut(segments, self.tool.shape, is_clockwise=is_clockwise)
 
     def run(self, steps: Iterable[ProgramAct]) -> Iterator[Episode]:
         """Run a program and yield its episodes, one after another without gaps.
@@ -298,6 +251,9 @@ class VirtualMachine:
         match step.act:
             case MoveStretch() as stretch:
                 yield self._move(stretch)
+            case PathControlTo(control=wanted):
+                if isinstance(self.control, LinuxCncPlanner):
+                    self.control = replace(self.control, mode=wanted)
             case SpindleTo(speed=speed):
                 self._turn(speed)
             case SpindleReached():
@@ -370,10 +326,16 @@ class VirtualMachine:
         require_axes(self.machine, stretch.segments)
         if self.setup.zero is not None:
             require_travel(self.machine, stretch.segments, self.setup.zero)
-        begin = self.now
+        begin, control = self.now, self.control
+        if isinstance(control, LinuxCncPlanner):
+            control = replace(
+                control,
+                is_drained=stretch.is_drained,
+                is_synchronised=not np.isnan(stretch.per_revolution).all(),
+            )
         run = paced(
             stretch,
-            lambda segments: self.setup.control.plan(segments, self.limits),
+            lambda segments: control.plan(segments, self.limits),
             self.spindle,
             begin=begin,
             acceleration=self.machine.spindle.acceleration or inf,
@@ -442,12 +404,11 @@ class VirtualMachine:
                 "but the machine is a mill"
             )
             raise ProgramFault(text, first)
-        is_clockwise = self.state.spindle_programmed >= 0.0
-        stations = self._stock.cut(segments, self.tool.shape, is_clockwise=is_clockwise)
+        stations = self.cut(self._stock, segments)
         cuts = np.flatnonzero(stations.section > 0.0)
         if len(cuts) and self.spindle.target == 0.0:
             line = int(segments.block[stations.segment[cuts[0]]])
-            self._say("cut with a stopped spindle: its force is not modelled", line)
+            self._say(STOPPED, line)
         return stations
 
     def _drawn(self, segments: Segments) -> Floats | None:

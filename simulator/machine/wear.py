@@ -31,7 +31,7 @@ class Wear:
 
     @property
     def grows(self) -> bool:
-        """Whether cutting increases the wear."""
+        """True if cutting increases the wear."""
         return self.per_second > 0.0
 
     def after(self, seconds: float) -> "Wear":

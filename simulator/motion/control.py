@@ -18,7 +18,8 @@ while the velocity of an axis jumps.
 No model was identified on a machine of its own: exact stop was fitted to a mill that stops at
 every block (``benchmarks.umich``); junction deviation has the default of Grbl; filter times
 follow from the limits of the axes. ``stepnc blockfit`` tells which of them a machine
-contradicts.
+contradicts. LinuxCNC's planner is :mod:`simulator.motion.linuxcnc_planner`; it alone was
+measured against its control (``benchmarks.linuxcnc``).
 
 With junction deviation the control stops before, after and between rapids, and reads blocks
 ahead: a block without length takes no time. The module also selects control models by name.
@@ -35,6 +36,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from simulator.motion.fir import FilterWithinLimits, shortest_filter
+from simulator.motion.linuxcnc_planner import LinuxCncPlanner
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.path_limits import (
     block_lengths,
@@ -46,6 +48,7 @@ from simulator.motion.path_limits import (
 )
 from simulator.motion.segments import AxisLimits, ControlModel, Floats, Segments
 from simulator.motion.sweep import Phases, swept
+from simulator.planner_settings import USUAL, PlannerSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -134,7 +137,11 @@ DEVIATION = 0.01
 
 
 def control_model(
-    control: ControlModelName, limits: AxisLimits, *, deviation: float = DEVIATION
+    control: ControlModelName,
+    limits: AxisLimits,
+    *,
+    deviation: float = DEVIATION,
+    planner: PlannerSettings = USUAL,
 ) -> ControlModel:
     """Create the control model with a given name; filter times follow from the limits.
 
@@ -144,6 +151,8 @@ def control_model(
     limits : AxisLimits
     deviation : float, mm
         Deviation for :attr:`ControlModelName.JUNCTION`.
+    planner : PlannerSettings
+        Settings for :attr:`ControlModelName.LINUXCNC`.
 
     Returns
     -------
@@ -162,3 +171,5 @@ def control_model(
         case ControlModelName.FIR:
             shortest_filter(limits, limits.rapid)
             return FilterWithinLimits()
+        case ControlModelName.LINUXCNC:
+            return LinuxCncPlanner(settings=planner)

@@ -20,7 +20,15 @@ import numpy as np
 
 from simulator.motion.moving_average import averaged, states_at_ends
 from simulator.motion.path_limits import PathLimits, is_stop, path_limits
-from simulator.motion.segments import AxisLimits, Floats, Ints, Kinematics, Motion, Segments
+from simulator.motion.segments import (
+    AxisLimits,
+    Floats,
+    Ints,
+    Kinematics,
+    Motion,
+    Segments,
+    distinct,
+)
 from simulator.motion.sweep import ends_of_all, swept
 
 
@@ -65,7 +73,7 @@ class Chain:
     @cached_property
     def knots(self) -> Floats:
         """Times between which speeds are smooth, (K,), s."""
-        return np.unique(self._after_one_another([motion.knots for motion in self.motions]))
+        return distinct(self._after_one_another([motion.knots for motion in self.motions]))
 
     def at(self, times: Floats) -> Kinematics:
         """State of the axes at (M,) ascending times in s, between 0 and the duration."""
@@ -76,6 +84,8 @@ class Chain:
             for row, (begin, end) in enumerate(pairwise(bounds.tolist()))
             if end > begin
         ]
+        if len(parts) == 1:
+            return parts[0]
         return Kinematics(
             position=np.concatenate([part.position for part in parts]),
             velocity=np.concatenate([part.velocity for part in parts]),
@@ -250,7 +260,7 @@ class FilteredMotion:
         first, second, window = self.filter.first, self.filter.second, self.filter.window
         delays = np.array([0.0, second, 0.5 * window, first, window])
         times = self.pieces.time[1:-1, None] + delays
-        return np.unique(np.minimum(times, self.duration))
+        return distinct(np.minimum(times, self.duration))
 
     def at(self, times: Floats) -> Kinematics:
         """State of the axes at (M,) times in s, between 0 and the duration."""

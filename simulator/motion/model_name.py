@@ -12,3 +12,5 @@ class ControlModelName(StrEnum):
     """Continuous path; corner speeds follow from a junction deviation."""
     FIR = "fir"
     """Axis commands filtered with fixed times."""
+    LINUXCNC = "linuxcnc"
+    """LinuxCNC's planner: corners rounded within the path tolerance of the program."""

@@ -8,7 +8,15 @@ from functools import cached_property
 
 import numpy as np
 
-from simulator.motion.segments import AxisLimits, ControlModel, Floats, Ints, Motion, Segments
+from simulator.motion.segments import (
+    AxisLimits,
+    ControlModel,
+    Floats,
+    Ints,
+    Motion,
+    Segments,
+    distinct,
+)
 from simulator.motion.tool_path import ToolPathRun
 
 
@@ -35,7 +43,7 @@ class Passing:
     @cached_property
     def _knots(self) -> Floats:
         """Times between which speeds are smooth, with the ends of the segments, (K + 1,), s."""
-        return np.unique(np.concatenate((self.motion.knots, self.motion.ends)))
+        return distinct(np.concatenate((self.motion.knots, self.motion.ends)))
 
     @cached_property
     def clock(self) -> tuple[Floats, Floats]:
@@ -53,7 +61,7 @@ class Passing:
         States of the axes cost most of the time, and few segments are looked at.
         """
         ends, knots = self.motion.ends, self._knots
-        rows = np.unique(segment)
+        rows = distinct(segment)
         first = np.searchsorted(knots, np.where(rows > 0, ends[rows - 1], 0.0), "right") - 1
         last = np.searchsorted(knots, ends[rows])
         # One more stretch on either side allows for rounding.

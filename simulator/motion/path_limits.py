@@ -63,11 +63,8 @@ def path_limits(segments: Segments, limits: AxisLimits) -> PathLimits:
     """
     if not len(segments):
         raise ValueError("a stretch of path needs at least one segment, got 0")
-    turn_rate = _over(segments.turn, segments.length, 0.0)
-    in_plane = segments.radius * np.abs(turn_rate)
-    bend = in_plane * np.abs(turn_rate)
-    share = _shares(segments, in_plane)
-    grip = _slower_in_plane(segments, limits.acceleration)
+    bend, share = segments.bend, segments.greatest_shares
+    grip = slower_in_plane(segments, limits.acceleration)
     speeds = (
         segments.speed,
         least(np.where(segments.is_rapid[:, None], limits.rapid, limits.feed), share),
@@ -79,7 +76,9 @@ def path_limits(segments: Segments, limits: AxisLimits) -> PathLimits:
     if len(endless):
         raise ValueError(f"segment {endless[0]}: neither command nor axis limits its speed")
     left = grip * np.sqrt(1.0 - (speed**2 * bend / grip) ** 2)
-    acceleration = np.minimum(least(limits.acceleration, share), _over(left, in_plane, np.inf))
+    acceleration = np.minimum(
+        least(limits.acceleration, share), _over(left, segments.in_plane, np.inf)
+    )
     return PathLimits(speed=speed, acceleration=acceleration)
 
 
@@ -90,16 +89,7 @@ def _over(value: Floats, divisor: Floats, otherwise: float) -> Floats:
     return quotient
 
 
-def _shares(segments: Segments, in_plane: Floats) -> Floats:
-    """Largest movement of each axis per length of path, (N, 3)."""
-    moved = np.abs(segments.end - segments.start)
-    share = _over(moved, np.broadcast_to(segments.length[:, None], moved.shape), 0.0)
-    is_in_plane = np.arange(3) != segments.normal[:, None]
-    is_arc = segments.turn[:, None] != 0.0
-    return np.where(is_arc & is_in_plane, in_plane[:, None], share)
-
-
-def _slower_in_plane(segments: Segments, acceleration: Floats) -> Floats:
+def slower_in_plane(segments: Segments, acceleration: Floats) -> Floats:
     """Acceleration of the slower of the two axes in each segment's plane, (N,), mm/s²."""
     is_normal = np.arange(3) == segments.normal[:, None]
     slower: Floats = np.where(is_normal, np.inf, acceleration).min(axis=1)
@@ -149,7 +139,7 @@ def corners(segments: Segments) -> tuple[Floats, Floats]:
 
 
 def goes_on(segments: Segments) -> Bools:
-    """Whether two successive segments continue one block straight on, (N−1,)."""
+    """True if two successive segments continue one block straight on, (N−1,)."""
     before, after = corners(segments)
     goes: Bools = np.linalg.norm(after - before, axis=1) <= STRAIGHT_ON
     goes &= segments.block[1:] == segments.block[:-1]
@@ -158,6 +148,6 @@ def goes_on(segments: Segments) -> Bools:
 
 
 def is_stop(segments: Segments) -> Bools:
-    """Whether a continuous control stops at a corner, (N−1,): at begin and end of rapids."""
+    """True if a continuous control stops at a corner, (N−1,): at begin and end of rapids."""
     rapid: Bools = segments.is_rapid[1:] | segments.is_rapid[:-1]
     return rapid & ~goes_on(segments) if rapid.any() else rapid

@@ -5,24 +5,26 @@ rad.
 
 A control model plans one stretch of path that begins and ends at rest. The resulting motion has
 a closed form in time, so that it is exact at any sampling rate.
+
+Legs of a tool path from rest to rest, and the spindle during them. Units s, rev/s.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from simulator.spec import Machine
+from stepnc_model.toolpath.arc_columns import FIRST, SECOND, arms, lengths
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-FIRST, SECOND = (1, 2, 0), (2, 0, 1)
-"""Axes that span the plane whose normal is axis 0, 1 or 2: YZ, ZX, XY."""
+Number = TypeVar("Number", np.float64, np.int64)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -83,15 +85,14 @@ class Segments:
     @cached_property
     def length(self) -> Floats:
         """Length along the path, (N,), mm."""
-        rows = np.arange(len(self))
-        straight = np.linalg.norm(self.end - self.start, axis=1)
-        rise = (self.end - self.start)[rows, self.normal]
-        return np.where(self.turn == 0.0, straight, np.hypot(self.radius * self.turn, rise))
+        return lengths(
+            self.start, self.end, radius=self.radius, turn=self.turn, normal=self.normal
+        )
 
     @cached_property
     def radius(self) -> Floats:
         """Radius of arcs, (N,), mm; 0 for lines."""
-        first, second = self._plane(np.arange(len(self)))
+        first, second = arms(self.start, self.centre, self.normal)
         return np.where(self.turn == 0.0, 0.0, np.hypot(first, second))
 
     @cached_property
@@ -108,17 +109,27 @@ class Segments:
         )
 
     @cached_property
-    def _start_angle(self) -> Floats:
-        """Angle of the start point of arcs from the centre, (N,), rad."""
-        first, second = self._plane(np.arange(len(self)))
-        return np.arctan2(second, first)
+    def bend(self) -> Floats:
+        """Curvature, (N,), 1/mm; 0 for lines."""
+        return self.radius * self._turn_rate**2
 
-    def _plane(self, rows: Ints) -> tuple[Floats, Floats]:
-        """Components of the vector from centre to start in the plane of each arc, mm."""
-        arm = self.start[rows] - self.centre[rows]
-        order = np.arange(len(rows))
-        normal = self.normal[rows]
-        return arm[order, _FIRST[normal]], arm[order, _SECOND[normal]]
+    @cached_property
+    def in_plane(self) -> Floats:
+        """Movement in the plane of arcs per length of path, (N,); 0 for lines."""
+        return self.radius * np.abs(self._turn_rate)
+
+    @cached_property
+    def greatest_shares(self) -> Floats:
+        """Greatest movement of each axis per length of path, (N, 3)."""
+        is_in_plane = np.arange(3) != self.normal[:, None]
+        is_arc = self.turn[:, None] != 0.0
+        return np.where(is_arc & is_in_plane, self.in_plane[:, None], np.abs(self._along))
+
+    @cached_property
+    def start_angle(self) -> Floats:
+        """Angle of the start point of arcs from the centre, (N,), rad."""
+        first, second = arms(self.start, self.centre, self.normal)
+        return np.arctan2(second, first)
 
     def position(self, rows: Ints, station: Floats) -> Floats:
         """Position at a distance along each segment.
@@ -140,7 +151,7 @@ class Segments:
             row = rows[bent]
             normal, size = self.normal[row], self.radius[row]
             angle = self._angle(row, station[bent])
-            first, second = _FIRST[normal], _SECOND[normal]
+            first, second = FIRST[normal], SECOND[normal]
             point[bent, first] = self.centre[row, first] + size * np.cos(angle)
             point[bent, second] = self.centre[row, second] + size * np.sin(angle)
         return point
@@ -157,9 +168,9 @@ class Segments:
         if len(bent):
             row = rows[bent]
             normal, angle = self.normal[row], self._angle(row, station[bent])
-            rate = self.radius[row] * self._turn_rate[row]
-            along[bent, _FIRST[normal]] = -rate * np.sin(angle)
-            along[bent, _SECOND[normal]] = rate * np.cos(angle)
+            rate = np.copysign(self.in_plane[row], self.turn[row])
+            along[bent, FIRST[normal]] = -rate * np.sin(angle)
+            along[bent, SECOND[normal]] = rate * np.cos(angle)
         return along
 
     def curvature(self, rows: Ints, station: Floats) -> Floats:
@@ -174,9 +185,9 @@ class Segments:
         if len(bent):
             row = rows[bent]
             normal, angle = self.normal[row], self._angle(row, station[bent])
-            rate = -self.radius[row] * self._turn_rate[row] ** 2
-            bend[bent, _FIRST[normal]] = rate * np.cos(angle)
-            bend[bent, _SECOND[normal]] = rate * np.sin(angle)
+            rate = -self.bend[row]
+            bend[bent, FIRST[normal]] = rate * np.cos(angle)
+            bend[bent, SECOND[normal]] = rate * np.sin(angle)
         return bend
 
     def _bent(self, rows: Ints) -> Ints:
@@ -185,11 +196,13 @@ class Segments:
 
     def _angle(self, rows: Ints, station: Floats) -> Floats:
         """Angle of a point on arcs from the centre, rad."""
-        return self._start_angle[rows] + station * self._turn_rate[rows]
+        return self.start_angle[rows] + station * self._turn_rate[rows]
 
 
-_FIRST = np.array(FIRST)
-_SECOND = np.array(SECOND)
+def distinct(values: NDArray[Number]) -> NDArray[Number]:
+    """Values in ascending order, each once; ``np.unique`` would import masked arrays first."""
+    found = np.sort(values, axis=None)
+    return found[np.append(True, found[1:] != found[:-1])] if len(found) else found
 
 
 def lines(points: Sequence[Sequence[float] | Floats], *, speed: float = np.inf) -> Segments:
@@ -352,3 +365,40 @@ def axis_limits(machine: Machine) -> AxisLimits:
         block_time=machine.block_time or 0.0,
         jerk=jerk,
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpindleRamp:
+    """Change of the spindle speed that begins with a leg, at constant surface speed."""
+
+    speed: float
+    """Speed to be reached, rev/s."""
+    acceleration: float
+    """Acceleration of the spindle, rev/s²; may be infinite."""
+    is_awaited: bool
+    """Whether the feed after the leg waits until the speed is reached."""
+
+    def time_from(self, speed: float) -> float:
+        """Time that the change takes from a speed in rev/s, s."""
+        return abs(self.speed - speed) / self.acceleration
+
+    def after(self, seconds: float, speed: float) -> float:
+        """Speed some time after it was a given speed, rev/s."""
+        change = self.acceleration * seconds if seconds > 0.0 else 0.0
+        return min(max(self.speed, speed - change), speed + change)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Leg:
+    """Part of a run from rest to rest, by its rows, with the wait after it."""
+
+    first: int
+    last: int
+    """Row after the last row of the leg."""
+    wait: float
+    """Waiting time after the leg, s."""
+    ramp: SpindleRamp | None = None
+    """Change of the spindle speed during rapids; None: the spindle follows, or keeps its
+    speed."""
+    spindle: float | None = None
+    """Spindle speed at the end of a leg of feeds at constant surface speed, rev/s."""

@@ -1,4 +1,4 @@
-"""How far a control smooths a path: the memory of its filter, corners and arcs. Units mm, s.
+"""Path smoothing of a control: the memory of its filter, corners and arcs. Units mm, s.
 
 A control with a fixed-time filter averages the commanded velocity over a window W = T1 + T2.
 The tool lags half a window behind the command, so that a feed c holds at a place only if the

@@ -100,9 +100,107 @@ def swept(
     """
     if not len(rows):
         rows, corner, pause = np.array([0]), np.empty(0), 0.0
-    length, acceleration = segments.length[rows], limits.acceleration[rows]
-    cap = limits.speed[rows] ** 2
-    reach = np.zeros(len(rows))
+    length = segments.length[rows]
+    profile = profiled(
+        length,
+        cap=limits.speed[rows] ** 2,
+        acceleration=limits.acceleration[rows],
+        corner=corner,
+        rest=np.where(length > 0.0, 0.0, pause),
+    )
+    return Phases(
+        segments=segments,
+        ends=ends_of_all(len(segments), rows, profile.ends),
+        segment=rows[profile.row],
+        start=profile.start,
+        time=profile.time,
+        station=profile.station,
+        speed=profile.speed,
+        acceleration=profile.acceleration,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ProfileState:
+    """State along the path at M times."""
+
+    row: Ints
+    station: Floats
+    speed: Floats
+    acceleration: Floats
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SpeedProfile:
+    """Speed along R rows of path over time, in P phases of constant acceleration."""
+
+    length: Floats
+    """Length of each row, (R,), mm."""
+    ends: Floats
+    """End time of each row, (R,), s."""
+    row: Ints
+    """Row of each phase, (P,)."""
+    start: Floats
+    """Start time of the phase, (P,), s."""
+    time: Floats
+    """Duration of the phase, (P,), s."""
+    station: Floats
+    """Position along the row at the start of the phase, (P,), mm."""
+    speed: Floats
+    """Speed at the start of the phase, (P,), mm/s."""
+    acceleration: Floats
+    """Acceleration along the path, (P,), mm/s²."""
+
+    @property
+    def duration(self) -> float:
+        """Duration of all rows, s."""
+        return float(self.ends[-1])
+
+    def at(self, times: Floats) -> ProfileState:
+        """State at (M,) times in s, between 0 and the duration."""
+        phase = np.searchsorted(self.start[1:], times, side="right")
+        passed = np.clip(times - self.start[phase], 0.0, self.time[phase])
+        along = self.acceleration[phase]
+        travelled = (self.speed[phase] + 0.5 * along * passed) * passed
+        row = self.row[phase]
+        return ProfileState(
+            row=row,
+            station=np.minimum(self.station[phase] + travelled, self.length[row]),
+            speed=np.maximum(self.speed[phase] + along * passed, 0.0),
+            acceleration=along,
+        )
+
+    def time_at(self, row: Ints, station: Floats) -> Floats:
+        """Times at which positions along rows are reached, (M,), s."""
+        offset = np.append(0.0, np.cumsum(self.length))
+        goal = offset[row] + station
+        begun = offset[self.row] + self.station
+        phase = np.maximum(np.searchsorted(begun, goal, side="left") - 1, 0)
+        left = np.maximum(goal - begun[phase], 0.0)
+        speed, along = self.speed[phase], self.acceleration[phase]
+        # 2·s/(v + √(v² + 2·a·s)) stays accurate where a is 0.
+        root = speed + np.sqrt(np.maximum(speed**2 + 2.0 * along * left, 0.0))
+        time = np.divide(2.0 * left, root, out=np.zeros(len(left)), where=root > 0.0)
+        return self.start[phase] + np.minimum(time, self.time[phase])
+
+
+def profiled(
+    length: Floats, *, cap: Floats, acceleration: Floats, corner: Floats, rest: Floats
+) -> SpeedProfile:
+    """Fastest trapezoids along rows of path, from rest to rest.
+
+    Parameters
+    ----------
+    length : (R,) array, mm
+    cap : (R,) array, mm²/s²
+        Greatest squared speed.
+    acceleration : (R,) array, mm/s²
+    corner : (R−1,) array, mm²/s²
+        Greatest squared speed between one row and the next.
+    rest : (R,) array, s
+        Wait at the end of a row.
+    """
+    reach = np.zeros(len(length))
     np.multiply(2.0 * acceleration, length, out=reach, where=length > 0.0)
     squares = _node_squares(np.minimum(corner, np.minimum(cap[1:], cap[:-1])), reach)
     before, after = squares[:-1], squares[1:]
@@ -110,21 +208,24 @@ def swept(
     top = np.maximum(top, np.maximum(before, after))
     entry, peak, leave = np.sqrt(before), np.sqrt(top), np.sqrt(after)
     rise, fall = 0.5 * (top - before) / acceleration, 0.5 * (top - after) / acceleration
-    run = np.full(len(rows), pause)
+    run = np.zeros(len(length))
     np.divide(np.maximum(length - rise - fall, 0.0), peak, out=run, where=peak > 0.0)
-    times = _threes((peak - entry) / acceleration, run, (peak - leave) / acceleration)
+    zero = np.zeros(len(length))
+    times = _interleaved(
+        (peak - entry) / acceleration, run, (peak - leave) / acceleration, rest
+    )
     clock = np.append(0.0, np.cumsum(times))
     kept = np.diff(clock) > 0.0
     kept[1] |= not kept.any()  # a path without length has one phase at rest
-    return Phases(
-        segments=segments,
-        ends=ends_of_all(len(segments), rows, clock[3::3]),
-        segment=np.repeat(rows, 3)[kept],
+    return SpeedProfile(
+        length=length,
+        ends=clock[4::4],
+        row=np.repeat(np.arange(len(length)), 4)[kept],
         start=clock[:-1][kept],
         time=times[kept],
-        station=_threes(np.zeros(len(rows)), rise, length - fall)[kept],
-        speed=_threes(entry, peak, peak)[kept],
-        acceleration=_threes(acceleration, np.zeros(len(rows)), -acceleration)[kept],
+        station=_interleaved(zero, rise, length - fall, length)[kept],
+        speed=_interleaved(entry, peak, peak, zero)[kept],
+        acceleration=_interleaved(acceleration, zero, -acceleration, zero)[kept],
     )
 
 
@@ -139,9 +240,9 @@ def _node_squares(corner: Floats, reach: Floats) -> Floats:
     return np.array(squares)
 
 
-def _threes(first: Floats, second: Floats, third: Floats) -> Floats:
-    """Interleave the values of the three phases of each row."""
-    return np.stack((first, second, third), axis=1).ravel()
+def _interleaved(*phases: Floats) -> Floats:
+    """Interleave the values of the phases of each row."""
+    return np.stack(phases, axis=1).ravel()
 
 
 def ends_of_all(count: int, rows: Ints, ends: Floats) -> Floats:

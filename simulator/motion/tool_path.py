@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 
 from simulator.motion.control import ExactStop, control_model
-from simulator.motion.legs import Leg, SpindleRamp
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import (
     AxisLimits,
@@ -23,7 +22,9 @@ from simulator.motion.segments import (
     ControlModel,
     Floats,
     Ints,
+    Leg,
     Segments,
+    SpindleRamp,
     axis_limits,
     chained,
 )
@@ -177,12 +178,30 @@ class _MoveRow(NamedTuple):
     """Modal state of a feed move; None for a rapid."""
 
 
-def run_of(path: ToolPath, look_up: LookUp, spindle: Spindle) -> ToolPathRun:
+class PathGeometry:
+    """Moves of a tool path and their lines and arcs, made once for all runs of the path."""
+
+    def __init__(self, path: ToolPath) -> None:
+        self.path = path
+        self.steps = tuple(unsplit(path.start, path.steps))
+        """Steps without moves that were split only between contact and air."""
+        self._segments: dict[tuple[int, int], Segments] = {}
+        """Lines and arcs by the first move of a leg and the number of its moves."""
+
+    def segments(self, rows: Sequence[_MoveRow], first: int) -> Segments:
+        """Lines and arcs of consecutive moves, the first with an index; at unlimited speed."""
+        which = first, len(rows)
+        if which not in self._segments:
+            self._segments[which] = _segments(rows, first=first)
+        return self._segments[which]
+
+
+def run_of(shape: PathGeometry, look_up: LookUp, spindle: Spindle) -> ToolPathRun:
     """Convert the moves of a tool path to segments and legs as the axes run them.
 
     Parameters
     ----------
-    path : ToolPath
+    shape : PathGeometry
     look_up : callable
         Conditions of a feed, as from :func:`stepnc_model.post.modal_state.conditions`.
     spindle : Spindle
@@ -195,7 +214,7 @@ def run_of(path: ToolPath, look_up: LookUp, spindle: Spindle) -> ToolPathRun:
     SchemaError
         If a technology or tool cannot be used.
     """
-    return _Collector(path, look_up, spindle).run()
+    return _Collector(shape, look_up, spindle).run()
 
 
 def paced(look_up: LookUp, pace: SpeedRatios) -> LookUp:
@@ -205,12 +224,14 @@ def paced(look_up: LookUp, pace: SpeedRatios) -> LookUp:
         if feed.is_plunge and pace.plunge is not None:
             feed = replace(feed, per_revolution=pace.plunge)
         found = look_up(feed)
-        if feed.technology != pace.technology:
-            return found
         spindle, rate = found.spindle, found.rate
+        is_other = feed.technology != pace.technology
+        # Rapids and ways in that repeat the spindle speed follow it, at feeds of their own.
+        if is_other and spindle != look_up(Feed(technology=pace.technology)).spindle:
+            return found
         if isinstance(spindle, (SpindleOn, SurfaceSpeed)):
             spindle = replace(spindle, speed=spindle.speed * pace.speed)
-        if rate is not None and feed.velocity is None:
+        if rate is not None and feed.velocity is None and not is_other:
             is_own = feed.per_revolution is not None
             factor = 1.0 if is_own else pace.feed
             # A mill's feed per revolution was converted to a feed per time at the old speed.
@@ -239,7 +260,7 @@ _NO_TIME = 1e9  # mm/s
 
 
 def follows(run: ToolPathRun, technology: Ref[Entity]) -> Bools:
-    """Whether each segment runs at the feed given by a technology, (N,)."""
+    """True if each segment runs at the feed given by a technology, (N,)."""
     feeds = [move.feed for move in run.moves]
     is_bound = [
         feed is not None
@@ -254,7 +275,7 @@ def follows(run: ToolPathRun, technology: Ref[Entity]) -> Bools:
 
 
 def plunges(run: ToolPathRun) -> Bools:
-    """Whether each segment plunges into the material, possibly at a feed of its own, (N,)."""
+    """True if each segment plunges into the material, possibly at a feed of its own, (N,)."""
     is_plunge = [move.feed is not None and move.feed.is_plunge for move in run.moves]
     plunging: Bools = np.array(is_plunge, dtype=np.bool_)[run.segments.block]
     return plunging
@@ -263,8 +284,9 @@ def plunges(run: ToolPathRun) -> Bools:
 class _Collector:
     """Converter of a tool path; keeps the position of the tool and the state of the spindle."""
 
-    def __init__(self, path: ToolPath, look_up: LookUp, spindle: Spindle) -> None:
-        self.path = path
+    def __init__(self, shape: PathGeometry, look_up: LookUp, spindle: Spindle) -> None:
+        self.shape = shape
+        self.path = path = shape.path
         self.look_up = look_up
         self.ramp = spindle.acceleration or inf
         self.fastest = spindle.max_speed or inf
@@ -293,7 +315,7 @@ class _Collector:
         """Convert the whole path; the spindle is already turning when it begins."""
         if self.path.technology_ref is not None:
             self._take(self.look_up(Feed(technology=self.path.technology_ref)))
-        for step in unsplit(self.path.start, self.path.steps):
+        for step in self.shape.steps:
             match step:
                 case Move():
                     self._move(step)
@@ -418,13 +440,14 @@ class _Collector:
 
     def _timed(self) -> tuple[Segments, Floats]:
         """Segments of the collected rows with their feeds, and spindle speeds."""
-        segments = _segments(self.rows, first=len(self.moves))
+        segments = self.shape.segments(self.rows, len(self.moves))
         if isinstance(self.asked, SurfaceSpeed):
             least = self.asked.speed / (2.0 * pi * min(self.fastest, self.asked.limit or inf))
             segments = in_pieces(segments, least)
-        rows = np.arange(len(segments))
-        spindle = self._speeds(segments.position(rows, 0.5 * segments.length)[:, 0])
+        spindle = self._speeds(np.zeros(len(segments)))
         if isinstance(self.asked, SurfaceSpeed):
+            rows = np.arange(len(segments))
+            spindle = self._speeds(segments.position(rows, 0.5 * segments.length)[:, 0])
             found = [self.rows[of].found for of in segments.block - len(self.moves)]
             spindle = behind(spindle, segments.length, _advance(found), ramp=self.ramp)
         speed = segments.speed.copy()

@@ -21,10 +21,9 @@ from math import pi
 
 from simulator.physics.drive import FloatOrArray, Value, electrical_power, positive_part
 from simulator.spec import AxisDrive
+from stepnc_model.units import MM_PER_M, NMM_S_PER_WATT
 
 GRAVITY = 9.81  # m/s², as printed in the sources
-_MM_PER_M = 1000.0
-_NMM_S_PER_WATT = 1000.0
 
 
 def reflected_inertia(drive: AxisDrive) -> float:
@@ -42,8 +41,8 @@ def reflected_inertia(drive: AxisDrive) -> float:
     >>> round(reflected_inertia(screw), 7)
     0.0018533
     """
-    radius = drive.screw_diameter / 2.0 / _MM_PER_M
-    arm = drive.lead / (2.0 * pi) / _MM_PER_M
+    radius = drive.screw_diameter / 2.0 / MM_PER_M
+    arm = drive.lead / (2.0 * pi) / MM_PER_M
     behind = 0.5 * drive.screw_mass * radius**2 + _moved_mass(drive) * arm**2
     return drive.motor_inertia + drive.coupling_inertia + behind / drive.gear_ratio**2
 
@@ -150,7 +149,7 @@ def motor_torque(
     """
     direction = 1.0 * (velocity > 0.0) - 1.0 * (velocity < 0.0)
     along = direction * motor_speed(drive, acceleration)
-    inertia = _MM_PER_M * reflected_inertia(drive) * along
+    inertia = MM_PER_M * reflected_inertia(drive) * along
     viscous = drive.viscous * motor_speed(drive, abs(velocity))
     steady = steady_torque(drive, feed_force=feed_force, vertical_force=vertical_force)
     torque: Value = inertia + viscous + abs(direction) * steady
@@ -194,7 +193,7 @@ def axis_power(
     torque = motor_torque(
         drive, velocity, acceleration, feed_force=feed_force, vertical_force=vertical_force
     )
-    mechanical: Value = torque * motor_speed(drive, abs(velocity)) / _NMM_S_PER_WATT
+    mechanical: Value = torque * motor_speed(drive, abs(velocity)) / NMM_S_PER_WATT
     return electrical_power(
         mechanical, efficiency=drive.efficiency, regeneration=drive.regeneration
     )

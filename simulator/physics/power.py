@@ -14,8 +14,7 @@ from simulator.physics.domain import (
     require_not_negative,
     require_positive,
 )
-
-_NMM_S_PER_WATT = 1000.0  # 1 W = 1000 N·mm/s
+from stepnc_model.units import NMM_S_PER_WATT
 
 
 def cutting_power(force: float, cutting_speed: float) -> float:
@@ -47,7 +46,7 @@ def cutting_power(force: float, cutting_speed: float) -> float:
     """
     require_not_negative(force, "force", "N")
     require_positive(cutting_speed, "cutting speed", "mm/s")
-    return force * cutting_speed / _NMM_S_PER_WATT
+    return force * cutting_speed / NMM_S_PER_WATT
 
 
 def motor_power(cutting_power: float, efficiency: float) -> float:

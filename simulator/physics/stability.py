@@ -10,6 +10,10 @@ The feed is along x, and the angle φ of a tooth is defined as in
 :mod:`simulator.physics.engagement`. The structure is flexible in the plane of the cut and rigid
 along the spindle. Units mm, s, N, rad, rev/s.
 
+Receptance of a structure over frequency, from the modes of a tap test.
+
+Units mm, N, rad/s; natural frequencies in Hz, as measured.
+
 References
 ----------
 .. [1] Y. Altintas and E. Budak, "Analytical prediction of stability lobes in milling", CIRP
@@ -19,6 +23,7 @@ References
    immersion milling", J. Manuf. Sci. Eng. 126 (2004), 459-466.
 .. [3] R. L. Sisson and R. L. Kegg, "An explanation of low-speed chatter effects", J. Eng. Ind.
    91 (1969), 951-958: the flank of the tool meets the slope of the wave.
+.. [4] Y. Altintas, "Manufacturing Automation", Cambridge, 2012, ch. 3: modes of a machine tool.
 """
 
 from collections.abc import Sequence
@@ -26,6 +31,7 @@ from dataclasses import dataclass
 from math import ceil, cos, pi, sin
 
 import numpy as np
+from numpy.typing import NDArray
 
 from simulator.physics.domain import (
     require_not_negative,
@@ -33,14 +39,69 @@ from simulator.physics.domain import (
     require_teeth,
 )
 from simulator.physics.engagement import Engagement
-from simulator.physics.receptance import (
-    Complex,
-    Floats,
-    ModalStructure,
-    chatter_frequencies,
-    receptance,
-)
 from simulator.spec import VibrationMode
+
+Floats = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+SAMPLES = 240
+"""Number of sampled chatter frequencies on either side of a mode."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModalStructure:
+    """Measured modes in the plane of the cut; a direction without modes is rigid."""
+
+    x: tuple[VibrationMode, ...]
+    y: tuple[VibrationMode, ...]
+
+    def __post_init__(self) -> None:
+        if not self.x and not self.y:
+            raise ValueError("a structure needs at least one mode")
+
+
+def receptance(modes: Sequence[VibrationMode], frequency: Floats) -> Complex:
+    """Receptance over frequency: deflection per force, summed over the modes.
+
+    ``Φ = Σ (ω_n²/k) / (ω_n² − ω² + 2iζ·ω_n·ω)``, [4]_.
+
+    Parameters
+    ----------
+    modes : sequence of VibrationMode
+    frequency : (N,) array, rad/s
+
+    Returns
+    -------
+    (N,) complex array, mm/N
+    """
+    total = np.zeros(frequency.shape, dtype=np.complex128)
+    for mode in modes:
+        natural = 2.0 * pi * mode.natural_frequency
+        damping = 2j * mode.damping_ratio * natural * frequency
+        total += natural**2 / mode.stiffness / (natural**2 - frequency**2 + damping)
+    return total
+
+
+def chatter_frequencies(modes: Sequence[VibrationMode]) -> Floats:
+    """Frequencies at which chatter is searched: dense around each mode, sparse elsewhere.
+
+    Parameters
+    ----------
+    modes : sequence of VibrationMode
+
+    Returns
+    -------
+    (N,) array, rad/s
+        Ascending.
+    """
+    reach = np.sinh(np.linspace(-8.0, 8.0, 2 * SAMPLES + 1))
+    natural = np.array([2.0 * pi * mode.natural_frequency for mode in modes])
+    damping = np.array([mode.damping_ratio for mode in modes])
+    near = (natural[:, None] * (1.0 + damping[:, None] * reach[None, :])).ravel()
+    low, high = 0.05 * natural.min(), 10.0 * natural.max()
+    found = np.concatenate([near, np.geomspace(low, high, 2 * SAMPLES)])
+    return np.unique(found[(found >= low) & (found <= high)])
+
 
 LEAST_IMMERSION = 0.1
 """Least a_e/D for which zero order is used; [2]_ shows its error for small immersions."""

@@ -21,7 +21,7 @@ from simulator.physics.domain import (
 )
 
 STICK_OUT = 3.0
-"""Least overhang over diameter of an end mill, customary; ISO 14649 defines no overhang."""
+"""Least overhang over diameter of an end mill whose overhang nothing states, customary."""
 
 FLUTED_RATIO = 0.8  # equivalent over nominal diameter of the fluted part, [1]; customary
 
@@ -85,23 +85,41 @@ class Cantilever:
 
 
 def end_mill(
-    tool_diameter: float, *, cutting_edge_length: float | None, youngs_modulus: float
+    tool_diameter: float,
+    *,
+    cutting_edge_length: float | None,
+    youngs_modulus: float,
+    overhang: float | None = None,
 ) -> Cantilever:
-    """Cantilever of an end mill with an overhang of 3 D, or its edge length if longer.
+    """Cantilever of an end mill at its stated overhang, or at the customary one.
 
     Parameters
     ----------
     tool_diameter : float, mm
     cutting_edge_length : float, optional, mm
     youngs_modulus : float, N/mm²
+    overhang : float, optional, mm
+        Stated distance from the tip to the holder.
 
     Raises
     ------
     ValueError
         If an argument is not positive.
     """
-    overhang = max(STICK_OUT * tool_diameter, cutting_edge_length or 0.0)
+    if overhang is None:
+        overhang = customary_overhang(tool_diameter, cutting_edge_length)
     return _plain(overhang, equivalent_diameter(tool_diameter), youngs_modulus)
+
+
+def customary_overhang(tool_diameter: float, cutting_edge_length: float | None) -> float:
+    """Overhang of an end mill of which none is stated: 3 D, or its edge length if longer, mm.
+
+    Examples
+    --------
+    >>> customary_overhang(10.0, None)
+    30.0
+    """
+    return max(STICK_OUT * tool_diameter, cutting_edge_length or 0.0)
 
 
 def equivalent_diameter(tool_diameter: float, *, ratio: float = FLUTED_RATIO) -> float:

@@ -173,14 +173,26 @@ def forces(
     if runout is not None and runout.offsets.shape != (edges.teeth,):
         shape = runout.offsets.shape
         raise ValueError(f"runout has shape {shape} and must have ({edges.teeth},)")
+    if runout is None:
+        return _of_even_teeth(edges, places, law)(rotation)
     arc = places.entry_angle, places.exit_angle
     bands = _bands(edges, places.axial_depth, law)
-    if runout is None:
-        teeth = edges.teeth
-        found = even_teeth.sums(rotation, arc, bands, teeth=teeth, exponent=law.exponent)
-    else:
-        found = uneven_teeth.sums(rotation, arc, bands, runout, exponent=law.exponent)
+    found = uneven_teeth.sums(rotation, arc, bands, runout, exponent=law.exponent)
     return Forces(tangential=found[0], feed=found[1], normal=found[2])
+
+
+def _of_even_teeth(
+    edges: CuttingEdges, places: Places, law: ForceLaw
+) -> Callable[[Floats], Forces]:
+    """Function that returns the forces of equal teeth at rotations, (M, K) in rad."""
+    arc = places.entry_angle, places.exit_angle
+    bands = _bands(edges, places.axial_depth, law)
+
+    def at(rotation: Floats) -> Forces:
+        found = even_teeth.sums(rotation, arc, bands, teeth=edges.teeth, exponent=law.exponent)
+        return Forces(tangential=found[0], feed=found[1], normal=found[2])
+
+    return at
 
 
 def peak_resultant(
@@ -196,8 +208,10 @@ def peak_resultant(
     corners = np.sort(np.mod(_corners(edges, places), edges.pitch), axis=1)
     corners = np.concatenate((corners, corners[:, :1] + edges.pitch), axis=1)
 
+    forces_at = _of_even_teeth(edges, places, law)
+
     def across(rotation: Floats) -> Floats:
-        return forces(edges, places, law, rotation=rotation).resultant
+        return forces_at(rotation).resultant
 
     return _greatest(across, corners, is_rough=is_rough)
 
@@ -231,9 +245,10 @@ def _at_wall(
     inner = np.minimum(np.mod(_corners(edges, places) - angle, edges.pitch), span)
     corners = np.sort(np.concatenate((np.zeros_like(span), inner, span), axis=1), axis=1)
 
+    forces_at = _of_even_teeth(edges, places, law)
+
     def normal(rotation: Floats) -> Floats:
-        found = forces(edges, places, law, rotation=angle + rotation).normal
-        size: Floats = np.abs(found)
+        size: Floats = np.abs(forces_at(angle + rotation).normal)
         return size
 
     return _greatest(normal, corners, is_rough=is_rough)

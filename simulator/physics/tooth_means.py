@@ -5,6 +5,7 @@ enough for each revolution of a run: arcs are sampled at points instead of integ
 each edge as in :mod:`simulator.physics.tooth_forces`, which defines the model. Units mm, rad.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil, inf, pi
@@ -40,16 +41,15 @@ class Arcs:
 
     @property
     def are_known(self) -> bool:
-        """Whether the arc is known at every time."""
+        """True if the arc is known at every time."""
         return bool((self.exit_angle > self.entry_angle).all())
 
-    def rows(self, rows: NDArray[np.int64]) -> "Arcs":
+    def rows(self, rows: Sequence[int] | NDArray[np.int64]) -> "Arcs":
         """Select the arcs at some of the times."""
-        return Arcs(
-            entry_angle=np.asarray(self.entry_angle[rows], dtype=np.float64),
-            exit_angle=np.asarray(self.exit_angle[rows], dtype=np.float64),
-            lag=np.asarray(self.lag[rows], dtype=np.float64),
-        )
+        at, found = np.asarray(rows), np.empty((3, len(rows)))
+        entry, exit_, lag = found
+        entry[:], exit_[:], lag[:] = self.entry_angle[at], self.exit_angle[at], self.lag[at]
+        return Arcs(entry_angle=entry, exit_angle=exit_, lag=lag)
 
 
 class Periods(NamedTuple):
@@ -105,7 +105,7 @@ def periods(
 def _prepared(
     entry_angle: bytes, exit_angle: bytes, lag_angle: bytes, exponent: float, delay: float
 ) -> tuple[Floats, Floats, NDArray[np.int64], Floats]:
-    """What depends on the arcs, as bytes of (z,) arrays: see :class:`Periods`."""
+    """Quantities that depend on the arcs, as bytes of (z,) arrays: see :class:`Periods`."""
     begin, end, lags = (np.frombuffer(each) for each in (entry_angle, exit_angle, lag_angle))
     teeth = len(begin)
     pitch = 2.0 * pi / teeth

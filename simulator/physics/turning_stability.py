@@ -15,8 +15,7 @@ from collections.abc import Sequence
 from math import cos, pi, sin
 
 from simulator.physics.domain import require_edge_angle, require_positive
-from simulator.physics.receptance import chatter_frequencies, receptance
-from simulator.physics.stability import MOST_DEPTH
+from simulator.physics.stability import MOST_DEPTH, chatter_frequencies, receptance
 from simulator.spec import VibrationMode
 
 

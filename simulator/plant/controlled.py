@@ -6,7 +6,7 @@ influences. It satisfies the protocols of :mod:`controller.ports` without import
 mm, s, N, W, rev/s.
 """
 
-from bisect import bisect_left, bisect_right
+from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import ceil, exp, inf, pi
@@ -15,13 +15,15 @@ from typing import NamedTuple
 import numpy as np
 
 from simulator.errors import MachineSilent
-from simulator.motion.segments import Floats, Ints
+from simulator.motion.segments import Floats
 from simulator.physics.flank import CUTTING, NORMAL
 from simulator.physics.milling import RADIAL_SHARE
 from simulator.plant.course import SAMPLES, EngagedTeeth, NominalCourse, pattern
 from simulator.plant.dynamometer import DYNAMOMETER, POWER_METER, Acquisition, Instrument
+from simulator.plant.feed_samples import FeedSamples, view
 from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
 from simulator.reading import Reading
+from stepnc_model.units import NMM_S_PER_WATT
 
 LONGEST = 0.25
 """Longest reading without a tooth passing, s, so that the loop keeps running."""
@@ -29,8 +31,9 @@ LONGEST = 0.25
 SLOWEST = 0.1
 """Spindle speed below which the spindle counts as stopped, rev/s."""
 
-NMM_S_PER_WATT = 1000.0
 
+# Python 3.11 looks up a member of an enumeration by a call.
+_DEPTH, _HARDNESS = HiddenQuantity.DEPTH, HiddenQuantity.HARDNESS
 _FINE = 100.0  # reciprocal resolution to which patterns round angles and runout over feed
 
 
@@ -99,15 +102,25 @@ class _Now:
     )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Lagged:
-    """Response of the axes within a period; kept until one of another length is asked for."""
+class _Columns:
+    """Columns of a course, as Python reads single cells fastest; no copies."""
 
-    period: float
-    steps: Floats
-    """Share of the period at each sample, (K,)."""
-    gone: Floats
-    """Share of the difference to the command that is gone then, (K,)."""
+    def __init__(self, course: NominalCourse) -> None:
+        self.can_override = view(course.can_override)
+        self.feed = view(course.feed)
+        self.force = view(course.force)
+        self.exponent = view(course.exponent)
+        self.removal_rate = view(course.removal_rate)
+        self.axial_depth = view(course.axial_depth)
+        self.idle_power = view(course.idle_power)
+        self.spindle_speed = view(course.spindle_speed)
+        self.diameter = view(course.diameter)
+        self.entry_angle = view(course.entry_angle)
+        self.exit_angle = view(course.exit_angle)
+        self.lag = view(course.lag)
+        self.teeth = view(course.teeth)
+        self.tool = view(course.tool)
+        self.workingstep = view(course.workingstep)
 
 
 class ControlledMachine:
@@ -134,8 +147,22 @@ class ControlledMachine:
         # A tooth that breaks before the first cut belongs to the first tool.
         self._now = _Now(tool=int(course.tool[course.can_override.argmax()]))
         self._changes = sorted(hidden.changes, key=lambda change: change.time)
+
+    @property
+    def course(self) -> NominalCourse:
+        """Nominal course of the program; another one of the same cells may take its place."""
+        return self._course
+
+    @course.setter
+    def course(self, course: NominalCourse) -> None:
+        # All that is bound to the arrays of a course goes with it.
+        self._course = course
         self._ends: list[float] = course.until.tolist()
-        self._lagged = _Lagged(period=0.0, steps=np.empty(0), gone=np.empty(0))
+        self._columns = _Columns(course)
+        self._beyond = 0
+        self._kept: dict[int, FeedSamples] = {}
+        self._last_teeth: tuple[object, ...] = ()
+        self._last_pattern = np.empty(0)
 
     @property
     def time(self) -> float:
@@ -223,51 +250,44 @@ class ControlledMachine:
 
     def _feed(self) -> Reading:
         """Run one reading at the override, or less of it if the feed ends."""
-        now, course, cell = self._now, self.course, self._now.cell
-        now.tool = int(course.tool[cell])
-        teeth, speed = int(course.teeth[cell]), float(course.spindle_speed[cell])
+        now, columns, cell = self._now, self._columns, self._now.cell
+        now.tool = columns.tool[cell]
+        teeth, speed = columns.teeth[cell], columns.spindle_speed[cell]
         passing = 1.0 / (teeth * speed) if speed > SLOWEST else LONGEST
-        period = self._period(passing)
+        period, aim, before = self._period(passing), self._aim, now.override
         count = max(SAMPLES, ceil(SAMPLES * period / passing))
-        ways = self._ways(period, count)
-        end = now.progress + float(ways[-1])
-        until = self._feed_end(cell, end)
+        samples = self._samples(count)
+        samples.go(now.progress, cell, override=before, aim=aim, period=period)
+        end = now.progress + samples.way
+        until = min(end, self._feed_end(cell))
         if until < end:
-            period *= _part(ways, until - now.progress)
-            ways, end = self._ways(period, count), until
-        now.override = self._aim + (now.override - self._aim) * self._left(period)
-        overrides = _steps(ways) * (count / period)
-        rows = self._rows(ways)
-        last = int(rows[-1])
-        cut = last if course.force[last] > 0.0 else cell
-        tooth = now.turned % teeth
-        chips, land = self._mean_forces(rows, overrides)
-        mean: Floats = chips + land
-        force = mean
-        if course.force[cut] > 0.0:
-            force = mean * self._shape(cut, tooth, count, periods=period / passing)
-        override = float(ways[-1]) / period
-        average = float(np.add.reduce(mean)) / count
-        self.truth = self._truth(cut, mean=average, force=force, override=override)
-        if self.truth.force > 0.0:
-            now.flank_wear[now.tool] = self._flank_wear + self.hidden.wear_rate * period
-        self._turn(period / passing)
+            period *= _part(samples.ways, until - now.progress)
+            samples.go(now.progress, cell, override=before, aim=aim, period=period)
+            end = until
+        now.override = aim + (before - aim) * self._left(period)
+        row, tooth = samples.row, now.turned % teeth
+        cut = row if columns.force[row] > 0.0 else cell
+        is_cut, periods = columns.force[cut] > 0.0, period / passing
+        samples.shape[...] = self._shape(cut, tooth, count, periods=periods) if is_cut else 1.0
+        wear = self._flank_wear
+        mean = samples.cut(
+            columns.exponent[cell],
+            factor=self.hidden.force_factor * now.factors[_HARDNESS],
+            depth=now.factors[_DEPTH],
+            flank_wear=wear,
+        )
+        override = samples.way / period
+        self.truth = self._truth(cut, mean=mean, peak=samples.peak, override=override)
+        if mean > 0.0:
+            now.flank_wear[now.tool] = wear + self.hidden.wear_rate * period
+        self._turn(periods)
         self._go_on(end, period)
-        feed = override * float(course.feed[cell])
-        if self._bench.reading_period:
-            force = np.array([force.mean()])
+        force = (
+            np.array([samples.force.mean()]) if self._bench.reading_period else samples.force
+        )
+        feed = override * columns.feed[cell]
         reading = self._reading(cell, period, force, feed=feed, tooth=tooth, override=override)
-        return self._with_normal(reading, chips, land) if self._bench.has_normal else reading
-
-    def _rows(self, ways: Floats) -> Ints:
-        """Cell of each sample; of a tooth period within a cell, one for all of them."""
-        progress, last = self._now.progress, len(self._ends) - 1
-        begin, end = progress + float(ways[0]), progress + float(ways[-1])
-        cell = min(bisect_left(self._ends, begin, lo=max(self._now.cell - 1, 0)), last)
-        if begin <= end <= self._ends[cell] or cell == last:
-            return np.array([cell])
-        found = self.course.until.searchsorted(progress + ways, side="left")
-        return np.minimum(found, last)
+        return self._with_normal(reading, samples) if self._bench.has_normal else reading
 
     @property
     def _aim(self) -> float:
@@ -302,25 +322,26 @@ class ControlledMachine:
         found: Floats = shape.ravel()[(at * SAMPLES).astype(np.int64) % shape.size]
         return found
 
-    def _with_normal(self, reading: Reading, chips: Floats, land: Floats) -> Reading:
+    def _with_normal(self, reading: Reading, samples: FeedSamples) -> Reading:
         """Add the force normal to the edges, as its channel shows it."""
-        true = float(RADIAL_SHARE * chips.mean() + NORMAL / CUTTING * land.mean())
+        chips, land = samples.chips.mean(), samples.land.mean()
+        true = float(RADIAL_SHARE * chips + NORMAL / CUTTING * land)
         is_lost = reading.time <= self._now.silent_until
         shown = self._normals.shown_one(
             true, time=reading.time, interval=reading.period, is_lost=is_lost
         )
         return reading._replace(normal=shown)
 
-    def _truth(self, cut: int, *, mean: float, force: Floats, override: float) -> TrueState:
-        course, depth = self.course, self._now.factors[HiddenQuantity.DEPTH]
-        around = pi * float(course.diameter[cut]) * float(course.spindle_speed[cut])
+    def _truth(self, cut: int, *, mean: float, peak: float, override: float) -> TrueState:
+        columns, depth = self._columns, self._now.factors[_DEPTH]
+        around = pi * columns.diameter[cut] * columns.spindle_speed[cut]
         cutting = mean * around / NMM_S_PER_WATT
         return TrueState(
             force=mean,
-            peak=float(force.max()),
-            power=float(course.idle_power[cut]) + cutting / self._bench.efficiency,
-            removal_rate=depth * override * float(course.removal_rate[cut]),
-            axial_depth=depth * float(course.axial_depth[cut]),
+            peak=peak,
+            power=columns.idle_power[cut] + cutting / self._bench.efficiency,
+            removal_rate=depth * override * columns.removal_rate[cut],
+            axial_depth=depth * columns.axial_depth[cut],
             flank_wear=self._flank_wear,
             cell=cut,
         )
@@ -334,58 +355,52 @@ class ControlledMachine:
         """Remaining share of the difference to a commanded override after some seconds."""
         return exp(-seconds / self.hidden.servo_lag)
 
-    def _ways(self, period: float, count: int) -> Floats:
-        """Program time after each sample of a period, s; the override lags its command."""
-        lag, aim = self.hidden.servo_lag, self._aim
-        if self._lagged.period != period or len(self._lagged.steps) != count:
-            steps = (np.arange(count) + 1.0) / count
-            gone = 1.0 - np.exp(-period * steps / lag)
-            self._lagged = _Lagged(period=period, steps=steps, gone=gone)
-        known = self._lagged
-        ways: Floats = (
-            aim * period * known.steps + (self._now.override - aim) * lag * known.gone
-        )
-        return ways
+    def _samples(self, count: int) -> FeedSamples:
+        """Samples of a reading, kept by their number; readings of a jitter have a few."""
+        known = self._kept.get(count)
+        if known is None:
+            known = FeedSamples(self.course, count, self.hidden.servo_lag)
+            self._kept[count] = known
+        return known
 
-    def _feed_end(self, cell: int, end: float) -> float:
-        """Program time at which the current feed ends, at most the given time, s."""
-        course, step = self.course, self.course.workingstep[cell]
-        while cell < len(course) and course.can_override[cell]:
-            if course.workingstep[cell] != step:
-                break
-            if self._ends[cell] >= end:
-                return end
-            cell += 1
-        return self._ends[cell - 1]
-
-    def _mean_forces(self, rows: Ints, overrides: Floats) -> tuple[Floats, Floats]:
-        """Mean forces of chips and of the wear land over a revolution at each sample, N."""
-        now, hidden, course = self._now, self.hidden, self.course
-        factor = hidden.force_factor * now.factors[HiddenQuantity.HARDNESS]
-        exponent = float(course.exponent[now.cell])
-        chips: Floats = factor * course.force[rows] * overrides**exponent
-        # The force on the wear land is independent of the chip.
-        land: Floats = self._flank_wear * course.land_force[rows].astype(np.float64)
-        depth = now.factors[HiddenQuantity.DEPTH]
-        chips *= depth
-        return chips, depth * land
+    def _feed_end(self, cell: int) -> float:
+        """Program time at which the feed of a cell ends, s."""
+        if cell >= self._beyond:
+            columns, beyond, step = self._columns, cell, self._columns.workingstep[cell]
+            while (
+                beyond < len(self._ends)
+                and columns.can_override[beyond]
+                and columns.workingstep[beyond] == step
+            ):
+                beyond += 1
+            self._beyond = beyond
+        return self._ends[self._beyond - 1]
 
     def _pattern(self, cell: int) -> Floats:
-        course = self.course
-        teeth, speed = int(course.teeth[cell]), float(course.spindle_speed[cell])
-        per_tooth = self._now.override * float(course.feed[cell]) / (teeth * speed)
-        runout = self.hidden.eccentricity / per_tooth if per_tooth > 0.0 else 0.0
-        return pattern(
-            EngagedTeeth(
-                number=teeth,
-                entry_angle=_rounded(float(course.entry_angle[cell])),
-                exit_angle=_rounded(float(course.exit_angle[cell])),
-                exponent=round(float(course.exponent[cell]), 4),
-                lag=_rounded(self._now.factors[HiddenQuantity.DEPTH] * float(course.lag[cell])),
-                runout=_rounded(runout),
-                broken=self._now.broken.get(self._now.tool),
+        columns, now = self._columns, self._now
+        teeth, runout = columns.teeth[cell], 0.0
+        if self.hidden.eccentricity:
+            speed = columns.spindle_speed[cell]
+            per_tooth = now.override * columns.feed[cell] / (teeth * speed)
+            runout = self.hidden.eccentricity / per_tooth if per_tooth > 0.0 else 0.0
+        arc = columns.entry_angle[cell], columns.exit_angle[cell], columns.lag[cell]
+        depth, broken = now.factors[_DEPTH], now.broken.get(now.tool)
+        wanted = (teeth, columns.exponent[cell], *arc, depth, runout, broken)
+        # Most cells of a straight cut have the same arc.
+        if wanted != self._last_teeth:
+            self._last_teeth = wanted
+            self._last_pattern = pattern(
+                EngagedTeeth(
+                    number=teeth,
+                    entry_angle=_rounded(columns.entry_angle[cell]),
+                    exit_angle=_rounded(columns.exit_angle[cell]),
+                    exponent=round(columns.exponent[cell], 4),
+                    lag=_rounded(depth * columns.lag[cell]),
+                    runout=_rounded(runout),
+                    broken=broken,
+                )
             )
-        )
+        return self._last_pattern
 
     def _go_on(self, end: float, period: float) -> None:
         """Advance to a point in the program."""
@@ -404,7 +419,7 @@ class ControlledMachine:
         tooth: int,
         override: float,
     ) -> Reading:
-        now, course = self._now, self.course
+        now, columns = self._now, self._columns
         is_lost = now.time <= now.silent_until
         interval = period / SAMPLES
         power = self._powers.shown_one(
@@ -417,20 +432,13 @@ class ControlledMachine:
             power=power,
             feed=feed,
             override=override,
-            spindle_speed=float(course.spindle_speed[cell]),
-            teeth=int(course.teeth[cell]),
+            spindle_speed=columns.spindle_speed[cell],
+            teeth=columns.teeth[cell],
             tooth=tooth,
             progress=now.progress,
-            workingstep=int(course.workingstep[cell]),
-            can_override=bool(course.can_override[cell]),
+            workingstep=columns.workingstep[cell],
+            can_override=columns.can_override[cell],
         )
-
-
-def _steps(ways: Floats) -> Floats:
-    """Differences between samples, like numpy's ``diff`` with a zero prepended, but faster."""
-    steps = ways.copy()
-    steps[1:] -= ways[:-1]
-    return steps
 
 
 def _part(ways: Floats, way: float) -> float:

@@ -28,7 +28,7 @@ from simulator.motion.segments import Bools, Floats, Ints
 from simulator.physics import flank
 from simulator.physics.flutes import CuttingEdges, ForceLaw
 from simulator.physics.milling import RADIAL_SHARE
-from simulator.physics.spindle_motion import idle_power
+from simulator.physics.spindle import idle_power
 from simulator.physics.tooth_forces import Places, forces, one_place, peak_resultant, wall_force
 from simulator.physics.tooth_means import Arcs
 from simulator.physics.uneven_teeth import Runout, eccentric_runout

@@ -10,6 +10,7 @@ from math import exp, nan
 
 import numpy as np
 
+from simulator.kernels.kernel import BoundKernel, entry
 from simulator.motion.segments import Floats
 from simulator.physics.domain import require_not_negative
 
@@ -74,6 +75,10 @@ class Acquisition:
         self._step = _LagStep(0.0, 0, 0.0)
         self._drawn = np.empty((3, 0))
         self._used = 0
+        # The arrays stay in place for the kernel.
+        self._late = self._kept = self._values = np.empty(0)
+        self._asked = np.zeros(4)
+        self._show: BoundKernel | None = None
 
     def shown_one(self, truth: float, *, time: float, interval: float, is_lost: bool) -> float:
         """Apply the errors to one true value: :meth:`shown` of one sample, but faster."""
@@ -82,7 +87,8 @@ class Acquisition:
             if step.interval != interval or len(step.kept) != 1:
                 step = self._step = _LagStep(interval, 1, by.lag)
             value = self._held = step.weight * truth + step.share * self._held
-        gain, floor, luck = self._draws(1)[:, 0].tolist()
+        begin = self._drawn_at(1)
+        gain, floor, luck = self._drawn[:, begin].tolist()
         value = value * gain + (floor + by.drift * time)
         if by.step > 0.0:
             # With digits, as numpy rounds: a zero keeps its sign.
@@ -107,20 +113,32 @@ class Acquisition:
         (K,) array, NaN where a sample was lost
         """
         by, count = self.instrument, len(truth)
-        values: Floats = self._late(truth, interval) if by.lag > 0.0 else truth
+        if len(self._late) != count:
+            self._late, self._kept, self._values = (np.zeros(count) for _ in range(3))
+            self._show = None
+        if by.lag > 0.0:
+            step = self._step
+            if step.interval != interval or len(step.kept) != count:
+                step = self._step = _LagStep(interval, count, by.lag)
+                self._kept[...] = step.kept
+            np.matmul(step.weights, truth, out=self._late)
+        else:
+            self._late[...] = truth
         # Drawn even if lost, so that later samples do not depend on what arrived.
-        gain, floor, luck = self._draws(count)
-        values = values * gain + (floor + by.drift * time)
-        if by.step > 0.0:
-            values = np.rint(values / by.step) * by.step
-        if is_lost:
-            return np.full(count, nan)
-        if by.missing > 0.0:
-            values[luck < by.missing] = nan
-        return values
+        begin = self._drawn_at(count)
+        if self._show is None:
+            lagged, errors = (self._late, self._kept), (float(by.step), float(by.missing))
+            self._show = _show.bound(self._asked, lagged, self._drawn, errors, self._values)
+        self._asked[:] = begin, self._held, by.drift * time, is_lost
+        self._show()
+        self._held = float(self._asked[1])
+        return self._values.copy()
 
-    def _draws(self, count: int) -> Floats:
-        """Random gains, zeros and luck, (3, K): two normal, one uniform; drawn in bulk."""
+    def _drawn_at(self, count: int) -> int:
+        """First of the columns with a random gain, zero and luck for each of some samples.
+
+        Two are normal and one is uniform; they are drawn in bulk.
+        """
         if self._drawn.shape[1] - self._used < count:
             more, by = max(DRAWN, count), self.instrument
             fresh = np.empty((3, more))
@@ -129,18 +147,30 @@ class Acquisition:
             fresh[0] = 1.0 + by.noise * fresh[0]
             fresh[1] = by.floor * fresh[1]
             self._drawn = np.concatenate((self._drawn[:, self._used :], fresh), axis=1)
-            self._used = 0
+            self._used, self._show = 0, None
         begin, self._used = self._used, self._used + count
-        return self._drawn[:, begin : self._used]
+        return begin
 
-    def _late(self, truth: Floats, interval: float) -> Floats:
-        """First-order lag of a truth that is constant between samples."""
-        step = self._step
-        if step.interval != interval or len(step.kept) != len(truth):
-            step = self._step = _LagStep(interval, len(truth), self.instrument.lag)
-        late: Floats = step.weights @ truth + step.kept * self._held
-        self._held = float(late[-1])
-        return late
+
+@entry
+def _show(
+    asked: Floats,
+    lagged: tuple[Floats, Floats],
+    drawn: Floats,
+    errors: tuple[float, float],
+    values: Floats,
+) -> None:
+    """Kernel of :meth:`Acquisition.shown`: a dozen calls of numpy for a few samples."""
+    (late, kept), (step, missing) = lagged, errors
+    held, shift, begin = asked[1], asked[2], int(asked[0])
+    for each in range(values.shape[0]):
+        late[each] += kept[each] * held
+        asked[1] = late[each]
+        value = late[each] * drawn[0, begin + each] + (drawn[1, begin + each] + shift)
+        if step > 0.0:
+            value = np.rint(value / step) * step
+        is_lost = asked[3] > 0.0 or drawn[2, begin + each] < missing
+        values[each] = nan if is_lost else value
 
 
 class _LagStep:

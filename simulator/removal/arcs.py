@@ -8,15 +8,15 @@ the direction of rotation, as in ``simulator.physics.engagement``: 0 ≤ φ ≤ 
 Units mm and rad.
 """
 
-from math import atan2, cos, hypot, pi, sin, sqrt
+from math import atan2, cos, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from simulator.kernels.kernel import kernel
 from simulator.motion.segments import Floats
-from simulator.removal.profile import CutterProfile, is_upright, radius_at
-from simulator.removal.tip_move import LEVEL, TipMove, arc_distance, way_between
+from simulator.removal.cutter import CutterProfile, is_upright, radius_at
+from simulator.removal.tip_move import LEVEL, TipMove, arc_distance, norm, way_between
 from simulator.removal.zmap import HeightGrid
 
 TOUCH = 1e-10
@@ -91,9 +91,9 @@ def free_by_move(
     way = way_between(record, begin, end)
     size = circle.radius
     reach = (
-        radius + size + way.radius * abs(way.turn) + hypot(way.end_x - way.x, way.end_y - way.y)
+        radius + size + way.radius * abs(way.turn) + norm(way.end_x - way.x, way.end_y - way.y)
     )
-    if hypot(circle.x - way.x, circle.y - way.y) > reach:
+    if norm(circle.x - way.x, circle.y - way.y) > reach:
         return count
     if way.turn == 0.0:
         cuts = _line_cuts(room.cuts, circle, way, radius)
@@ -111,7 +111,7 @@ def _cleared(
     if low > level + TOUCH:
         return 0.0, 0.0, 0.0
     bends_out = record[11] != 0.0 and record[12] != 2.0
-    upright = record[11] == 0.0 and hypot(record[3] - record[0], record[4] - record[1]) < TOUCH
+    upright = record[11] == 0.0 and norm(record[3] - record[0], record[4] - record[1]) < TOUCH
     if high - low <= LEVEL or (upright and not bends_out):
         return 0.0, 1.0, radius_at(profile, max(level - low, 0.0))
     if bends_out or not is_upright(profile):
@@ -132,7 +132,7 @@ def _cleared(
 @kernel
 def hole_radius(record: Floats, x: float, y: float, level: float) -> float:
     """Radius at a height of the hole that an earlier move made at (x, y), mm; 0 if none."""
-    away = hypot(record[0] - x, record[1] - y) + hypot(record[3] - x, record[4] - y)
+    away = norm(record[0] - x, record[1] - y) + norm(record[3] - x, record[4] - y)
     if away > TOUCH or record[11] != 0.0:
         return 0.0
     profile = CutterProfile(
@@ -154,7 +154,7 @@ def _front(circle: ToolCircle, x: float, y: float) -> float:
 def _line_cuts(cuts: Floats, circle: ToolCircle, way: TipMove, radius: float) -> int:
     """Find where the outline of a stadium crosses the front half of the circle."""
     along_x, along_y = way.end_x - way.x, way.end_y - way.y
-    length = hypot(along_x, along_y)
+    length = norm(along_x, along_y)
     if length < TOUCH:
         return _disc_cuts(cuts, 0, circle, (way.x, way.y), radius)
     along_x, along_y = along_x / length, along_y / length
@@ -190,7 +190,7 @@ def _disc_cuts(
 ) -> int:
     """Find where another circle crosses the front half of the tool's circle."""
     x, y = centre[0] - circle.x, centre[1] - circle.y
-    away = hypot(x, y)
+    away = norm(x, y)
     if away < TOUCH:
         return count
     along = (circle.radius**2 - radius * radius + away * away) / (2.0 * away)
@@ -248,7 +248,7 @@ def _way_distance(way: TipMove, x: float, y: float) -> float:
     part = 0.0
     if square > 0.0:
         part = min(max((x * along_x + y * along_y) / square, 0.0), 1.0)
-    return hypot(x - part * along_x, y - part * along_y)
+    return norm(x - part * along_x, y - part * along_y)
 
 
 @kernel
@@ -299,7 +299,7 @@ def free_by_outline(room: Intervals, count: int, circle: ToolCircle, grid: Heigh
 
 @kernel
 def is_beside(grid: HeightGrid, x: float, y: float) -> bool:
-    """Whether a point lies outside the outline of the raw stock."""
+    """True if a point lies outside the outline of the raw stock."""
     across = (x - grid.x) / (grid.heights.shape[0] * grid.dx)
     along = (y - grid.y) / (grid.heights.shape[1] * grid.dy)
     if not (0.0 <= across <= 1.0 and 0.0 <= along <= 1.0):
@@ -308,7 +308,7 @@ def is_beside(grid: HeightGrid, x: float, y: float) -> bool:
         return False
     x -= grid.x + 0.5 * grid.heights.shape[0] * grid.dx
     y -= grid.y + 0.5 * grid.heights.shape[1] * grid.dy
-    return hypot(x, y) > grid.radius
+    return norm(x, y) > grid.radius
 
 
 @kernel

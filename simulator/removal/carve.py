@@ -3,18 +3,19 @@
 Over a cell at the distance u along a line and v beside it, the tool reaches down to the minimum
 of ``z(s) + f(√((u − s)² + v²))``, where f is the profile. f is convex and never falls, so this
 is convex in s. Level lines use the nearest point; flat and ball tools have a closed form on any
-slope; bull-nose, cone and taper are found by bisection, to 1e-8 mm in height. On level arcs the
-nearest point decides as well, and a flat tool on a helix has a closed form. All other cases
+slope; Newton's method finds where the corner of a bull-nose touches last; for cones, tapers and
+places beside the flat it is a bisection along the line, to 1e-4 mm. On level arcs the nearest
+point decides as well, and a flat tool on a helix has a closed form. All other cases
 (arcs out of XY; ball, bull-nose, cone and taper on a helix) are cut along chords that deviate
 from the arc by at most ``CHORD_SHARE`` of a cell. Units mm and rad.
 """
 
-from math import ceil, copysign, floor, hypot, inf, nan, sqrt
+from math import ceil, floor, hypot, inf, sqrt
 from typing import NamedTuple
 
 from simulator.kernels.kernel import kernel
 from simulator.motion.segments import Floats
-from simulator.removal.profile import CutterProfile, is_plain, rise, steepness
+from simulator.removal.cutter import CutterProfile, is_plain, rise, steepness
 from simulator.removal.tip_move import (
     LEAST,
     LEVEL,
@@ -22,6 +23,7 @@ from simulator.removal.tip_move import (
     arc_distance,
     bounds,
     helix_height,
+    is_abreast,
     place,
     way_between,
 )
@@ -31,7 +33,7 @@ CHORD_SHARE = 0.01
 """Greatest deviation of chords from an arc without a closed form, as a share of a cell."""
 
 UNDER = 1.0 - 1e-9
-"""Share of the flat's area of which rounding leaves no doubt that a cell lies under it."""
+"""Share of the flat's radius of which rounding leaves no doubt that a cell lies under it."""
 
 MEASURE = -1
 """Move number that requests measuring only: no cell is cut."""
@@ -44,16 +46,11 @@ _PLACE = 1e-4
 """Tolerance, mm, of the position of the contact point found by bisection; the error of the
 height is its square over the corner radius."""
 
-_MANY = 16.0
-"""Width of a bisection, in tolerances, from which it is worth to work out where it ends."""
+_SETTLED = 1e-5
+"""Error, mm, of the distance of a contact from the axis that is small enough; that of the
+height is about its square over the corner radius."""
 
-_GUARD = 1e-5
-"""Distance, mm, from an expected contact beyond which the sign of the derivative is known."""
-
-_SETTLED = 1e-6
-"""Change, mm, of the distance of an expected contact below which it is known well enough."""
-
-_REPETITIONS = 6
+_REPETITIONS = 8
 
 
 @kernel
@@ -157,6 +154,8 @@ def _line(
         x = grid.x + (column + 0.5) * grid.dx + _NUDGE
         low, high = _outline(line, profile.radius, x)
         begin, end = _range(low, high, grid.y, grid.dy, heights.shape[1])
+        low, high = _under_flat(line, profile, x)
+        under, above = _range(low, high, grid.y, grid.dy, heights.shape[1])
         done, undone = end, end
         if line.skips_start:
             half = sqrt(max(profile.radius**2 - (x - way.x) ** 2, 0.0))
@@ -166,13 +165,17 @@ def _line(
             if height <= line.low or done <= row < undone:
                 continue
             y = grid.y + (row + 0.5) * grid.dy + _NUDGE
-            lost = height - max(_over(line, profile, x, y, height), grid.bottom)
+            new = line.low
+            if row < under or row >= above:
+                new = _over(line, profile, x, y, height)
+            new = max(new, grid.bottom)
+            lost = height - new
             if lost > LEAST:
                 volume += lost
                 if lost > deepest:
                     deepest, found_x, found_y = lost, x, y
                 if number >= 0:
-                    heights[column, row] = height - lost
+                    heights[column, row] = new
                     grid.owner[column, row] = number
     return volume * grid.dx * grid.dy, deepest, found_x, found_y
 
@@ -200,18 +203,21 @@ def _over(line: _Line, profile: CutterProfile, x: float, y: float, height: float
     x, y = x - line.way.x, y - line.way.y
     u = x * line.along_x + y * line.along_y
     v = y * line.along_x - x * line.along_y
-    if line.slope < 0.0 and profile.slope == 0.0:
-        # On a ramp most cells lie under the flat of the tool at the end of the move.
-        ahead = line.length - u
-        if ahead * ahead + v * v <= UNDER * profile.flat**2:
-            return line.way.z + line.slope * (u + ahead)
-    # The nearest point of the path at its lowest height gives a lower bound for any tool.
     beyond = u - min(max(u, 0.0), line.length)
     square = beyond * beyond + v * v
     if square > profile.radius**2:
         return inf
+    if line.slope == 0.0:
+        return line.low + rise(profile, sqrt(square))
+    if profile.slope == 0.0 and 0.0 < profile.corner < profile.radius:
+        if line.slope < 0.0:
+            return line.way.z + corner_lowest(profile, u, v, line.length, -line.slope)
+        return line.way.end_z + corner_lowest(
+            profile, line.length - u, v, line.length, line.slope
+        )
+    # The nearest point of the path at its lowest height gives a lower bound for any tool.
     least = line.low + rise(profile, sqrt(square))
-    if line.slope == 0.0 or height - least <= LEAST:
+    if height - least <= LEAST:
         return least
     return line.way.z + lowest(profile, u, v, line.length, line.slope)
 
@@ -228,6 +234,24 @@ def _fresh(profile: CutterProfile, slope: float) -> float:
     if profile.flat == 0.0 and profile.corner == profile.radius:
         return profile.radius * slope / sqrt(1.0 + slope * slope)
     return -profile.radius
+
+
+@kernel
+def _under_flat(line: _Line, profile: CutterProfile, x: float) -> tuple[float, float]:
+    """Lowest and highest y at which the flat passes over a column at the lowest height, mm."""
+    if profile.slope > 0.0:
+        return inf, -inf
+    reach = UNDER * profile.flat
+    if line.slope == 0.0:
+        return _outline(line, reach, x)
+    low_x, low_y = line.way.x, line.way.y
+    if line.slope < 0.0:
+        low_x, low_y = line.way.end_x, line.way.end_y
+    square = reach * reach - (x - low_x) ** 2
+    if square < 0.0:
+        return inf, -inf
+    half = sqrt(square)
+    return low_y - half, low_y + half
 
 
 @kernel
@@ -284,66 +308,96 @@ def lowest(profile: CutterProfile, u: float, v: float, length: float, slope: flo
     if profile.flat == 0.0 and profile.corner == profile.radius:
         best = min(max(-slope * half / sqrt(1.0 + slope * slope), low), high)
         return slope * (u + best) + profile.radius - sqrt(max(square - best * best, 0.0))
-    return _bisected(profile, u, v, slope, (low, high))
+    touch = _bisected(profile, v, slope, low, high)
+    distance = min(sqrt(touch * touch + v * v), profile.radius)
+    return slope * (u + touch) + rise(profile, distance)
 
 
 @kernel
-def _bisected(
-    profile: CutterProfile, u: float, v: float, slope: float, span: tuple[float, float]
+def corner_lowest(
+    profile: CutterProfile, u: float, v: float, length: float, fall: float
 ) -> float:
-    """Lowest height over a cell by bisection on the sign of the derivative, mm.
+    """Lowest height over a cell of a flat tool with a corner, relative to the higher end.
 
-    Nothing touches under the flat end of a tool that climbs or descends, so the search begins
-    where the flat ends.
-    """
-    low, high = span
-    flat = profile.flat if profile.slope == 0.0 else 0.0
-    inner = sqrt(max(flat * flat - v * v, 0.0))
-    if slope > 0.0:
-        high = max(min(high, -inner), low)
-    else:
-        low = min(max(low, inner), high)
-    expected = corner_contact(profile, v, slope) if high - low > _MANY * _PLACE else nan
-    while high - low > _PLACE:
-        middle = 0.5 * (low + high)
-        if abs(middle - expected) > _GUARD:
-            is_beyond = middle > expected
-        else:
-            distance = max(sqrt(middle * middle + v * v), LEAST)
-            is_beyond = slope + steepness(profile, distance) * middle / distance > 0.0
-        if is_beyond:
-            high = middle
-        else:
-            low = middle
-    middle = 0.5 * (low + high)
-    distance = min(sqrt(middle * middle + v * v), profile.radius)
-    return slope * (u + middle) + rise(profile, distance)
-
-
-@kernel
-def corner_contact(profile: CutterProfile, v: float, slope: float) -> float:
-    """Position along a sloping line at which a corner touches a cell, from the axis, mm.
-
-    The distance d from the axis meets ``d = flat + corner·t/√(1 + t²)`` with
-    ``t = |slope|/√(1 − v²/d²)``, which a few repetitions solve when the corner is small. It
-    only spares evaluations of a bisection, whose result is the same.
+    Parameters
+    ----------
+    profile : CutterProfile
+    u, v : float, mm
+        Position of the cell in the sweep: along the line from its higher end, and beside it.
+    length : float, mm
+        Length of the line in the plane.
+    fall : float
+        Fall of the line per mm in the plane, positive.
 
     Returns
     -------
     float, mm
-        NaN where it is not found so.
     """
-    if profile.slope > 0.0 or profile.corner <= 0.0 or abs(v) >= profile.flat:
-        return nan
-    distance = profile.flat
+    flat, ahead = profile.flat, length - u
+    square = ahead * ahead + v * v
+    if ahead <= 0.0 or square <= flat * flat:
+        # The corner has not passed: the cell touches the tool at the lower end.
+        return rise(profile, sqrt(square)) - fall * length
+    if u < 0.0:
+        distance = sqrt(u * u + v * v)
+        over = distance - flat
+        if over > 0.0:
+            lean = fall * distance
+            if (over * u) ** 2 >= lean * lean * (profile.corner**2 - over * over):
+                # The tool moves away from the cell faster than it descends.
+                return rise(profile, distance)
+    if abs(v) < flat:
+        distance = corner_contact(profile, v, fall)
+        if distance < profile.tangent:
+            touch = sqrt(distance * distance - v * v)
+            if touch <= ahead:
+                return rise(profile, distance) - fall * (u + touch)
+            return rise(profile, sqrt(square)) - fall * length
+    half = sqrt(max(profile.radius**2 - v * v, 0.0))
+    touch = _bisected(profile, v, -fall, max(-u, 0.0), min(ahead, half))
+    return rise(profile, sqrt(touch * touch + v * v)) - fall * (u + touch)
+
+
+@kernel
+def corner_contact(profile: CutterProfile, v: float, fall: float) -> float:
+    """Distance from the axis at which the corner of a descending tool touches a cell last, mm.
+
+    It is the root of ``flat + corner·s·d/√(d²·(1 + s²) − v²) − d`` with s = fall, which is
+    convex and falls: Newton's method from the edge of the flat stays below the root.
+
+    Parameters
+    ----------
+    profile : CutterProfile
+    v : float, mm
+        Distance of the cell from the line, less than that of the edge of the flat.
+    fall : float
+        Fall of the line per mm in the plane, positive.
+    """
+    flat, lean, square = profile.flat, profile.corner * fall, v * v
+    tilt = 1.0 + fall * fall
+    distance = flat
     for _ in range(_REPETITIONS):
-        along = sqrt(1.0 - (v / distance) ** 2)
-        tangent = abs(slope) / along
-        nearer = profile.flat + profile.corner * tangent / sqrt(1.0 + tangent * tangent)
-        change, distance = abs(nearer - distance), nearer
-        if change < _SETTLED * along and distance < profile.tangent:
-            return copysign(sqrt(distance * distance - v * v), -slope)
-    return nan
+        inverse = 1.0 / sqrt(distance * distance * tilt - square)
+        bend = lean * square * inverse**3
+        change = (flat - distance + lean * distance * inverse) / (1.0 + bend)
+        error = 1.5 * bend * distance * tilt * (inverse * change) ** 2
+        distance += change
+        if error <= _SETTLED:
+            return distance
+    return distance
+
+
+@kernel
+def _bisected(profile: CutterProfile, v: float, slope: float, low: float, high: float) -> float:
+    """Position between two others at which a tool on a slope is lowest over a cell, mm."""
+    while high - low > _PLACE:
+        middle = 0.5 * (low + high)
+        distance = max(sqrt(middle * middle + v * v), LEAST)
+        if slope + steepness(profile, distance) * middle / distance > 0.0:
+            high = middle
+        else:
+            low = middle
+    return 0.5 * (low + high)
 
 
 @kernel
@@ -357,7 +411,8 @@ def _arc(
     level = abs(way.end_z - way.z) <= LEVEL
     reach, outer = profile.radius, way.radius + profile.radius
     inner = max(way.radius - profile.radius, 0.0)
-    plain = is_plain(profile)
+    flat = UNDER * profile.flat if profile.slope == 0.0 else 0.0
+    near, far = max(way.radius - flat, 0.0) ** 2, (way.radius + flat) ** 2
     heights = grid.heights
     volume, deepest, found_x, found_y = 0.0, 0.0, way.x, way.y
     low_x, high_x, low_y, high_y = bounds(way, reach)
@@ -372,16 +427,17 @@ def _arc(
             if height <= floor_z:
                 continue
             y = grid.y + (row + 0.5) * grid.dy + _NUDGE - way.centre_y
-            away = sqrt(x * x + y * y)
-            if away > outer or away < inner:
+            square = x * x + y * y
+            if square > outer * outer or square < inner * inner:
                 continue
-            if level:
+            new = floor_z
+            if not level:
+                new = helix_height(way, x, y, reach)
+            elif square < near or square > far or not is_abreast(way, x, y):
                 distance = arc_distance(way, x, y)
                 if distance > reach:
                     continue
-                new = floor_z if plain else floor_z + rise(profile, distance)
-            else:
-                new = helix_height(way, x, y, reach)
+                new = floor_z + rise(profile, distance)
             new = max(new, grid.bottom)
             if height - new > LEAST:
                 volume += height - new

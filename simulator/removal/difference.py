@@ -32,7 +32,7 @@ class StockDifference:
 
     @property
     def is_seen(self) -> bool:
-        """Whether the stocks differ beyond the resolution of their maps."""
+        """True if the stocks differ beyond the resolution of their maps."""
         return self.deviation != 0.0
 
     @property

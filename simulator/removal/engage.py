@@ -10,11 +10,11 @@ seen at the rim. Units mm and rad.
 from math import inf, pi, sin
 
 import numpy as np
-from numpy.typing import NDArray
 
 from simulator.motion.segments import Floats, Segments
 from simulator.removal.collision import MOST, Collision
-from simulator.removal.cutter import Cutter
+from simulator.removal.cutter import Cutter, CutterProfile, cylinder, profile_of
+from simulator.removal.kept_marches import KeptMarches
 from simulator.removal.march import (
     AXIAL,
     CHIP,
@@ -42,9 +42,8 @@ from simulator.removal.march import (
     SPOT_Z,
     STATION,
     VOLUME,
-    march,
+    marched,
 )
-from simulator.removal.profile import CutterProfile, cylinder, profile_of
 from simulator.removal.rim import past
 from simulator.removal.ring import RimTool
 from simulator.removal.stations import StationKind, Stations
@@ -110,6 +109,8 @@ class MillingStock:
         """Places where the holder would hit material, with the depth of the holder there."""
         self.shank_collisions: list[Collision] = []
         """Material above the cutting edge, with its height over the end of the edge."""
+        self.marches: KeptMarches | None = None
+        """Marches of other runs, from which what was met before is read again."""
         self._past = past()
 
     def cut(self, segments: Segments, cutter: Cutter, *, is_clockwise: bool = True) -> Stations:
@@ -180,15 +181,15 @@ class MillingStock:
     ) -> list[Floats]:
         """Cut along a chunk of rows and return the lines written for its stations."""
         task = RemovalTask(self.map.grid, self._past, tool, how, desk_for(tool))
-        rows, lengths = rows_of(segments), segments.length
+        rows = rows_of(segments)
         out = np.empty((_LINES, COLUMNS))
         found = np.zeros((len(segments), FINDINGS))
-        parts: list[NDArray[np.float64]] = []
-        reached = np.zeros(2, dtype=np.int64)
-        while reached[0] < len(segments):
-            march(task, rows, lengths, out, found, reached)
-            parts.append(out[: reached[1]].copy())
-            parts[-1][:, ROW] += first
+        if self.marches is None:
+            parts = [marched(task, rows, segments.length, out, found)]
+        else:
+            parts = self.marches.marched(task, segments, rows, out, found)
+        for part in parts:
+            part[:, ROW] += first
         self.volume += float(found[:, VOLUME].sum())
         self._note(segments, found, first)
         return parts

@@ -256,7 +256,7 @@ def _extent(way: NosePath) -> tuple[float, float, float]:
 
 @kernel
 def _is_passed(way: NosePath, angle: float) -> bool:
-    """Whether an arc contains an angle."""
+    """True if an arc contains an angle."""
     return bool((angle - way.low) % (2.0 * pi) <= way.span)
 
 

@@ -152,5 +152,5 @@ def _number_groups(
 
 @kernel
 def _alike(one: float, other: float) -> bool:
-    """Whether two values are equal within the tolerance ``ALIKE``."""
+    """True if two values are equal within the tolerance ``ALIKE``."""
     return bool(abs(one - other) <= ALIKE * abs(one))

@@ -11,7 +11,7 @@ import numpy as np
 from simulator.kernels.kernel import entry, kernel
 from simulator.motion.segments import Floats, Ints
 from simulator.removal.carve import MEASURE, carve_part
-from simulator.removal.profile import is_plain
+from simulator.removal.cutter import is_plain
 from simulator.removal.rim import AREA, FLANK, FORGETTING, RecentOutlines, look
 from simulator.removal.rim import CONTACT as CONTACT_SEEN
 from simulator.removal.ring import Pose
@@ -110,6 +110,21 @@ def march(
         count = _row(task, (rows[row], lengths[row], row), out, count, found[row])
         row += 1
     reached[0], reached[1] = row, count
+
+
+def marched(
+    task: RemovalTask, rows: Floats, lengths: Floats, out: Floats, found: Floats
+) -> Floats:
+    """Cut row after row to the last one, and return the lines of all stations.
+
+    The parameters are those of :func:`march`.
+    """
+    parts: list[Floats] = []
+    reached = np.zeros(2, dtype=np.int64)
+    while reached[0] < len(rows):
+        march(task, rows, lengths, out, found, reached)
+        parts.append(out[: reached[1]].copy())
+    return np.concatenate(parts) if parts else np.empty((0, COLUMNS))
 
 
 @kernel
@@ -286,7 +301,7 @@ def _look(task: RemovalTask, row: Floats, part: float, into: Floats) -> None:
 
 @kernel
 def _differs(task: RemovalTask, left: Floats, right: Floats, long: float) -> bool:
-    """Whether two stations differ so much that another is needed between them.
+    """True if two stations differ so much that another is needed between them.
 
     Sections that come from the map are compared only over long stretches: they are noisy.
     """

@@ -28,7 +28,7 @@ from simulator.removal.arcs import (
     free_by_move,
     free_by_outline,
 )
-from simulator.removal.profile import CutterProfile, is_plain, is_upright, radius_at, rise
+from simulator.removal.cutter import CutterProfile, is_plain, is_upright, radius_at, rise
 from simulator.removal.ring import (
     CORNER_SLICES,
     MOST_CANDIDATES,
@@ -36,6 +36,7 @@ from simulator.removal.ring import (
     Pose,
     RimBuffers,
     RimTool,
+    Ring,
     cell_at,
     circle_of,
     levels,
@@ -122,24 +123,23 @@ def look(
     gap = max(grid.dx, grid.dy)
     base = max(pose.z, grid.bottom)
     if plain:
-        circle = circle_of(pose, profile.radius, tool.side)
-        read_ring(grid, work, circle, gap)
+        read_ring(grid, work.wide, work.turns, circle_of(pose, profile.radius, tool.side), gap)
         slices = levels(work, base)
     else:
         slices = _slices(grid, work, tool, pose, base, upright)
-    count_all = int(np.int64(0))
-    area, across, edges, widest, most, ring_radius = 0.0, 0.0, 0.0, 0.0, 0.0, -1.0
+    area, across, edges, widest, most = 0.0, 0.0, 0.0, 0.0, 0.0
+    count_all, ring_radius = int(np.int64(0)), -1.0
     for index in range(slices):
         work.areas[index] = 0.0
         low, high = work.bounds[index], work.bounds[index + 1]
         middle = 0.5 * (low + high)
         radius = radius_at(profile, middle - pose.z)
         circle = circle_of(pose, radius, tool.side)
-        # Slices of a cylindrical flank share a ring.
-        if not plain and radius != ring_radius:
-            read_ring(grid, work, circle, gap)
-            ring_radius = radius
-        found, known = _slice(grid, before, work, circle, middle, index > 0)
+        ring = work.wide if radius >= profile.radius else work.inner
+        if radius < profile.radius and radius != ring_radius:
+            read_ring(grid, work.inner, work.turns, circle, gap)
+        ring_radius = radius
+        found, known = _slice(grid, before, work, (ring, circle), middle, index > 0)
         if not plain and pose.climb > 0.0:
             found = _leading(work, found, profile, middle - pose.z, pose.climb)
         is_known = is_known and known
@@ -193,7 +193,6 @@ def _slices(
     shoulder = min(max(pose.z + profile.shoulder, base), top)
     above = 0
     if upright and top > shoulder + LEAST:
-        # The ring that was read last is the widest.
         above = levels(work, shoulder)
         for index in range(above, 0, -1):
             work.bounds[index + CORNER_SLICES] = work.bounds[index]
@@ -220,15 +219,16 @@ def _divided(work: RimBuffers, count: int, low: float, high: float, parts: int) 
 def _top(grid: HeightGrid, work: RimBuffers, tool: RimTool, pose: Pose, base: float) -> float:
     """Greatest height at which a rounded tool touches material ahead, mm."""
     profile, gap = tool.profile, max(grid.dx, grid.dy)
-    samples = len(work.heights)
+    samples = len(work.turns)
     step, top = pi / samples, base
     for third in range(1, 4):
         radius = profile.radius * third / 3.0
         circle = circle_of(pose, radius, tool.side)
-        read_ring(grid, work, circle, gap)
+        ring = work.inner if third < 3 else work.wide
+        read_ring(grid, ring, work.turns, circle, gap)
         reach = pose.z + rise(profile, radius) - LEAST
         for index in range(samples):
-            height = work.heights[index]
+            height = ring.heights[index]
             if height <= top:
                 continue
             # Material lower than the tool there may extend inward to where the tool is as low.
@@ -257,23 +257,24 @@ def _slice(
     grid: HeightGrid,
     before: RecentOutlines,
     work: RimBuffers,
-    circle: ToolCircle,
+    rim: tuple[Ring, ToolCircle],
     level: float,
     is_above: bool,
 ) -> tuple[int, bool]:
     """Find the contact arcs of one slice: their number, and whether all outlines were exact."""
+    ring, circle = rim
     latest = before.next[0]
-    samples = len(work.heights)
+    samples = len(ring.heights)
     step = pi / samples
     known, is_at_border = True, grid.radius > 0.0
-    if _runs(work, level) == 0:
+    if _runs(ring.heights, work.solid, level) == 0:
         return 0, True
     free, candidates = _recent(before, work, circle, level), min(latest, RECENT)
     used = np.int64(OUTSIDE)
     for index in range(samples):
         if work.solid[index] == 0:
             continue
-        owner = work.owner[index]
+        owner = ring.owner[index]
         if owner == OUTSIDE:
             is_at_border = True
             continue
@@ -305,7 +306,7 @@ def _slice(
 
 @kernel
 def _is_candidate(work: RimBuffers, count: int, owner: int) -> bool:
-    """Whether the outline of a move has been used."""
+    """True if the outline of a move has been used."""
     seen = count - 1
     while seen >= 0 and work.candidates[seen] != owner:
         seen -= 1
@@ -341,9 +342,8 @@ def _named_inside(
 
 
 @kernel
-def _runs(work: RimBuffers, level: float) -> int:
+def _runs(heights: Floats, solid: Ints, level: float) -> int:
     """Write each sample's distance to the nearest solid one; return the number of solids."""
-    solid, heights = work.solid, work.heights
     away, count, last = NEAR + 1, 0, len(heights) - 1
     for index in range(last + 1):
         away = 0 if heights[index] > level else away + 1

@@ -15,7 +15,7 @@ from simulator.removal.arcs import (
     ToolCircle,
     intervals,
 )
-from simulator.removal.profile import CutterProfile
+from simulator.removal.cutter import CutterProfile
 from simulator.removal.tip_move import LEAST
 from simulator.removal.zmap import OUTSIDE, HeightGrid
 
@@ -40,15 +40,26 @@ NEAR = 8
 MOST_CANDIDATES = 96
 
 
+class Ring(NamedTuple):
+    """Samples of the height map on the front half of a ring."""
+
+    heights: Floats
+    """Stock height at each sample, (S,), mm."""
+    owner: Ints
+    """Number of the move that last cut each sample, (S,)."""
+
+
 class RimBuffers(NamedTuple):
     """Working buffers for the engagement at one station."""
 
     arcs: Intervals
     total: Intervals
-    heights: Floats
-    """Stock height at each sample of the ring, (S,), mm."""
-    owner: Ints
-    """Number of the move that last cut each sample of the ring, (S,)."""
+    turns: Floats
+    """Cosine and sine of the angle of each sample, (S, 2)."""
+    wide: Ring
+    """Ring around the tool's greatest radius; read once at a station."""
+    inner: Ring
+    """Ring around a part of the tool with a smaller radius; read anew for each."""
     solid: Ints
     """Distance from each sample to the nearest solid sample, in samples, (S,)."""
     bounds: Floats
@@ -87,13 +98,20 @@ def room_for(samples: int) -> RimBuffers:
     return RimBuffers(
         intervals(),
         intervals(),
-        np.empty(samples),
-        np.empty(samples, dtype=np.int64),
+        turns_of(samples),
+        Ring(np.empty(samples), np.empty(samples, dtype=np.int64)),
+        Ring(np.empty(samples), np.empty(samples, dtype=np.int64)),
         np.empty(samples, dtype=np.int64),
         np.empty(MOST_LEVELS + CORNER_SLICES + 3),
         np.zeros(MOST_LEVELS + CORNER_SLICES + 3),
         np.empty(MOST_CANDIDATES, dtype=np.int64),
     )
+
+
+def turns_of(samples: int) -> Floats:
+    """Cosine and sine of the angles of a number of samples on the front half, (S, 2)."""
+    angles = (np.arange(samples) + 0.5) * (pi / samples)
+    return np.column_stack((np.cos(angles), np.sin(angles)))
 
 
 @kernel
@@ -103,29 +121,29 @@ def circle_of(pose: Pose, radius: float, side: float) -> ToolCircle:
 
 
 @kernel
-def read_ring(grid: HeightGrid, work: RimBuffers, circle: ToolCircle, gap: float) -> None:
+def read_ring(
+    grid: HeightGrid, ring: Ring, turns: Floats, circle: ToolCircle, gap: float
+) -> None:
     """Read heights and owners on the front half of a ring around a circle."""
-    samples = len(work.heights)
     radius = circle.radius + gap
-    step = pi / samples
-    turn_cos, turn_sin = cos(step), sin(step)
-    across, onward = radius * cos(0.5 * step) * circle.side, radius * sin(0.5 * step)
-    turn_sin *= circle.side
     columns, rows = grid.heights.shape
-    for index in range(samples):
-        x = circle.x + onward * circle.ahead_x - across * circle.ahead_y
-        y = circle.y + onward * circle.ahead_y + across * circle.ahead_x
-        column, row = floor((x - grid.x) / grid.dx), floor((y - grid.y) / grid.dy)
-        if 0 <= column < columns and 0 <= row < rows:
-            work.heights[index] = grid.heights[column, row]
-            work.owner[index] = grid.owner[column, row]
+    # Positions in cells; products with the reciprocal spare two divisions a sample.
+    in_x, in_y = 1.0 / grid.dx, 1.0 / grid.dy
+    x, y = (circle.x - grid.x) * in_x, (circle.y - grid.y) * in_y
+    onward_x, onward_y = radius * circle.ahead_x * in_x, radius * circle.ahead_y * in_y
+    across = radius * circle.side
+    across_x, across_y = -across * circle.ahead_y * in_x, across * circle.ahead_x * in_y
+    for index in range(len(ring.heights)):
+        cosine, sine = turns[index, 0], turns[index, 1]
+        at_x = x + sine * onward_x + cosine * across_x
+        at_y = y + sine * onward_y + cosine * across_y
+        if 0.0 <= at_x < columns and 0.0 <= at_y < rows:
+            column, row = int(at_x), int(at_y)
+            ring.heights[index] = grid.heights[column, row]
+            ring.owner[index] = grid.owner[column, row]
         else:
-            work.heights[index] = grid.bottom
-            work.owner[index] = OUTSIDE
-        across, onward = (
-            across * turn_cos - onward * turn_sin,
-            onward * turn_cos + across * turn_sin,
-        )
+            ring.heights[index] = grid.bottom
+            ring.owner[index] = OUTSIDE
 
 
 @kernel
@@ -144,14 +162,14 @@ def cell_at(
 
 @kernel
 def levels(work: RimBuffers, base: float) -> int:
-    """Divide a flat cutter into slices at the heights found on its ring, or evenly.
+    """Divide a flat cutter into slices at the heights on its widest ring, or evenly.
 
     Returns the number of slices.
     """
     bounds = work.bounds
     bounds[0] = base
     count, top = 0, base
-    for height in work.heights:
+    for height in work.wide.heights:
         top = max(top, height)
         if height <= base + LEAST or count > MOST_LEVELS:
             continue

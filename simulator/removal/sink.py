@@ -7,7 +7,7 @@ from math import cos, floor, pi, sin
 
 from simulator.kernels.kernel import kernel
 from simulator.removal.arcs import hole_radius
-from simulator.removal.profile import CutterProfile, rise
+from simulator.removal.cutter import CutterProfile, rise
 from simulator.removal.rim import FORGETTING, RecentOutlines
 from simulator.removal.tip_move import LEAST
 from simulator.removal.zmap import HeightGrid

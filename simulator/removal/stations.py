@@ -5,13 +5,15 @@ the speed along the path. ``chip_ratio`` is the mean chip thickness over the fee
 From the two, force and power follow in the same way for milling, drilling and turning.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from enum import IntEnum
+from functools import cached_property
 from math import pi
 
 import numpy as np
 
-from simulator.motion.segments import Floats, Ints
+from simulator.motion.segments import Bools, Floats, Ints
 
 WALL = 0.1
 """Angle, rad, from φ = 0 or π within which a contact arc counts as reaching the wall; this is
@@ -35,7 +37,7 @@ class StationKind(IntEnum):
     TURNING = 3
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Stations:
     """Process and engagement at M stations, ascending along the path.
 
@@ -83,6 +85,11 @@ class Stations:
         """Greatest section in each stretch, (M,), mm²; angles, depth and chip refer to it."""
         peak: Floats = self.section + 0.5 * np.abs(self.growth)
         return peak
+
+    @cached_property
+    def arcs(self) -> "SingleArcs":
+        """Single arc per station, equivalent to its contact; worked out once."""
+        return single_arcs(self)
 
     def __len__(self) -> int:
         return len(self.segment)
@@ -185,16 +192,27 @@ def _of_mean_chip(
     is_down, is_up = exit_ >= pi - WALL, entry <= WALL
     is_walled = is_down | is_up
     middle = 0.5 * (entry + exit_)
-    low = np.full(len(whole), 1e-6)
-    high = np.where(is_walled, np.minimum(whole, THICKEST), whole)
-    for _ in range(HALVINGS):
-        length = 0.5 * (low + high)
-        walled = (1.0 - np.cos(length)) / length
-        centred = 2.0 * np.sin(middle) * np.sin(0.5 * length) / length
-        is_short = np.where(is_walled, walled < ratio, centred > ratio)
-        low, high = np.where(is_short, length, low), np.where(is_short, high, length)
+    high, at, beside = np.empty(len(whole)), is_walled, ~is_walled
+    sine = 2.0 * np.sin(middle[beside])
+    high[at] = _halved(
+        np.minimum(whole[at], THICKEST),
+        lambda length: (1.0 - np.cos(length)) / length < ratio[at],
+    )
+    high[beside] = _halved(
+        whole[beside], lambda length: sine * np.sin(0.5 * length) / length > ratio[beside]
+    )
     walled = np.arccos(1.0 - np.minimum(least, 2.0))
     centred = 2.0 * np.arcsin(np.minimum(0.5 * least / np.sin(middle), 1.0))
     high = np.minimum(np.maximum(high, np.where(is_walled, walled, centred)), whole)
     start = np.where(is_down, pi - high, np.where(is_up, 0.0, middle - 0.5 * high))
     return start, start + high
+
+
+def _halved(longest: Floats, is_short: Callable[[Floats], Bools]) -> Floats:
+    """Lengths of arcs, (M,), rad, by bisection up to the longest."""
+    low, high = np.full(len(longest), 1e-6), longest
+    for _ in range(HALVINGS):
+        length = 0.5 * (low + high)
+        is_longer = is_short(length)
+        low, high = np.where(is_longer, length, low), np.where(is_longer, high, length)
+    return high

@@ -1,6 +1,6 @@
 """Tool-tip move along a line, or an arc or helix in XY, for kernels. Units mm and rad."""
 
-from math import acos, atan2, cos, hypot, inf, pi, sin
+from math import acos, atan2, cos, inf, pi, sin, sqrt
 from typing import NamedTuple
 
 from simulator.kernels.kernel import kernel
@@ -32,8 +32,19 @@ class TipMove(NamedTuple):
 
 
 @kernel
+def norm(x: float, y: float) -> float:
+    """Length of a vector in the plane; mm need no guard against overflow, unlike hypot."""
+    return sqrt(x * x + y * y)
+
+
+@kernel
 def place(row: Floats, part: float) -> tuple[float, float, float]:
     """Point on a row of :func:`rows_of` at a share of its length, mm."""
+    # Ends are those of the row, so that a move goes on exactly where the last one ended.
+    if part == 0.0:
+        return row[0], row[1], row[2]
+    if part == 1.0:
+        return row[3], row[4], row[5]
     x = row[0] + part * (row[3] - row[0])
     y = row[1] + part * (row[4] - row[1])
     z = row[2] + part * (row[5] - row[2])
@@ -77,14 +88,20 @@ def bounds(way: TipMove, reach: float) -> tuple[float, float, float, float]:
 @kernel
 def arc_distance(way: TipMove, x: float, y: float) -> float:
     """Distance of a point, relative to the centre, from an arc of at most half a turn, mm."""
+    if is_abreast(way, x, y):
+        return abs(norm(x, y) - way.radius)
+    start_x, start_y = way.x - way.centre_x, way.y - way.centre_y
+    end_x, end_y = way.end_x - way.centre_x, way.end_y - way.centre_y
+    return min(norm(x - start_x, y - start_y), norm(x - end_x, y - end_y))
+
+
+@kernel
+def is_abreast(way: TipMove, x: float, y: float) -> bool:
+    """True if a point, relative to the centre, lies between the radii to an arc's ends."""
     start_x, start_y = way.x - way.centre_x, way.y - way.centre_y
     end_x, end_y = way.end_x - way.centre_x, way.end_y - way.centre_y
     sign = 1.0 if way.turn > 0.0 else -1.0
-    after = sign * (start_x * y - start_y * x)
-    before = sign * (x * end_y - y * end_x)
-    if after >= 0.0 and before >= 0.0:
-        return abs(hypot(x, y) - way.radius)
-    return min(hypot(x - start_x, y - start_y), hypot(x - end_x, y - end_y))
+    return sign * (start_x * y - start_y * x) >= 0.0 and sign * (x * end_y - y * end_x) >= 0.0
 
 
 @kernel
@@ -92,7 +109,7 @@ def helix_height(way: TipMove, x: float, y: float, reach: float) -> float:
     """Lowest height over a point of a flat tool on a helix of at most half a turn, mm."""
     sign = 1.0 if way.turn > 0.0 else -1.0
     whole = abs(way.turn)
-    away = hypot(x, y)
+    away = norm(x, y)
     span = (away * away + way.radius**2 - reach * reach) / (2.0 * max(away, LEAST) * way.radius)
     if span >= 1.0:
         return inf

@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulator.motion.segments import Floats, Ints, Segments
-from simulator.removal.profile import CutterProfile, is_upright
+from simulator.removal.cutter import CutterProfile, is_upright
 from simulator.removal.rim import ENGAGEMENT, FORGETTING, RecentOutlines
 from simulator.removal.ring import ROUND_SAMPLES, SAMPLES, RimBuffers, RimTool, room_for
 from simulator.removal.zmap import HeightGrid
+from stepnc_model.toolpath.arc_columns import to_quadrants
 
 DEEPEST = 12
 """Largest number of times that a stretch is halved."""
@@ -85,14 +86,10 @@ def rows_of(segments: Segments) -> Floats:
 
     Columns: start, end, centre, radius, angle of the start point from the centre, turn, normal.
     """
-    rows = np.arange(len(segments))
-    first = (segments.normal + 1) % 3
-    second = (segments.normal + 2) % 3
-    arm = segments.start - segments.centre
-    angle = np.arctan2(arm[rows, second], arm[rows, first])
-    columns = (segments.start, segments.end, segments.centre)
-    numbers = (segments.radius, angle, segments.turn, segments.normal.astype(np.float64))
-    return np.ascontiguousarray(np.column_stack([*columns, *numbers]))
+    points = (segments.start, segments.end, segments.centre)
+    angles = (segments.start_angle, segments.turn)
+    normal = segments.normal.astype(np.float64)
+    return np.ascontiguousarray(np.column_stack([*points, segments.radius, *angles, normal]))
 
 
 _ROUNDING = 1e-9  # rad
@@ -154,12 +151,11 @@ def put_back(patch: StockPatch, grid: HeightGrid, past: RecentOutlines) -> None:
 
 def box_of(grid: HeightGrid, segments: Segments, radius: float) -> Box:
     """Cells that a tool with a given radius may touch or sample along segments."""
-    reach = radius + MARGIN * max(grid.dx, grid.dy)
-    low, high = _extents(segments)
-    is_deep = low[:, 2] < grid.top
-    if not is_deep.any():
+    low, high = _deep_extents(grid, segments)
+    if not len(low):
         return slice(0, 0), slice(0, 0)
-    low, high = low[is_deep].min(axis=0), high[is_deep].max(axis=0)
+    low, high = low.min(axis=0), high.max(axis=0)
+    reach = radius + MARGIN * max(grid.dx, grid.dy)
     spans = []
     for axis, origin, size, count in (
         (0, grid.x, grid.dx, grid.heights.shape[0]),
@@ -169,6 +165,22 @@ def box_of(grid: HeightGrid, segments: Segments, radius: float) -> Box:
         last = ceil((high[axis] + reach - origin) / size)
         spans.append(slice(min(max(first, 0), count), min(max(last, 0), count)))
     return spans[0], spans[1]
+
+
+def row_boxes(grid: HeightGrid, segments: Segments, radius: float) -> Floats:
+    """Number of cells within reach of each segment that is as deep as the stock, (M,)."""
+    low, high = _deep_extents(grid, segments)
+    reach = radius + MARGIN * max(grid.dx, grid.dy)
+    sides = np.ceil((high - low + 2.0 * reach)[:, :2] / (grid.dx, grid.dy))
+    cells: Floats = np.minimum(sides, grid.heights.shape).prod(axis=1)
+    return cells
+
+
+def _deep_extents(grid: HeightGrid, segments: Segments) -> tuple[Floats, Floats]:
+    """Extents of the segments that are as deep as the stock, (M, 3) each, mm."""
+    low, high = _extents(segments)
+    is_deep = low[:, 2] < grid.top
+    return low[is_deep], high[is_deep]
 
 
 def _extents(segments: Segments) -> tuple[Floats, Floats]:
@@ -183,16 +195,15 @@ def _extents(segments: Segments) -> tuple[Floats, Floats]:
     high[rows] += 2.0 * segments.radius[rows, None]
     rows = np.flatnonzero((segments.turn != 0.0) & (segments.normal == 2))
     centre, radius = segments.centre[rows], segments.radius[rows]
-    turn, arm = segments.turn[rows], segments.start[rows] - centre
-    angle = np.arctan2(arm[:, 1], arm[:, 0])
+    turn = segments.turn[rows]
+    ways = to_quadrants(segments.start_angle[rows], turn)
     for quarter, (ends, axis, sign) in enumerate((
         (high, 0, 1.0),
         (high, 1, 1.0),
         (low, 0, -1.0),
         (low, 1, -1.0),
     )):
-        way = (0.5 * pi * quarter - angle) * np.sign(turn) % (2.0 * pi)
-        passed = way <= np.abs(turn) + _ROUNDING
+        passed = ways[:, quarter] <= np.abs(turn) + _ROUNDING
         ends[rows[passed], axis] = (centre[:, axis] + sign * radius)[passed]
     return low, high
 
@@ -205,12 +216,12 @@ def moves_of(past: RecentOutlines, segments: Segments) -> Ints:
 
 
 def do_overlap(one: Box, other: Box) -> bool:
-    """Whether two boxes have a cell in common."""
+    """True if two boxes have a cell in common."""
     return all(a.start < b.stop and b.start < a.stop for a, b in zip(one, other, strict=True))
 
 
 def is_remembered_alike(trial: PathTrial, later: int) -> bool:
-    """Whether a path would find the same remembered outlines if it ran some moves later."""
+    """True if a path would find the same remembered outlines if it ran some moves later."""
     made = trial.after.next - trial.before.next
     ages = trial.before.next - trial.before.owner[trial.before.owner >= 0]
     is_young = ages + max(later, 0) + made <= FORGETTING

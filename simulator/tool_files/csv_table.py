@@ -60,7 +60,7 @@ def read_csv(text: str, path: Path) -> ToolRows:
 
 
 def is_heading(line: str) -> bool:
-    """Whether a line is the heading of such a table."""
+    """True if a line is the heading of such a table."""
     cells = {cell.strip().strip('"').lower() for cell in line.split(_separator(line))}
     return set(NEEDED) <= cells
 
@@ -76,7 +76,7 @@ def _first_line(text: str) -> str:
 
 
 def is_passed(line: str) -> bool:
-    """Whether a line is a remark, or tells the separator to Excel."""
+    """True if a line is a remark, or tells the separator to Excel."""
     return line.startswith("#") or EXCEL_LINE.fullmatch(line) is not None
 
 

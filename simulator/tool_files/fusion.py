@@ -26,14 +26,14 @@ from simulator.tool_files.placed_row import (
     left_out,
     placed_row,
 )
-from simulator.tool_table import TURNED, TurningHand
+from simulator.tool_table import TURNED, ToolHand
 from stepnc_model.errors import Finding
+from stepnc_model.units import MM_PER_FOOT, MM_PER_M
 
 UNITS = {"millimeters": FileUnit.MM, "inches": FileUnit.INCH}
 
-MM_PER_FOOT = 304.8
 
-HANDS = {"R": TurningHand.RIGHT, "L": TurningHand.LEFT, "N": TurningHand.NEUTRAL}
+HANDS = {"R": ToolHand.RIGHT, "L": ToolHand.LEFT, "N": ToolHand.NEUTRAL}
 
 Values = dict[str, FileValue]
 
@@ -211,7 +211,7 @@ def _windows(
     start = object_in(tool, "start-values", path, place=place)
     presets = list_in(start, "presets", path, place=f"{place}.start-values")
     at = f"{place}.start-values.presets"
-    foot = MM_PER_FOOT / 1000.0 if unit is FileUnit.INCH else 1.0
+    foot = MM_PER_FOOT / MM_PER_M if unit is FileUnit.INCH else 1.0
     feed = "f_z" if kind in PER_TOOTH else "f_n"
     feeds = {row: unit.mm(value) for row, value in _positive(presets, feed)}
     speeds = {row: foot * value for row, value in _positive(presets, "v_c")}

@@ -30,35 +30,22 @@ from simulator.tool_files.placed_row import (
     left_out,
     placed_row,
 )
-from simulator.tool_table import TurningHand
+from simulator.tool_files.tool_words import TEETH, kind_in
+from simulator.tool_table import ToolHand
 from stepnc_model.errors import Finding
 
 WORDS = "TPXYZABCUVWDIJQ"
-
-KINDS = (
-    (r"cent(?:er|re)\s?drill|spot", ToolKind.CENTER_DRILL),
-    (r"countersink|chamfer", ToolKind.COUNTERSINK),
-    (r"tap\s?drill|drill", ToolKind.DRILL),
-    (r"ream", ToolKind.REAMER),
-    (r"\btap\b", ToolKind.TAP),
-    (r"boring|\bbore\b", ToolKind.BORING_BAR),
-    (r"face|shell", ToolKind.FACEMILL),
-    (r"end\s?mill|mill|ball|\bbull|router", ToolKind.ENDMILL),
-)
-"""Words of remarks and the kinds that they name; the first that is found counts."""
-
-TEETH = re.compile(r"(?<!\d)(\d{1,2})[\s-]?(?:flutes?|fl|teeth|tooth)\b|\bz\s?=?(\d{1,2})\b")
 
 INSIDE = {3, 4, 8}
 """Orientations of boring tools."""
 
 HANDS = {
-    1: TurningHand.LEFT,
-    2: TurningHand.RIGHT,
-    3: TurningHand.RIGHT,
-    4: TurningHand.LEFT,
-    6: TurningHand.NEUTRAL,
-    8: TurningHand.NEUTRAL,
+    1: ToolHand.LEFT,
+    2: ToolHand.RIGHT,
+    3: ToolHand.RIGHT,
+    4: ToolHand.LEFT,
+    6: ToolHand.NEUTRAL,
+    8: ToolHand.NEUTRAL,
 }
 
 SAME_ANGLE = 0.5
@@ -68,7 +55,7 @@ _WORD = re.compile(r"([A-Za-z])\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?=
 
 
 def is_tool_line(line: str) -> bool:
-    """Whether a line is one of a tool table."""
+    """True if a line is one of a tool table."""
     return re.match(r"\s*[TP]\s*\d+(?:\s|;|$)", line) is not None
 
 
@@ -143,7 +130,7 @@ def _given_words(words: dict[str, float]) -> dict[str, float]:
 
 
 def _unusable(words: dict[str, float]) -> str:
-    """Why a tool cannot be used; empty if it can."""
+    """Reason why a tool cannot be used; empty if it can."""
     if words["T"] == 0.0:
         return "number 0 is an empty spindle"
     if not words.get("D", 0.0) and not {"Q", "I", "J"} & set(words):
@@ -153,7 +140,7 @@ def _unusable(words: dict[str, float]) -> str:
         return f"orientation Q{orientation:g} has no edge towards the axis or a bore"
     if not orientation and ("I" in words or "J" in words):
         return "it has edge angles I and J but no orientation Q"
-    if HANDS.get(int(orientation)) is TurningHand.NEUTRAL and (
+    if HANDS.get(int(orientation)) is ToolHand.NEUTRAL and (
         abs(sum(_edges(words)) - 180.0) > SAME_ANGLE
     ):
         return f"the edges of orientation Q{orientation:g} lean differently"
@@ -183,10 +170,10 @@ def _insert(words: dict[str, float], unit: FileUnit) -> dict[str, FileValue]:
     low, high = _edges(words)
     # The project counts the edge at the chuck from the direction towards it.
     leading, trailing = 180.0 - high, low
-    if given["hand"].value == TurningHand.LEFT:
+    if given["hand"].value == ToolHand.LEFT:
         leading, trailing = trailing, leading
     given["cutting_edge_angle_deg"] = FileValue(value=leading, place="I, J")
-    if given["hand"].value != TurningHand.NEUTRAL:
+    if given["hand"].value != ToolHand.NEUTRAL:
         given["trailing_angle_deg"] = FileValue(value=trailing, place="I, J")
     return given
 
@@ -202,7 +189,7 @@ def _cutter(
 ) -> tuple[dict[str, FileValue], list[str]]:
     """Values of a rotating tool, and what was assumed about it."""
     lower, notes = remark.lower(), []
-    kind = next((each for words_, each in KINDS if re.search(words_, lower)), None)
+    kind = kind_in(lower)
     if kind is None:
         notes.append("no remark tells its kind: taken for an end mill")
         kind = ToolKind.ENDMILL

@@ -46,9 +46,10 @@ class ToolFormat(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToolLibrary:
-    """Tools of a file."""
+    """Tools of a file, or of the comments of a program."""
 
-    format: ToolFormat
+    format: ToolFormat | None = None
+    """Format of the file; None: comments of a program."""
     tools: tuple[TableTool, ...]
     """Tools, ascending by number; no number is there twice."""
     findings: tuple[Finding, ...] = ()

@@ -104,7 +104,7 @@ class SurfacePlaces:
 
     @property
     def is_beyond(self) -> Bools:
-        """Whether a deviation is greater than its uncertainty, or certain, (N,)."""
+        """True if a deviation is greater than its uncertainty, or certain, (N,)."""
         return self.least > 0.0
 
 

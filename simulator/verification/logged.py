@@ -73,7 +73,7 @@ class LoggedSamples:
 
     @property
     def measured(self) -> Bools:
-        """Whether the tool was at each position, (N,)."""
+        """True if the tool was at each position, (N,)."""
         if self.is_measured is None:
             return np.ones(len(self), dtype=np.bool_)
         return self.is_measured
@@ -81,7 +81,7 @@ class LoggedSamples:
 
 @dataclass(kw_only=True)
 class LogFacts:
-    """What a log can resolve. Running state."""
+    """Resolution of a log. Running state."""
 
     samples: int = 0
     interval: float = 0.0
@@ -112,7 +112,7 @@ class LogFacts:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class NearestSamples:
-    """Which sample came nearest, and how far the tool moved around it; arrays of a shape."""
+    """Nearest samples, and the travel of the tool around them; arrays of one shape."""
 
     time: Floats
     """Time, s; NaN where no tool came near."""
@@ -164,7 +164,7 @@ class SampledStretch:
 
     @property
     def is_unseen(self) -> Bools:
-        """Whether the way to a sample is not wholly known, (N,)."""
+        """True if the way to a sample is not wholly known, (N,)."""
         return np.asarray(self.is_gap | (self.unseen > 0.0))
 
     def blocks(self) -> Iterator[Ints]:
@@ -316,7 +316,7 @@ class LoggedPart:
 
     @property
     def facts(self) -> LogFacts:
-        """What the log can resolve."""
+        """Resolution of the log."""
         return self._steps.facts
 
     @property

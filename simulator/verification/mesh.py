@@ -1,15 +1,121 @@
-"""Required part as triangles: its edges, its outline at a height, and its heights. Units mm."""
+"""Required part as triangles: its edges, its outline at a height, and its heights. Units mm.
 
+Deviation of the programmed part from the nominal walls and floors of its features.
+
+A wall of the programmed part is compared in the plane with the nearest line of the nominal
+outline; a floor by its height. Excess is positive, a gouge negative. Units mm.
+"""
+
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, floor
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from simulator.kernels.kernel import entry
 from simulator.motion.segments import Floats, Ints
 from simulator.removal.zmap import HeightGrid
-from simulator.verification.nominal import NEAR_FLOOR, NominalOutline
+from simulator.verification.path import pieces_of
+from simulator.verification.sweep import FAR
 from stepnc_model.units import rad_from_deg
+
+PIECE = 0.05
+"""Longest piece of an outline whose middle stands for it, mm."""
+
+END = 0.3
+"""Share of the first and last piece of a profile whose points are not compared: the surface
+may turn away there."""
+
+NEAR_FLOOR = 1.0
+"""Greatest difference of heights, mm, at which a floor is that of the feature."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class NominalOutline:
+    """Outline of nominal walls at one height, as the lines between points."""
+
+    points: tuple[Floats, ...]
+    """Points of each chain, (N, 2), mm."""
+
+
+def wall_deviation(points: Floats, normal: Floats, outline: NominalOutline) -> Floats:
+    """Deviation of points on programmed walls from a nominal outline.
+
+    Parameters
+    ----------
+    points : (P, 2) array, mm
+    normal : (P, 2) array
+        Direction from the air into the material.
+    outline : NominalOutline
+
+    Returns
+    -------
+    (P,) array, mm
+        NaN where the outline is farther away than 5 mm.
+    """
+    starts, vectors = [], []
+    for chain in outline.points:
+        start, vector, _, _ = pieces_of(chain, PIECE)
+        starts.append(start)
+        vectors.append(vector)
+    if not starts:
+        return np.full(len(points), np.nan)
+    start, vector = np.concatenate(starts), np.concatenate(vectors)
+    best = cKDTree(start + 0.5 * vector).query(points)[1]
+    start, vector = start[best], vector[best]
+    square = np.maximum(np.sum(vector * vector, axis=1), 1e-18)
+    share = np.clip(np.sum((points - start) * vector, axis=1) / square, 0.0, 1.0)
+    away = start + share[:, None] * vector - points
+    size = np.hypot(*away.T)
+    # Material is too much where the nominal wall lies deeper in it.
+    deviation = np.sum(away * normal, axis=1)
+    return np.where(size <= FAR, deviation, np.nan)
+
+
+def profile_side(points: Floats, chains: Sequence[Floats]) -> Floats:
+    """Deviation of points of a turned profile from nominal ones.
+
+    Parameters
+    ----------
+    points : (P, 2) array, mm
+        z and radius.
+    chains : sequence of (N, 2) array, mm
+        z and radius along each nominal profile, from the front: material lies to the left.
+
+    Returns
+    -------
+    (P,) array, mm
+        Excess positive; NaN beyond the ends of the profiles, and farther away than 5 mm.
+    """
+    if not chains:
+        return np.full(len(points), np.nan)
+    parts = [pieces_of(chain, PIECE) for chain in chains]
+    start = np.concatenate([part[0] for part in parts])
+    vector = np.concatenate([part[1] for part in parts])
+    last = np.cumsum([len(part[0]) for part in parts]) - 1
+    best = cKDTree(start + 0.5 * vector).query(points)[1]
+    start, vector = start[best], vector[best]
+    square = np.maximum(np.sum(vector * vector, axis=1), 1e-18)
+    share = np.sum((points - start) * vector, axis=1) / square
+    is_before = np.isin(best, np.append(0, last[:-1] + 1)) & (share < END)
+    is_after = np.isin(best, last) & (share > 1.0 - END)
+    away = points - start - np.clip(share, 0.0, 1.0)[:, None] * vector
+    side = away[:, 0] * vector[:, 1] - away[:, 1] * vector[:, 0]
+    size = np.hypot(*away.T)
+    is_known = (size <= FAR) & ~is_before & ~is_after
+    return np.where(is_known, np.where(side < 0.0, -size, size), np.nan)
+
+
+def floor_deviation(heights: Floats, floors: Sequence[float]) -> Floats:
+    """Deviation of programmed floors from the nearest nominal floor, (P,), mm; NaN: none."""
+    if not floors:
+        return np.full(len(heights), np.nan)
+    differences = heights[:, None] - np.array(floors, dtype=np.float64)
+    best = np.abs(differences).argmin(axis=1)
+    nearest = differences[np.arange(len(heights)), best]
+    return np.where(np.abs(nearest) <= NEAR_FLOOR, nearest, np.nan)
+
 
 FLAT = 1e-9
 """Area in plan, mm², below which a triangle is upright."""
@@ -26,7 +132,7 @@ CURVED = rad_from_deg(30.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MeshEdges:
-    """How T triangles meet."""
+    """Edges that T triangles share."""
 
     open: int
     """Edges that do not belong to exactly two triangles."""

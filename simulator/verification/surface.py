@@ -10,8 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from simulator.motion.segments import Bools, Floats, Ints
-from simulator.removal.cutter import Cutter, Insert
-from simulator.removal.profile import CutterProfile, profile_of
+from simulator.removal.cutter import Cutter, CutterProfile, Insert, profile_of
 from simulator.removal.zmap import ZMap, cell_size, zmap_of
 from simulator.verification.mesh import raise_to
 from simulator.verification.path import ProgrammedPath, rows_between

@@ -14,7 +14,7 @@ import numpy as np
 from simulator.kernels.kernel import entry, kernel
 from simulator.motion.segments import Floats, Ints
 from simulator.removal.carve import carve_part
-from simulator.removal.profile import CutterProfile, is_plain, radius_at
+from simulator.removal.cutter import CutterProfile, is_plain, radius_at
 from simulator.removal.zmap import HeightGrid
 
 FAR = 5.0

@@ -26,20 +26,18 @@ from simulator.verification.logged import NearestSamples
 from simulator.verification.logged_bar import (
     CHANGED,
     LIMIT,
-    LoggedBar,
-    cut_bar,
-    nearest_points,
-    raw_bar,
-)
-from simulator.verification.path import ProgrammedPath, pieces_of
-from simulator.verification.profile import (
     PIECE,
+    LoggedBar,
     ProfilePoints,
+    cut_bar,
     nearest_on,
+    nearest_points,
     points_along,
     points_on_faces,
     profile_distance,
+    raw_bar,
 )
+from simulator.verification.path import ProgrammedPath, pieces_of
 from stepnc_model.program import Stock
 
 CELL = 0.01
@@ -229,7 +227,7 @@ def _made_by(logged: LoggedBar, cell: Ints, line: Ints, *, is_bore: bool) -> Nea
 
 
 def _is_made_by(part: TurningStock, whole: TurningStock, *, is_bore: bool) -> Bools:
-    """Whether a part of the sweep made the profile in each cell, (C,)."""
+    """True if a part of the sweep made the profile in each cell, (C,)."""
     if is_bore:
         return np.asarray(part.inner > whole.inner - CHANGED)
     return np.asarray(part.outer < whole.outer + CHANGED)
@@ -244,7 +242,7 @@ def _unknown(
     *,
     is_bore: bool,
 ) -> Floats:
-    """How much more than in a profile the tool may have cut unseen, (P,), mm; 0 in a gouge."""
+    """Depth that the tool may have cut unseen beyond a profile, (P,), mm; 0 in a gouge."""
     if is_bore:
         profile, radius = np.maximum(left.inner, possible.inner), bar.inner
         is_less = (profile > left.inner + CHANGED).any()
@@ -266,7 +264,7 @@ def _unknown(
 
 
 def has_bore(bar: TurningStock, logged: LoggedBar) -> bool:
-    """Whether one of two parts has a bore."""
+    """True if one of two parts has a bore."""
     return bool((bar.inner > 0.0).any() or (logged.bar.inner > 0.0).any())
 
 

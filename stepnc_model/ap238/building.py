@@ -123,7 +123,7 @@ class Builder:
         return next((rule for rule in found if self._is_agreeing(rule, values)), None)
 
     def _is_agreeing(self, rule: Rule, values: tuple[Value, ...]) -> bool:
-        """Whether the constants of a rule are those of an instance."""
+        """True if the constants of a rule are those of an instance."""
         places = {name: place for place, name in enumerate(slots_of(rule.entity))}
         constants = (
             (places[row.attribute], path.ending.keyword)
@@ -399,7 +399,7 @@ def aim_number(kind: Kind, value: Value) -> Real:
 
 
 def _is_able(ending: Ending, value: Value, slot: AttributeSlot) -> bool:
-    """Whether a path can end with a value."""
+    """True if a path can end with a value."""
     if ending.kind in (Kind.FLAG, Kind.CHOICE):
         return isinstance(value, Enumeration) and str(value) in {iso for _, iso in ending.texts}
     if ending.kind is Kind.TYPED:
@@ -412,7 +412,7 @@ def _is_able(ending: Ending, value: Value, slot: AttributeSlot) -> bool:
 
 
 def _is_plain_list(path: Path, value: Value) -> bool:
-    """Whether a list of references is an attribute of the instance itself."""
+    """True if a list of references is an attribute of the instance itself."""
     return (
         isinstance(value, tuple)
         and len(path.steps) == 1
@@ -443,7 +443,7 @@ def _mark(path: Path) -> int:
 
 
 def _is_repeated(steps: tuple[PathStep, ...], number: int) -> bool:
-    """Whether each value of a list has a chain of its own, which begins at a step."""
+    """True if each value of a list has a chain of its own, which begins at a step."""
     return number == 0 and steps[0].move is PathMove.BACK and _is_relation(steps[0].entity)
 
 
@@ -458,7 +458,7 @@ def _last_relation(steps: tuple[PathStep, ...]) -> int:
 
 
 def _is_relation(entity: str) -> bool:
-    """Whether an entity relates one instance to one other."""
+    """True if an entity relates one instance to one other."""
     return entity.endswith(("_RELATIONSHIP", "_OPTION", "_CHARACTERIZATION", "_REFERENCE")) or (
         entity == "PRODUCT_DEFINITION_SHAPE"
     )

@@ -16,8 +16,7 @@ from importlib.resources import files
 
 from stepnc_model.ap238.instances import references
 from stepnc_model.errors import Finding, Part21Error, Severity
-from stepnc_model.part21.page_quotes import masked
-from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.reader import Part21File, masked
 from stepnc_model.part21.values import Ref, Value
 from stepnc_model.part21.writer import format_value, line_start, spliced
 

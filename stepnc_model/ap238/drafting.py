@@ -7,9 +7,8 @@ is written before :meth:`AimDraft.apply`, so that new instances can grow.
 from collections import Counter
 from collections.abc import Iterable, Mapping
 
-from stepnc_model.ap238.dictionary import attributes as all_attributes
-from stepnc_model.ap238.dictionary import is_a, lineage, own_attributes
-from stepnc_model.ap238.instances import Instances, references
+from stepnc_model.ap238.instances import Instances, is_a, lineage, own_attributes, references
+from stepnc_model.ap238.instances import attributes as all_attributes
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import DERIVED, Enumeration, Real, Ref, Typed, Value
 from stepnc_model.part21.writer import Edits
@@ -100,7 +99,7 @@ class AimDraft:
         return None
 
     def is_a(self, id: int, name: str) -> bool:
-        """Whether an instance of the file or a new one is of an entity."""
+        """True if an instance of the file or a new one is of an entity."""
         if id in self._made:
             return any(is_a(each, name) for each in self._made[id][0])
         return self._instances.is_a(id, name)
@@ -115,7 +114,7 @@ class AimDraft:
         self._made[id] = tuple(each for each in names if each != name), values
 
     def is_new(self, id: int) -> bool:
-        """Whether an instance was added by this draft."""
+        """True if an instance was added by this draft."""
         return id in self._made
 
     def get(self, id: int, attribute: str) -> Value:
@@ -348,7 +347,7 @@ class AimDraft:
 
 
 def _is_value(found: tuple[Value, ...], value: Value) -> bool:
-    """Whether an attribute has a value, in every entity that has the attribute."""
+    """True if an attribute has a value, in every entity that has the attribute."""
     return bool(found) and all(each == value for each in found)
 
 

@@ -51,7 +51,7 @@ class PathFollower:
         self.findings = FindingList()
 
     def matches(self, id: int, rule: Rule) -> bool:
-        """Whether an instance is one that a rule describes."""
+        """True if an instance is one that a rule describes."""
         place = Place(id=id, way=(id,))
         if not self._is_fitting(place, rule.base):
             return False
@@ -124,7 +124,7 @@ class PathFollower:
         return place.context
 
     def _is_fitting(self, place: Place, step: PathStep) -> bool:
-        """Whether a place fulfils the conditions of a step."""
+        """True if a place fulfils the conditions of a step."""
         if step.types and (
             place.value is not None
             or not all(self._instances.is_a(place.id, name) for name in step.types)
@@ -133,7 +133,7 @@ class PathFollower:
         return all(self._is_true(place, condition) for condition in step.conditions)
 
     def _is_true(self, place: Place, condition: PathCondition) -> bool:
-        """Whether a condition holds."""
+        """True if a condition holds."""
         ids, values = [place.id], list[Value]()
         for name in condition.attributes:
             values = [value for id in ids for value in self._instances.values(id, name)]
@@ -148,7 +148,7 @@ class PathFollower:
         return any(value not in (None, (), "") for value in values)
 
     def is_course(self, id: int) -> bool:
-        """Whether a direction is that of a linear path, such as the course of a depth."""
+        """True if a direction is that of a linear path, such as the course of a depth."""
         name = "DIRECTION_SHAPE_REPRESENTATION"
         return bool(self._instances.referrers(id, name, "items"))
 

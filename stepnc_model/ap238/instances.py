@@ -2,19 +2,90 @@
 
 Simple and complex instances look alike here: an attribute is found by the entity that defines
 it, in whichever part of the instance that entity stands.
+
+Attributes and supertypes of AIM entities, as far as the reference paths meet them.
+
+References
+----------
+.. [1] ISO 10303-238, annex A (AIM EXPRESS expanded listing).
 """
 
 from array import array
 from bisect import bisect_left
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cache
+from importlib.resources import files
 from typing import TypeAlias
 
-from stepnc_model.ap238.dictionary import attributes, is_a, own_attributes, subtypes
 from stepnc_model.errors import Part21Error
+from stepnc_model.part21.index import Part
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.part21.record import Part
 from stepnc_model.part21.values import Ref, Typed, Value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AimEntity:
+    """Entity of the AIM with its supertypes and its own attributes."""
+
+    name: str
+    supertypes: tuple[str, ...] = ()
+    attributes: tuple[str, ...] = ()
+
+
+@cache
+def dictionary() -> dict[str, AimEntity]:
+    """Entities by name, as ``dictionary.txt`` lists them."""
+    text = files("stepnc_model.ap238").joinpath("dictionary.txt").read_text("ascii")
+    lines = (line for line in text.splitlines() if line and not line.startswith("#"))
+    return {entity.name: entity for entity in map(_entity, lines)}
+
+
+def _entity(line: str) -> AimEntity:
+    """Entity of one line, ``NAME < supertypes : attributes``."""
+    head, _, attributes = line.partition(":")
+    name, _, supertypes = head.partition("<")
+    return AimEntity(
+        name=name.strip(),
+        supertypes=tuple(supertypes.split()),
+        attributes=tuple(attributes.split()),
+    )
+
+
+@cache
+def lineage(name: str) -> tuple[str, ...]:
+    """Supertypes of an entity before itself, each once, in the order of the attributes."""
+    entity = dictionary().get(name)
+    if entity is None:
+        return (name,)
+    above = (each for parent in entity.supertypes for each in lineage(parent))
+    return (*dict.fromkeys(above), name)
+
+
+@cache
+def is_a(name: str, ancestor: str) -> bool:
+    """True if an entity is another one or a subtype of it."""
+    return ancestor in lineage(name)
+
+
+@cache
+def own_attributes(name: str) -> tuple[str, ...]:
+    """Attributes that an entity adds to those of its supertypes."""
+    entity = dictionary().get(name)
+    return () if entity is None else entity.attributes
+
+
+@cache
+def attributes(name: str) -> tuple[str, ...]:
+    """All attributes of an entity, in the order of the parameters of a simple instance."""
+    return tuple(each for part in lineage(name) for each in own_attributes(part))
+
+
+@cache
+def subtypes(name: str) -> frozenset[str]:
+    """Names of an entity and of all its subtypes."""
+    return frozenset({name, *(each for each in dictionary() if is_a(each, name))})
+
 
 Slot: TypeAlias = tuple[int, int]
 """Position of an attribute: number of the part, and place among its parameters."""
@@ -29,6 +100,11 @@ def references(value: Value) -> Iterator[Ref[object]]:
             yield from references(item)
     elif isinstance(value, Typed):
         yield from references(value.value)
+
+
+def _items(value: Value) -> tuple[Value, ...]:
+    """Items of a list; another value is the only one."""
+    return value if isinstance(value, tuple) else (value,)
 
 
 MOST_KEPT = 20_000
@@ -76,13 +152,26 @@ class Instances:
             return ()
 
     def is_a(self, id: int, name: str) -> bool:
-        """Whether an instance is of an entity or of a subtype."""
+        """True if an instance is of an entity or of a subtype."""
         if id not in self.file:
             return False
         keyword = self.file.keyword(id)
         if keyword:
             return is_a(keyword, name)
         return any(is_a(part, name) for part, _ in self._readable(id))
+
+    def is_weighted(self, id: int) -> bool:
+        """True if an instance is a rational curve whose weights differ."""
+        if id not in self.file or "B_SPLINE_CURVE" not in self._complex_names(id):
+            return False
+        weights = [w for each in self.values(id, "weights_data") for w in _items(each)]
+        return len(set(weights)) > 1
+
+    def _complex_names(self, id: int) -> tuple[str, ...]:
+        """Entities of a complex instance; none of a simple one."""
+        if self.file.keyword(id):
+            return ()
+        return tuple(name for name, _ in self._readable(id))
 
     def slots(self, id: int, attribute: str) -> tuple[Slot, ...]:
         """Positions of an attribute; several where supertypes share a name."""

@@ -7,7 +7,7 @@ Kind = tuple[str, float]
 
 @cache
 def what(keyword: str, scale: float) -> Kind:
-    """What an AIM instance stands for: an entity, and the factor of its lengths.
+    """Kind of an AIM instance: an entity, and the factor of its lengths.
 
     One object serves all instances, which saves memory.
     """
@@ -32,7 +32,7 @@ class AimNumbering:
         """Numbers of what else it stands for."""
 
     def __contains__(self, id: int) -> bool:
-        """Whether an AIM instance stands for anything."""
+        """True if an AIM instance stands for anything."""
         return id in self._first
 
     def known(self, id: int, kind: Kind) -> int | None:

@@ -290,6 +290,11 @@ _MEASURE_OF: Mapping[Kind, Kind] = {
 }
 
 
+def is_measured(kind: Kind) -> bool:
+    """True if a kind of value is a number with a unit that is converted."""
+    return kind in _MEASURE_OF and kind is not Kind.WRITTEN
+
+
 def measure_kind(ending: Ending) -> Kind:
     """Kind of measure that an ending gives, in the units of ``MEASURES``."""
     return ending.measure if ending.kind is Kind.TYPED else _MEASURE_OF[ending.kind]

@@ -6,10 +6,10 @@ for it; where one AIM instance stands for several (a tool, its body and its dime
 others get numbers above the largest of the file. Deviations are findings; reading never fails.
 """
 
+import re
 from collections import deque
 from dataclasses import dataclass, field
 
-from stepnc_model.ap238.converted import Converted, ConvertedText
 from stepnc_model.ap238.following import PathFollower, Place
 from stepnc_model.ap238.instances import Instances, references
 from stepnc_model.ap238.numbering import AimNumbering, what
@@ -24,6 +24,8 @@ from stepnc_model.ap238.quantity import (
     number_of,
 )
 from stepnc_model.ap238.table import (
+    Converted,
+    ConvertedText,
     Ending,
     Kind,
     Path,
@@ -35,11 +37,19 @@ from stepnc_model.ap238.table import (
     rules_for,
 )
 from stepnc_model.ap238.upright import upright
+from stepnc_model.ap238.vendor_arc import with_vendor_arcs
 from stepnc_model.entities.conversion import AttributeSlot, slots_of
+from stepnc_model.entities.geometry import CartesianPoint
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Enumeration, Real, Ref, Typed, Value
 from stepnc_model.units import MM_PER_M
+
+_NUMBER = rb"-?\d+\.\d*(?:E[+-]?\d+)?"
+_PLAIN_POINT = re.compile(
+    rb"CARTESIAN_POINT(\('[ -&(-[\]-~]*',\(%b(?:,%b)*\)\));" % (_NUMBER, _NUMBER)
+)
+"""Point that is written as this project writes it: no spaces, no escapes in its name."""
 
 SLOW = 0.1e-3
 """Speed in m/s below which the unit of a number is doubtful: no cutter feeds 6 mm/min."""
@@ -106,7 +116,11 @@ class AimReader:
             number, origin = self._waiting.popleft()
             self._convert(number, origin)
         converted = self._reading.converted
-        self._reading.converted = upright(converted, self._paths, first=self._numbers.next)
+        converted = upright(converted, self._paths, first=self._numbers.next)
+        self._reading.converted, read = with_vendor_arcs(
+            converted, self.instances, self._paths, self.geometry_factor
+        )
+        self._visited |= read
         self._tell_unknown()
         self._note_unread()
         self._reading.findings = self._paths.findings.all()
@@ -179,11 +193,6 @@ class AimReader:
 
     def _convert(self, number: int, origin: Origin) -> None:
         """Convert one instance by its rule."""
-        start = Place(id=origin.id, context=origin.context, way=(origin.id,))
-        parameters = tuple([
-            _empty(slot) if row is None else self._parameter(start, row, slot)
-            for row, slot in self._columns(origin.rule)
-        ])
         instance = Converted(
             number=number,
             keyword=origin.rule.entity.keyword,
@@ -191,7 +200,27 @@ class AimReader:
             rule=origin.rule,
             context=origin.context,
         )
+        if origin.rule.entity is CartesianPoint and (text := self._as_it_is(origin)):
+            self._reading.converted.append(ConvertedText(instance=instance, text=text))
+            return
+        start = Place(id=origin.id, context=origin.context, way=(origin.id,))
+        parameters = tuple([
+            _empty(slot) if row is None else self._parameter(start, row, slot)
+            for row, slot in self._columns(origin.rule)
+        ])
         self._reading.converted.append(ConvertedText.of(instance, parameters))
+
+    def _as_it_is(self, origin: Origin) -> bytes:
+        """Parameters of a point in mm as the file has them; empty where they are converted.
+
+        Most instances of a program of tool paths are points: none of these is parsed here.
+        """
+        if self._file.keyword(origin.id) != "CARTESIAN_POINT":
+            return b""
+        if self.geometry_factor(origin.context) != 1.0:
+            return b""
+        found = _PLAIN_POINT.search(self._file.data, *self._file.span(origin.id))
+        return found[1] if found else b""
 
     def _columns(self, rule: Rule) -> list[tuple[Row | None, AttributeSlot]]:
         """Slot of each attribute of an entity, with its row if it has one."""
@@ -239,6 +268,8 @@ class AimReader:
         """Reference to the entity that a place stands for."""
         if place.value is not None:
             return None
+        if self.instances.is_weighted(place.id):
+            return self._unknown(place, attribute)
         for wanted in slot.references:
             for rule in rules_for(wanted):
                 if self._paths.matches(place.id, rule):
@@ -250,6 +281,8 @@ class AimReader:
         kind = what("", 1.0)
         if place.id not in self._numbers:
             keyword = self._file.keyword(place.id) or "COMPLEX_INSTANCE"
+            if self.instances.is_weighted(place.id):
+                keyword = "RATIONAL_B_SPLINE_CURVE"
             self._numbers.new(place.id, kind)
             instance = Converted(
                 number=place.id, keyword=f"AIM_{keyword}", origin=place.id, rule=None
@@ -432,7 +465,7 @@ _WRITTEN_NAMES = {
 
 
 def _is_scaled(rule: Rule) -> bool:
-    """Whether a rule is about geometry, whose numbers depend on a context."""
+    """True if a rule is about geometry, whose numbers depend on a context."""
     return any(
         path.ending.kind in (Kind.COORDINATES, Kind.VERBATIM)
         for row in rule.rows

@@ -1,4 +1,4 @@
-"""What a path or the AIM asks of an instance that a writer makes: texts, contexts, shapes.
+"""Requirements of a path or the AIM on a written instance: texts, contexts, shapes.
 
 References
 ----------

@@ -3,22 +3,27 @@
 The table is the only place that knows how AP238 expresses an attribute. The reader follows its
 paths, the writer builds instances along them.
 
+Instance of ISO 14649 with the AIM instance that stands for it.
+
 References
 ----------
 .. [1] ISO 10303-238, 5.1 (mapping table).
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
 from importlib.resources import files
 
-from stepnc_model.ap238.dictionary import attributes
+from stepnc_model.ap238.instances import attributes
 from stepnc_model.entities.catalogue import classes
 from stepnc_model.entities.conversion import slots_of
 from stepnc_model.entities.entity import Entity
+from stepnc_model.part21.tokens import tidy_values
+from stepnc_model.part21.values import Value
+from stepnc_model.part21.writer import format_value
 
 
 class PathMove(StrEnum):
@@ -444,3 +449,44 @@ def _same(words: list[str]) -> Rule:
         )
     base = PathStep(move=PathMove.STAY, types=(name,), made=(name,))
     return Rule(entity=entity, base=base, rows=tuple(rows))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Converted:
+    """Instance of ISO 14649 with the AIM instance that stands for it."""
+
+    number: int
+    keyword: str
+    origin: int
+    rule: Rule | None
+    context: int | None = None
+    """Representation context that gives the units of its geometry."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConvertedText:
+    """Converted instance as it is written: its text takes a fraction of its values' memory."""
+
+    instance: Converted
+    text: bytes
+    """Parameters, ``(...)``."""
+
+    @classmethod
+    def of(cls, instance: Converted, parameters: tuple[Value, ...]) -> "ConvertedText":
+        """Instance with its parameters."""
+        return cls(instance=instance, text=format_value(parameters))
+
+    @property
+    def line(self) -> bytes:
+        """Line of a file."""
+        keyword = self.instance.keyword.encode("ascii")
+        return b"#%d=%s%s;" % (self.instance.number, keyword, self.text)
+
+    @property
+    def values(self) -> Mapping[str, Value]:
+        """Values of the parameters by the names of their attributes."""
+        rule = self.instance.rule
+        if rule is None:
+            return {}
+        names = slots_of(rule.entity)
+        return dict(zip(names, tidy_values(self.text.decode("latin-1")), strict=False))

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from math import hypot
 
-from stepnc_model.ap238.converted import ConvertedText
 from stepnc_model.ap238.following import PathFollower
+from stepnc_model.ap238.table import ConvertedText
 from stepnc_model.entities.conversion import slots_of
 from stepnc_model.errors import Severity
 from stepnc_model.part21.values import Real, Ref, Value
@@ -109,7 +109,7 @@ def _ratios(axis: ConvertedText) -> Value:
 
 
 def _is_below(known: dict[int, ConvertedText], feature: ConvertedText) -> bool:
-    """Whether the plane of a feature's depth lies below its placement."""
+    """True if the plane of a feature's depth lies below its placement."""
     position = _of(known, _of(known, feature, "depth"), "position")
     point = _of(known, position, "location")
     if point is None:

@@ -8,11 +8,14 @@ numbers, lines and findings are those of the AP238 file, so that whatever reads 
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import isclose
 from typing import Self
 
 from stepnc_model.ap238.carrying import BODY, carried, with_bodies
-from stepnc_model.ap238.converted import Converted, ConvertedText
+from stepnc_model.ap238.following import Place
+from stepnc_model.ap238.quantity import MEASURES, conversion, is_measured, measure_kind
 from stepnc_model.ap238.reading import AimReader
+from stepnc_model.ap238.table import Converted, ConvertedText, Kind
 from stepnc_model.errors import Finding
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.writer import described_as
@@ -29,8 +32,21 @@ MARKS = (
 """Entities that make a file an AP238 program, where no workplan of ISO 14649 is in it."""
 
 
+_ROTATIONS = ("spindle", "rot_speed", "max_speed")
+_SPINDLE_UNITS = {"rpm": 1.0 / 60.0, "rev/s": 1.0}
+_FEED_UNITS = {
+    "mm/min": 1e-3 / 60.0,
+    "mm/s": 1e-3,
+    "m/s": 1.0,
+    "m/min": 1.0 / 60.0,
+    "inch/min": 0.0254 / 60.0,
+    "feet/min": 0.3048 / 60.0,
+}
+"""Units of feeds and speeds by their usual names, in m/s."""
+
+
 def is_aim(file: Part21File) -> bool:
-    """Whether a file is an AP238 program, judged by its instances and not by its schema."""
+    """True if a file is an AP238 program, judged by its instances and not by its schema."""
     workplans = file.ids_of("MACHINING_WORKPLAN") or file.ids_of("MACHINING_PROJECT")
     if workplans:
         return True
@@ -111,6 +127,54 @@ class AimView(Part21File):
             if (each.origin, each.keyword) == (origin.origin, origin.keyword)
         )
         return next(alike, None)
+
+    def factor(self, number: int, attribute: str) -> float | None:
+        """Factor from a number in the AP238 file to that of ISO 14649.
+
+        Where the file gives no number there, that of the same attribute of another instance;
+        None: an attribute that has no number of its own, or whose unit is not known.
+        """
+        each = self.origins.get(number)
+        if each is None or each.rule is None:
+            return None
+        own = self._own_factor(each, attribute)
+        if own is not None:
+            return own
+        alike = (other for other in self.origins.values() if other.keyword == each.keyword)
+        found = (self._own_factor(other, attribute) for other in alike)
+        return next((factor for factor in found if factor is not None), None)
+
+    def number_unit(self, number: int, attribute: str) -> str:
+        """Usual name of the unit of a number in the AP238 file; empty: it has none."""
+        factor = self.factor(number, attribute)
+        if factor is None:
+            return ""
+        names = _SPINDLE_UNITS if attribute in _ROTATIONS else _FEED_UNITS
+        return next(
+            (name for name, size in names.items() if isclose(size, factor, rel_tol=1e-6)), ""
+        )
+
+    def _own_factor(self, each: Converted, attribute: str) -> float | None:
+        """Factor of a number that the file gives."""
+        rows = () if each.rule is None else each.rule.rows
+        start = Place(id=each.origin, context=each.context, way=(each.origin,))
+        for row in rows:
+            if row.attribute != attribute:
+                continue
+            for path in row.paths:
+                kind = path.ending.kind
+                for place in self._reader.follow(start, path.steps):
+                    if kind is Kind.COORDINATES:
+                        return self._reader.geometry_factor(place.context)
+                    if is_measured(kind):
+                        measure = MEASURES[measure_kind(path.ending)]
+                        return conversion(self._reader.unit_of(place), measure).factor
+        return None
+
+    @cached_property
+    def _reader(self) -> AimReader:
+        """Reader that follows the paths of the file."""
+        return AimReader(self.source)
 
     def line(self, id: int) -> int:
         """Line of the AP238 file on which the instance begins."""

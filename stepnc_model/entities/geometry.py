@@ -160,6 +160,10 @@ class BSplineCurve(BoundedCurve):
     self_intersect: Logical
 
 
+class BezierCurve(BSplineCurve):
+    """Bezier curve, or several that join: each ends where the next begins."""
+
+
 class BSplineCurveWithKnots(BSplineCurve):
     """B-spline curve with explicit knots."""
 

@@ -30,7 +30,7 @@ BEFORE_FEED = {"R0", "RL", "RR", "DR+", "DR-", "FMAX"}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BlockForm:
-    """How a block gives its move, as the modal state says."""
+    """Form of the move of a block, by the modal state."""
 
     dialect: Dialect
     style: NumberStyle
@@ -45,6 +45,8 @@ class BlockForm:
 
 def feed_token(text: str, dialect: Dialect) -> Token | None:
     """F word of a block, or None."""
+    if "F" not in text and "f" not in text:
+        return None
     for token in tokens(text, dialect):
         if token.name in FEEDS and token.kind in {TokenKind.WORD, TokenKind.MACRO}:
             return token
@@ -333,7 +335,7 @@ def _is_geometry(token: Token, form: BlockForm) -> bool:
 
 
 def _counts_turns(token: Token, form: BlockForm) -> bool:
-    """Whether a token is the number of turns of an arc."""
+    """True if a token is the number of turns of an arc."""
     name, _ = TURNS.get(form.dialect, ("", 0))
     return bool(form.arc) and token.kind is TokenKind.WORD and token.name == name
 

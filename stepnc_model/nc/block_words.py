@@ -4,11 +4,20 @@ G and M codes are whole numbers of tenths, so that G38.2 is 382. Words with vari
 expressions are listed apart: their values are not known.
 """
 
+import re
 from dataclasses import dataclass, field
 
 from stepnc_model.nc.token import TokenKind, tokens
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.words import LARGEST
+
+PLAIN = re.compile(
+    r"(?:N[0-9]{1,9} ?)?(?:G0?([01])(?![0-9.]) ?)?"
+    r"(?:X([-+]?[0-9]{1,9}\.[0-9]{0,9}) ?)?(?:Y([-+]?[0-9]{1,9}\.[0-9]{0,9}) ?)?"
+    r"(?:Z([-+]?[0-9]{1,9}\.[0-9]{0,9}) ?)?(?:F([0-9]{1,9}(?:\.[0-9]{0,9})?) ?)?\r?\n?",
+    re.IGNORECASE,
+)
+"""Block that moves on a straight line, and does nothing else."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -42,10 +51,12 @@ class BlockWords:
     evaluated: set[str] = field(default_factory=set)
     """Addresses whose value was computed from variables."""
     is_percent: bool = False
+    comments: list[str] = field(default_factory=list)
+    """Comments as they are written, with their marks."""
 
     @property
     def is_empty(self) -> bool:
-        """Whether the block holds nothing that a control executes."""
+        """True if the block holds nothing that a control executes."""
         return not (
             self.codes
             or self.functions
@@ -85,11 +96,19 @@ def words_of(text: str, dialect: Dialect) -> BlockWords:
             words.is_skippable = True
         elif kind is TokenKind.ASSIGNMENT:
             words.assignments.append(value)
-        elif kind is TokenKind.PERCENT:
-            words.is_percent = True
-        elif kind in {TokenKind.OTHER, TokenKind.TEXT}:
-            words.strange.append(text[start:end])
+        else:
+            _take_text(words, kind, text[start:end])
     return words
+
+
+def _take_text(words: BlockWords, kind: TokenKind, text: str) -> None:
+    """Sort in what is no word: percent signs, comments, and what is not understood."""
+    if kind is TokenKind.PERCENT:
+        words.is_percent = True
+    elif kind is TokenKind.COMMENT:
+        words.comments.append(text)
+    elif kind in {TokenKind.OTHER, TokenKind.TEXT}:
+        words.strange.append(text)
 
 
 def _take(words: BlockWords, name: str, value: str) -> None:

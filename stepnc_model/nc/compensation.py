@@ -19,7 +19,7 @@ References
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import atan2, copysign, cos, hypot, isnan, pi, sin, sqrt
+from math import copysign, dist, hypot, isnan, pi
 
 import numpy as np
 
@@ -32,6 +32,7 @@ from stepnc_model.nc.moves import (
     MoveKind,
     NcMoves,
 )
+from stepnc_model.toolpath.arc import Flat, angle_between, circles_meet, line_meets_circle
 from stepnc_model.toolpath.path import Point
 
 CLOSE = 1e-6
@@ -39,8 +40,6 @@ CLOSE = 1e-6
 
 STRAIGHT_ON = 1e-4
 """Turn below which a contour goes straight on, rad: ends are rounded to 0.0001 mm or so."""
-
-Flat = tuple[float, float]
 
 RadiusOf = Callable[[ModalSetting], float | None]
 """Function from a setting with compensation to the radius of the tool, mm; None if unknown."""
@@ -77,8 +76,12 @@ class _Element:
 
     @property
     def is_moving(self) -> bool:
-        """Whether it moves in the plane."""
+        """True if it moves in the plane."""
         return self.arrives != (0.0, 0.0)
+
+
+STILL = {MoveKind.DWELL, MoveKind.SWITCH}
+"""Kinds of rows that stay where the tool is."""
 
 
 def _still(row: int, at: Flat, low: float, high: float, *, is_rapid: bool) -> _Element:
@@ -196,16 +199,14 @@ class _Run:
             row = self.beyond
             start, end = (self._flat(moves.rows[name][row]) for name in ("start", "end"))
             kind = MoveKind(int(moves.kind[row]))
-            if kind not in {MoveKind.RAPID, MoveKind.LINE, MoveKind.DWELL}:
+            if kind not in {MoveKind.RAPID, MoveKind.LINE, *STILL}:
                 break
             self.beyond += 1
             low, high = (float(moves.rows[name][row][self._w]) for name in ("start", "end"))
             # LinuxCNC goes back with any move, others with one in the plane; a move without
             # any length has the axes of the plane in its block.
-            is_back = kind is not MoveKind.DWELL and (
-                self._is_square
-                or hypot(end[0] - start[0], end[1] - start[1]) > CLOSE
-                or abs(high - low) <= CLOSE
+            is_back = kind not in STILL and (
+                self._is_square or dist(start, end) > CLOSE or abs(high - low) <= CLOSE
             )
             there = end if is_back or isnan(sum(end)) else at
             yield self._row(_still(row, there, low, high, is_rapid=False), at, there, -1)
@@ -226,8 +227,8 @@ class _Run:
             if kind is MoveKind.ARC:
                 yield self._offset_arc(row, p0, p1, (low, high))
                 continue
-            length = hypot(p1[0] - p0[0], p1[1] - p0[1])
-            if kind is MoveKind.DWELL or length <= CLOSE:
+            length = dist(p0, p1)
+            if kind in STILL or length <= CLOSE:
                 yield _still(row, p1, low, high, is_rapid=is_rapid)
                 continue
             way = (p1[0] - p0[0]) / length, (p1[1] - p0[1]) / length
@@ -235,7 +236,7 @@ class _Run:
             yield _Element(row, is_rapid, p1, low, high, way, way, *ends)
 
     def _is_here(self, row: int) -> bool:
-        """Whether a row has known ends, in the plane of the compensation."""
+        """True if a row has known ends, in the plane of the compensation."""
         rows, arcs = self._moves.rows, self._moves.arcs
         if isnan(float(rows["start"][row].sum() + rows["end"][row].sum())):
             return False
@@ -245,8 +246,7 @@ class _Run:
     def _offset_arc(self, row: int, p0: Flat, p1: Flat, heights: Flat) -> _Element:
         numbers = self._moves.arcs[int(self._moves.rows["arc"][row])]
         centre, turn = self._flat(numbers), float(numbers[3])
-        size = hypot(p0[0] - centre[0], p0[1] - centre[1])
-        radius = size - copysign(1.0, turn) * self._shift
+        radius = dist(p0, centre) - copysign(1.0, turn) * self._shift
         if isnan(turn) or radius <= CLOSE:
             raise _NoPath
         sense = copysign(1.0, turn)
@@ -275,7 +275,7 @@ class _Run:
             raise _NoPath
         first = self._flat(self._moves.rows["start"][self._first])
         entry = moving[0]
-        length = hypot(entry.p[0] - first[0], entry.p[1] - first[1])
+        length = dist(entry.p, first)
         if self._is_square:
             if entry.centre is not None:
                 _begin_arc(entry, first)
@@ -292,8 +292,7 @@ class _Run:
         for index, (one, other) in enumerate(pairwise(moving)):
             if index == 0 and not self._is_square:
                 continue
-            (a, b), (c, d) = one.arrives, other.leaves
-            turn = atan2(a * d - b * c, a * c + b * d)
+            turn = angle_between((0.0, 0.0), one.arrives, other.leaves)
             if abs(turn) <= STRAIGHT_ON:
                 other.start = one.end
             elif turn * self._shift < 0.0:
@@ -340,7 +339,7 @@ def _begin_arc(entry: _Element, first: Flat) -> None:
     (x, y), centre = entry.end, entry.centre
     if centre is None:
         raise _NoPath
-    way = hypot(centre[0] - x, centre[1] - y)
+    way = dist(centre, entry.end)
     u, v = (centre[0] - x) / way, (centre[1] - y) / way
     dx, dy = x - first[0], y - first[1]
     along = 2.0 * (dx * u + dy * v)
@@ -351,7 +350,7 @@ def _begin_arc(entry: _Element, first: Flat) -> None:
         raise _NoPath
     sense = copysign(1.0, entry.turn)
     entry.centre, entry.radius = (x + far * u, y + far * v), far
-    entry.turn = sense * ((sense * _angle(entry.centre, first, (x, y))) % (2.0 * pi))
+    entry.turn = sense * ((sense * angle_between(entry.centre, first, (x, y))) % (2.0 * pi))
     entry.start, entry.leaves = first, _tangent(entry.centre, first, sense)
 
 
@@ -369,24 +368,16 @@ def _cut_short(one: _Element, other: _Element) -> None:
     places = list(_meetings(one, other))
     if not places:
         raise _NoPath
-    x, y = one.p
-    place = min(places, key=lambda each: hypot(each[0] - x, each[1] - y))
+    place = min(places, key=lambda each: dist(each, one.p))
     for each, name in ((one, "end"), (other, "start")):
         if each.centre is not None:
-            turned = _angle(each.centre, getattr(each, name), place)
+            turned = angle_between(each.centre, getattr(each, name), place)
             each.turn += turned if name == "end" else -turned
         setattr(each, name, place)
 
 
-def _angle(centre: Flat, old: Flat, new: Flat) -> float:
-    """Angle from one point to another about a centre, -π to π."""
-    a, b = old[0] - centre[0], old[1] - centre[1]
-    c, d = new[0] - centre[0], new[1] - centre[1]
-    return atan2(a * d - b * c, a * c + b * d)
-
-
 def _goes_forward(each: _Element) -> bool:
-    """Whether an offset element still leads the way of the commanded one."""
+    """True if an offset element still leads the way of the commanded one."""
     if each.centre is not None:
         x, y = each.start[0] - each.centre[0], each.start[1] - each.centre[1]
         # A turn beyond its other end has changed its sense.
@@ -405,32 +396,10 @@ def _meetings(one: _Element, other: _Element) -> Iterator[Flat]:
         along = (x * d - y * c) / cross
         yield one.end[0] + along * a, one.end[1] + along * b
     elif one.centre is not None and other.centre is not None:
-        yield from _circles(one.centre, one.radius, other.centre, other.radius)
+        if dist(one.centre, other.centre) <= CLOSE:
+            return
+        yield from circles_meet(one.centre, one.radius, other.centre, other.radius)
     else:
         line, arc = (one, other) if one.centre is None else (other, one)
         if arc.centre is not None:
-            yield from _on_circle(line.end, line.arrives, arc.centre, arc.radius)
-
-
-def _on_circle(point: Flat, way: Flat, centre: Flat, radius: float) -> Iterator[Flat]:
-    """Points of a line on a circle."""
-    x, y = point[0] - centre[0], point[1] - centre[1]
-    along = x * way[0] + y * way[1]
-    square = along * along - (x * x + y * y - radius * radius)
-    if square < 0.0:
-        return
-    for root in (-sqrt(square), sqrt(square)):
-        yield point[0] + (root - along) * way[0], point[1] + (root - along) * way[1]
-
-
-def _circles(one: Flat, r1: float, other: Flat, r2: float) -> Iterator[Flat]:
-    """Points where two circles meet."""
-    x, y = other[0] - one[0], other[1] - one[1]
-    distance = hypot(x, y)
-    if distance <= CLOSE or distance > r1 + r2 or distance < abs(r1 - r2):
-        return
-    cosine = (r1 * r1 + distance * distance - r2 * r2) / (2.0 * r1 * distance)
-    spread = pi / 2.0 - atan2(cosine, sqrt(max(0.0, 1.0 - cosine * cosine)))
-    angle = atan2(y, x)
-    for each in (angle - spread, angle + spread):
-        yield one[0] + r1 * cos(each), one[1] + r1 * sin(each)
+            yield from line_meets_circle(line.end, line.arrives, arc.centre, arc.radius)

@@ -199,7 +199,7 @@ class _VariableReader:
 
     @property
     def is_done(self) -> bool:
-        """Whether the whole text is read."""
+        """True if the whole text is read."""
         return self._at >= len(self._pieces)
 
     @property

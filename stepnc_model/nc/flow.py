@@ -75,7 +75,7 @@ class ProgramFlow:
 
     @property
     def is_called(self) -> bool:
-        """Whether a subprogram is being executed."""
+        """True if a subprogram is being executed."""
         return any(not level.is_repeat for level in self._levels)
 
     @property
@@ -85,11 +85,11 @@ class ProgramFlow:
 
     @property
     def is_worn_out(self) -> bool:
-        """Whether so many blocks were repeated that no further loop is begun."""
+        """True if so many blocks were repeated that no further loop is begun."""
         return self._executed > len(self._text) + MOST_LOOPED
 
     def is_inside(self, target: int) -> bool:
-        """Whether the subprogram at a block is being executed."""
+        """True if the subprogram at a block is being executed."""
         return any(level.target == target for level in self._levels if not level.is_repeat)
 
     def step(self, block: int) -> None:

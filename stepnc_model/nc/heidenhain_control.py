@@ -5,25 +5,25 @@ understood are reported; from there the position is unknown until the program st
 """
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from math import copysign, cos, hypot, isnan, nan, radians, sin
+from math import copysign, isnan, nan
 
-from stepnc_model.nc.arcs import centre_of_radius, turn_of
-from stepnc_model.nc.drilling import cycle_moves, drilling
 from stepnc_model.nc.flow import BEHIND_THE_END, ProgramFlow, places
+from stepnc_model.nc.klartext_cycles import CYCLES, hole_of
 from stepnc_model.nc.klartext_datum import KlartextDatum
 from stepnc_model.nc.klartext_parameters import KlartextParameters
+from stepnc_model.nc.klartext_switches import KlartextSwitches
 from stepnc_model.nc.klartext_wear import with_wear
 from stepnc_model.nc.klartext_words import KlartextWords, flags_of, klartext_words
 from stepnc_model.nc.moves import CompensationSide, FeedMode, MoveFlag, MoveKind
 from stepnc_model.nc.recorder import MoveRecorder
 from stepnc_model.nc.remarks import Remarks
 from stepnc_model.nc.text import NcText
-from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
-from stepnc_model.units import mm_from_inches, rev_s_from_rpm
-
-MINUTE = 60.0
+from stepnc_model.nc.thread import NcThread, tap_by_feed
+from stepnc_model.toolpath.arc import centre_of_radius, on_circle, turn_of
+from stepnc_model.toolpath.path import ArcPlane, Point
+from stepnc_model.units import SECONDS_PER_MINUTE, mm_from_inches, rad_from_deg, rev_s_from_rpm
 
 LABELS = re.compile(
     rb"^[ \t]*(?:[0-9]+[ \t]+)?LBL[ \t]*([1-9][0-9]*|\"[^\"\r\n]*\")", re.M | re.I
@@ -31,15 +31,6 @@ LABELS = re.compile(
 
 PROGRAMS = re.compile(rb"^[ \t]*(?:[0-9]+[ \t]+)?BEGIN[ \t]+(PGM)\b", re.M | re.I)
 
-CYCLES = {
-    "200": CycleKind.DRILL,
-    "201": CycleKind.BORE,
-    "203": CycleKind.DRILL,
-    "205": CycleKind.DRILL,
-    "206": CycleKind.TAP,
-    "207": CycleKind.TAP,
-    "240": CycleKind.DRILL,
-}
 QUIET_CYCLES = {"9", "13", "32", "14", "20"}
 """Dwell, orientation, tolerance and contour data: none moves an axis."""
 
@@ -67,6 +58,7 @@ class HeidenhainControl:
         self.recorder.frames = {"preset": 0}
         self.remarks = Remarks(text)
         self.flow = ProgramFlow(text, self.recorder)
+        self.switches = KlartextSwitches(self.recorder, self.remarks)
         self.scale = 1.0
         self.centre: dict[str, float] = {}
         self.feed_mode = FeedMode.PER_MINUTE
@@ -109,6 +101,7 @@ class HeidenhainControl:
         is_sure = not (words.is_skippable or recorder.standing & MoveFlag.CONDITIONAL)
         self.parameters.take(words, is_sure=is_sure)
         recorder.flags = flags_of(words).value
+        self.switches.begun(words)
         head = words.names[0] if words.names else ""
         if not words.is_empty:
             following = self._steered(words, block)
@@ -130,6 +123,7 @@ class HeidenhainControl:
         elif words.strange and not words.assigned:
             self.lose(f"'{words.strange[0]}' is not known")
         self._functions(words)
+        self.switches.ended(words)
         return len(self.text) if END_FUNCTIONS & set(words.functions) else block + 1
 
     def lose(self, why: str) -> None:
@@ -220,7 +214,7 @@ class HeidenhainControl:
             if value is not None:
                 per_minute = mode is FeedMode.PER_MINUTE
                 recorder.setting = replace(recorder.setting, mode=mode)
-                recorder.word = value * self.scale / (MINUTE if per_minute else 1.0)
+                recorder.word = value * self.scale / (SECONDS_PER_MINUTE if per_minute else 1.0)
                 recorder.fed_by, recorder.is_fresh = recorder.block, True
                 recorder.standing &= ~MoveFlag.MACRO_FEED.value
                 if name in words.evaluated:
@@ -235,6 +229,7 @@ class HeidenhainControl:
             if code in words.functions:
                 self.sense = sense
                 self._turn()
+                self.switches.spindle(starts=sense != 0.0)
         if MACHINE_AXES & set(words.functions):
             self.recorder.at = [nan, nan, nan]
         if RETRACT in words.functions:
@@ -276,18 +271,21 @@ class HeidenhainControl:
         if "S" in words.values or "S" in words.macros:
             self.spindle = words.values.get("S", nan)
             self._turn()
+            if self.sense and not words.numbers:
+                self.switches.spindle(starts=False)
         self._feed(words)
         self.recorder.setting = with_wear(self.recorder.setting, words, scale=self.scale)
         if words.numbers:
             tool = int(words.numbers[0])
             self.recorder.setting = replace(self.recorder.setting, tool=tool, tool_name="")
-            self.recorder.at[2] = nan
+            self.recorder.lose(2)
+            self.switches.tool()
         elif words.texts:
             self.recorder.setting = replace(
                 self.recorder.setting, tool=None, tool_name=words.texts[0].strip('"')
             )
             self.remarks.note(self.recorder.block, "the tool has a name and no number")
-            self.recorder.at[2] = nan
+            self.recorder.lose(2)
 
     def _define(self, words: KlartextWords) -> None:
         """Take the definition of a cycle."""
@@ -455,17 +453,12 @@ class HeidenhainControl:
             self.lose("a polar arc without IPA about a pole in X and Y")
             return
         at = self.recorder.at
-        turn = copysign(radians(abs(angle)), words.sense)
-        u, v = at[0] - centre[0], at[1] - centre[1]
-        z = self._coordinate(words, 2)
-        end = (
-            centre[0] + u * cos(turn) - v * sin(turn),
-            centre[1] + u * sin(turn) + v * cos(turn),
-            z,
-        )
+        turn = copysign(rad_from_deg(abs(angle)), words.sense)
+        level = (at[0], at[1], self._coordinate(words, 2))
+        end = on_circle(at, level, centre, plane, turn)
         self.recorder.flags |= MoveFlag.POLAR.value
-        if isnan(hypot(u, v)):
-            end = (nan, nan, z)
+        if isnan(end[0] + end[1]):
+            end = (nan, nan, end[2])
         self.recorder.arc(end, centre, turn=turn, plane=plane)
 
     def _drill(self) -> None:
@@ -476,23 +469,28 @@ class HeidenhainControl:
         number, values, block = self.cycle
         recorder, scale = self.recorder, self.scale
         x, y, _ = recorder.at
-        surface, depth = values.get("Q203", 0.0), values.get("Q201", nan)
-        top = scale * (surface + values.get("Q200", 0.0))
-        kind, step = CYCLES[number], scale * values.get("Q202", 0.0)
-        if kind is CycleKind.DRILL and step:
-            kind = CycleKind.PECK
-        hole = drilling(kind, (x, y), retract=top, bottom=scale * (surface + depth), step=step)
+        hole = hole_of(number, values, (x, y), scale=scale)
         kept = recorder.word, recorder.fed_by
-        recorder.word = scale * values.get("Q206", nan) / MINUTE
+        recorder.word = scale * values.get("Q206", nan) / SECONDS_PER_MINUTE
         recorder.fed_by, recorder.is_fresh = block, True
         recorder.flags |= MoveFlag.CYCLE.value | MoveFlag.FIXED.value
-        recorder.move(MoveKind.RAPID, (x, y, top))
-        for move, end in cycle_moves(hole):
-            recorder.move(move, end)
+        recorder.move(MoveKind.RAPID, (x, y, hole.retract_z))
+        recorder.hole(hole, self._tap(values))
         if values.get("Q204"):
-            recorder.move(MoveKind.RAPID, (x, y, scale * (surface + values["Q204"])))
+            back = values.get("Q203", 0.0) + values["Q204"]
+            recorder.move(MoveKind.RAPID, (x, y, scale * back))
         recorder.word, recorder.fed_by = kept
         recorder.is_fresh = True
+
+    def _tap(self, values: Mapping[str, float]) -> NcThread:
+        """Thread of a tapping cycle: its pitch Q239, or feed and spindle."""
+        speed = rev_s_from_rpm(self.spindle)
+        if "Q239" in values:
+            # A negative pitch cuts a left-hand thread.
+            pitch = self.scale * values["Q239"]
+            return NcThread(lead=abs(pitch), speed=copysign(speed, pitch))
+        speed = copysign(speed, self.sense or 1.0)
+        return tap_by_feed(self.recorder.word, FeedMode.PER_MINUTE, speed=speed)
 
 
 _AXES = (*"XYZ", "IX", "IY", "IZ", "PA", "PR", "IPA", "IPR", *"ABCUVW")

@@ -9,9 +9,8 @@ from collections.abc import Sequence
 from math import isnan, nan
 
 from stepnc_model.nc import iso_codes
-from stepnc_model.nc.arcs import centre_of_radius, turn_of
-from stepnc_model.nc.block_words import BlockWords, take_word, words_of
-from stepnc_model.nc.drilling import cycle_moves, drilling
+from stepnc_model.nc.block_words import PLAIN, BlockWords, take_word, words_of
+from stepnc_model.nc.drilling import drilling
 from stepnc_model.nc.expression import Variables, evaluate, target_of
 from stepnc_model.nc.flow import ProgramFlow
 from stepnc_model.nc.iso_flow import IsoFlow
@@ -19,26 +18,19 @@ from stepnc_model.nc.iso_modes import IsoModes
 from stepnc_model.nc.iso_motions import ModalMotion, Shot
 from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind
 from stepnc_model.nc.recorder import MoveRecorder
-from stepnc_model.nc.remarks import Remarks
+from stepnc_model.nc.remarks import NO_UNIT, Remarks
+from stepnc_model.nc.switches import IsoSwitches
 from stepnc_model.nc.text import NcText
+from stepnc_model.nc.thread import NcThread, lead_of_path, lead_of_word
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.grid import FULL
 from stepnc_model.post.words import LARGEST
+from stepnc_model.toolpath.arc import FULL, centre_of_radius, turn_of
 from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 from stepnc_model.units import seconds_from_ms
 
 MOST_HOLES = 10_000
 """Greatest number of repeats of a drilling cycle by its word L."""
-
-
-PLAIN = re.compile(
-    r"(?:N[0-9]{1,9} ?)?(?:G0?([01])(?![0-9.]) ?)?"
-    r"(?:X([-+]?[0-9]{1,9}\.[0-9]{0,9}) ?)?(?:Y([-+]?[0-9]{1,9}\.[0-9]{0,9}) ?)?"
-    r"(?:Z([-+]?[0-9]{1,9}\.[0-9]{0,9}) ?)?(?:F([0-9]{1,9}(?:\.[0-9]{0,9})?) ?)?\r?\n?",
-    re.IGNORECASE,
-)
-"""Block that moves on a straight line, and does nothing else."""
 
 FRAME_PARAMETERS = re.compile(r"#[ \t]*(?:5[2-3][0-9]{2}|7[0-9]{3}|14[0-9]{3})[ \t]*=(?!=)")
 """Variables that hold offsets of frames: #5201 to #5390, #7001 to #7948, #14001 to #15996."""
@@ -57,6 +49,7 @@ class IsoControl:
         self.flow = ProgramFlow(text, self.recorder)
         self.variables = Variables(is_linuxcnc=dialect is Dialect.LINUXCNC)
         self.modes = self.start_modes(machine)
+        self.switches = IsoSwitches(self.modes, self.remarks)
         self.steering = self.steer()
 
     @property
@@ -95,7 +88,7 @@ class IsoControl:
         self.steering.remark_rest(last + 1)
         if self.recorder.count and not self.modes.has_unit:
             codes = "G70 or G71" if self.dialect is Dialect.SINUMERIK else "G20 or G21"
-            self.remarks.assume(f"the program states no unit ({codes}): mm are assumed")
+            self.remarks.assume(f"{NO_UNIT} ({codes}): mm are assumed")
 
     def steer(self) -> IsoFlow:
         """Steering of the program."""
@@ -110,6 +103,8 @@ class IsoControl:
         if self.has_plain_moves() and self._plain_move(text):
             return block + 1
         words = words_of(text, self.dialect)
+        for comment in words.comments:
+            self.switches.comment(comment)
         self.modes.shot, self.modes.lost = None, ""
         sets_frame = words.assignments and FRAME_PARAMETERS.search(text)
         self.evaluate(words)
@@ -124,11 +119,11 @@ class IsoControl:
         is_last = self._follow_contour(words)
         self._flag(words)
         self.settle(words)
-        self.modes.turn(words)
-        self.modes.take_tool(words)
+        self.switches.settled(words)
         if words.strange:
             self.modes.lose(f"'{words.strange[0]}' is no word")
         self._move(words)
+        self.switches.moved(words)
         if self.modes.lost:
             self.remarks.lost(block, self.modes.lost)
             self.recorder.unknown()
@@ -181,12 +176,12 @@ class IsoControl:
         return is_last
 
     def has_plain_moves(self) -> bool:
-        """Whether axis words alone say where a move ends, as in most long programs."""
+        """True if axis words alone say where a move ends, as in most long programs."""
         modes, recorder = self.modes, self.recorder
         return (
             modes.motion in PLAIN_MOTIONS
             and modes.is_absolute is True
-            and not self.is_lathe
+            and not (self.is_lathe or modes.is_diameter)
             and recorder.standing == 0
             and self.steering.is_plain
             and recorder.setting.mode is not FeedMode.INVERSE_TIME
@@ -299,12 +294,12 @@ class IsoControl:
         return values.get("X", values.get("U", 0.0))
 
     def has_axes(self, words: BlockWords) -> bool:
-        """Whether the block commands an axis."""
+        """True if the block commands an axis."""
         letters = "XYZUWABCV"
         return any(letter in words.values or letter in words.macros for letter in letters)
 
     def _is_circle(self, words: BlockWords) -> bool:
-        """Whether the block is a full circle, which names its centre alone."""
+        """True if the block is a full circle, which names its centre alone."""
         is_arc = self.modes.motion in {ModalMotion.CLOCKWISE, ModalMotion.COUNTERCLOCKWISE}
         return is_arc and any(letter in words.values for letter in "IJK")
 
@@ -350,8 +345,8 @@ class IsoControl:
             self.recorder.move(MoveKind.RAPID, end)
         elif motion is ModalMotion.LINE:
             self.recorder.move(MoveKind.LINE, end)
-        elif motion is ModalMotion.THREAD:
-            self.recorder.move(MoveKind.THREAD, end)
+        elif motion in {ModalMotion.THREAD, ModalMotion.TAP}:
+            self._synchronised(words, end)
         elif motion is None:
             self.remarks.lost(
                 self.recorder.block, "axes move, but which motion is in force is not known"
@@ -360,6 +355,22 @@ class IsoControl:
             self.recorder.at = end
         else:
             self._arc(words, end, 1.0 if motion is ModalMotion.COUNTERCLOCKWISE else -1.0)
+
+    def _synchronised(self, words: BlockWords, end: list[float]) -> None:
+        """Cut a thread to the end, and leave the hole again where the motion is a tap."""
+        start, thread = self.recorder.at, self.thread(words, end)
+        self.recorder.thread(end, thread)
+        if self.modes.motion is ModalMotion.TAP:
+            self.recorder.thread(start, thread.back)
+
+    def thread(self, words: BlockWords, end: list[float]) -> NcThread:
+        """Thread that a block cuts up to an end: K of LinuxCNC, elsewhere the feed."""
+        at, word, setting = self.recorder.at, self.recorder.word, self.recorder.setting
+        if self.dialect is not Dialect.LINUXCNC:
+            return NcThread(lead=lead_of_word(word, setting.mode))
+        lead = lead_of_path(at, end, self.modes.scale * abs(words.values.get("K", nan)))
+        is_tap = self.modes.motion is ModalMotion.TAP
+        return NcThread(lead=lead, speed=setting.spindle if is_tap else None)
 
     def _arc(self, words: BlockWords, end: list[float], sense: float) -> None:
         start, plane = self.recorder.at, self.modes.plane
@@ -445,7 +456,9 @@ class IsoControl:
 
     def _drill(self, words: BlockWords, kind: CycleKind) -> None:
         """Execute a drilling cycle at its positions."""
-        if self.modes.plane is not ArcPlane.XY:
+        if self.modes.plane is not ArcPlane.XY and not (
+            self.is_lathe and kind is CycleKind.TAP
+        ):
             self.modes.lose("a drilling cycle outside the XY plane is not expanded")
             return
         values, macros = words.values, words.macros
@@ -453,8 +466,9 @@ class IsoControl:
             if letter in macros:
                 self.modes.cycle[letter] = nan
             elif letter in values:
-                scale = 1.0 if letter == "P" else self.modes.scale
-                self.modes.cycle[letter] = scale * values.pop(letter)
+                pause = self.seconds(words) if letter == "P" else 0.0
+                value = self.modes.scale * values.pop(letter)
+                self.modes.cycle[letter] = pause if letter == "P" else value
         self.recorder.flags |= MoveFlag.CYCLE.value
         if (
             self.modes.is_absolute
@@ -475,11 +489,12 @@ class IsoControl:
             retract = start_z + self.modes.cycle.get("R", 0.0)
             depth = retract + depth
         top = max(start_z, retract) if not isnan(start_z) else start_z
+        if start_z < retract:
+            self.recorder.move(MoveKind.RAPID, (*self.recorder.at[:2], retract))
         self.recorder.move(MoveKind.RAPID, (x, y, top))
         self.recorder.move(MoveKind.RAPID, (x, y, retract))
-        step = self.modes.cycle.get("Q", 0.0)
-        hole = drilling(kind, (x, y), retract=retract, bottom=depth, step=step)
-        for move, end in cycle_moves(hole):
-            self.recorder.move(move, end)
+        step, dwell = (self.modes.cycle.get(letter, 0.0) for letter in "QP")
+        hole = drilling(kind, (x, y), heights=(retract, depth), step=step, dwell=dwell)
+        self.recorder.hole(hole, self.modes.fed_tap)
         if self.modes.returns_to_start and top != retract:
             self.recorder.move(MoveKind.RAPID, (x, y, top))

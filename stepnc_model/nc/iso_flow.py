@@ -9,6 +9,7 @@ from math import isnan
 from typing import Protocol
 
 from stepnc_model.nc.block_words import BlockWords, words_of
+from stepnc_model.nc.conditional_value import forget_assigned
 from stepnc_model.nc.expression import Variables, evaluate
 from stepnc_model.nc.flow import BEHIND_THE_END, ProgramFlow, places
 from stepnc_model.nc.flow_keywords import keyword_places, loop_places
@@ -111,6 +112,8 @@ class IsoFlow:
         """P of a block that calls or returns."""
         self._times_called: float | None = None
         """L of such a block."""
+        self.keeps_state: frozenset[int] = frozenset()
+        """Programs outside the file that keep the modal state, as the user says."""
         self._entered: set[int] = set()
         """Blocks at which called subprograms begin."""
 
@@ -149,7 +152,7 @@ class IsoFlow:
 
     @property
     def is_plain(self) -> bool:
-        """Whether the program has begun and no condition is open."""
+        """True if the program has begun and no condition is open."""
         return self._is_begun and self._before is None
 
     def watch(self) -> None:
@@ -186,7 +189,8 @@ class IsoFlow:
             times, number = int(number // 10_000), number % 10_000
             target = self._target(number, is_local=False)
         if target is None:
-            return self._outside(block, f"the subprogram {number:g} is not in this file")
+            why = f"the subprogram {number:g} is not in this file"
+            return self._outside(block, why, number=number)
         if self._is_conditional and self._flow.is_inside(target):
             return self._outside(block, "a call of itself")
         self._entered.add(target)
@@ -199,7 +203,7 @@ class IsoFlow:
         number, times = words.values.get("P"), int(words.values.get("L", 1.0))
         target = None if number is None else self._target(number, is_local=False)
         if target is None or times < 1:
-            return self._outside(block, "a macro call")
+            return self._outside(block, "a macro call", number=number)
         if self._is_conditional and self._flow.is_inside(target):
             return self._outside(block, "a call of itself")
         self._entered.add(target)
@@ -255,12 +259,17 @@ class IsoFlow:
         following = self._leave()
         return len(self._text) if following is None else following
 
-    def _outside(self, block: int, why: str) -> int:
+    def _outside(self, block: int, why: str, *, number: float | None = None) -> int:
         """Pass a call of something that is not here."""
-        self._control.remarks.lost(block, why)
         self._control.recorder.unknown()
-        self._control.forget()
         self._variables.forget()
+        if number in self.keeps_state:
+            kept = f"the program {number:g} keeps the modal state, as given; its moves are open"
+            self._control.remarks.note(block, kept)
+            return block + 1
+        hint = "" if number is None else f"; --keeps-state P{number:g} if it keeps the state"
+        self._control.remarks.lost(block, why + hint)
+        self._control.forget()
         return block + 1
 
     def statement(self, text: str, block: int) -> int:
@@ -302,7 +311,7 @@ class IsoFlow:
 
     @property
     def _is_sure(self) -> bool:
-        """Whether it is known that the block is executed."""
+        """True if it is known that the block is executed."""
         return not self._open and not self._is_conditional
 
     def _next_of(self, name: str, block: int, *keywords: str) -> int | None:
@@ -384,7 +393,7 @@ class IsoFlow:
         return block + 1
 
     def _is_do(self, name: str, block: int) -> bool:
-        """Whether a loop begins with DO and ends with its condition."""
+        """True if a loop begins with DO and ends with its condition."""
         return (block, "do") in self._keywords.get(name, ())
 
     def _counted(self, name: str, rest: str, block: int) -> int | None:
@@ -418,7 +427,8 @@ class IsoFlow:
         if found := FANUC_THEN.fullmatch(text):
             value = evaluate(found[1], self._variables)
             if isnan(value):
-                return None
+                # Whether it is assigned is not known, but no jump: the rest is executed.
+                return block + 1 if forget_assigned(found[2], self._variables) else None
             if value != 0.0:
                 self._control.assign(BlockWords(assignments=[found[2]]))
             return block + 1

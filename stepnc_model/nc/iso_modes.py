@@ -3,21 +3,27 @@
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from math import isnan, nan
+from math import copysign, isnan, nan
 
 from stepnc_model.nc import iso_codes
 from stepnc_model.nc.block_words import BlockWords
 from stepnc_model.nc.iso_motions import MODES, MOTIONS, SHOTS, ModalMotion, Shot
 from stepnc_model.nc.moves import CompensationSide, FeedMode, MoveFlag
 from stepnc_model.nc.recorder import MoveRecorder, frame_name
+from stepnc_model.nc.thread import NcThread, tap_by_feed
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.toolpath.path import ArcPlane, CycleKind
-from stepnc_model.units import mm_from_inches, rev_s_from_rpm, speed_from_m_min
+from stepnc_model.units import (
+    MM_PER_FOOT,
+    MM_PER_M,
+    SECONDS_PER_MINUTE,
+    mm_from_inches,
+    rev_s_from_rpm,
+    speed_from_m_min,
+)
 
 INCH = mm_from_inches(1.0)
-MINUTE = 60.0
-FEET_PER_METRE = 0.3048
 
 CodeTable = dict[int, Callable[[BlockWords], None]]
 """Action of each G code, in tenths."""
@@ -46,13 +52,16 @@ class IsoModes:
         self.edition = ""
         """Words for the last block that gave values to frames."""
         self.rotary: dict[str, float] = {}
-        self.spindle = 0.0
+        # M3 without any S turns the spindle at a speed that the program does not tell.
+        self.spindle = nan
         """Spindle word: rpm, or m/min at constant surface speed."""
         self.sense = 0.0
         self.is_surface = False
         self.limit: float | None = None
         self.tool: int | None = None
         self.tool_name = ""
+        self.tap_sense = 0.0
+        """Sense of the spindle in a tap, 1 or -1; 0: that in force."""
         self._straight: ModalMotion | None = None
         self.cycle: dict[str, float] = {}
         self.contour: tuple[float, float] | None = None
@@ -78,8 +87,7 @@ class IsoModes:
 
     def forget_feed(self) -> None:
         """Forget the feed: what is in force is not known."""
-        self.recorder.word, self.recorder.fed_by = nan, -1
-        self.recorder.is_fresh = True
+        self.recorder.word, self.recorder.fed_by, self.recorder.is_fresh = nan, -1, True
         self.recorder.standing |= MoveFlag.MACRO_FEED.value
 
     def modal(self) -> tuple[object, ...]:
@@ -143,7 +151,8 @@ class IsoModes:
         per_minute = recorder.setting.mode is FeedMode.PER_MINUTE
         is_inverse = recorder.setting.mode is FeedMode.INVERSE_TIME
         scale = 1.0 if is_inverse else unit
-        recorder.word = value * scale / (MINUTE if per_minute or is_inverse else 1.0)
+        divisor = SECONDS_PER_MINUTE if per_minute or is_inverse else 1.0
+        recorder.word = value * scale / divisor
         recorder.fed_by, recorder.is_fresh = recorder.block, True
         recorder.standing &= ~MoveFlag.MACRO_FEED.value
 
@@ -162,7 +171,7 @@ class IsoModes:
         for code in iso_codes.FRAMES_BY_CONTROL[control]:
             table[code] = partial(self._take_frame, f"G{code / 10:g}")
         for code in iso_codes.LENGTHS:
-            table[code] = self._take_length
+            table[code] = self.lose_height
         for codes, is_on in (
             (iso_codes.TRANSFORMS_ON[control], True),
             (iso_codes.TRANSFORMS_OFF[control], False),
@@ -171,7 +180,7 @@ class IsoModes:
                 centred = code in iso_codes.CENTRED_TRANSFORMS
                 table[code] = partial(self._take_transform, is_on, centred)
         table |= {
-            **{code: partial(self._take_mode, mode) for code, mode in MODES.items()},
+            **{code: partial(self.to_mode, mode) for code, mode in MODES.items()},
             **{code: partial(self._compensate, code) for code in (400, 410, 420)},
             200: partial(self._take_unit, INCH),
             210: partial(self._take_unit, 1.0),
@@ -189,17 +198,20 @@ class IsoModes:
         is_linuxcnc = self.dialect is Dialect.LINUXCNC
         if self.is_lathe and not is_linuxcnc:
             table |= {
-                980: partial(self._take_mode, FeedMode.PER_MINUTE),
-                990: partial(self._take_mode, FeedMode.PER_REVOLUTION),
+                980: partial(self.to_mode, FeedMode.PER_MINUTE),
+                990: partial(self.to_mode, FeedMode.PER_REVOLUTION),
                 320: partial(self._take_motion, ModalMotion.THREAD),
                 500: self._lathe_shift,
             }
             for code in iso_codes.LATHE_CYCLES:
                 table[code] = partial(self._not_expanded, code)
-            table[920] = self._thread_or_limit
+            table |= {920: self._thread_or_limit, 840: partial(self._take_tap, 1.0)}
+            if self.dialect is Dialect.HAAS:
+                table[1840] = partial(self._take_tap, -1.0)
         else:
             for code, kind in iso_codes.CANNED.items():
                 table[code] = partial(self._take_motion, kind)
+            table |= {code: partial(self._take_tap, s) for code, s in ((740, -1.0), (840, 1.0))}
             for code in iso_codes.UNKNOWN_CYCLES:
                 table[code] = partial(self._not_expanded, code)
             table |= {
@@ -215,7 +227,7 @@ class IsoModes:
         return {
             70: partial(self._take, "is_diameter", True),
             80: partial(self._take, "is_diameter", False),
-            331: partial(self._take_motion, ModalMotion.THREAD),
+            331: partial(self._take_motion, ModalMotion.TAP),
             411: partial(self._compensate, 411),
             421: partial(self._compensate, 421),
             901: partial(self._take, "is_centre_absolute", True),
@@ -235,6 +247,10 @@ class IsoModes:
     def _take_motion(self, motion: ModalMotion | CycleKind, _: BlockWords) -> None:
         self.to_motion(motion)
 
+    def _take_tap(self, sense: float, _: BlockWords) -> None:
+        self.tap_sense = sense
+        self.to_motion(CycleKind.TAP)
+
     def to_motion(self, motion: ModalMotion | CycleKind) -> None:
         """Change the motion that axis words execute."""
         if motion is not self.motion:
@@ -251,16 +267,10 @@ class IsoModes:
         else:
             self.to_frame(name)
 
-    def _take_length(self, _: BlockWords) -> None:
-        self.lose_height()
-
     def _take_transform(self, is_on: bool, is_centred: bool, _: BlockWords) -> None:
         self.transform(is_on)
         if is_centred:
             self.shot = Shot.CENTRE
-
-    def _take_mode(self, mode: FeedMode, _: BlockWords) -> None:
-        self.to_mode(mode)
 
     def _take_shift(self, value: float, _: BlockWords) -> None:
         self.shift_to([value] * 3)
@@ -276,7 +286,7 @@ class IsoModes:
             # Elsewhere cycles are a group of their own: the motion before them is in force.
             self.motion = None if self.dialect is Dialect.LINUXCNC else self._straight
 
-    def to_mode(self, mode: FeedMode) -> None:
+    def to_mode(self, mode: FeedMode, _: BlockWords | None = None) -> None:
         """Change the reference of F words, after which no feed is in force."""
         if self.recorder.setting.mode is mode:
             return
@@ -319,9 +329,9 @@ class IsoModes:
     def _exact(self, _: BlockWords) -> None:
         self.recorder.flags |= MoveFlag.EXACT.value
 
-    def lose_height(self) -> None:
+    def lose_height(self, _: BlockWords | None = None) -> None:
         """Forget z, as after a change of the tool's length offset."""
-        self.recorder.at[2] = nan
+        self.recorder.lose(2)
         self.recorder.flags |= MoveFlag.OFFSET.value
 
     # Frames.
@@ -402,13 +412,27 @@ class IsoModes:
                 self.sense = sense
         self.turn_spindle()
 
+    @property
+    def tapping_speed(self) -> float | None:
+        """Speed of a tap, rev/s, signed: it turns the spindle itself; None: that in force."""
+        if self.is_surface:
+            return None
+        return copysign(rev_s_from_rpm(self.spindle), self.tap_sense or self.sense or 1.0)
+
+    @property
+    def fed_tap(self) -> NcThread:
+        """Tap whose lead follows from the feed in force."""
+        recorder = self.recorder
+        return tap_by_feed(recorder.word, recorder.setting.mode, speed=self.tapping_speed)
+
     def turn_spindle(self) -> None:
         """Bring the setting in line with the spindle words."""
         is_surface = self.is_surface and self.sense != 0.0
         surface = speed_from_m_min(self.spindle)
         if self.scale != 1.0:
-            surface *= FEET_PER_METRE
+            surface *= MM_PER_FOOT / MM_PER_M
         speed = self.sense * (1.0 if is_surface else rev_s_from_rpm(self.spindle))
+        speed = speed if self.sense != 0.0 else 0.0
         setting = self.recorder.setting
         wanted = (
             None if isnan(speed) else speed + 0.0,
@@ -448,7 +472,7 @@ class IsoModes:
         """Change the tool, after which its height is not known."""
         setting = self.recorder.setting
         self.recorder.setting = replace(setting, tool=number, tool_name=self.tool_name)
-        self.recorder.at = [nan] * 3 if self.is_lathe else [*self.recorder.at[:2], nan]
+        self.recorder.lose(*((0, 1, 2) if self.is_lathe else (2,)))
 
     # Moves.
 

@@ -13,6 +13,8 @@ class ModalMotion(Enum):
     CLOCKWISE = auto()
     COUNTERCLOCKWISE = auto()
     THREAD = auto()
+    TAP = auto()
+    """Into a hole and out again, synchronised with the spindle."""
 
 
 class Shot(Enum):

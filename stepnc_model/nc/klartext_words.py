@@ -52,10 +52,12 @@ class KlartextWords:
     label: str = ""
     """Label of LBL and CALL LBL."""
     is_skippable: bool = False
+    comments: list[str] = field(default_factory=list)
+    """Comments beside words other than parameters, as they are written."""
 
     @property
     def is_empty(self) -> bool:
-        """Whether the block names nothing that a control executes."""
+        """True if the block names nothing that a control executes."""
         return not (self.names or self.values or self.functions)
 
     @property
@@ -82,6 +84,8 @@ def klartext_words(text: str) -> KlartextWords:
     """
     words = KlartextWords()
     is_first = True
+    if ";" in text or "*" in text:
+        words.comments = _comments(text)
     for kind, start, end, name, value in _apart_from_formulas(text, words):
         if kind is TokenKind.NUMBER:
             if not is_first:
@@ -102,6 +106,14 @@ def klartext_words(text: str) -> KlartextWords:
             words.strange.append(text[start:end])
         is_first = False
     return words
+
+
+def _comments(text: str) -> list[str]:
+    """Comments of a block; beside parameters they only name these."""
+    found = list(tokens(text, Dialect.HEIDENHAIN))
+    if {TokenKind.ASSIGNMENT, TokenKind.CONTINUATION} & {each.kind for each in found}:
+        return []
+    return [each.value for each in found if each.kind is TokenKind.COMMENT]
 
 
 def _apart_from_formulas(text: str, words: KlartextWords) -> Iterator[Token]:

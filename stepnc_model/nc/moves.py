@@ -1,7 +1,8 @@
 """Executed moves of an NC program, in columns.
 
 A row is one straight or circular move that the control executes: a block in a subprogram gives
-one row for each call, a canned cycle one row for each of its moves. Coordinates are those of
+one row for each call, a canned cycle one row for each of its moves. Switches, comments and
+stops between the moves are rows that stay where the tool is. Coordinates are those of
 the program in mm, in the frame of the row; on a lathe x is a radius. Unknown coordinates are
 NaN. Rows name their block, so that advice finds its way back into the file.
 """
@@ -16,7 +17,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stepnc_model.toolpath.path import ArcPlane, Point
+from stepnc_model.post.blocks import Block
+from stepnc_model.toolpath.arc_columns import arms, lengths
+from stepnc_model.toolpath.path import Arc, ArcPlane, Point
 
 Floats = NDArray[np.float64]
 
@@ -34,6 +37,8 @@ class MoveKind(IntEnum):
     """Block that may move the machine in a way that is not understood."""
     DWELL = 5
     """Pause; its word is the time, s."""
+    SWITCH = 6
+    """What a block does between moves; its word is an index in :attr:`NcMoves.switches`."""
 
 
 class FeedMode(StrEnum):
@@ -195,15 +200,12 @@ class NcMove(NamedTuple):
     kind: MoveKind
     start: Point
     end: Point
-    centre: Point | None
-    """Centre of an arc; its coordinate along the normal of the plane has no meaning."""
-    turn: float
-    """Angle of an arc, rad, positive counter-clockwise; 0 for a line."""
-    plane: ArcPlane
+    arc: Arc | None
+    """Arc, or None for a line; its turn is NaN where it is not known."""
     feed: float
     """Feed, mm/s; NaN for rapids and where it is not known."""
     word: float
-    """Feed in force, mm/s, mm per revolution or 1/s by mode."""
+    """Feed in force, mm/s, mm per revolution or 1/s by mode; of a thread its lead, mm."""
     seconds: float
     """Time of a dwell, s; 0 for moves."""
     block: int
@@ -249,6 +251,8 @@ class NcMoves:
     """Names of the frames, such as ``G54``."""
     calls: tuple[tuple[int, int], ...]
     """Call each call was made from, and the calling block; the main program is call 0."""
+    switches: tuple[Block, ...] = ()
+    """Tools, switches, comments and stops between the moves, each once."""
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -267,6 +271,16 @@ class NcMoves:
     def kind(self) -> NDArray[np.int8]:
         """(N,) array: values of :class:`MoveKind`."""
         return self.rows["kind"]
+
+    @cached_property
+    def is_switch(self) -> NDArray[np.bool_]:
+        """(N,) array: whether a row is a switch, a comment or a stop between moves."""
+        return np.equal(self.kind, MoveKind.SWITCH)
+
+    @cached_property
+    def moving(self) -> "NcMoves":
+        """The same without the switches between the moves."""
+        return replace(self, rows=self.rows[~self.is_switch]) if self.switches else self
 
     @property
     def block(self) -> NDArray[np.int32]:
@@ -290,7 +304,10 @@ class NcMoves:
 
     @property
     def word(self) -> Floats:
-        """(N,) array: feed in force, mm/s, mm per revolution or 1/s by mode; NaN if none."""
+        """(N,) array: feed in force, mm/s, mm per revolution or 1/s by mode; NaN if none.
+
+        Of a thread it is the lead along the axis that moves most, mm, in all modes.
+        """
         return self.rows["word"]
 
     @cached_property
@@ -337,18 +354,8 @@ class NcMoves:
     @cached_property
     def length(self) -> Floats:
         """(N,) array: lengths of the moves, mm; NaN where unknown."""
-        delta = self.end - self.start
-        length = np.sqrt(np.einsum("ij,ij->i", delta, delta))
-        found = np.flatnonzero(self.rows["arc"] >= 0)
-        if len(found):
-            normal = self.normal[found]
-            radial = self.start[found] - self.centre[found]
-            every = np.arange(len(found))
-            rise = delta[found][every, normal]
-            radial[every, normal] = 0.0
-            radius = np.sqrt(np.einsum("ij,ij->i", radial, radial))
-            length[found] = np.hypot(radius * self.turn[found], rise)
-        return length
+        radius = np.hypot(*arms(self.start, self.centre, self.normal))
+        return lengths(self.start, self.end, radius=radius, turn=self.turn, normal=self.normal)
 
     @cached_property
     def spindle(self) -> Floats:
@@ -383,6 +390,13 @@ class NcMoves:
             )
         is_fed = np.isin(self.kind, (MoveKind.LINE, MoveKind.ARC))
         return np.where(is_fed & (feed > 0.0), feed, nan)
+
+    @cached_property
+    def has_rate(self) -> NDArray[np.bool_]:
+        """(N,) array: whether a move at a feed knows it, or a thread its lead and speed."""
+        is_turning = np.nan_to_num(self.spindle) != 0.0
+        is_cut = (self.kind == MoveKind.THREAD) & (self.word > 0.0) & is_turning
+        return is_cut | (self.feed > 0.0)
 
     @cached_property
     def is_known(self) -> NDArray[np.bool_]:
@@ -448,14 +462,11 @@ class NcMoves:
     def _value(self, row: tuple[Any, ...], feed: float) -> NcMove:
         """Value of a row in the order of :data:`ROW`."""
         start, end, word, block, _, call, arc, setting, flags, kind = row
-        numbers = None if arc < 0 else self.arcs[arc].tolist()
         return NcMove(
             kind=KINDS[kind],
             start=_point(start),
             end=_point(end),
-            centre=None if numbers is None else _point(numbers),
-            turn=0.0 if numbers is None else numbers[3],
-            plane=ArcPlane.XY if numbers is None else PLANES[int(numbers[4])],
+            arc=None if arc < 0 else _arc(self.arcs[arc].tolist()),
             feed=feed,
             word=word,
             seconds=word if kind == MoveKind.DWELL else 0.0,
@@ -479,6 +490,10 @@ class NcMoves:
 def _flag(number: int) -> MoveFlag:
     """Flag of a number; there are few different ones."""
     return MoveFlag(number)
+
+
+def _arc(numbers: Sequence[float]) -> Arc:
+    return Arc(centre=_point(numbers), turn=numbers[3], plane=PLANES[int(numbers[4])])
 
 
 def _point(numbers: Sequence[float]) -> Point:

@@ -1,16 +1,17 @@
 """Neutral blocks of a foreign NC program, as the virtual machine runs them.
 
-Moves whose start or end is not known are left out; a rapid with ``is_way`` bridges the gap to
-the next known move. Coolant, messages and stops have no effect on the cut and are left out as
-well. All frames are laid over each other.
+Moves whose start or end is not known are left out, and moves at a feed or lead that is not
+known; a rapid with ``is_way`` bridges the gap to the next known move. All frames are laid over
+each other.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isnan, nan
 
 from stepnc_model.nc.moves import FeedMode, ModalSetting, MoveKind, NcMove
 from stepnc_model.nc.program import NcProgram
+from stepnc_model.nc.spindle import spindle_block
 from stepnc_model.post.blocks import (
     Block,
     Circular,
@@ -22,10 +23,9 @@ from stepnc_model.post.blocks import (
     Rate,
     RateMode,
     Retract,
-    SpindleDirection,
-    SpindleOff,
+    RigidTap,
     SpindleOn,
-    SurfaceSpeed,
+    ThreadingMove,
     ToolChange,
 )
 from stepnc_model.toolpath.path import Point
@@ -40,6 +40,9 @@ APART = 1e-6
 FED = frozenset({MoveKind.LINE, MoveKind.ARC, MoveKind.THREAD})
 """Kinds of moves at a feed."""
 
+UNKNOWN: Point = (nan, nan, nan)
+"""Place that is not known."""
+
 NOTHING: Mapping[int, Block] = {}
 
 
@@ -53,24 +56,59 @@ def neutral_blocks(
     program : NcProgram
     name : str
     before : mapping of int to Block
-        Blocks to be put before moves, by the row of the move.
+        Blocks to be put before moves, by the row of the stream.
     """
     yield 1, ProgramStart(name=name, machine=program.machine)
-    moves, text = program.moves, program.text
-    state = _State(setting=ModalSetting(), at=(nan, nan, nan))
-    line = 1
-    for index, move in enumerate(moves.each()):
+    line, block = 1, None
+    for line, block in stream_blocks(program, before=before):
+        yield line, block
+    if not isinstance(block, ProgramEnd):
+        yield line, ProgramEnd()
+
+
+def stream_blocks(
+    program: NcProgram, *, before: Mapping[int, Block] = NOTHING, at: Point = UNKNOWN
+) -> Iterator[NumberedBlock]:
+    """Convert the stream of a program to neutral blocks, without start and end of its own.
+
+    Parameters
+    ----------
+    program : NcProgram
+    before : mapping of int to Block
+        Blocks to be put before moves, by the row of the stream.
+    at : Point, mm
+        Place of the tool before the first move.
+    """
+    stream, text = program.stream, program.text
+    state = _State(setting=ModalSetting(spindle=0.0), at=at)
+    tap: NcMove | None = None
+    moves = stream.each()
+    move = next(moves, None)
+    index = 0
+    while move is not None:
+        following = next(moves, None)
         line = text.line(move.block)
         if index in before:
             yield line, before[index]
-        # Moves share their setting: mostly it is the same object.
-        if move.setting is not state.setting:
-            for block in _set(state.setting, move.setting):
+        if move.kind is MoveKind.SWITCH:
+            switch = stream.switches[int(move.word)]
+            state.take(switch, move.setting)
+            yield line, switch
+        elif tap is not None:
+            # The way out of the hole belongs to the tap.
+            tap = None
+        elif _is_tap(move, following):
+            tap = move
+            yield from ((line, block) for block in _tapped(state, move))
+        else:
+            # Moves share their setting: mostly it is the same object.
+            if move.setting is not state.setting:
+                for block in _set(state.setting, move.setting):
+                    yield line, block
+                state.setting = move.setting
+            for block in _moved(state, move):
                 yield line, block
-            state.setting = move.setting
-        for block in _moved(state, move):
-            yield line, block
-    yield line, ProgramEnd()
+        move, index = following, index + 1
 
 
 @dataclass(slots=True)
@@ -80,22 +118,58 @@ class _State:
     setting: ModalSetting
     at: Point
 
+    def take(self, block: Block, setting: ModalSetting) -> None:
+        """Take in a block that changes the tool or the spindle, as it is in a setting."""
+        if isinstance(block, ToolChange):
+            self.setting = replace(self.setting, tool=block.number)
+        elif block == spindle_block(setting):
+            self.setting = replace(
+                self.setting,
+                spindle=setting.spindle,
+                surface=setting.surface,
+                limit=setting.limit,
+            )
+
 
 def _set(old: ModalSetting, new: ModalSetting) -> Iterator[Block]:
     """Blocks for a change of tool and spindle."""
     if new.tool != old.tool and new.tool is not None:
         yield ToolChange(number=new.tool)
-    before = old.spindle, old.surface, old.limit
-    if (new.spindle, new.surface, new.limit) == before or new.spindle is None:
+    if (new.spindle, new.surface, new.limit) != (old.spindle, old.surface, old.limit):
+        block = spindle_block(new)
+        if block is not None:
+            yield block
+
+
+def _is_tap(move: NcMove, following: NcMove | None) -> bool:
+    """True if two moves go into a hole and out again, where the spindle turns back."""
+    return (
+        move.kind is MoveKind.THREAD
+        and following is not None
+        and following.kind is MoveKind.THREAD
+        and following.end == move.start
+        and move.start[:2] == move.end[:2]
+        and bool(move.setting.spindle)
+        and following.setting.spindle == -(move.setting.spindle or 0.0)
+        and move.word > 0.0
+    )
+
+
+def _tapped(state: _State, move: NcMove) -> Iterator[Block]:
+    """Blocks of a rigid tap, after which the tool is where it began."""
+    turning = spindle_block(move.setting)
+    if not isinstance(turning, SpindleOn):
         return
-    is_clockwise = new.spindle > 0.0
-    sense = SpindleDirection.CLOCKWISE if is_clockwise else SpindleDirection.COUNTERCLOCKWISE
-    if new.spindle == 0.0:
-        yield SpindleOff()
-    elif new.surface is not None:
-        yield SurfaceSpeed(speed=new.surface, limit=new.limit, sense=sense)
-    else:
-        yield SpindleOn(speed=abs(new.spindle), sense=sense)
+    if _is_apart(state.at, move.start):
+        yield Rapid(end=move.start, is_way=not isnan(state.at[0]))
+    yield RigidTap(
+        start=move.start,
+        bottom_z=move.end[2],
+        lead=move.word,
+        speed=turning.speed,
+        sense=turning.sense,
+    )
+    state.at = move.start
 
 
 def _moved(state: _State, move: NcMove) -> Iterator[Block]:
@@ -107,23 +181,29 @@ def _moved(state: _State, move: NcMove) -> Iterator[Block]:
         if move.kind is MoveKind.RAPID and not isnan(move.end[2]) and isnan(sum(state.at)):
             yield Retract(z=move.end[2])
         return
-    is_fed = move.kind in FED and move.feed > 0.0
+    is_fed = move.kind in FED
+    if is_fed and not _has_rate(move):
+        return
     is_begun = isnan(sum(move.start))
     if not is_begun and _is_apart(state.at, move.start) and (is_fed or not isnan(state.at[0])):
         yield Rapid(end=move.start, is_way=True)
-    if not is_fed or is_begun or isnan(move.turn):
-        yield Rapid(end=move.end, is_way=is_begun and not isnan(state.at[0]))
-    elif move.centre is not None:
-        yield Circular(
-            end=move.end,
-            centre=move.centre,
-            turn=move.turn,
-            plane=move.plane,
-            rate=_rate(move),
-        )
+    is_bent = move.arc is not None and isnan(move.arc.turn)
+    if not is_fed or is_begun or is_bent:
+        yield Rapid(end=move.end, is_way=(is_begun or is_bent) and not isnan(state.at[0]))
+    elif move.kind is MoveKind.THREAD:
+        yield ThreadingMove(end=move.end, lead=move.word)
+    elif move.arc is not None:
+        yield Circular(end=move.end, arc=move.arc, rate=_rate(move))
     else:
         yield Linear(end=move.end, rate=_rate(move))
     state.at = move.end
+
+
+def _has_rate(move: NcMove) -> bool:
+    """True if the feed of a move is known, or the lead and the spindle speed of a thread."""
+    if move.kind is MoveKind.THREAD:
+        return move.word > 0.0 and bool(move.setting.spindle)
+    return move.feed > 0.0
 
 
 def _rate(move: NcMove) -> Rate:

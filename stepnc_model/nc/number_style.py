@@ -1,4 +1,4 @@
-"""How a program writes its numbers, so that new ones look and count alike."""
+"""Number style of a program, so that new numbers look and count alike."""
 
 import re
 from dataclasses import dataclass
@@ -115,6 +115,6 @@ def style_of(text: NcText, dialect: Dialect, *, unit: float) -> NumberStyle:
 
 
 def _is_fixed(decimals: list[bytes]) -> bool:
-    """Whether all numbers have the same decimal places, trailing zeros included."""
+    """True if all numbers have the same decimal places, trailing zeros included."""
     lengths = set(map(len, decimals))
     return len(lengths) == 1 and lengths != {0} and any(d.endswith(b"0") for d in decimals)

@@ -41,7 +41,7 @@ from stepnc_model.nc.expression import DEEPEST, OPERATORS, UnreadableExpression
 
 PIECE = re.compile(
     r"\s*(?:(?P<number>[0-9]+\.?[0-9]*|\.[0-9]+)|(?P<variable>(?:R|Q[LR]?)[0-9]+)"
-    r"|(?P<word>[a-z]+[0-9]*)|(?P<sign>==|<>|>=|<=|[-+*/^()<>,]))",
+    r"|(?P<word>[a-z_][a-z_]*(?:[0-9]+(?:_[a-z0-9_]*)?)?)|(?P<sign>==|<>|>=|<=|[-+*/^()<>,]))",
     re.IGNORECASE,
 )
 
@@ -132,6 +132,8 @@ class Parameters:
 
     arithmetic: Arithmetic
     values: dict[str, float] = field(default_factory=dict)
+    declared: set[str] = field(default_factory=set)
+    """Names of variables that the program defines, in capitals."""
 
     def get(self, name: str) -> float:
         """Value of a parameter; NaN where it is not known."""
@@ -142,6 +144,11 @@ class Parameters:
         plain = plain_name(name)
         if not OF_CONTROL.fullmatch(plain):
             self.values[plain] = value
+
+    def declare(self, name: str, value: float) -> None:
+        """Define a variable of the program, with its first value."""
+        self.declared.add(name.upper())
+        self.set(name, value)
 
     def forget(self) -> None:
         """Forget all values, as after a program that is not here."""
@@ -168,7 +175,8 @@ class Parameters:
 def plain_name(name: str) -> str:
     """Name of a parameter without zeros before its number."""
     letters = name.rstrip("0123456789").upper()
-    return f"{letters}{int(name[len(letters) :])}"
+    number = name[len(letters) :]
+    return f"{letters}{int(number)}" if number else letters
 
 
 class _ParameterReader:
@@ -238,6 +246,8 @@ class _ParameterReader:
         if name == "ATAN2" and self._arithmetic is SINUMERIK:
             above, below = self._inside(2)
             return degrees(atan2(above, below))
+        if name in self._parameters.declared:
+            return self._parameters.get(name)
         function = self._arithmetic.functions.get(name)
         if function is None or (self._arithmetic is SINUMERIK and self.next != "("):
             raise UnreadableExpression

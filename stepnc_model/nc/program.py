@@ -8,6 +8,7 @@ import re
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from stepnc_model.nc.sinumerik_control import SinumerikControl
 from stepnc_model.nc.text import NcText, text_of
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
+from stepnc_model.toolpath.path import Point
 
 WHOLE_FEED = re.compile(r"^[^(;]*F *[0-9]+(?![0-9.])", re.I)
 """Block with a feed that has no decimal point, outside comments."""
@@ -43,13 +45,23 @@ class NcProgram:
     machine: MachineType
     hints: tuple[str, ...]
     """Pieces of the program that speak for the control; empty if it was named."""
-    moves: NcMoves
+    stream: NcMoves
+    """Executed moves, with the switches, comments and stops between them."""
     unit: float
     """Length of one unit of the program at its end, mm."""
     findings: tuple[Finding, ...]
     """What was not understood, and what is missing, by line."""
     most_repeats: int | None = None
     """Blocks and moves beyond those of the file that were allowed; None: as usual."""
+    keeps_state: frozenset[int] = frozenset()
+    """Programs outside the file that were said to keep the modal state."""
+    first_unread: Finding | None = None
+    """First word that the stream does not show; None if it shows all."""
+
+    @cached_property
+    def moves(self) -> NcMoves:
+        """Executed moves alone."""
+        return self.stream.moving
 
 
 def read_program(
@@ -58,6 +70,8 @@ def read_program(
     dialect: Dialect | None = None,
     machine: MachineType | None = None,
     most_repeats: int | None = None,
+    start: Point | None = None,
+    keeps_state: frozenset[int] = frozenset(),
 ) -> NcProgram:
     r"""Read an NC program and execute it.
 
@@ -72,6 +86,12 @@ def read_program(
     most_repeats : int, optional
         Greatest number of executed blocks, and of moves, beyond those of the file; by default
         ``MOST_REPEATED`` of :mod:`stepnc_model.nc.flow`.
+    start : Point, optional
+        Place where the program begins, in its coordinates, mm; changes of the tool keep the
+        place then. None: the program has to say where the tool is.
+    keeps_state : frozenset of int
+        Numbers of programs outside the file, called by M98 or G65, behind which the modal state
+        is as before; the position is open all the same.
 
     Raises
     ------
@@ -91,11 +111,14 @@ def read_program(
         raise PostError("canonical commands are no NC code: name the control of the program")
     kind = guess.machine if machine is None else machine
     text = text_of(data, chosen)
-    control = control_of(text, chosen, kind, most_repeats=most_repeats)
+    control = control_of(text, chosen, kind, most_repeats=most_repeats, keeps_state=keeps_state)
     if data.startswith((BOM_UTF16_LE, BOM_UTF16_BE)):
         control.remarks.warn(0, "the file is UTF-16 text: save it as ASCII or UTF-8")
+    if start is not None:
+        control.recorder.begin(start)
     control.run()
-    moves = control.recorder.moves()
+    stream = control.recorder.moves()
+    moves = stream.moving
     _remark_whole_feeds(control.remarks, moves, text, chosen)
     for begin in range(0, len(moves), CHUNK):
         _remark(control.remarks, moves.part(begin, begin + CHUNK))
@@ -104,18 +127,27 @@ def read_program(
         dialect=chosen,
         machine=kind,
         hints=guess.hints if dialect is None else (),
-        moves=moves,
+        stream=stream,
         unit=control.scale,
         findings=control.remarks.all(),
         most_repeats=most_repeats,
+        first_unread=control.remarks.first_unread,
+        keeps_state=keeps_state,
     )
 
 
 def control_of(
-    text: NcText, dialect: Dialect, machine: MachineType, *, most_repeats: int | None = None
+    text: NcText,
+    dialect: Dialect,
+    machine: MachineType,
+    *,
+    most_repeats: int | None = None,
+    keeps_state: frozenset[int] = frozenset(),
 ) -> Control:
     """Control that executes a program, within a number of repeats."""
     control = _control(text, dialect, machine)
+    if isinstance(control, IsoControl):
+        control.steering.keeps_state = keeps_state
     if most_repeats is not None:
         control.flow.allow(most_repeats)
     return control

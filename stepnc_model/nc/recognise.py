@@ -28,7 +28,7 @@ HINTS: tuple[tuple[Dialect, int, bytes], ...] = (
     (
         Dialect.SINUMERIK,
         5,
-        rb"\b(?:MCALL|CYCLE8[0-9]+\(|CYCLE800|SUPA|DIAMON|DIAMOF|TRANS |MSG\()",
+        rb"\b(?:MCALL|CYCLE8[0-9]+\(|CYCLE800|SUPA|DIAMON|DIAMOF|TRANS |MSG\(|WORKPIECE\b)",
     ),
     (
         Dialect.SINUMERIK,
@@ -110,7 +110,7 @@ def recognise(data: bytes) -> RecognisedControl:
 
 
 def _is_for_lathe(code: bytes) -> bool:
-    """Whether code without Y words has words of lathes, or more of them than of mills."""
+    """True if code without Y words has words of lathes, or more of them than of mills."""
     turned = _count(LATHE_HINTS, code)
     if turned and not Y_WORDS.search(code):
         return True

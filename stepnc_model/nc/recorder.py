@@ -9,6 +9,7 @@ from sys import maxsize
 import numpy as np
 
 from stepnc_model.errors import PostError
+from stepnc_model.nc.drilling import cycle_moves
 from stepnc_model.nc.moves import (
     ARC_NUMBERS,
     PLANES,
@@ -18,7 +19,10 @@ from stepnc_model.nc.moves import (
     MoveKind,
     NcMoves,
 )
+from stepnc_model.nc.spindle import spindle_block
 from stepnc_model.nc.text import NcText
+from stepnc_model.nc.thread import NcThread
+from stepnc_model.post.blocks import Block, DrillingCycle, Pause
 from stepnc_model.toolpath.path import ArcPlane, Point
 
 RAISED = "--most-repeats N allows more"
@@ -59,8 +63,9 @@ class MoveRecorder:
     def __init__(self, *, has_y: bool = True) -> None:
         self._has_y = has_y
         self._at: list[float] = [nan, nan if has_y else 0.0, nan]
+        self._keeps_place = False
         self.word = nan
-        """Feed in force, mm/s, mm per revolution or 1/s."""
+        """Feed in force, mm/s, mm per revolution or 1/s; of a thread its lead, mm."""
         self.fed_by = -1
         self.block = 0
         self.call = 0
@@ -78,6 +83,10 @@ class MoveRecorder:
         self._settings: dict[ModalSetting, int] = {self._setting: 0}
         self._index = 0
         self._rows = bytearray()
+        self._last = -1
+        """Offset of the last move in the rows; -1 before the first."""
+        self._switches: dict[Block, int] = {}
+        self._switched = 0
         self._arcs = array("d")
         self._text: NcText | None = None
         self._most_bytes = maxsize
@@ -97,6 +106,16 @@ class MoveRecorder:
         if not self._has_y:
             at[1] = 0.0
 
+    def begin(self, at: Point) -> None:
+        """Begin at a known place, which a change of the tool or of its length keeps."""
+        self.at = list(at)
+        self._keeps_place = True
+
+    def lose(self, *axes: int) -> None:
+        """Forget coordinates, as after a change of the tool or of its length."""
+        if not self._keeps_place:
+            self.at = [nan if axis in axes else old for axis, old in enumerate(self._at)]
+
     @property
     def setting(self) -> ModalSetting:
         """Modal setting in force."""
@@ -109,8 +128,8 @@ class MoveRecorder:
 
     @property
     def count(self) -> int:
-        """Number of rows recorded so far."""
-        return len(self._rows) // _PACKED.size
+        """Number of moves and pauses recorded so far."""
+        return len(self._rows) // _PACKED.size - self._switched
 
     def frame(self, name: str) -> int:
         """Index of a frame by its name."""
@@ -126,6 +145,38 @@ class MoveRecorder:
         self._arcs.extend((*centre, turn, float(PLANES.index(plane))))
         self._add(MoveKind.ARC, end, index, 0)
 
+    def thread(self, end: Sequence[float], thread: NcThread) -> None:
+        """Record a move synchronised with the spindle, whose word is its lead."""
+        word, setting = self.word, self.setting
+        self.word, self.setting = thread.lead, thread.setting(setting)
+        self._add(MoveKind.THREAD, end, -1, 0)
+        self.word, self.setting = word, setting
+
+    def hole(self, cycle: DrillingCycle, tap: NcThread) -> None:
+        """Record the moves of a drilling cycle from its retract plane and back to it.
+
+        Parameters
+        ----------
+        cycle : DrillingCycle
+        tap : NcThread
+            Thread of a tapping cycle; others have none.
+        """
+        try:
+            steps = list(cycle_moves(cycle, spindle_block(self.setting)))
+        except PostError as error:
+            line = 0 if self._text is None else self._text.line(self.block)
+            raise PostError(str(error), line=line) from None
+        for each in steps:
+            if isinstance(each, Pause):
+                self.dwell(each.seconds)
+            elif not isinstance(each, tuple):
+                self.switch(each)
+            elif each[0] is MoveKind.THREAD:
+                self.thread(each[1], tap)
+                tap = tap.back
+            else:
+                self.move(*each)
+
     def dwell(self, seconds: float) -> None:
         """Record a pause."""
         kept, self.word = self.word, seconds
@@ -136,14 +187,23 @@ class MoveRecorder:
         """Record that a block may move all axes in a way that is not understood."""
         self._add(MoveKind.UNKNOWN, (nan, nan, nan), -1, 0)
 
+    def switch(self, block: Block) -> None:
+        """Record what a block does between moves: a tool, a switch, a comment or a stop."""
+        index = self._switches.setdefault(block, len(self._switches))
+        # The bound is one of moves.
+        self._most_bytes += _PACKED.size
+        self._switched += 1
+        numbers = (*self._at, *self._at, float(index))
+        self._pack(numbers, -1, self.flags | self.standing, MoveKind.SWITCH)
+
     def carry(self, flag: MoveFlag) -> None:
         """Give a flag to the next row alone."""
         self._carried |= flag.value
 
     def round_corner(self) -> None:
         """Record that the corner between the last row and the next one is rounded."""
-        if self._rows:
-            at = len(self._rows) - _PACKED.size + _FLAGS_AT
+        if self._last >= 0:
+            at = self._last + _FLAGS_AT
             old = int.from_bytes(self._rows[at : at + 4], "little")
             self._rows[at : at + 4] = (old | _ROUNDED).to_bytes(4, "little")
         self._carried = _ROUNDED
@@ -160,12 +220,14 @@ class MoveRecorder:
             flags |= MoveFlag.NO_FEED.value
         if len(self._rows) >= self._most_bytes:
             raise self._too_many()
+        self._last = len(self._rows)
         here, there = self._at, list(end)
         self.at = there
+        self._pack((*here, *there, self.word), arc, flags, kind)
+
+    def _pack(self, numbers: Sequence[float], arc: int, flags: int, kind: MoveKind) -> None:
         self._rows += _PACKED.pack(
-            *here,
-            *there,
-            self.word,
+            *numbers,
             self.block,
             self.fed_by,
             self.call,
@@ -177,9 +239,10 @@ class MoveRecorder:
 
     def _too_many(self) -> PostError:
         """Error of a program with more moves than allowed, as of cycles that repeat."""
+        most = self._most_bytes // _PACKED.size - self._switched
         return PostError(
-            f"the program makes more than {self._most_bytes // _PACKED.size} moves: do its "
-            f"repeats have the right numbers? {RAISED}",
+            f"the program makes more than {most} moves: do its repeats have the right numbers? "
+            f"{RAISED}",
             line=0 if self._text is None else self._text.line(self.block),
         )
 
@@ -191,4 +254,5 @@ class MoveRecorder:
             settings=tuple(self._settings),
             frames=tuple(self.frames),
             calls=tuple(self.calls),
+            switches=tuple(self._switches),
         )

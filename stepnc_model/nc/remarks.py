@@ -7,6 +7,9 @@ from stepnc_model.post.words import shown
 NOT_UNDERSTOOD = "not understood: "
 """Beginning of a remark on a block that is not understood."""
 
+NO_UNIT = "the program states no unit"
+"""Beginning of a remark on a program without G20 and G21."""
+
 
 class Remarks:
     """Collector of the remarks on one program; each block is remarked once for a reason."""
@@ -15,6 +18,8 @@ class Remarks:
         self._text = text
         self._list = FindingList()
         self._said: set[tuple[int, str]] = set()
+        self.first_unread: Finding | None = None
+        """First word that neither moves nor switches show; None if they show all."""
 
     def lost(self, block: int, why: str) -> None:
         """Remark that a block is not understood and stays as it is."""
@@ -27,6 +32,13 @@ class Remarks:
     def note(self, block: int, why: str) -> None:
         """Remark an assumption about a block."""
         self._add(block, why, Severity.NOTE)
+
+    def unread(self, block: int, why: str) -> None:
+        """Note what a block says beyond its moves and switches; the first note is kept."""
+        if self.first_unread is None:
+            text = f"{why}: {shown(self._text.block(block))}"
+            line = self._text.line(block)
+            self.first_unread = Finding(severity=Severity.NOTE, message=text, line=line)
 
     def assume(self, why: str) -> None:
         """Warn of an assumption about the whole program."""

@@ -5,7 +5,7 @@ advice and no F word of their own. The order of execution decides: a block in a 
 would need another feed for each call refuses the advice before it.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from math import inf
 
@@ -22,6 +22,7 @@ from stepnc_model.nc.block_edit import (
     with_feed,
     with_mark,
 )
+from stepnc_model.nc.fed_blocks import DEFINED_CYCLES, FedBlocks, cycle_feed_blocks
 from stepnc_model.nc.feed_rows import feed_rows
 from stepnc_model.nc.moves import (
     REASONS,
@@ -31,8 +32,6 @@ from stepnc_model.nc.moves import (
     ModalSetting,
     MoveFlag,
     MoveKind,
-    NcMove,
-    NcMoves,
 )
 from stepnc_model.nc.number_style import style_of
 from stepnc_model.nc.program import NcProgram
@@ -40,6 +39,7 @@ from stepnc_model.nc.split import MovePiece, WordScale, divided
 from stepnc_model.nc.token import TokenKind, tokens
 from stepnc_model.nc.written_lines import WrittenLines, line_ends
 from stepnc_model.post.dialect import Dialect
+from stepnc_model.toolpath.arc import length as length_of
 from stepnc_model.units import mm_min_from_speed
 
 SAME = 1e-6
@@ -54,11 +54,13 @@ class _Plan:
     """Change of one block."""
 
     advice: BlockAdvice
-    pieces: list[MovePiece]
-    feeds: list[str]
-    """Number of the F word of each piece."""
+    row: int
+    """First row of the block among the moves."""
     setting: ModalSetting
-    move: NcMove
+    pieces: Sequence[MovePiece] = ()
+    """Pieces of a block that is divided; none of one that stays whole."""
+    feeds: list[str] = field(default_factory=list)
+    """Number of the F word of each piece, or of the whole block."""
     needs: bool = False
     """Whether the feed in force before the block differs in one execution."""
 
@@ -70,24 +72,6 @@ class _Trace:
     restored: dict[int, int] = field(default_factory=dict)
     """Block whose F word is to be put in force again before each of these blocks."""
     refused: dict[int, str] = field(default_factory=dict)
-
-
-DEFINED_CYCLES = frozenset({Dialect.HEIDENHAIN, Dialect.SINUMERIK})
-"""Controls whose drilling cycles have no feed in the block that executes them."""
-
-
-def cycle_feed_blocks(moves: NcMoves, dialect: Dialect) -> NDArray[np.int64]:
-    """Blocks that give defined cycles their feed, and nothing else.
-
-    A definition of Heidenhain holds the feed itself; in Sinumerik the F word before the call is
-    in force, which may serve other moves as well: then it is not among these blocks.
-    """
-    if dialect not in DEFINED_CYCLES:
-        return np.zeros(0, np.int64)
-    is_fed = np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC)) & (moves.fed_by >= 0)
-    is_cycle = (moves.flags & int(MoveFlag.CYCLE)) != 0
-    of_cycles = np.unique(moves.fed_by[is_fed & is_cycle]).astype(np.int64)
-    return np.setdiff1d(of_cycles, moves.fed_by[is_fed & ~is_cycle])
 
 
 def rewrite(
@@ -125,14 +109,8 @@ class _Rewriting:
         self.program, self.moves, self.mark = program, program.moves, mark
         self.style = style_of(program.text, program.dialect, unit=program.unit)
         self.unchanged: list[UnchangedBlock] = []
-        self._order = np.zeros(0, np.int64)
-        self._sorted = np.zeros(0, np.int64)
-        if advice:
-            kinds = (MoveKind.LINE, MoveKind.ARC, MoveKind.UNKNOWN)
-            fed = np.flatnonzero(np.isin(self.moves.kind, kinds))
-            self._order = fed[np.argsort(self.moves.block[fed], kind="stable")]
-            # As wide as what is looked up: a search would copy the array otherwise.
-            self._sorted = self.moves.block[self._order].astype(np.int64)
+        self._fed = FedBlocks(program, np.array(sorted(advice), np.int64))
+        self._numbers: dict[tuple[float, float, FeedMode], str] = {}
         self._feed_words: dict[int, str | None] = {}
         self.cycle_feeds: dict[int, str] = {}
         """Number of the new feed of blocks that give defined cycles their feed."""
@@ -164,35 +142,48 @@ class _Rewriting:
             raise ValueError(
                 f"block {block}: the program has {len(self.program.text)} blocks, from 0"
             )
-        rows = self._fed_rows(block)
-        reason = self._hindrance(rows)
+        rows = self._fed.rows(block)
+        reason = "" if self._fed.is_plain(block) else self._hindrance(rows)
         if reason:
             self._leave(block, reason)
             return None
+        row = int(rows[0])
+        setting = self.moves.settings[int(self.moves.rows["setting"][row])]
+        plan = _Plan(advice=advice, row=row, setting=setting)
+        feed = min(advice.feeds)
+        if len(set(advice.feeds)) > 1:
+            pieces = self._divided(advice, rows)
+            if len(pieces) > 1:
+                plan.pieces = pieces
+            elif pieces:
+                feed = pieces[0].feed
+        if plan.pieces:
+            plan.feeds = [self._number(rows, plan, each.feed, each.length) for each in pieces]
+        else:
+            plan.feeds = [self._number(rows, plan, feed, None)]
+        if any(float(text) <= 0.0 for text in plan.feeds):
+            self._leave(block, "the advised feed is below the resolution of its F word")
+            return None
+        return plan
+
+    def _divided(self, advice: BlockAdvice, rows: NDArray[np.int64]) -> list[MovePiece]:
+        """Pieces of a block with several feeds; none if it may not be divided."""
+        block = advice.block
+        why = self._joining(rows)
+        if why:
+            self._leave(block, why, is_unsplit=True)
+            return []
         first = self.moves.move(int(rows[0]))
-        ends, feeds = list(advice.ends), list(advice.feeds)
-        if len(set(feeds)) > 1:
-            why = self._joining(rows)
-            if why:
-                self._leave(block, why, is_unsplit=True)
-                ends, feeds = [1.0], [min(feeds)]
-        form = self._scale(first.setting)
-        is_short = len(ends) > 1
         by_radius = first.kind is MoveKind.ARC and self._is_by_radius(block)
-        pieces = divided(first, ends, feeds, scale=form, by_radius=by_radius)
-        if is_short and len(pieces) == 1 and len(set(feeds)) > 1:
+        scale = self._scale(first.setting)
+        pieces = divided(first, advice.ends, advice.feeds, scale=scale, by_radius=by_radius)
+        if len(pieces) == 1:
             self._leave(
                 block,
                 "too short for its pieces, or an arc that cannot be divided",
                 is_unsplit=True,
             )
-        texts = [self._number(rows, first, piece) for piece in pieces]
-        if any(float(text) <= 0.0 for text in texts):
-            self._leave(block, "the advised feed is below the resolution of its F word")
-            return None
-        return _Plan(
-            advice=advice, pieces=pieces, feeds=texts, setting=first.setting, move=first
-        )
+        return pieces
 
     def _plan_cycle(self, advice: BlockAdvice) -> None:
         """Plan one feed for the cycles that a block gives their feed."""
@@ -214,12 +205,6 @@ class _Rewriting:
         number = self._plain_number(rows, first.setting, min(advice.feeds))
         if float(number) > 0.0:
             self.cycle_feeds[block] = number
-
-    def _fed_rows(self, block: int) -> NDArray[np.int64]:
-        """Rows of a block that move at a feed."""
-        low = int(self._sorted.searchsorted(block))
-        high = int(self._sorted.searchsorted(block, side="right"))
-        return self._order[low:high]
 
     def _hindrance(self, rows: NDArray[np.int64]) -> str:
         """Reason why the feed of a block is left alone, or an empty string."""
@@ -273,17 +258,25 @@ class _Rewriting:
         return WordScale(unit=setting.unit, is_diameter=setting.is_diameter, style=self.style)
 
     def _is_by_radius(self, block: int) -> bool:
-        """Whether an arc of the block is given by its radius."""
+        """True if an arc of the block is given by its radius."""
         text, dialect = self.program.text.block(block), self.program.dialect
         found = [t for t in tokens(text, dialect) if t.kind in {TokenKind.WORD, TokenKind.NAME}]
         return any(t.name in {"R", "CR"} for t in found)
 
-    def _number(self, rows: NDArray[np.int64], move: NcMove, piece: MovePiece) -> str:
-        """Number of the F word of a piece, for the execution that allows least."""
-        if move.setting.mode is FeedMode.INVERSE_TIME:
-            value = mm_min_from_speed(piece.feed) / piece.length if piece.length else inf
+    def _number(
+        self, rows: NDArray[np.int64], plan: _Plan, feed: float, length: float | None
+    ) -> str:
+        """Number of the F word of a piece of some length, or of the whole block.
+
+        It serves the execution that allows least.
+        """
+        if plan.setting.mode is FeedMode.INVERSE_TIME:
+            if length is None:
+                move = self.moves.move(plan.row)
+                length = length_of(move.start, move)
+            value = mm_min_from_speed(feed) / length if length else inf
             return self.style.feed(min(value, 1e6), FeedMode.INVERSE_TIME)
-        return self._plain_number(rows, move.setting, piece.feed)
+        return self._plain_number(rows, plan.setting, feed)
 
     def _plain_number(self, rows: NDArray[np.int64], setting: ModalSetting, feed: float) -> str:
         """Number of an F word per minute or per revolution, for a feed in mm/s."""
@@ -291,7 +284,11 @@ class _Rewriting:
             feed = feed / self.moves.fastest(rows)
         else:
             feed = mm_min_from_speed(feed)
-        return self.style.feed(feed / setting.unit, setting.mode)
+        # Feeds are rounded: a long program has few different ones.
+        key = feed, setting.unit, setting.mode
+        if key not in self._numbers:
+            self._numbers[key] = self.style.feed(feed / setting.unit, setting.mode)
+        return self._numbers[key]
 
     # The feed in force.
 
@@ -324,7 +321,7 @@ class _Rewriting:
         return trace
 
     def _is_skippable(self, block: int) -> bool:
-        """Whether the operator may skip a block of the file."""
+        """True if the operator may skip a block of the file."""
         text = self.program.text.block(block) if block >= 0 else ""
         return "/" in text and any(
             token.kind is TokenKind.SKIP for token in tokens(text, self.program.dialect)
@@ -382,7 +379,7 @@ class _Rewriting:
                 new = self._changed(self.plans[block], old)
                 pieces = self.plans[block].pieces
                 changed += new != old
-                if len(pieces) > 1:
+                if pieces:
                     added += len(pieces) - 1
                     lines.divide(text.line(block), [piece.length for piece in pieces])
             else:
@@ -412,7 +409,7 @@ class _Rewriting:
             own is None and not plan.needs
         ):
             head = ""
-        if len(plan.pieces) == 1:
+        if not plan.pieces:
             new = with_feed(text, head, dialect=dialect, gap=gap) if head else text
         else:
             feeds = [
@@ -440,11 +437,11 @@ class _Rewriting:
         return new if fed_by is None else self._restored(block, new, fed_by)
 
     def _form(self, plan: _Plan) -> BlockForm:
-        move, setting = plan.move, plan.setting
+        move, setting = self.moves.move(plan.row), plan.setting
         moving = {axis for axis in range(3) if abs(move.end[axis] - move.start[axis]) > 0.0}
         arc: tuple[int, ...] = ()
-        if move.kind is MoveKind.ARC:
-            arc = tuple(sorted(move.plane.axes[:2]))
+        if move.arc is not None:
+            arc = tuple(sorted(move.arc.plane.axes[:2]))
             moving |= set(arc)
         return BlockForm(
             dialect=self.program.dialect,
@@ -463,7 +460,7 @@ class _Rewriting:
         token = feed_token(source, dialect)
         assert token is not None
         word = source[token.start : token.end]
-        kinds = self.moves.kind[self._fed_rows(block)]
+        kinds = self.moves.kind[self._fed.rows(block)]
         if (
             len(kinds)
             and (kinds != MoveKind.UNKNOWN).all()
@@ -482,7 +479,7 @@ def _marked_first(text: str, reason: str, dialect: Dialect) -> str:
 
 
 def _is_equal(one: str | None, other: str | None) -> bool:
-    """Whether two numbers of F words are the same feed."""
+    """True if two numbers of F words are the same feed."""
     if one is None or other is None:
         return False
     a, b = float(one), float(other)

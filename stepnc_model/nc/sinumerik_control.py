@@ -5,12 +5,14 @@ After Siemens, "SINUMERIK 840D sl Fundamentals" and "Job Planning".
 
 import re
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
-from math import inf, isnan, nan
+from math import copysign, inf, isnan, nan
 
 from stepnc_model.nc import iso_codes
 from stepnc_model.nc.block_words import BlockWords, take_word
-from stepnc_model.nc.drilling import cycle_moves, drilling
+from stepnc_model.nc.definitions import take_definition
+from stepnc_model.nc.drilling import drilling
 from stepnc_model.nc.flow import places
 from stepnc_model.nc.iso_control import IsoControl
 from stepnc_model.nc.iso_flow import IsoFlow, Steered
@@ -19,12 +21,13 @@ from stepnc_model.nc.iso_motions import ModalMotion, Shot
 from stepnc_model.nc.moves import FeedMode, MoveFlag, MoveKind
 from stepnc_model.nc.parameters import SINUMERIK, Parameters, plain_name
 from stepnc_model.nc.text import NcText
+from stepnc_model.nc.thread import NcThread
 from stepnc_model.nc.token import NUMBER
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.words import LARGEST
 from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
-from stepnc_model.units import rev_s_from_rpm
+from stepnc_model.units import SECONDS_PER_MINUTE, rev_s_from_rpm
 
 LABELS = re.compile(rb"^[ \t]*/?[ \t]*(?:N[0-9]+[ \t]*)?([A-Z_]{2}[A-Z0-9_]*):", re.M | re.I)
 REPEAT = re.compile(r"REPEAT\s+([A-Z_]{2}\w*)(?:\s+P\s*=?\s*([0-9]+))?", re.I)
@@ -50,8 +53,34 @@ CYCLES = {
     "CYCLE88": CycleKind.BORE_STOP,
     "CYCLE89": CycleKind.BORE,
 }
+PITCHES = {"CYCLE84": 8, "CYCLE840": 10}
+"""Index of the argument PIT of the tapping cycles."""
+
+TAPPING_SPEED = 10
+"""Index of the argument SST of CYCLE84."""
+
 FIRST_DEPTH, DEPTH_OF_PECK, BREAKS = 5, 6, 11
 """Indices of the arguments FDEP, FDPR and VARI of CYCLE83."""
+
+RETRACT, ABOVE_PECK = 14, 16
+"""Indices of the arguments _VRT and _DIS1 of CYCLE83."""
+
+PAUSES = {"CYCLE82": 5, "CYCLE83": 8, "CYCLE85": 5, "CYCLE86": 5, "CYCLE88": 5, "CYCLE89": 5}
+"""Index of the argument DTB, the dwell at the bottom."""
+
+READ: dict[str, frozenset[int]] = {name: frozenset({5}) for name in CYCLES} | {
+    "CYCLE81": frozenset(),
+    "CYCLE83": frozenset({6, 8, 11, 14, 16}),
+    "CYCLE84": frozenset({6, 8, 9, 10, 11}),
+    "CYCLE840": frozenset({6, 7, 8, 10}),
+    "CYCLE85": frozenset({5, 6, 7}),
+    "CYCLE86": frozenset({5, 6, 10}),
+    "CYCLE89": frozenset({5, 6, 7}),
+}
+"""Indices of the arguments behind DPR that are read, or change no move."""
+
+NEUTRAL = {("CYCLE83", 10): 1.0}
+"""Values of arguments that change nothing, where it is not 0: the share FRF of the feed."""
 
 FRAME_VARIABLE = re.compile(r"\$[A-Z]_[A-Z]*(?:FR|FRAME)\b", re.I)
 """Variable that holds a frame, such as ``$P_UIFR[1]``."""
@@ -78,6 +107,8 @@ class SinumerikFlow(IsoFlow):
 
     def statement(self, text: str, block: int) -> int:
         """Repeat from a label to this block; other statements depend on conditions."""
+        if take_definition(text, self._parameters(), is_sure=self._is_sure):
+            return block + 1
         jump = JUMP.fullmatch(text)
         if jump is not None and self._is_sure:
             following = self._jumped(jump, block)
@@ -124,7 +155,7 @@ class SinumerikModes(IsoModes):
             **dict.fromkeys(iso_codes.SINUMERIK_METRIC, partial(self._take_unit, 1.0)),
             **dict.fromkeys((630, 3310, 3320), thread),
             1530: partial(self._take, "shot", Shot.MACHINE),
-            9610: partial(self._take_mode, FeedMode.PER_MINUTE),
+            9610: partial(self.to_mode, FeedMode.PER_MINUTE),
         }
         for code in (580, 590):
             table[code] = self._shift_by_words
@@ -159,18 +190,15 @@ class SinumerikControl(IsoControl):
     def evaluate(self, words: BlockWords) -> None:
         """Compute words from R parameters as far as they are known, then set parameters."""
         given: dict[str, str] = {}
-        for name in [name for name in words.macros if R.fullmatch(name)]:
+        for name in [name for name in words.macros if self._is_parameter(name)]:
             given[plain_name(name)] = words.macros.pop(name)
-        for name in [name for name in words.values if R.fullmatch(name)]:
+        for name in [name for name in words.values if self._is_parameter(name)]:
             given[plain_name(name)] = f"{words.values.pop(name):.9f}"
         is_sure = not (words.is_skippable or words.strange)
         is_sure = is_sure and not self.recorder.standing & MoveFlag.CONDITIONAL
         values = {name: self.parameters.evaluate(text) for name, text in given.items()}
         # What a word is that names a parameter of its own block depends on the order.
-        named = {
-            name: set(map(plain_name, R_NAMES.findall(text.upper())))
-            for name, text in given.items()
-        }
+        named = {name: self._named_in(text) for name, text in given.items()}
         for name in given:
             self.parameters.set(name, nan)
         for name, text in list(words.macros.items()):
@@ -178,6 +206,15 @@ class SinumerikControl(IsoControl):
         for name, value in values.items():
             is_own = not (named[name] & given.keys()) - {name}
             self.parameters.set(name, value if is_sure and is_own else nan)
+
+    def _is_parameter(self, name: str) -> bool:
+        return R.fullmatch(name) is not None or name in self.parameters.declared
+
+    def _named_in(self, text: str) -> set[str]:
+        """Parameters that an expression names."""
+        found = set(map(plain_name, R_NAMES.findall(text.upper())))
+        words = set(re.findall(r"[A-Z_][A-Z0-9_]*", text.upper()))
+        return found | set(map(plain_name, words & self.parameters.declared))
 
     def _compute(self, words: BlockWords, name: str, text: str) -> None:
         """Compute one word, or the number within its IC() or AC(), if it is known."""
@@ -209,7 +246,7 @@ class SinumerikControl(IsoControl):
         self._dwell_words(words)
 
     def has_plain_moves(self) -> bool:
-        """Whether axis words alone say where a move ends; not while a cycle follows each."""
+        """True if axis words alone say where a move ends; not while a cycle follows each."""
         return self._modal_call is None and super().has_plain_moves()
 
     def rounding(self, words: BlockWords) -> Sequence[str]:
@@ -306,6 +343,8 @@ class SinumerikControl(IsoControl):
             self._drill_here(cycle, numbers)
         elif cycle in iso_codes.SINUMERIK_TRANSFORMS:
             self.modes.transform(bool(arguments.strip()))
+        elif cycle == "MSG":
+            self.switches.message(arguments.strip().strip('"'))
         elif cycle not in iso_codes.SINUMERIK_QUIET:
             self.modes.lose(f"the cycle or program {cycle} is not expanded")
             self.forget()
@@ -322,20 +361,21 @@ class SinumerikControl(IsoControl):
 
     def _drill_here(self, name: str, arguments: Sequence[float]) -> None:
         """Execute a drilling cycle at the position of the tool."""
-        numbers = [*arguments, *[inf] * (DEPTH_OF_PECK + 10 - len(arguments))]
+        numbers = [*arguments, *[inf] * (ABOVE_PECK + 1 - len(arguments))]
         back, surface, safe, bottom, depth = numbers[:5]
         if name not in CYCLES or isnan(sum(v for v in numbers[:5] if v != inf)):
             self.modes.lose(f"the cycle {name} is not expanded")
             return
+        self._note_unread(name, arguments)
         surface, safe = _given(surface, 0.0), abs(_given(safe, 0.0))
         bottom = surface - abs(_given(depth, 0.0)) if bottom == inf else bottom
         kind, step, above = CYCLES[name], 0.0, nan
         if name == "CYCLE83":
             first = _given(numbers[FIRST_DEPTH], surface)
             step = _given(numbers[DEPTH_OF_PECK], surface - first)
-            kind = (
-                CycleKind.PECK if _given(numbers[BREAKS], 0.0) == 1.0 else CycleKind.CHIP_BREAK
-            )
+            is_peck = _given(numbers[BREAKS], 0.0) == 1.0
+            kind = CycleKind.PECK if is_peck else CycleKind.CHIP_BREAK
+            above = _given(numbers[ABOVE_PECK if is_peck else RETRACT], nan)
         self.recorder.flags |= MoveFlag.CYCLE.value
         x, y, _ = self.recorder.at
         top = self.modes.scale * (surface + safe)
@@ -345,14 +385,49 @@ class SinumerikControl(IsoControl):
         hole = drilling(
             kind,
             (x, y),
-            retract=top,
-            bottom=self.modes.scale * bottom,
+            heights=(top, self.modes.scale * bottom),
             step=self.modes.scale * step,
             above=above,
+            dwell=_given(numbers[PAUSES[name]], 0.0) if name in PAUSES else 0.0,
         )
-        for move, end in cycle_moves(hole):
-            self.recorder.move(move, end)
+        self.recorder.hole(hole, self._tap(name, numbers))
         self.recorder.move(MoveKind.RAPID, (x, y, back))
+
+    def _note_unread(self, name: str, arguments: Sequence[float]) -> None:
+        """Note arguments of a cycle that would change it and are not read."""
+        for index, value in enumerate(arguments):
+            is_neutral = value in {inf, 0.0, NEUTRAL.get((name, index))}
+            if index >= 5 and not is_neutral and index not in READ[name]:
+                self.switches.unread(f"{name}: argument {index + 1}, {value:g}, is not read")
+        if name in {"CYCLE85", "CYCLE89"}:
+            feeds = {_given(each, 0.0) for each in [*arguments, inf, inf][6:8]} - {0.0}
+            if feeds - {self.recorder.word * SECONDS_PER_MINUTE / self.modes.scale}:
+                self.switches.unread(f"{name}: feeds other than the one in force are not read")
+        if len(arguments) < 4 or all(each == inf for each in arguments[3:5]):
+            self.switches.unread(f"{name}: needs RTP, RFP, SDIS and DP")
+
+    def _tap(self, name: str, numbers: Sequence[float]) -> NcThread:
+        """Thread of a tapping cycle; of others one that is not known."""
+        speed = self.modes.tapping_speed
+        if name not in PITCHES:
+            return NcThread(lead=nan)
+        if name == "CYCLE84" and numbers[TAPPING_SPEED] != inf:
+            speed = copysign(rev_s_from_rpm(numbers[TAPPING_SPEED]), speed or 1.0)
+        lead = self.modes.scale * abs(_given(numbers[PITCHES[name]], nan))
+        return NcThread(lead=lead, speed=speed)
+
+    def thread(self, words: BlockWords, end: list[float]) -> NcThread:
+        """Thread by I, J or K of the axis that moves most; of G63 by feed and spindle."""
+        if 630 in words.codes:
+            return self.modes.fed_tap
+        moves = [abs(e - s) for s, e in zip(self.recorder.at, end, strict=True)]
+        lead = nan if isnan(sum(moves)) else words.values.get("IJK"[moves.index(max(moves))])
+        found = NcThread(lead=nan if lead is None else self.modes.scale * abs(lead))
+        speed = self.modes.tapping_speed
+        if speed is not None and (3310 in words.codes or 3320 in words.codes):
+            # A negative lead cuts a left-hand thread.
+            found = replace(found, speed=copysign(speed, lead or 1.0))
+        return found.back if 3320 in words.codes else found
 
     def coordinate(self, words: BlockWords, axis: int, letter: str) -> float:
         """Coordinate of one axis, which IC() or AC() may make relative or absolute."""

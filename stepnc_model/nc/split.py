@@ -8,12 +8,21 @@ arc runs.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
-from math import ceil, copysign, cos, hypot, isnan, pi, sin
+from math import copysign, isnan, pi
 
-from stepnc_model.nc.arcs import centre_of_radius, turn_of
 from stepnc_model.nc.moves import MoveKind, NcMove
 from stepnc_model.nc.number_style import NumberStyle
-from stepnc_model.post.grid import FULL
+from stepnc_model.toolpath.arc import (
+    FULL,
+    begun_turns,
+    centre_of_radius,
+    gap,
+    on_circle,
+    point_at,
+    radius,
+    turn_of,
+)
+from stepnc_model.toolpath.arc import length as length_of
 from stepnc_model.toolpath.path import Point
 
 SHORTEST = 5
@@ -21,9 +30,6 @@ SHORTEST = 5
 
 SLACK = 4.0
 """Greatest deviation of a piece from its arc in steps of the resolution."""
-
-WHOLE = 1e-9
-"""Part of a turn below which an arc has only whole turns."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,7 +50,7 @@ class MovePiece:
     @property
     def turns(self) -> int:
         """Number of turns of an arc, the last one full or in part."""
-        return max(1, ceil(abs(self.turn) / FULL - WHOLE))
+        return begun_turns(self.turn)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,39 +116,11 @@ def divided(
         _join(fractions, speeds, bad)
 
 
-def point_at(move: NcMove, fraction: float) -> Point:
-    """Point of a move at a fraction of its length, mm."""
-    if move.kind is not MoveKind.ARC or move.centre is None:
-        x, y, z = (a + fraction * (b - a) for a, b in zip(move.start, move.end, strict=True))
-        return x, y, z
-    first, second, normal = move.plane.axes
-    point = list(move.start)
-    u = move.start[first] - move.centre[first]
-    v = move.start[second] - move.centre[second]
-    angle = fraction * move.turn
-    point[first] = move.centre[first] + u * cos(angle) - v * sin(angle)
-    point[second] = move.centre[second] + u * sin(angle) + v * cos(angle)
-    point[normal] += fraction * (move.end[normal] - move.start[normal])
-    return point[0], point[1], point[2]
-
-
-def length_of(move: NcMove) -> float:
-    """Length of a line or arc, mm."""
-    rise = [b - a for a, b in zip(move.start, move.end, strict=True)]
-    if move.kind is not MoveKind.ARC or move.centre is None:
-        return hypot(*rise)
-    first, second, normal = move.plane.axes
-    radius = hypot(
-        move.start[first] - move.centre[first], move.start[second] - move.centre[second]
-    )
-    return hypot(radius * move.turn, rise[normal])
-
-
 def _joined(
     move: NcMove, ends: Sequence[float], feeds: Sequence[float], scale: WordScale
 ) -> tuple[list[float], list[float]]:
     """Fractions and feeds without pieces that are too short for the resolution."""
-    length = length_of(move)
+    length = length_of(move.start, move)
     least = SHORTEST * scale.step / length if length > 0.0 else 2.0
     fractions: list[float] = []
     speeds: list[float] = []
@@ -171,23 +149,22 @@ def _join(fractions: list[float], speeds: list[float], index: int) -> None:
 def _pieces(
     move: NcMove, fractions: Sequence[float], feeds: Sequence[float], scale: WordScale
 ) -> list[MovePiece]:
-    length = length_of(move)
+    length = length_of(move.start, move)
     pieces: list[MovePiece] = []
     start, before = move.start, 0.0
     for fraction, feed in zip(fractions, feeds, strict=True):
         is_last = fraction == fractions[-1]
-        point = move.end if is_last else point_at(move, fraction)
+        point = move.end if is_last else point_at(move.start, move, fraction)
         words = _words(point, scale)
         rounded = _rounded(move.end if is_last else words, scale, is_exact=is_last)
-        offset = (Decimal(0),) * 3
-        if move.centre is not None:
-            offset = _offset(move, start, scale)
+        arc = move.arc
+        offset = (Decimal(0),) * 3 if arc is None else _offset(arc.centre, start, scale)
         pieces.append(
             MovePiece(
                 end=words,
                 start=_words(start, scale),
                 offset=(offset[0], offset[1], offset[2]),
-                turn=move.turn * (fraction - before),
+                turn=0.0 if arc is None else arc.turn * (fraction - before),
                 feed=feed,
                 length=length * (fraction - before),
             )
@@ -209,36 +186,30 @@ def _rounded(words: Sequence[Decimal | float], scale: WordScale, *, is_exact: bo
     return x, y, z
 
 
-def _offset(move: NcMove, start: Point, scale: WordScale) -> tuple[Decimal, Decimal, Decimal]:
+def _offset(centre: Point, start: Point, scale: WordScale) -> tuple[Decimal, Decimal, Decimal]:
     """Centre from the start of a piece; I of a lathe is a radius."""
-    assert move.centre is not None
     x, y, z = (
-        scale.style.rounded((c - s) / scale.unit)
-        for c, s in zip(move.centre, start, strict=True)
+        scale.style.rounded((c - s) / scale.unit) for c, s in zip(centre, start, strict=True)
     )
     return x, y, z
 
 
 def _is_sound(move: NcMove, piece: MovePiece, scale: WordScale, by_radius: bool) -> bool:
-    """Whether a piece runs where the whole move runs, within the resolution."""
-    if move.kind is not MoveKind.ARC or move.centre is None:
+    """True if a piece runs where the whole move runs, within the resolution."""
+    arc = move.arc
+    if move.kind is not MoveKind.ARC or arc is None:
         return piece.start != piece.end
-    plane = move.plane
-    first, second, _ = plane.axes
+    plane = arc.plane
     start = _rounded(piece.start, scale, is_exact=False)
     end = _rounded(piece.end, scale, is_exact=False)
-    chord = hypot(end[first] - start[first], end[second] - start[second])
-    if chord < SHORTEST * scale.step:
+    if gap(start, end, plane) < SHORTEST * scale.step:
         return False
-    sense = copysign(1.0, piece.turn)
+    sense, size = copysign(1.0, piece.turn), radius(move.start, arc)
     if by_radius:
-        if abs(move.turn) > FULL or abs(abs(piece.turn) - pi) < 0.05 * pi:
+        if abs(arc.turn) > FULL or abs(abs(piece.turn) - pi) < 0.05 * pi:
             return False
-        radius = hypot(
-            move.start[first] - move.centre[first], move.start[second] - move.centre[second]
-        )
-        radius = scale.unit * float(scale.style.rounded(radius / scale.unit))
-        signed = radius if abs(piece.turn) <= pi else -radius
+        word = scale.unit * float(scale.style.rounded(size / scale.unit))
+        signed = word if abs(piece.turn) <= pi else -word
         centre = centre_of_radius(start, end, radius=signed, plane=plane, sense=sense)
     else:
         x, y, z = (s + float(o) * scale.unit for s, o in zip(start, piece.offset, strict=True))
@@ -247,24 +218,9 @@ def _is_sound(move: NcMove, piece: MovePiece, scale: WordScale, by_radius: bool)
     if isnan(turn):
         return False
     turn += sense * (piece.turns - 1) * FULL
-    size = hypot(start[first] - centre[first], start[second] - centre[second])
-    if size * abs(turn - piece.turn) > SLACK * scale.step:
+    slack = SLACK * scale.step
+    if gap(start, centre, plane) * abs(turn - piece.turn) > slack:
         return False
-    return _is_along(move, (start, end, centre), turn, scale)
-
-
-def _is_along(
-    move: NcMove, arc: tuple[Point, Point, Point], turn: float, scale: WordScale
-) -> bool:
-    """Whether the middle of a piece lies on the circle of the whole arc."""
-    assert move.centre is not None
-    start, _, centre = arc
-    first, second, _ = move.plane.axes
-    u, v = start[first] - centre[first], start[second] - centre[second]
-    half = 0.5 * turn
-    x = centre[first] + u * cos(half) - v * sin(half) - move.centre[first]
-    y = centre[second] + u * sin(half) + v * cos(half) - move.centre[second]
-    true = hypot(
-        move.start[first] - move.centre[first], move.start[second] - move.centre[second]
-    )
-    return abs(hypot(x, y) - true) <= SLACK * scale.step
+    # The middle of the piece lies on the circle of the whole arc.
+    middle = on_circle(start, start, centre, plane, 0.5 * turn)
+    return abs(gap(middle, arc.centre, plane) - size) <= slack

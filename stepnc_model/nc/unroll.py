@@ -57,7 +57,13 @@ def unrolled(program: NcProgram) -> UnrolledProgram:
         of its own.
     """
     most = program.most_repeats
-    control = control_of(program.text, program.dialect, program.machine, most_repeats=most)
+    control = control_of(
+        program.text,
+        program.dialect,
+        program.machine,
+        most_repeats=most,
+        keeps_state=program.keeps_state,
+    )
     trace: list[int] = []
     control.flow.trace = trace
     control.run()
@@ -71,6 +77,7 @@ def unrolled(program: NcProgram) -> UnrolledProgram:
         dialect=program.dialect,
         machine=program.machine,
         most_repeats=most,
+        keeps_state=program.keeps_state,
     )
     if not _are_same(program.moves, again.moves):
         raise PostError(
@@ -102,7 +109,7 @@ def _lines(program: NcProgram, blocks: list[int]) -> list[str]:
 
 
 def _are_same(one: NcMoves, other: NcMoves) -> bool:
-    """Whether two programs make the same moves with the same settings."""
+    """True if two programs make the same moves with the same settings."""
     if len(one) != len(other) or not np.array_equal(one.arcs, other.arcs, equal_nan=True):
         return False
     for name in ("start", "end", "word", "kind"):

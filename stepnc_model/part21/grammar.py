@@ -9,6 +9,7 @@ slashes would take 4 GB. Longer text is scanned in several runs.
 
 import re
 
+from stepnc_model.counted import counted
 from stepnc_model.part21.places import Slips, SyntaxSlip, error_at
 
 COMMENT = rb"(?>/\*(?s:.*?)\*/)"
@@ -68,7 +69,7 @@ def skip_blank(data: bytes, position: int, *, slips: Slips) -> int:
 def _nested(data: bytes, start: int, end: int) -> SyntaxSlip:
     """Deviation for a comment that contains ``/*``, with the number of hidden instances."""
     hidden = len(_HEAD_IN_COMMENT.findall(data, start, end))
-    text = f"; it hides {hidden} instances" if hidden else ""
+    text = f"; it hides {counted(hidden, 'instance')}" if hidden else ""
     return SyntaxSlip(offset=start, message=f"nested comment: '/*' within a comment{text}")
 
 

@@ -1,10 +1,18 @@
-"""Read access to an ISO 10303-21 file: an index at once, parameters on request.
+r"""Read access to an ISO 10303-21 file: an index at once, parameters on request.
 
 The HEADER section is read as far as it follows the standard [1]_.
+
+Apostrophes that the directive ``\S\`` takes as its character.
+
+``\S\`` is followed by one character of the basic alphabet, which includes the apostrophe [2]_:
+``\S\'`` is a section sign, and does not end the string. All patterns of this package take an
+apostrophe for the end of a string, so they scan bytes of the same length in which that
+apostrophe is masked. The bytes of the file themselves stay as they are.
 
 References
 ----------
 .. [1] ISO 10303-21:2016, 8.2 (file_description, file_name, file_schema).
+.. [2] ISO 10303-21:2016, 6.4.3: ``page = \S\ character``.
 """
 
 import re
@@ -17,14 +25,68 @@ from typing import Self
 
 from stepnc_model.errors import Finding, FindingList, SchemaError, Severity
 from stepnc_model.part21.grammar import closing, skip_blank
-from stepnc_model.part21.index import Index
-from stepnc_model.part21.page_quotes import masked
+from stepnc_model.part21.index import Index, InstanceRecord, Part, parse_record, part_spans
 from stepnc_model.part21.places import Lines, SyntaxSlip, error_at
-from stepnc_model.part21.record import InstanceRecord, Part, parse_record, part_spans
 from stepnc_model.part21.structure import FileStructure, Statement, read_structure
-from stepnc_model.part21.tidy import is_tidy, tidy_values
+from stepnc_model.part21.tokens import is_tidy, tidy_values
 from stepnc_model.part21.unpacked import unpacked
 from stepnc_model.part21.values import Value
+
+MASK = 0x80
+"""Bit set in a masked apostrophe, whose byte then is that of its meaning in ISO 8859-1."""
+
+_TAKEN = rb"\S\'"
+_STRICT = re.compile(rb"'(?>(?:[^'\\]++|''|\\\\|\\S\\[\x20-\x7e]|\\){0,100000})'")
+_PLAIN = re.compile(rb"'(?>[^']*+(?>(?:''[^']*+){0,100000}))'")
+_END = re.compile(rb"\s*+(?:[,)]|/\*)")
+_DIRECTIVE = re.compile(rb"''|\\\\|\\S\\[\x20-\x7e]")
+_BETWEEN = re.compile(rb"(?>(?:[^'/]++|/\*(?s:.*?)(?:\*/|\Z)|/){0,10000})")
+_MAX_RETRIED = 1 << 23
+"""Limit for strings that are read twice, bytes; beyond it no apostrophe is masked."""
+
+
+def masked(data: bytes) -> bytes:
+    r"""Bytes in which the apostrophes of ``\S\'`` are masked; most files are returned as given.
+
+    A string is read by the standard where a comma or a bracket follows its end. Elsewhere the
+    apostrophe ends it, as in a path ``'C:\S\'`` whose backslashes are not doubled.
+
+    Examples
+    --------
+    >>> masked(rb"#1=A('\S\'7',2);")
+    b"#1=A('\\S\\\xa77',2);"
+    """
+    if _TAKEN not in data:
+        return data
+    found = bytearray(data)
+    position, retried = 0, 0
+    while (start := _next_string(data, position)) >= 0:
+        strict = _STRICT.match(data, start)
+        if strict is not None and _END.match(data, strict.end()):
+            _mask(found, data, strict.start() + 1, strict.end() - 1)
+            position = strict.end()
+            continue
+        retried += (len(data) if strict is None else strict.end()) - start
+        if retried > _MAX_RETRIED:
+            break
+        plain = _PLAIN.match(data, start)
+        position = len(data) if plain is None else plain.end()
+    return bytes(found)
+
+
+def _next_string(data: bytes, position: int) -> int:
+    """Offset of the next apostrophe outside comments; -1 if there is none."""
+    while (end := _BETWEEN.match(data, position).end()) > position:  # type: ignore[union-attr]
+        position = end
+    return position if position < len(data) else -1
+
+
+def _mask(found: bytearray, data: bytes, start: int, end: int) -> None:
+    """Mask the apostrophes that directives between two offsets take."""
+    for directive in _DIRECTIVE.finditer(data, start, end):
+        if directive[0] == _TAKEN:
+            found[directive.end() - 1] |= MASK
+
 
 _ARITY = {"FILE_DESCRIPTION": 2, "FILE_NAME": 7, "FILE_SCHEMA": 1}
 
@@ -335,7 +397,7 @@ class Part21File:
         return record
 
     def is_examined(self, id: int) -> bool:
-        """Whether a check of the whole file inspects an instance.
+        """True if a check of the whole file inspects an instance.
 
         All instances in the plain form of the standard are inspected; of the others, which are
         slow to parse, up to ``MAX_EXAMINED`` bytes. :meth:`parameters` reads every instance.

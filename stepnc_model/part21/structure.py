@@ -238,6 +238,6 @@ class _Scan:
 
 
 def _blank_to_end(data: bytes, position: int) -> bool:
-    """Whether only white space follows up to the end of the file."""
+    """True if only white space follows up to the end of the file."""
     match = _SPACE.match(data, position)
     return match is not None and match.end() == len(data)

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from stepnc_model.part21.grammar import KEYWORD, skip_blank
+from stepnc_model.part21.index import parse_record
 from stepnc_model.part21.places import line_break
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.part21.record import parse_record
-from stepnc_model.part21.strings import decode, encode
+from stepnc_model.part21.tokens import decode, encode
 from stepnc_model.part21.values import Binary, Derived, Enumeration, Real, Ref, Typed, Value
 
 Span: TypeAlias = tuple[int, int]
@@ -406,7 +406,7 @@ class _Added:
 
 
 def _is_schema(text: str, name: str) -> bool:
-    """Whether an entry of FILE_SCHEMA names a schema, ignoring an object identifier."""
+    """True if an entry of FILE_SCHEMA names a schema, ignoring an object identifier."""
     return text.partition("{")[0].strip().upper() == name.strip().upper()
 
 

@@ -5,7 +5,6 @@ Units mm, mm/s, mm/rev.
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from math import atan2, cos, hypot, sin
 
 from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import (
@@ -14,10 +13,12 @@ from stepnc_model.post.blocks import (
     DrillingCycle,
     Linear,
     Rapid,
+    Rate,
     Retract,
     RigidTap,
     ThreadingMove,
 )
+from stepnc_model.toolpath.arc import point_at
 from stepnc_model.toolpath.path import Point
 
 Numbered = tuple[int, Block]
@@ -98,34 +99,26 @@ def _parts(block: Block, parts: tuple[BlockPart, ...], at: Point | None) -> Iter
         yield block
         return
     if len(parts) == 1:
-        yield replace(block, rate=replace(block.rate, value=parts[0].rate))
+        # Made anew: copies by ``replace`` take several times as long, once in each block.
+        rate = Rate(value=parts[0].rate, mode=block.rate.mode)
+        yield (
+            Linear(end=block.end, rate=rate)
+            if isinstance(block, Linear)
+            else replace(block, rate=rate)
+        )
         return
     if at is None:
         raise PostError(f"a block cannot be split: its start is unknown ({block})")
     begin = 0.0
     for part in parts:
-        end = block.end if part is parts[-1] else _between(block, at, part.end)
+        end = block.end if part is parts[-1] else point_at(at, block, part.end)
         rate = replace(block.rate, value=part.rate)
         if isinstance(block, Circular):
-            yield replace(block, end=end, turn=block.turn * (part.end - begin), rate=rate)
+            arc = replace(block.arc, turn=block.arc.turn * (part.end - begin))
+            yield replace(block, end=end, arc=arc, rate=rate)
         else:
             yield Linear(end=end, rate=rate)
         begin = part.end
-
-
-def _between(block: Linear | Circular, start: Point, share: float) -> Point:
-    """Point on a block at a share of its length."""
-    if isinstance(block, Linear):
-        x, y, z = (a + share * (b - a) for a, b in zip(start, block.end, strict=True))
-        return x, y, z
-    first, second, normal = block.plane.axes
-    arm = start[first] - block.centre[first], start[second] - block.centre[second]
-    angle = atan2(arm[1], arm[0]) + share * block.turn
-    point = [0.0, 0.0, 0.0]
-    point[first] = block.centre[first] + hypot(*arm) * cos(angle)
-    point[second] = block.centre[second] + hypot(*arm) * sin(angle)
-    point[normal] = start[normal] + share * (block.end[normal] - start[normal])
-    return point[0], point[1], point[2]
 
 
 def _cycle(cycle: DrillingCycle, value: float) -> DrillingCycle:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from stepnc_model.errors import PostError
-from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
+from stepnc_model.toolpath.path import Arc, CycleKind, Point
 
 
 class MachineType(StrEnum):
@@ -95,8 +95,19 @@ class Comment:
     text: str
     workingstep: str = ""
     """Name of the workingstep that begins here."""
-    tolerance: float | None = None
-    """Path tolerance of that workingstep, mm; 0: exact stops. None: whatever is in force."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PathControl:
+    """How the control runs from one move into the next, from here on."""
+
+    tolerance: float
+    """Path tolerance, mm; 0: corners are stops; infinite: none is given."""
+    joining: float | None = None
+    """Distance from short lines that may be joined to one, mm; None: the path tolerance, if
+    one is given."""
+    is_exact_stop: bool = False
+    """Whether each move ends at rest, at a corner or not."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -176,18 +187,18 @@ class Linear:
     end: Point
     rate: Rate
 
+    @property
+    def arc(self) -> None:
+        """No arc: a line."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Circular:
     """Arc or helix at a feed."""
 
     end: Point
-    centre: Point
-    """Centre of the arc; its coordinate along the normal of the plane has no meaning."""
-    turn: float
-    """Angle of the arc, rad, positive counter-clockwise; more than 2π for several turns."""
+    arc: Arc
     rate: Rate
-    plane: ArcPlane = ArcPlane.XY
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -256,6 +267,7 @@ class DrillingCycle:
 Block = (
     ProgramStart
     | Comment
+    | PathControl
     | Message
     | ToolChange
     | SpindleOn

@@ -15,9 +15,9 @@ References
 """
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from math import ceil, dist, isfinite, pi
+from math import copysign, dist, isfinite
 from typing import Any
 
 from stepnc_model.errors import PostError
@@ -30,6 +30,7 @@ from stepnc_model.post.blocks import (
     Linear,
     Message,
     OptionalStopBlock,
+    PathControl,
     Pause,
     ProgramEnd,
     ProgramStart,
@@ -48,6 +49,7 @@ from stepnc_model.post.blocks import (
 )
 from stepnc_model.post.grid import flat, on_grid
 from stepnc_model.post.words import shown
+from stepnc_model.toolpath.arc import begun_turns
 from stepnc_model.toolpath.path import ArcPlane, Point
 from stepnc_model.units import m_min_from_speed, mm_min_from_speed, rpm_from_rev_s
 
@@ -102,6 +104,12 @@ def synchronised(start: Point, end: Point, lead: float) -> float:
     return lead * dist(start, end) / most
 
 
+def along_longest(start: Sequence[float], end: Sequence[float], lead: float) -> float:
+    """Lead along the axis that moves most, mm, from the lead along a path."""
+    most = max(abs(e - s) for s, e in zip(start, end, strict=True))
+    return lead * most / dist(start, end)
+
+
 class _Writer:
     """Writer of canonical commands that tracks the modal state."""
 
@@ -124,6 +132,8 @@ class _Writer:
             SurfaceSpeed: self._surface,
             Coolant: self._coolant,
             ProgramStart: self._start,
+            # Tolerances are no part of what a program does.
+            PathControl: lambda _: iter(()),
         }
 
     def commands(self, block: Block) -> Iterator[Canonical]:
@@ -155,12 +165,11 @@ class _Writer:
     def _circular(self, block: Circular) -> Iterator[Canonical]:
         if block.rate != self.rate:
             yield from self._set_rate(block.rate)
-        if block.plane != self.plane:
-            self.plane = block.plane
-            yield Canonical("SELECT_PLANE", (PLANES[block.plane],))
-        first, second, normal = block.plane.axes
-        turns = max(1, ceil(abs(block.turn) / (2.0 * pi) - 1e-9))
-        end, centre = block.end, block.centre
+        plane, turn, end, centre = block.arc.plane, block.arc.turn, block.end, block.arc.centre
+        if plane != self.plane:
+            self.plane = plane
+            yield Canonical("SELECT_PLANE", (PLANES[plane],))
+        first, second, normal = plane.axes
         self.at = end
         yield Canonical(
             "ARC_FEED",
@@ -169,7 +178,7 @@ class _Writer:
                 end[second],
                 centre[first],
                 centre[second],
-                turns if block.turn > 0.0 else -turns,
+                int(copysign(begun_turns(turn), turn)),
                 end[normal],
             ),
         )

@@ -1,19 +1,16 @@
-"""Common interface for writing and reading the NC code of all supported controls."""
+"""Common interface for writing the NC code of all supported controls."""
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
 from typing import Protocol
 
 from stepnc_model.errors import PostError
 from stepnc_model.post import canonical, heidenhain
-from stepnc_model.post.blocks import Block, Comment, Cycles, MachineType
-from stepnc_model.post.canonical import Canonical, commands
+from stepnc_model.post.blocks import Block, Cycles, PathControl
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.fanuc import HAAS, Fanuc, FanucReader
+from stepnc_model.post.fanuc import HAAS, Fanuc
 from stepnc_model.post.heidenhain import Heidenhain
-from stepnc_model.post.linuxcnc import LinuxCnc, LinuxCncReader
-from stepnc_model.post.read_heidenhain import HeidenhainReader
-from stepnc_model.post.sinumerik import Sinumerik, SinumerikReader
+from stepnc_model.post.linuxcnc import LinuxCnc
+from stepnc_model.post.sinumerik import Sinumerik
 
 
 class Writer(Protocol):
@@ -24,28 +21,12 @@ class Writer(Protocol):
         ...
 
 
-class NcReader(Protocol):
-    """Reader of one NC program."""
-
-    def blocks(self, lines: Iterable[str]) -> Iterator[Block]:
-        """Neutral blocks of the NC program."""
-        ...
-
-
 WRITERS: dict[Dialect, Callable[[], Writer]] = {
     Dialect.LINUXCNC: LinuxCnc,
     Dialect.FANUC: Fanuc,
     Dialect.HAAS: lambda: Fanuc(HAAS),
     Dialect.SINUMERIK: Sinumerik,
     Dialect.HEIDENHAIN: Heidenhain,
-}
-
-READERS: dict[Dialect, Callable[[MachineType], NcReader]] = {
-    Dialect.LINUXCNC: LinuxCncReader,
-    Dialect.FANUC: FanucReader,
-    Dialect.HAAS: lambda machine: FanucReader(machine, HAAS),
-    Dialect.SINUMERIK: SinumerikReader,
-    Dialect.HEIDENHAIN: HeidenhainReader,
 }
 
 PLACES: dict[Dialect, int] = {
@@ -79,9 +60,7 @@ def with_exact_stops(blocks: Iterable[Block], control: Dialect) -> Iterator[Bloc
     if control in WITHOUT_EXACT_STOPS:
         raise PostError(f"exact stops are not written for {control.value}: omit --exact-path")
     return (
-        replace(block, tolerance=0.0)
-        if isinstance(block, Comment) and block.workingstep
-        else block
+        PathControl(tolerance=0.0) if isinstance(block, PathControl) else block
         for block in blocks
     )
 
@@ -99,34 +78,3 @@ def write(
     if control is Dialect.CANONICAL:
         return canonical.write(blocks)
     return WRITERS[control]().lines(blocks, cycles)
-
-
-def read_blocks(
-    lines: Iterable[str], control: Dialect, *, machine: MachineType = MachineType.MILL
-) -> Iterator[Block]:
-    """Read NC code as neutral blocks.
-
-    Parameters
-    ----------
-    lines : iterable of str
-    control : Dialect
-    machine : MachineType
-        Machine that the code is for; Fanuc and Haas code does not say.
-
-    Raises
-    ------
-    PostError
-        If a word is unknown to the dialect or an arc is invalid, with its line.
-    """
-    if control is Dialect.CANONICAL:
-        raise PostError("canonical commands are not NC code: they cannot be read as blocks")
-    return READERS[control](machine).blocks(lines)
-
-
-def read(
-    lines: Iterable[str], control: Dialect, *, machine: MachineType = MachineType.MILL
-) -> tuple[Canonical, ...]:
-    """Read NC code as canonical commands; arguments as for :func:`read_blocks`."""
-    if control is Dialect.CANONICAL:
-        return tuple(canonical.read(lines))
-    return tuple(commands(read_blocks(lines, control, machine=machine)))

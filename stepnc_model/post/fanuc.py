@@ -20,7 +20,6 @@ from typing import ClassVar
 
 from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import (
-    Block,
     CoolantKind,
     MachineType,
     ProgramEnd,
@@ -31,21 +30,12 @@ from stepnc_model.post.blocks import (
     ToolChange,
 )
 from stepnc_model.post.iso_code import IsoCode
-from stepnc_model.post.iso_reader import IsoReader
 from stepnc_model.post.words import (
-    CANNED,
-    COMMON,
-    EXACT_OR_CUTTING,
-    LENGTHS,
-    PER_TIME,
-    GCode,
-    GCodeAction,
-    LineWords,
     ascii_text,
     pointed,
-    whole,
 )
 from stepnc_model.toolpath.path import ArcPlane, Point
+from stepnc_model.units import ms_from_seconds
 
 LONGEST = 100
 """Greatest length of a comment in characters."""
@@ -67,8 +57,6 @@ class DialectTraits:
     """Program number in the head of the program."""
     seconds: Callable[[float], str]
     """Format a dwell in seconds as a P word."""
-    seconds_of: Callable[[float, bool], float]
-    """Dwell in s from a P value, given whether it lacks a decimal point."""
     coolant: Mapping[CoolantKind, str]
     coolant_ends: tuple[str, ...]
     threads: Mapping[MachineType, str]
@@ -83,8 +71,7 @@ class DialectTraits:
 
 FANUC = DialectTraits(
     head="O0001",
-    seconds=lambda value: f"P{round(1000.0 * value)}",
-    seconds_of=lambda value, _pointless: value / 1000.0,
+    seconds=lambda value: f"P{round(ms_from_seconds(value))}",
     coolant={CoolantKind.FLOOD: "M8", CoolantKind.MIST: "M7", CoolantKind.THROUGH: "M8"},
     coolant_ends=("M9",),
     threads={MachineType.MILL: "G33", MachineType.LATHE: "G32"},
@@ -200,87 +187,9 @@ class Fanuc(IsoCode):
         yield from self.line("G80")
 
 
-MILL: dict[str, GCode] = COMMON | EXACT_OR_CUTTING | PER_TIME | LENGTHS | CANNED
-LATHE: dict[str, GCode] = (
-    COMMON
-    | EXACT_OR_CUTTING
-    | {
-        "G21": GCodeAction.NOTHING,
-        "G50": GCodeAction.SPEED_LIMIT,
-        "G80": GCodeAction.CANCEL,
-        "G98": RateMode.PER_MINUTE,
-        "G99": RateMode.PER_REVOLUTION,
-    }
-)
-TAPS = {
-    SpindleDirection.CLOCKWISE: GCodeAction.TAP,
-    SpindleDirection.COUNTERCLOCKWISE: GCodeAction.LEFT_TAP,
-}
-
-
-class FanucReader(IsoReader):
-    """Reader of NC code for Fanuc and Haas controls."""
-
-    quiet: ClassVar[frozenset[str]] = frozenset({"M29"})
-    head: ClassVar[re.Pattern[str]] = re.compile(r"%|O[0-9]{4,5}")
-
-    def __init__(self, machine: MachineType, manner: DialectTraits = FANUC) -> None:
-        super().__init__(machine)
-        self.manner = manner
-        own = {code: TAPS[s] for (m, s), code in manner.taps.items() if m is machine}
-        if machine in manner.threads:
-            own[manner.threads[machine]] = GCodeAction.THREAD
-        self.codes = {machine: (MILL if machine is MachineType.MILL else LATHE) | own}
-        self.coolants = {code: frozenset({kind}) for kind, code in manner.coolant.items()}
-        self.coolants["M8"] = frozenset({CoolantKind.FLOOD})
-        self.coolant_ends = frozenset(manner.coolant_ends)
-
-    def seconds(self, words: LineWords) -> float:
-        """Dwell time from the P word, s."""
-        value = words.need("P", "G4")
-        return self.manner.seconds_of(value, "P" in words.pointless)
-
-    def tool(self, words: LineWords) -> Iterator[Block]:
-        """Tool change by T and M6; on a lathe by T alone, with its offset."""
-        if self.machine is MachineType.MILL:
-            yield from super().tool(words)
-            return
-        number = words.take("T")
-        if number is not None:
-            self.sense = None
-            yield ToolChange(number=whole(whole(number, "T") // 100, "T"))
-
-    def lead(self, end: Point, words: LineWords) -> float:
-        """Lead of a thread from the F word, which is the feed as well, mm."""
-        return self._lead()
-
-    def tap(self, words: LineWords, act: GCode) -> Iterator[Block]:
-        """Read a rigid tap with its lead in the F word."""
-        sense = (
-            SpindleDirection.CLOCKWISE
-            if act is GCodeAction.TAP
-            else SpindleDirection.COUNTERCLOCKWISE
-        )
-        if self.mode is not RateMode.PER_REVOLUTION:
-            raise PostError(
-                "a rigid tap is only supported with feed per revolution, its lead in F"
-            )
-        x, y, bottom = self.end(words)
-        retract = words.take("R")
-        self.at = (x, y, self.at[2] if retract is None else retract)
-        self.sense = sense
-        yield self.tapped(bottom, self._lead(), sense)
-
-    def _lead(self) -> float:
-        if not self.feed:
-            raise PostError("a thread has no F word")
-        return self.feed
-
-
 HAAS = DialectTraits(
     head="O00001",
     seconds=lambda value: f"P{pointed(value, 3)}",
-    seconds_of=lambda value, pointless: value / 1000.0 if pointless else value,
     coolant={CoolantKind.FLOOD: "M8", CoolantKind.MIST: "M7", CoolantKind.THROUGH: "M88"},
     coolant_ends=("M9", "M89"),
     threads={MachineType.LATHE: "G32"},

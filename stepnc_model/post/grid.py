@@ -7,9 +7,8 @@ hardly determines the centre, are first cut in two; arcs below the grid become l
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
-from math import atan2, cos, hypot, pi, sin
+from math import copysign, pi
 
-from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import (
     Block,
     Circular,
@@ -20,18 +19,19 @@ from stepnc_model.post.blocks import (
     RigidTap,
     ThreadingMove,
 )
-from stepnc_model.toolpath.path import ArcPlane, Point
-
-FULL = 2.0 * pi
+from stepnc_model.toolpath.arc import (
+    FULL,
+    WHOLE,
+    full_turns,
+    gap,
+    point_at,
+    radius,
+    swept,
+)
+from stepnc_model.toolpath.path import Arc, ArcPlane, Point
 
 LEAST_RADIUS = 0.005
 """Least radius of an arc, mm; LinuxCNC treats smaller arcs as points."""
-
-WHOLE = 1e-6
-"""Tolerance within which an angle counts as a full turn, rad."""
-
-NOISE = 1e-9
-"""Angle below which an arc's ends are the same point, rad."""
 
 WIDE = 1.5 * pi
 """Angle above which an arc's chord is too short to place its centre, rad."""
@@ -128,12 +128,9 @@ def single_turns(blocks: Iterable[Block]) -> Iterator[Block]:
         at = end_of(block, at)
 
 
-def pieces(start: Point, arc: Circular) -> Iterator[Circular]:
+def pieces(start: Point, block: Circular) -> Iterator[Circular]:
     """Split an arc so that each chord determines its centre well."""
-    sense = 1.0 if arc.turn > 0.0 else -1.0
-    full, rest = divmod(abs(arc.turn), FULL)
-    if FULL - rest < WHOLE:
-        full, rest = full + 1.0, 0.0
+    full, rest = full_turns(block.arc.turn)
     whole = full * FULL
     if rest < WHOLE:
         parts = [whole]
@@ -143,43 +140,37 @@ def pieces(start: Point, arc: Circular) -> Iterator[Circular]:
         parts = [whole + 0.5 * rest, 0.5 * rest]
     else:
         parts = [whole + rest]
-    yield from cut(start, arc, [sense * part for part in parts if part])
+    yield from cut(start, block, [part for part in parts if part])
 
 
-def turns(start: Point, arc: Circular) -> Iterator[Circular]:
+def turns(start: Point, block: Circular) -> Iterator[Circular]:
     """Split an arc into full turns and the rest."""
-    sense = 1.0 if arc.turn > 0.0 else -1.0
-    full, rest = divmod(abs(arc.turn), FULL)
-    if FULL - rest < WHOLE:
-        full, rest = full + 1.0, 0.0
-    parts = [FULL] * int(full) + ([rest] if rest >= WHOLE or not full else [])
-    yield from cut(start, arc, [sense * part for part in parts])
+    full, rest = full_turns(block.arc.turn)
+    parts = [FULL] * full + ([rest] if rest >= WHOLE or not full else [])
+    yield from cut(start, block, parts)
 
 
-def cut(start: Point, arc: Circular, parts: list[float]) -> Iterator[Circular]:
-    """Split an arc into parts by angle; the last part ends where the arc ends."""
+def cut(start: Point, block: Circular, parts: list[float]) -> Iterator[Circular]:
+    """Split an arc into parts by the sizes of their angles; the last keeps its end."""
     if len(parts) < 2:
-        yield arc
+        yield block
         return
-    total, turned = sum(parts), 0.0
+    sense, total, turned = copysign(1.0, block.arc.turn), sum(parts), 0.0
     for part in parts[:-1]:
         turned += part
-        end = along(start, arc, turned, turned / total)
-        yield replace(arc, end=end, turn=part)
-    yield replace(arc, turn=parts[-1])
+        end = point_at(start, block, turned / total)
+        if turned % FULL <= WHOLE or FULL - turned % FULL <= WHOLE:
+            # Full turns return to the start exactly.
+            end = _above(start, end, block.arc.plane)
+        yield replace(block, end=end, arc=replace(block.arc, turn=sense * part))
+    yield replace(block, arc=replace(block.arc, turn=sense * parts[-1]))
 
 
-def along(start: Point, arc: Circular, turned: float, part: float) -> Point:
-    """Point of an arc at an angle from its start in rad, and at a fraction of its rise."""
-    first, second, normal = arc.plane.axes
-    u, v = start[first] - arc.centre[first], start[second] - arc.centre[second]
-    point = list(start)
-    # Full turns return to the start exactly.
-    if abs(turned) % FULL > WHOLE and FULL - abs(turned) % FULL > WHOLE:
-        point[first] = arc.centre[first] + u * cos(turned) - v * sin(turned)
-        point[second] = arc.centre[second] + u * sin(turned) + v * cos(turned)
-    point[normal] = start[normal] + part * (arc.end[normal] - start[normal])
-    return point[0], point[1], point[2]
+def _above(start: Point, end: Point, plane: ArcPlane) -> Point:
+    """Point over another one in a plane, at the level of a third."""
+    normal = plane.axes[2]
+    x, y, z = (end[axis] if axis == normal else start[axis] for axis in range(3))
+    return x, y, z
 
 
 def end_of(block: Block, at: Point) -> Point:
@@ -201,74 +192,42 @@ def rounded(point: Point, places: int) -> Point:
     return round(x, places) + 0.0, round(y, places) + 0.0, round(z, places) + 0.0
 
 
-def sweep(start: Point, end: Point, centre: Point, plane: ArcPlane, *, sense: float) -> float:
-    """Angle from start to end about a centre, rad, above 0 and at most 2π."""
-    first, second, _ = plane.axes
-    a, b = start[first] - centre[first], start[second] - centre[second]
-    c, d = end[first] - centre[first], end[second] - centre[second]
-    angle = sense * atan2(a * d - b * c, a * c + b * d)
-    return angle if angle > NOISE else angle + FULL
-
-
-def turn_between(
-    start: Point, end: Point, centre: Point, plane: ArcPlane, *, sense: float, slack: float
-) -> float:
-    """Signed angle of an arc given by its ends and centre, rad.
-
-    Raises
-    ------
-    PostError
-        If the radii to both ends differ by more than ``slack`` in mm.
-    """
-    first, second, _ = plane.axes
-    radii = [hypot(p[first] - centre[first], p[second] - centre[second]) for p in (start, end)]
-    if min(radii) <= 0.0 or abs(radii[0] - radii[1]) > slack:
-        raise PostError(
-            f"invalid arc: the radii to its ends are {radii[0]:.4f} and {radii[1]:.4f} mm, "
-            f"they may differ by {slack:g} mm"
-        )
-    return sense * sweep(start, end, centre, plane, sense=sense)
-
-
-def _arc(at: Point, arc: Circular, places: int) -> Iterator[Circular | Linear]:
+def _arc(at: Point, block: Circular, places: int) -> Iterator[Circular | Linear]:
     """Fit an arc to the grid, starting from a point of the grid."""
     start = at
-    for piece in pieces(at, arc):
+    for piece in pieces(at, block):
         for fitted in _fitted(start, piece, places):
             yield fitted
             start = fitted.end
 
 
-def _fitted(start: Point, arc: Circular, places: int) -> Iterator[Circular | Linear]:
+def _fitted(start: Point, block: Circular, places: int) -> Iterator[Circular | Linear]:
     """Fit one arc piece to the grid; a line where the grid is too coarse for an arc."""
-    first, second, _ = arc.plane.axes
-    end = rounded(arc.end, places)
-    sense = 1.0 if arc.turn > 0.0 else -1.0
-    size = hypot(start[first] - arc.centre[first], start[second] - arc.centre[second])
+    arc, end = block.arc, rounded(block.end, places)
+    plane, sense, size = arc.plane, copysign(1.0, arc.turn), radius(start, arc)
     full = round(abs(arc.turn) / FULL)
     is_whole = full > 0 and abs(abs(arc.turn) - full * FULL) < WHOLE
     if size >= LEAST_RADIUS and is_whole:
-        back = list(end)
-        back[first], back[second] = start[first], start[second]
-        closed = (back[0], back[1], back[2])
-        centre = _from(start, arc.centre, arc.plane, places)
-        yield replace(arc, end=closed, centre=centre, turn=sense * full * FULL)
+        closed = _above(start, end, plane)
+        centre = _from(start, arc.centre, plane, places)
+        whole = Arc(centre=centre, turn=sense * full * FULL, plane=plane)
+        yield replace(block, end=closed, arc=whole)
         if closed != end:
-            yield Linear(end=end, rate=arc.rate)
+            yield Linear(end=end, rate=block.rate)
         return
-    is_closed = (start[first], start[second]) == (end[first], end[second])
-    if size >= LEAST_RADIUS and not is_closed:
-        centre = _from(start, _bisected(start, end, arc), arc.plane, places)
-        angle = sweep(start, end, centre, arc.plane, sense=sense)
+    if size >= LEAST_RADIUS and gap(start, end, plane) > 0.0:
+        centre = _from(start, _bisected(start, end, arc), plane, places)
+        angle = swept(start, end, centre, plane, sense=sense)
         more = round((abs(arc.turn) - angle) / FULL)
         if more >= 0:
-            yield replace(arc, end=end, centre=centre, turn=sense * (angle + more * FULL))
+            turn = sense * (angle + more * FULL)
+            yield replace(block, end=end, arc=Arc(centre=centre, turn=turn, plane=plane))
             return
     if end != start:
-        yield Linear(end=end, rate=arc.rate)
+        yield Linear(end=end, rate=block.rate)
 
 
-def _bisected(start: Point, end: Point, arc: Circular) -> Point:
+def _bisected(start: Point, end: Point, arc: Arc) -> Point:
     """Centre of an arc moved onto the bisector of its chord."""
     first, second, _ = arc.plane.axes
     u, v = end[first] - start[first], end[second] - start[second]

@@ -9,7 +9,6 @@ x y, z x, y z.
 
 import re
 from collections.abc import Callable, Iterable, Iterator
-from math import degrees
 
 from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import (
@@ -23,6 +22,7 @@ from stepnc_model.post.blocks import (
     MachineType,
     Message,
     OptionalStopBlock,
+    PathControl,
     Pause,
     ProgramEnd,
     ProgramStart,
@@ -40,10 +40,11 @@ from stepnc_model.post.blocks import (
     ThreadingMove,
     ToolChange,
 )
-from stepnc_model.post.grid import FULL, end_of, flat, on_grid, turns
+from stepnc_model.post.grid import end_of, flat, on_grid, turns
 from stepnc_model.post.words import Modal, ascii_text, decimal
+from stepnc_model.toolpath.arc import FULL
 from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
-from stepnc_model.units import mm_min_from_speed, rpm_from_rev_s
+from stepnc_model.units import deg_from_rad, mm_min_from_speed, rpm_from_rev_s
 
 PLACES = 3
 ANGLE_PLACES = 4
@@ -82,6 +83,7 @@ class Heidenhain:
             ProgramStart: self._start,
             ProgramEnd: self._end,
             Comment: self._comment,
+            PathControl: lambda _: iter(()),
             Message: self._comment,
             ToolChange: self._tool_change,
             SpindleOn: self._spindle_on,
@@ -188,23 +190,23 @@ class Heidenhain:
         yield from self._line("L", *words, self.modal.word("R", "R0"), self._rate(block.rate))
 
     def _circular(self, block: Circular) -> Iterator[str]:
-        first, second, normal = block.plane.axes
+        first, second, normal = block.arc.plane.axes
         if self._helix_end is not None:
             # A helix ends by its angle, nearly at its end: a full circle needs the exact point.
             yield from self._linear(Linear(end=self._helix_end, rate=block.rate))
         rise = block.end[normal] - (self.at[normal] or 0.0)
-        centre = [f"{'XYZ'[i]}{_signed(block.centre[i])}" for i in sorted((first, second))]
+        centre = [f"{'XYZ'[i]}{_signed(block.arc.centre[i])}" for i in sorted((first, second))]
         yield from self._line("CC", *centre)
-        sense = "DR+" if block.turn > 0.0 else "DR-"
+        sense = "DR+" if block.arc.turn > 0.0 else "DR-"
         rate = self._rate(block.rate)
-        is_helix = abs(rise) > 0.0 or abs(block.turn) > FULL + 1e-6
-        if is_helix and block.plane is not ArcPlane.XY:
+        is_helix = abs(rise) > 0.0 or abs(block.arc.turn) > FULL + 1e-6
+        if is_helix and block.arc.plane is not ArcPlane.XY:
             raise PostError(
-                f"a helix in the plane {block.plane}: Klartext supports helices in XY only"
+                f"a helix in the plane {block.arc.plane}: Klartext supports helices in XY only"
             )
         self.at = list(block.end)
         if is_helix:
-            angle = f"IPA{_signed(degrees(block.turn), ANGLE_PLACES)}"
+            angle = f"IPA{_signed(deg_from_rad(block.arc.turn), ANGLE_PLACES)}"
             yield from self._line("CP", angle, f"IZ{_signed(rise)}", sense, rate)
             self.at, self._helix_end = [None, None, block.end[2]], block.end
             return
@@ -265,7 +267,7 @@ class Heidenhain:
 
 
 def _keeps(cycle: DrillingCycle) -> bool:
-    """Whether Klartext has a drilling cycle; its feed is per minute."""
+    """True if Klartext has a drilling cycle; its feed is per minute."""
     return (
         cycle.kind in KEPT
         and (not cycle.dwell or cycle.kind in DWELLING)
@@ -315,7 +317,7 @@ def _shaped(blocks: Iterable[Block]) -> Iterator[Block]:
     for block in blocks:
         if (
             isinstance(block, Circular)
-            and block.end[block.plane.axes[2]] == (at[block.plane.axes[2]])
+            and block.end[block.arc.plane.axes[2]] == (at[block.arc.plane.axes[2]])
         ):
             yield from turns(at, block)
         else:

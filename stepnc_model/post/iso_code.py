@@ -20,6 +20,7 @@ from stepnc_model.post.blocks import (
     MachineType,
     Message,
     OptionalStopBlock,
+    PathControl,
     Pause,
     ProgramEnd,
     ProgramStart,
@@ -87,6 +88,7 @@ class IsoCode(ABC):
             ProgramStart: self._start,
             ProgramEnd: self.end,
             Comment: self.comment,
+            PathControl: self.path_mode,
             Message: self.message,
             ToolChange: self.tool_change,
             SpindleOn: self.spindle_on,
@@ -127,7 +129,7 @@ class IsoCode(ABC):
         return single_turns(blocks)
 
     def keeps(self, cycle: DrillingCycle) -> bool:
-        """Whether the control has its own cycle for this one."""
+        """True if the control has its own cycle for this one."""
         return (
             self.machine is MachineType.MILL
             and cycle.kind in self.cycle_codes
@@ -186,8 +188,11 @@ class IsoCode(ABC):
             yield " ".join(kept)
 
     def comment(self, block: Comment) -> Iterator[str]:
-        """Write a comment on a separate line, and exact stops of a workingstep."""
+        """Write a comment on a separate line."""
         yield self.text(block.text)
+
+    def path_mode(self, block: PathControl) -> Iterator[str]:
+        """Write exact stops; where corners are rounded, the control knows how far."""
         if self.exact_codes and block.tolerance == 0.0:
             yield from self.line(self.modal.word("path", self.exact_codes[0]))
 
@@ -347,14 +352,14 @@ class IsoCode(ABC):
 
     def _circular(self, block: Circular) -> Iterator[str]:
         start = self.at
-        first, second, _ = block.plane.axes
+        first, second, _ = block.arc.plane.axes
         offsets = [0.0, 0.0]
         for place, axis in enumerate((first, second)):
             from_ = start[axis]
             if from_ is None:
                 raise PostError("an arc from an unknown position")
-            offsets[place] = block.centre[axis] - from_
-        plane = self.plane_words(block.plane)
+            offsets[place] = block.arc.centre[axis] - from_
+        plane = self.plane_words(block.arc.plane)
         mode = self.mode(block.rate.mode)
         # A full circle moves no axis: always write both axes of the plane.
         self.at = [None if i in {first, second} else v for i, v in enumerate(start)]
@@ -363,7 +368,7 @@ class IsoCode(ABC):
             f"{'IJK'[axis]}{self.number(offset, self.places)}"
             for axis, offset in sorted(zip((first, second), offsets, strict=True))
         ]
-        motion = self.modal.word("motion", "G3" if block.turn > 0.0 else "G2")
+        motion = self.modal.word("motion", "G3" if block.arc.turn > 0.0 else "G2")
         turn = self.turn_words(block)
         yield from self.line(plane, mode, motion, *words, *centre, *turn, self.rate(block.rate))
 

@@ -6,39 +6,28 @@ with a fixed retract of 0.254 mm.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from math import dist
+from math import isfinite
 from typing import ClassVar
 
-from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import (
     Block,
     Circular,
-    Comment,
     MachineType,
     Message,
+    PathControl,
     ProgramEnd,
     RigidTap,
     ThreadingMove,
     ToolChange,
 )
 from stepnc_model.post.canonical import synchronised
-from stepnc_model.post.grid import FULL
 from stepnc_model.post.iso_code import SENSE_CODES, IsoCode
-from stepnc_model.post.iso_reader import IsoReader
 from stepnc_model.post.words import (
-    CANNED,
-    COMMON,
-    EXACT_OR_CUTTING,
-    LENGTHS,
-    PER_TIME,
-    GCode,
-    GCodeAction,
-    LineWords,
     ascii_text,
     bracketed,
 )
+from stepnc_model.toolpath.arc import begun_turns
 from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
-from stepnc_model.units import rev_s_from_rpm
 
 LONGEST = 200
 """Greatest length of a comment in characters; a line may have 255."""
@@ -97,17 +86,20 @@ class LinuxCnc(IsoCode):
         is_active = plain.upper().replace(" ", "").startswith(ACTIVE)
         return bracketed(f"- {plain}" if is_active else plain, LONGEST)
 
-    def comment(self, block: Comment) -> Iterator[str]:
-        """Write a comment, and the path mode of the workingstep that begins with it.
+    def path_mode(self, block: PathControl) -> Iterator[str]:
+        """Write the path mode.
 
         Without one the program would run in the mode of the program before it: M2 keeps it, and
         after a plain G64 a corner is cut by millimetres.
         """
-        yield from super().comment(block)
-        if block.tolerance is not None:
-            tolerance = self.number(block.tolerance, self.places)
-            mode = f"G64 P{tolerance}" if block.tolerance else "G61"
-            yield from self.line(self.modal.word("path", mode))
+        if block.tolerance == 0.0:
+            code = "G61.1" if block.is_exact_stop else "G61"
+        else:
+            code = "G64"
+            for letter, value in (("P", block.tolerance), ("Q", block.joining)):
+                if value is not None and isfinite(value):
+                    code += f" {letter}{self.number(value, self.places)}"
+        yield from self.line(self.modal.word("path", code))
 
     def message(self, block: Message) -> Iterator[str]:
         """Write a message to the operator's screen."""
@@ -136,56 +128,5 @@ class LinuxCnc(IsoCode):
 
     def turn_words(self, block: Circular) -> list[str]:
         """P word with the number of turns, begun turns included."""
-        turns = int(abs(block.turn) / FULL - 1e-9) + 1
+        turns = begun_turns(block.arc.turn)
         return [f"P{turns}"] if turns > 1 else []
-
-
-class LinuxCncReader(IsoReader):
-    """Reader of LinuxCNC NC code."""
-
-    path_letters: ClassVar[str] = "PQ"
-    """Tolerances of G64: of corners, and of lines that are joined."""
-
-    codes: Mapping[MachineType, Mapping[str, GCode]] = {
-        machine: COMMON
-        | EXACT_OR_CUTTING
-        | PER_TIME
-        | LENGTHS
-        | CANNED
-        | {
-            "G7": GCodeAction.DIAMETER,
-            "G33": GCodeAction.THREAD,
-            "G33.1": GCodeAction.TAP,
-            "G61.1": GCodeAction.PATH_MODE,
-            "G91.1": GCodeAction.NOTHING,
-        }
-        for machine in MachineType
-    }
-
-    def comment(self, text: str) -> Block:
-        """Message or comment block from a comment."""
-        if text.upper().startswith("MSG,"):
-            return Message(text=text[4:])
-        return Comment(text=text)
-
-    def lead(self, end: Point, words: LineWords) -> float:
-        """Lead along the axis that moves most, mm, from K along the path."""
-        return along_path(self.at, end, words.need("K", "G33"))
-
-    def surface_limit(self, words: LineWords) -> float | None:
-        """Speed limit from D in the same block, rev/s, or None."""
-        limit = words.take("D")
-        return None if limit is None else rev_s_from_rpm(limit)
-
-    def tap(self, words: LineWords, act: GCode) -> Iterator[Block]:
-        """Rigid tap by G33.1, in the current direction of the spindle."""
-        if self.sense is None:
-            raise PostError("G33.1 while the spindle is stopped")
-        bottom = self.end(words)[2]
-        yield self.tapped(bottom, words.need("K", "G33.1"), self.sense)
-
-
-def along_path(start: Point, end: Point, lead: float) -> float:
-    """Convert a lead along the path to the lead along the axis that moves most, mm."""
-    most = max(abs(e - s) for s, e in zip(start, end, strict=True))
-    return lead * most / dist(start, end)

@@ -27,7 +27,7 @@ from stepnc_model.post.blocks import (
 )
 from stepnc_model.program import Program
 from stepnc_model.technology import Number, Programmed, ProgrammedQuantity, programmed
-from stepnc_model.tool import Tool, hand_of, tool_of
+from stepnc_model.tool import Tool, hand_of, is_described, tool_of
 from stepnc_model.toolpath.path import Feed
 
 COOLANTS = {
@@ -76,7 +76,13 @@ def conditions(
         found = programmed(program, feed.technology)
     except SchemaError as error:
         return _incomplete(program, feed, str(error))
-    cutter = tool_of(program, tool) if tool is not None else None
+    cutter = None
+    needs_tool = (
+        found.feed.quantity is ProgrammedQuantity.FEED_PER_TOOTH
+        or found.speed.quantity is ProgrammedQuantity.CUTTING_SPEED
+    )
+    if tool is not None and (needs_tool or is_described(program, tool)):
+        cutter = tool_of(program, tool)
     if machine is MachineType.LATHE:
         spindle, speed = _lathe_spindle(found, feed)
         is_unlimited = isinstance(spindle, SurfaceSpeed) and spindle.limit is None

@@ -25,6 +25,7 @@ from stepnc_model.post.blocks import (
     MachineType,
     Message,
     OptionalStopBlock,
+    PathControl,
     Pause,
     ProgramEnd,
     ProgramStart,
@@ -44,7 +45,7 @@ from stepnc_model.post.blocks import (
 from stepnc_model.post.modal_state import ModalState, conditions, constant_speed, coolant_of
 from stepnc_model.post.path_tolerance import path_tolerance
 from stepnc_model.program import Program
-from stepnc_model.tool import tool_of
+from stepnc_model.tool import is_described, tool_name, tool_of
 from stepnc_model.toolpath.path import (
     LEFT_OUT,
     CannedCycle,
@@ -161,7 +162,7 @@ def _is_turning(paths: Sequence[ToolPath | Function]) -> bool:
 
 
 def _turns_first(path: ToolPath) -> bool:
-    """Whether a path begins with its own spindle speed."""
+    """True if a path begins with its own spindle speed."""
     return bool(path.steps) and isinstance(path.steps[0], SpindleSpeedChange)
 
 
@@ -212,9 +213,10 @@ class _Sequence:
 
     def _listed(self, ref: Ref[Entity], number: int) -> str:
         """Line of the tool list for one tool."""
-        tool = tool_of(self.program, ref)
-        size = f" D{tool.diameter:g}" if tool.diameter else ""
-        return f"T{number} {tool.id}{size}"
+        is_sized = is_described(self.program, ref)
+        diameter = tool_of(self.program, ref).diameter if is_sized else 0.0
+        size = f" D{diameter:g}" if diameter else ""
+        return f"T{number} {tool_name(self.program, ref)}{size}"
 
     def _function(self, function: Function) -> Iterator[Block]:
         yield Comment(text=function.id)
@@ -230,11 +232,9 @@ class _Sequence:
 
     def _path(self, path: ToolPath) -> Iterator[Block]:
         """Blocks of one workingstep."""
-        yield Comment(
-            text=path.id,
-            workingstep=path.id,
-            tolerance=path_tolerance(self.program, self._steps.get(int(path.workingstep))),
-        )
+        yield Comment(text=path.id, workingstep=path.id)
+        workingstep = self._steps.get(int(path.workingstep))
+        yield PathControl(tolerance=path_tolerance(self.program, workingstep))
         beside = max(abs(point[1]) for point in (path.start, *(m.end for m in path.moves)))
         if self.machine is MachineType.LATHE and beside > ON_LATHE:
             raise PostError(f"y = {beside:g} mm in a turning program: a lathe has no y axis")
@@ -272,7 +272,7 @@ class _Sequence:
             yield Retract(z=max(self.safe_z, self.at[2]), is_way=True)
         self.at, self.tool = None, ref
         self.turning = self.programmed = None
-        yield ToolChange(number=self.numbers[ref], id=tool_of(self.program, ref).id)
+        yield ToolChange(number=self.numbers[ref], id=tool_name(self.program, ref))
 
     def _go(self, start: Point) -> Iterator[Block]:
         """Move up, across and down to the start of a path."""
@@ -293,7 +293,9 @@ class _Sequence:
         elif isinstance(step, Dwell):
             yield Pause(seconds=self._seconds(step))
         elif isinstance(step, SpindleSpeedChange):
-            yield from self._take(self._conditions(Feed(technology=step.technology)))
+            found = self._conditions(Feed(technology=step.technology))
+            # Only the spindle counts here: a feed that is missing is of no account.
+            yield from self._take(found if found.spindle is None else replace(found, note=""))
         elif step is SpindleCommand.STOP:
             yield from self._spindle(SpindleOff())
         elif step is SpindleCommand.ORIENT:
@@ -324,10 +326,7 @@ class _Sequence:
         if move.arc is None:
             yield Linear(end=move.end, rate=rate)
         else:
-            arc = move.arc
-            yield Circular(
-                end=move.end, centre=arc.centre, turn=arc.turn, plane=arc.plane, rate=rate
-            )
+            yield Circular(end=move.end, arc=move.arc, rate=rate)
 
     def _rate(self, found: ModalState) -> Rate:
         """Feed of a move, checked against what a control can run."""

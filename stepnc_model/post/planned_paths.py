@@ -111,7 +111,7 @@ def _grouped(blocks: Iterable[Numbered]) -> tuple[MachineType, list[list[Numbere
 
 
 def _is_step(block: Block) -> bool:
-    """Whether a block comes from a move or a dwell of a tool path."""
+    """True if a block comes from a move or a dwell of a tool path."""
     if isinstance(block, Rapid):
         return not block.is_way
     kinds = (Linear, Circular, ThreadingMove, DrillingCycle, RigidTap, Pause)

@@ -6,22 +6,18 @@ G331, G332, G33, TURN=, and G96, G961, G97 of one group with G94 and G95) and "S
 is a diameter (DIAMON), its I stays a radius. Cycles are called where the tool is, not modally.
 """
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import ClassVar
 
-from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import (
     Block,
     Circular,
-    Comment,
     DrillingCycle,
     MachineType,
     Message,
     ProgramEnd,
     Rapid,
     RateMode,
-    Retract,
     RigidTap,
     SpindleDirection,
     SpindleOn,
@@ -29,23 +25,13 @@ from stepnc_model.post.blocks import (
     ThreadingMove,
     ToolChange,
 )
-from stepnc_model.post.grid import FULL, NARROW, end_of, turns
+from stepnc_model.post.grid import NARROW, end_of, turns
 from stepnc_model.post.iso_code import IsoCode
-from stepnc_model.post.iso_reader import ROUND, IsoReader
 from stepnc_model.post.words import (
-    COMMON,
-    NUMBER,
-    PER_TIME,
-    GCode,
-    GCodeAction,
-    LineWords,
     ascii_text,
-    number_of,
-    pairs,
-    whole,
 )
+from stepnc_model.toolpath.arc import FULL, begun_turns
 from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
-from stepnc_model.units import rev_s_from_rpm
 
 LONGEST = 150
 PECKING = frozenset({CycleKind.PECK, CycleKind.CHIP_BREAK})
@@ -72,14 +58,14 @@ class Sinumerik(IsoCode):
         """
         at: Point = (0.0, 0.0, 0.0)
         for block in blocks:
-            if isinstance(block, Circular) and abs(block.turn) % FULL < NARROW:
+            if isinstance(block, Circular) and abs(block.arc.turn) % FULL < NARROW:
                 yield from turns(at, block)
             else:
                 yield block
             at = end_of(block, at)
 
     def keeps(self, cycle: DrillingCycle) -> bool:
-        """Whether a cycle is kept; a retract distance of 0 would select the default."""
+        """True if a cycle is kept; a retract distance of 0 would select the default."""
         is_said = cycle.kind not in PECKING or cycle.retract_distance > 0.0
         return is_said and super().keeps(cycle)
 
@@ -162,7 +148,7 @@ class Sinumerik(IsoCode):
 
     def turn_words(self, block: Circular) -> list[str]:
         """TURN= with the number of full turns besides the arc itself."""
-        full = int(abs(block.turn) / FULL - 1e-9)
+        full = begun_turns(block.arc.turn) - 1
         return [f"TURN={full}"] if full else []
 
     def drilling_cycle(self, block: DrillingCycle) -> Iterator[str]:
@@ -192,170 +178,3 @@ class Sinumerik(IsoCode):
         # DPR, FDEP, FDPR, DAM, DTB, DTS, FRF, VARI, _AXN, _MDEP, _VRT, _DTD, _DIS1
         own = ["", "", step, "0", "0", "0", "1", "1" if is_peck else "0", "", ""]
         return [*head, *own, *(["", "", short] if is_peck else [short])]
-
-
-CYCLES = {"81": CycleKind.DRILL, "82": CycleKind.DWELL, "85": CycleKind.BORE}
-READ = {"81": (), "82": (1,), "83": (2, 4, 6, 7, 10, 12), "85": (1, 2, 3)}
-"""Indices of the arguments after RTP, RFP, SDIS and DP that are read, by cycle."""
-
-CALL = re.compile(r"(?:N\d+\s*)?CYCLE(8[1235])\(([^()]*)\)")
-MESSAGE = re.compile(r'(?:N\d+\s*)?MSG\("([^"]*)"\)')
-ASSIGNED = re.compile(rf"\b(LIMS|SPOS|TURN)\s*=\s*({NUMBER})")
-DIAMETER = re.compile(r"\bDIAMON\b")
-CODES: dict[str, GCode] = (
-    COMMON
-    | PER_TIME
-    | {
-        "G33": GCodeAction.THREAD,
-        "G60": GCodeAction.PATH_MODE,
-        "G64": GCodeAction.PATH_MODE,
-        "G90": GCodeAction.NOTHING,
-        "G331": GCodeAction.TAP,
-        "G332": GCodeAction.TAP_OUT,
-        "G710": GCodeAction.NOTHING,
-        "G961": GCodeAction.SURFACE_SPEED,
-    }
-)
-
-
-class SinumerikReader(IsoReader):
-    """Reader of Sinumerik NC code."""
-
-    codes: Mapping[MachineType, Mapping[str, GCode]] = dict.fromkeys(MachineType, CODES)
-
-    def __init__(self, machine: MachineType) -> None:
-        super().__init__(machine)
-        self.returns_to_start = False
-        self._assigned: dict[str, float] = {}
-        self._tap: tuple[float, float] | None = None
-        self._pause = 0.0
-
-    def line(self, line: str) -> Iterator[Block]:
-        """Blocks of one line: a message, a cycle call, or words, and a comment."""
-        message = MESSAGE.fullmatch(line.strip())
-        code, mark, text = ("", "", "") if message else line.partition(";")
-        call = CALL.fullmatch(code.strip())
-        if message:
-            yield Message(text=message[1])
-        elif call:
-            yield from self._called(call[1], call[2].split(","))
-        elif code.strip():
-            yield from self._assignments(code)
-        if mark:
-            yield Comment(text=text.strip())
-
-    def _assignments(self, code: str) -> Iterator[Block]:
-        """Read words with several letters, then the others."""
-        if DIAMETER.search(code):
-            self.machine, self.is_diameter = MachineType.LATHE, True
-            code = DIAMETER.sub(" ", code)
-        self._assigned = {}
-        for name, text in ASSIGNED.findall(code):
-            if name in self._assigned:
-                raise PostError(f"word {name}={text}: {name} appears twice in one block")
-            self._assigned[name] = number_of(f"{name}=", text)
-        words = LineWords(pairs(ASSIGNED.sub(" ", code)))
-        if "LIMS" in self._assigned:
-            self.limit = rev_s_from_rpm(whole(self._assigned.pop("LIMS"), "LIMS="))
-        yield from self.block(words)
-        if self._assigned:
-            raise PostError(f"word {next(iter(self._assigned))}=: not used by this block")
-
-    def settle(self, acts: list[GCode], words: LineWords) -> None:
-        """Update the modal state; G94 to G97 are one group, and the F of G4 is no feed."""
-        if GCodeAction.DWELL in acts:
-            self._pause = words.need("F", "G4")
-        if RateMode.PER_MINUTE in acts or RateMode.PER_REVOLUTION in acts:
-            self.is_surface_speed = False
-        if "G961" in words.codes:
-            acts.append(RateMode.PER_MINUTE)
-        elif GCodeAction.SURFACE_SPEED in acts or GCodeAction.SPINDLE_SPEED in acts:
-            acts.append(RateMode.PER_REVOLUTION)
-        super().settle(acts, words)
-
-    def seconds(self, words: LineWords) -> float:
-        """Dwell time from F, s."""
-        return self._pause
-
-    def tool(self, words: LineWords) -> Iterator[Block]:
-        """Tool change by T and M6, or by T alone on a lathe; D selects the edge."""
-        words.take("D")
-        if self.machine is MachineType.LATHE and "T" in words:
-            words.functions.append("M6")
-        return super().tool(words)
-
-    def extra(self, words: LineWords) -> Iterator[Block]:
-        """Spindle orientation by SPOS=."""
-        angle = self._assigned.pop("SPOS", None)
-        if angle:
-            raise PostError(f"word SPOS={angle:g}: only angle 0 is supported")
-        if angle is not None:
-            yield SpindleOrient()
-
-    def turns(self, words: LineWords) -> int:
-        """Number of full turns from TURN=, besides the arc itself."""
-        given = self._assigned.pop("TURN", 0.0)
-        return whole(given, "TURN=") if given else 0
-
-    def lead(self, end: Point, words: LineWords) -> float:
-        """Lead from I, J or K of the axis that moves most, mm."""
-        moves = [abs(e - s) for s, e in zip(self.at, end, strict=True)]
-        return words.need("IJK"[moves.index(max(moves))], "G33")
-
-    def tap(self, words: LineWords, act: GCode) -> Iterator[Block]:
-        """Combine G331 down and G332 up into one rigid tap."""
-        z, lead = words.need("Z", "a tap"), words.need("K", "a tap")
-        if act is GCodeAction.TAP:
-            self._tap = (z, lead)
-            return
-        if self._tap is None or abs(z - self.at[2]) > ROUND or lead != self._tap[1]:
-            raise PostError("G332 must lead back to where G331 began, with the same lead")
-        bottom, self._tap = self._tap[0], None
-        self.sense = (
-            SpindleDirection.CLOCKWISE if lead > 0.0 else SpindleDirection.COUNTERCLOCKWISE
-        )
-        yield self.tapped(bottom, abs(lead), self.sense)
-
-    def _called(self, number: str, texts: list[str]) -> Iterator[Block]:
-        """Read a drilling cycle at the current position."""
-        filled = [text.strip() for text in texts]
-        if not all(re.fullmatch(NUMBER, text) for text in filled if text):
-            raise PostError(f"CYCLE{number}: the arguments must be numbers")
-        arguments = [number_of(f"CYCLE{number} ", text or "0") for text in filled]
-        if len(arguments) < 4:
-            raise PostError(f"CYCLE{number}: needs at least RTP, RFP, SDIS and DP")
-        top, reference, distance, bottom, *rest = arguments
-        rest += [0.0] * (13 - len(rest))
-        self._refuse_more(number, rest)
-        kind = CYCLES.get(number)
-        if kind is None:
-            kind = CycleKind.PECK if rest[7] == 1.0 else CycleKind.CHIP_BREAK
-        is_deep = number == "83"
-        cycle = DrillingCycle(
-            kind=kind,
-            at=self.at[:2],
-            retract_z=reference + distance,
-            bottom_z=bottom,
-            rate=self.rate(),
-            step_depth=rest[2] if is_deep else 0.0,
-            retract_distance=rest[12 if kind is CycleKind.PECK else 10] if is_deep else 0.0,
-            dwell=rest[4] if is_deep else rest[1],
-        )
-        yield from self.drilled(cycle)
-        if top != self.at[2]:
-            self.at = (*cycle.at, top)
-            yield Retract(z=top)
-
-    def _refuse_more(self, number: str, rest: list[float]) -> None:
-        """Raise an error on arguments that would change the cycle but are not supported."""
-        for index, value in enumerate(rest):
-            if value and index not in READ[number]:
-                raise PostError(
-                    f"CYCLE{number}: argument {index + 5}, {value:g}, is not supported"
-                )
-        if number == "83" and rest[6] not in {0.0, 1.0}:
-            raise PostError(
-                f"CYCLE83: a feed of {rest[6]:g} at the first peck is not supported"
-            )
-        if number == "85" and any(f not in {0.0, self.feed} for f in rest[2:4]):
-            raise PostError("CYCLE85: feeds other than the current one are not supported")

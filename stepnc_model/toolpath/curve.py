@@ -1,8 +1,8 @@
 """Curves of the file as chains of lines and circular arcs in space.
 
-ISO 10303-42: polylines, composite and trimmed curves, circles, lines and B-splines, and the
-helix of NIST's ``ex1E.stp``. Circles remain arcs; ellipses and B-splines become chords within
-``CHORD_TOLERANCE``.
+ISO 10303-42: polylines, composite and trimmed curves, circles, lines, Bezier curves and
+B-splines, and the helix of NIST's ``ex1E.stp``. Circles remain arcs; ellipses, Bezier curves
+and B-splines become chords within ``CHORD_TOLERANCE``.
 
 References
 ----------
@@ -19,6 +19,7 @@ from math import atan2, ceil, cos, dist, pi, sin
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import TrimmingPreference
 from stepnc_model.entities.geometry import (
+    BezierCurve,
     BSplineCurve,
     BSplineCurveWithKnots,
     Circle,
@@ -31,6 +32,7 @@ from stepnc_model.entities.geometry import (
 )
 from stepnc_model.part21.values import Ref, Typed
 from stepnc_model.program import Program
+from stepnc_model.toolpath.arc import chord_angle
 from stepnc_model.toolpath.frame import Frame, direction_of, frame_of, point_of
 from stepnc_model.toolpath.path import Arc, ArcPlane, Feed, Move, MoveType, Point
 from stepnc_model.units import rad_from_deg
@@ -98,7 +100,7 @@ def spline_of(program: Program, ref: Ref[Entity]) -> Spline:
 
 
 def _knots(program: Program, ref: Ref[Entity], curve: BSplineCurve) -> tuple[float, ...]:
-    """Knot vector; open and uniform if the curve does not give one."""
+    """Knot vector; open and uniform if the curve does not give one, joints of Bezier curves."""
     if isinstance(curve, BSplineCurveWithKnots):
         if len(curve.knots) != len(curve.knot_multiplicities):
             counts = (
@@ -117,6 +119,13 @@ def _knots(program: Program, ref: Ref[Entity], curve: BSplineCurve) -> tuple[flo
             for _ in range(times)
         )
     count, degree = len(curve.control_points_list), curve.degree
+    if isinstance(curve, BezierCurve):
+        if (count - 1) % degree:
+            text = f"{count} control points are not those of Bezier curves of degree {degree}"
+            raise program.path_error(text, ref)
+        pieces = (count - 1) // degree
+        joints = tuple(float(piece) for piece in range(1, pieces) for _ in range(degree))
+        return (0.0,) * (degree + 1) + joints + (float(pieces),) * (degree + 1)
     inner = tuple(float(index) for index in range(1, count - degree))
     return (0.0,) * (degree + 1) + inner + (float(count - degree),) * (degree + 1)
 
@@ -186,12 +195,24 @@ def segments_of(program: Program, ref: Ref[Entity]) -> tuple[Segment, ...]:
     PathError
         If the kind of curve is not supported, it has no length, or its parts do not join.
     """
+    segments = path_segments(program, ref)
+    if not segments:
+        raise program.path_error("the curve has no length", ref)
+    return segments
+
+
+def path_segments(program: Program, ref: Ref[Entity]) -> tuple[Segment, ...]:
+    """Lines and arcs of a curve that a tool follows, in its direction; none without length.
+
+    Raises
+    ------
+    PathError
+        If the kind of curve is not supported, or its parts do not join.
+    """
     with program.using(ref):
         budget = iter(range(MOST_CURVES))
         found = _segments(program, ref, _CurveVisit(budget))
         segments = tuple(segment for segment in found if not _is_point(segment))
-    if not segments:
-        raise program.path_error("the curve has no length", ref)
     for one, other in pairwise(segments):
         gap = dist(one.end, other.start)
         if gap > JOINED:
@@ -458,7 +479,7 @@ def _bend_points(segment: Segment, bend: Bend) -> Iterator[Point]:
     y = (n[1] * x[2] - n[2] * x[1], n[2] * x[0] - n[0] * x[2], n[0] * x[1] - n[1] * x[0])
     size = dist(x, (0.0, 0.0, 0.0))
     rise = sum((e - s) * c for e, s, c in zip(segment.end, segment.start, n, strict=True))
-    step = 2.0 * (2.0 * CHORD_TOLERANCE / max(size, CHORD_TOLERANCE)) ** 0.5
+    step = chord_angle(size, CHORD_TOLERANCE)
     count = min(MOST_CHORDS, max(2, ceil(abs(bend.turn) / step)))
     for i in range(1, count):
         part = i / count
@@ -473,5 +494,5 @@ def _bend_points(segment: Segment, bend: Bend) -> Iterator[Point]:
 
 
 def _is_point(segment: Segment) -> bool:
-    """Whether a segment has no length, as files leave between their curves."""
+    """True if a segment has no length, as files leave between their curves."""
     return segment.start == segment.end and segment.bend is None

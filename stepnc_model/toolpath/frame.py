@@ -85,7 +85,7 @@ class Frame:
 
     @property
     def is_upright(self) -> bool:
-        """Whether z points along the surrounding z axis."""
+        """True if z points along the surrounding z axis."""
         return abs(self.z[0]) + abs(self.z[1]) < PARALLEL and self.z[2] > 0.0
 
 

@@ -9,9 +9,7 @@ from typing import NoReturn
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import (
-    DisplayMessage,
     NonSequential,
-    OptionalStop,
     ProgramStop,
     RapidMovement,
     Setup,
@@ -21,7 +19,8 @@ from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import PathError, SchemaError
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, ProgramLine, ResolvedWorkingstep
+from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.program_listing import NOT_FOLLOWED, ProgramLine, is_followed
 from stepnc_model.toolpath.explicit.operation import explicit_path, rapid_movement_path
 from stepnc_model.toolpath.hole.operation import hole_path
 from stepnc_model.toolpath.left_out import LeftOut
@@ -34,12 +33,41 @@ OnFault = Callable[[ProgramLine, SchemaError], None]
 """Callback for executables without a tool path, called with the reason."""
 
 
+PathOf = Callable[[Program, ResolvedWorkingstep], ToolPath]
+"""Function that makes the tool path of a workingstep, as :func:`workingstep_path`."""
+
+MOST_STEPS = 20_000
+"""Number of moves in paths that are kept; some 10 MB. Longer programs have paths made again."""
+
+
 def raised(_executable: ProgramLine, error: SchemaError) -> NoReturn:
     """Raise the error of the first executable for which no path can be made."""
     raise error
 
 
-def generate(program: Program, on_fault: OnFault = raised) -> Iterator[ToolPath | Function]:
+def workingstep_path(program: Program, step: ResolvedWorkingstep) -> ToolPath:
+    """Tool path of one workingstep: as given in the file, or else made from its feature.
+
+    Raises
+    ------
+    SchemaError, PathError
+        If the file lacks information, or the tool cannot do the operation.
+    """
+    with program.using(step.operation_ref, *step.features, step.setup, step.ref):
+        job = job_of(program, step)
+        operation = step.operation
+        if operation.its_toolpath is not None:
+            return explicit_path(job)
+        if isinstance(operation, DrillingTypeOperation):
+            return hole_path(job)
+        if isinstance(operation, TurningMachiningOperation):
+            return turning_path(job)
+        return milling_path(job)
+
+
+def generate(
+    program: Program, on_fault: OnFault = raised, *, path_of: PathOf = workingstep_path
+) -> Iterator[ToolPath | Function]:
     """Generate the tool paths and functions of a program, one after another.
 
     Parameters
@@ -47,6 +75,8 @@ def generate(program: Program, on_fault: OnFault = raised) -> Iterator[ToolPath 
     program : Program
     on_fault : callable
         Called with each executable that is left out, and its error; by default raises it.
+    path_of : callable
+        Makes the path of a workingstep.
 
     Yields
     ------
@@ -73,7 +103,7 @@ def generate(program: Program, on_fault: OnFault = raised) -> Iterator[ToolPath 
                 if setup is not None and step.setup != setup:
                     yield _new_setup(program, step)
                 setup = step.setup
-                path = workingstep_path(program, step)
+                path = path_of(program, step)
                 left_out.require_ready(step, path)
                 yield path
             else:
@@ -106,24 +136,26 @@ def require_ready(
             raise PathError(message, entity=program.label(at), line=program.line(at))
 
 
-def workingstep_path(program: Program, step: ResolvedWorkingstep) -> ToolPath:
-    """Tool path of one workingstep: as given in the file, or else made from its feature.
+class KeptPaths:
+    """Paths of the workingsteps of a program as it is, made once. Running state.
 
-    Raises
-    ------
-    SchemaError, PathError
-        If the file lacks information, or the tool cannot do the operation.
+    A path is kept for the very program and workingstep that it was made of; neither changes.
     """
-    with program.using(step.operation_ref, *step.features, step.setup):
-        job = job_of(program, step)
-        operation = step.operation
-        if operation.its_toolpath is not None:
-            return explicit_path(job)
-        if isinstance(operation, DrillingTypeOperation):
-            return hole_path(job)
-        if isinstance(operation, TurningMachiningOperation):
-            return turning_path(job)
-        return milling_path(job)
+
+    def __init__(self, most: int = MOST_STEPS) -> None:
+        self._most = most
+        self._kept: dict[int, tuple[Program, ResolvedWorkingstep, ToolPath]] = {}
+
+    def __call__(self, program: Program, step: ResolvedWorkingstep) -> ToolPath:
+        """Tool path of a workingstep, as :func:`workingstep_path` makes it."""
+        kept = self._kept.get(int(step.ref))
+        if kept is not None and kept[0] is program and kept[1] is step:
+            return kept[2]
+        path = workingstep_path(program, step)
+        if kept is None and len(path.steps) <= self._most:
+            self._most -= len(path.steps)
+            self._kept[int(step.ref)] = program, step, path
+        return path
 
 
 def _other(program: Program, executable: ProgramLine) -> Iterator[ToolPath | Function]:
@@ -132,17 +164,16 @@ def _other(program: Program, executable: ProgramLine) -> Iterator[ToolPath | Fun
     if fault is not None:
         raise fault
     entity = program.model.entity(int(executable.ref))
+    if not is_followed(entity):
+        raise program.error(NOT_FOLLOWED, executable.ref)
     if isinstance(entity, (Workplan, NonSequential)):
         return
     if isinstance(entity, RapidMovement):
         # Without a path, the control moves over the security plane to what follows.
         path = rapid_movement_path(program, executable)
         yield path if path is not None else _function(executable, entity)
-    elif isinstance(entity, (OptionalStop, ProgramStop, DisplayMessage)):
+    elif entity is not None:
         yield _function(executable, entity)
-    else:
-        message = "this kind of executable cannot be converted to a tool path"
-        raise program.error(message, executable.ref)
 
 
 def _function(executable: ProgramLine, entity: Entity) -> Function:

@@ -12,6 +12,7 @@ from math import inf
 from stepnc_model.errors import SchemaError
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.tool import tool_of
+from stepnc_model.toolpath.arc import radius
 from stepnc_model.toolpath.path import Move, Point, ToolPath
 
 TOUCHING = 1e-3
@@ -26,7 +27,7 @@ class SweptBox:
     high: Point
 
     def overlaps(self, other: "SweptBox") -> bool:
-        """Whether two boxes share more than their surfaces."""
+        """True if two boxes share more than their surfaces."""
         return all(
             self.low[axis] + TOUCHING < other.high[axis]
             and other.low[axis] + TOUCHING < self.high[axis]
@@ -72,7 +73,7 @@ class LeftOut:
 
 
 def _depends(step: ResolvedWorkingstep, box: SweptBox | None, omission: _Omission) -> bool:
-    """Whether a workingstep would meet material of one that was left out."""
+    """True if a workingstep would meet material of one that was left out."""
     if step.setup == omission.step.setup and box is not None and omission.box is not None:
         return box.overlaps(omission.box)
     return bool({int(ref) for ref in step.features} & {*map(int, omission.step.features)})
@@ -93,43 +94,37 @@ def swept_box(program: Program, path: ToolPath) -> SweptBox | None:
     if path.tool_ref is None:
         return None
     try:
-        radius = 0.5 * tool_of(program, path.tool_ref).diameter
+        half = 0.5 * tool_of(program, path.tool_ref).diameter
     except SchemaError:
         return None
     low, high = [inf, inf, inf], [-inf, -inf, -inf]
     for point, around in _fed_points(path):
         for axis in range(3):
-            low[axis] = min(low[axis], point[axis] - around)
-            high[axis] = max(high[axis], point[axis] + around)
+            low[axis] = min(low[axis], point[axis] - around[axis])
+            high[axis] = max(high[axis], point[axis] + around[axis])
     if low[0] > high[0]:
         return None
     return SweptBox(
-        low=(low[0] - radius, low[1] - radius, low[2]),
-        high=(high[0] + radius, high[1] + radius, high[2]),
+        low=(low[0] - half, low[1] - half, low[2]),
+        high=(high[0] + half, high[1] + half, high[2]),
     )
 
 
-def _fed_points(path: ToolPath) -> Iterator[tuple[Point, float]]:
-    """Ends of all moves at a feed, and centres of arcs with their radius."""
+def _fed_points(path: ToolPath) -> Iterator[tuple[Point, Point]]:
+    """Ends of all moves at a feed, and centres of arcs with their extent along the axes."""
     at = path.start
     for move in path.steps:
         if not isinstance(move, Move):
             continue
         if move.feed is not None:
-            yield at, 0.0
-            yield move.end, 0.0
+            yield at, (0.0, 0.0, 0.0)
+            yield move.end, (0.0, 0.0, 0.0)
             if move.arc is not None:
-                first, second, _ = move.arc.plane.axes
-                centre = move.arc.centre
-                radius = (
-                    (at[first] - centre[first]) ** 2 + (at[second] - centre[second]) ** 2
-                ) ** 0.5
-                yield _on_arc(centre, at, move), radius
+                normal = move.arc.plane.axes[2]
+                x, y, z = (
+                    at[axis] if axis == normal else move.arc.centre[axis] for axis in range(3)
+                )
+                size = radius(at, move.arc)
+                dx, dy, dz = (0.0 if axis == normal else size for axis in range(3))
+                yield (x, y, z), (dx, dy, dz)
         at = move.end
-
-
-def _on_arc(centre: Point, at: Point, move: Move) -> Point:
-    """Centre of an arc, at the height of its start along the normal."""
-    normal = -1 if move.arc is None else move.arc.plane.axes[2]
-    x, y, z = (at[axis] if axis == normal else centre[axis] for axis in range(3))
-    return x, y, z

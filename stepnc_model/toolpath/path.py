@@ -13,8 +13,6 @@ The module also holds NC functions between workingsteps, which a control does be
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import accumulate
-from math import atan2, cos, dist, hypot, pi, sin
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Finding
@@ -204,72 +202,6 @@ class ToolPath:
         for move in self.moves:
             yield start, move
             start = move.end
-
-    def stations(self) -> tuple[float, ...]:
-        """Arc length from the start to the end of each move, mm."""
-        return tuple(accumulate(length(start, move) for start, move in self.segments()))
-
-
-def length(start: Point, move: Move) -> float:
-    """Length of one move, mm."""
-    if move.arc is None:
-        return dist(start, move.end)
-    normal = move.arc.plane.axes[2]
-    return hypot(radius(start, move.arc) * move.arc.turn, move.end[normal] - start[normal])
-
-
-def radius(start: Point, arc: Arc) -> float:
-    """Radius of an arc, mm."""
-    first, second, _ = arc.plane.axes
-    return hypot(start[first] - arc.centre[first], start[second] - arc.centre[second])
-
-
-def point_at(start: Point, move: Move, part: float) -> Point:
-    """Point at a fraction of a line, an arc or a helix.
-
-    Parameters
-    ----------
-    start : Point
-    move : Move
-    part : float
-        Share of the length of the move, 0 to 1.
-    """
-    point = [a + part * (b - a) for a, b in zip(start, move.end, strict=True)]
-    if move.arc is not None:
-        first, second, _ = move.arc.plane.axes
-        centre, turned = move.arc.centre, part * move.arc.turn
-        u, v = start[first] - centre[first], start[second] - centre[second]
-        point[first] = centre[first] + u * cos(turned) - v * sin(turned)
-        point[second] = centre[second] + u * sin(turned) + v * cos(turned)
-    return point[0], point[1], point[2]
-
-
-def points_along(start: Point, move: Move, *, step: float) -> Iterator[Point]:
-    """Points on a move after its start, up to and including its end.
-
-    Parameters
-    ----------
-    start : Point
-    move : Move
-    step : float, rad
-        Greatest angle between two points of an arc.
-    """
-    if move.arc is not None:
-        first, second, normal = move.arc.plane.axes
-        centre = move.arc.centre
-        size = radius(start, move.arc)
-        angle = atan2(start[second] - centre[second], start[first] - centre[first])
-        rise = move.end[normal] - start[normal]
-        count = max(1, int(abs(move.arc.turn) / min(step, pi)) + 1)
-        for index in range(1, count):
-            part = index / count
-            turned = angle + part * move.arc.turn
-            point = [0.0, 0.0, 0.0]
-            point[first] = centre[first] + size * cos(turned)
-            point[second] = centre[second] + size * sin(turned)
-            point[normal] = start[normal] + part * rise
-            yield point[0], point[1], point[2]
-    yield move.end
 
 
 LEFT_OUT = "LEFT_OUT"

@@ -5,21 +5,113 @@ that are moved. This module adds what shows in the program itself: a course of t
 placement is turned against the tool, features off the stock, a left-hand tool that is turned
 clockwise, a stock that is not known or has the shape of a body. Workingsteps that cannot be
 read are passed over here.
+
+Doubts about what a program means: lengths in other units, ids that are there twice.
+
+ISO 14649 knows millimetres only, so that its numbers are read as such. A file that says
+otherwise, or whose tools fit their holes only in inches, is read the same way, and warned of.
 """
 
 from collections.abc import Iterable, Iterator
 
-from stepnc_model.doubts import doubts
+from stepnc_model.ap238.instances import Instances
+from stepnc_model.ap238.quantity import MEASURES, Units, conversion
+from stepnc_model.ap238.table import Kind
+from stepnc_model.ap238.view import AimView
 from stepnc_model.entities.enums import Hand
+from stepnc_model.entities.executables import Setup
+from stepnc_model.entities.features import RoundHole
+from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.entities.profiles import LinearPath
+from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, SchemaError, Severity
+from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, ResolvedWorkingstep, Stock
 from stepnc_model.technology import ProgrammedQuantity, programmed
-from stepnc_model.tool import hand_of
+from stepnc_model.tool import hand_of, tool_of
 from stepnc_model.toolpath.frame import feature_frame, frame_of
 from stepnc_model.toolpath.left_out import SweptBox, swept_box
 from stepnc_model.toolpath.path import ToolPath
 from stepnc_model.toolpath.task import stock_of, unused_stock
+from stepnc_model.units import mm_from_inches
+
+CONTEXT = "GLOBAL_UNIT_ASSIGNED_CONTEXT"
+
+ALIKE = 0.01
+"""Relative difference up to which a tool in inches is taken for that of its hole."""
+
+
+def doubts(program: Program) -> Iterator[Finding]:
+    """Warnings about what a program may mean otherwise than it is read.
+
+    Parameters
+    ----------
+    program : Program
+
+    Yields
+    ------
+    Finding
+    """
+    yield from _other_lengths(program)
+    yield from _same_ids(program)
+    for step in program.workingsteps:
+        try:
+            with program.using(step.operation_ref, step.tool_ref, *step.features):
+                finding = _inch_tool(program, step)
+        except SchemaError:
+            continue
+        if finding is not None:
+            yield finding
+
+
+def _other_lengths(program: Program) -> Iterator[Finding]:
+    """Warn of units of length that no representation uses, but perhaps the whole file."""
+    file = program.file
+    if isinstance(file, AimView) or CONTEXT.encode() not in file.data:
+        return
+    instances = Instances(file)
+    units = Units(instances)
+    for context in instances.of_entity(CONTEXT):
+        used = instances.referrers(context, "REPRESENTATION", "context_of_items")
+        factor = conversion(units.length_in(context), MEASURES[Kind.LENGTH]).factor
+        if used or factor == 1.0:
+            continue
+        text = (
+            f"gives a unit of length of {factor:g} mm, but ISO 14649 has lengths in mm: the "
+            "numbers of the program are read in mm"
+        )
+        yield program.finding(Severity.WARNING, text, Ref(context))
+
+
+def _same_ids(program: Program) -> Iterator[Finding]:
+    """Warn of different workingsteps with the same id."""
+    first: dict[str, ResolvedWorkingstep] = {}
+    for step in program.workingsteps:
+        other = first.setdefault(step.id, step)
+        if other.ref != step.ref:
+            text = (
+                f"'{step.id}' is also the id of {other.ref}: results that are listed by id do "
+                "not tell them apart"
+            )
+            yield program.finding(Severity.WARNING, text, step.ref, "its_id")
+
+
+def _inch_tool(program: Program, step: ResolvedWorkingstep) -> Finding | None:
+    """Warn of a drill whose diameter is that of its hole in inches."""
+    if not isinstance(step.operation, DrillingTypeOperation):
+        return None
+    diameter = tool_of(program, step.tool_ref).diameter
+    for feature in map(program.get, step.features):
+        if not isinstance(feature, RoundHole) or feature.diameter is None:
+            continue
+        hole = program.get(feature.diameter).theoretical_size
+        if abs(mm_from_inches(diameter) - hole) <= ALIKE * hole:
+            text = (
+                f"diameter {diameter:g} mm: in inches it would be that of the hole, {hole:g} mm"
+            )
+            return program.finding(Severity.WARNING, text, step.tool_ref)
+    return None
+
 
 COURSES = ("course_of_travel", "open_boundary", "profile_swept_shape")
 """Attributes of features that refer to a course of travel."""
@@ -46,7 +138,34 @@ def remarks(program: Program, paths: Iterable[ToolPath]) -> tuple[Finding, ...]:
             found.setdefault(str(finding), finding)
     for finding in doubts(program):
         found.setdefault(str(finding), finding)
-    return (*_of_stock(program), *found.values())
+    return (*_of_stock(program), *_of_setups(program), *found.values())
+
+
+def _of_setups(program: Program) -> Iterator[Finding]:
+    """Warn of setups that stand turned on the machine: their z is the tool's axis."""
+    milled = [
+        step.setup
+        for step in program.workingsteps
+        if not isinstance(step.operation, TurningMachiningOperation)
+    ]
+    for ref in dict.fromkeys(milled):
+        setup = None if ref is None else program.get(ref)
+        if ref is None or not isinstance(setup, Setup) or setup.its_origin is None:
+            continue
+        try:
+            with program.using(ref):
+                frame = frame_of(program, setup.its_origin)
+        except SchemaError:
+            continue
+        if frame.is_upright:
+            continue
+        x, y, z = frame.z
+        text = (
+            f"the setup stands turned on the machine, its z along ({x:.4g}, {y:.4g}, {z:.4g}): "
+            "paths and NC code are those of the setup, with the tool along its z; index the "
+            "table so before it runs"
+        )
+        yield program.finding(Severity.WARNING, text, ref, "its_origin")
 
 
 def _of_stock(program: Program) -> Iterator[Finding]:

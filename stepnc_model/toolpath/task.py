@@ -5,6 +5,7 @@ running state, one object per workingstep.
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import Setup
@@ -50,17 +51,27 @@ SAME = 1e-9
 """Length below which a move is dropped, and two heights are the same, mm."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class ToolPathTask:
     """Workingstep with everything needed to generate its tool path."""
 
     program: Program
     step: ResolvedWorkingstep
-    tool: Tool
     security_z: float
     """Height z of the security plane in the setup, mm."""
     stock: Stock | None
     findings: tuple[Finding, ...] = ()
+
+    @cached_property
+    def tool(self) -> Tool:
+        """Tool of the workingstep; a path that the file gives may not need it.
+
+        Raises
+        ------
+        SchemaError
+            If the file does not describe it.
+        """
+        return tool_of(self.program, self.step.tool_ref)
 
     @property
     def feed(self) -> Feed:
@@ -129,7 +140,7 @@ def job_of(program: Program, step: ResolvedWorkingstep) -> ToolPathTask:
     Raises
     ------
     SchemaError, PathError
-        If the tool or security plane cannot be used.
+        If the security plane cannot be used.
     """
     with program.using(step.ref, step.operation_ref, step.setup):
         stock = stock_of(program, step.setup)
@@ -137,7 +148,6 @@ def job_of(program: Program, step: ResolvedWorkingstep) -> ToolPathTask:
         return ToolPathTask(
             program=program,
             step=step,
-            tool=tool_of(program, step.tool_ref),
             security_z=security_z,
             stock=stock,
             findings=findings,
@@ -145,11 +155,11 @@ def job_of(program: Program, step: ResolvedWorkingstep) -> ToolPathTask:
 
 
 def stock_of(program: Program, setup: Ref[Setup] | None) -> Stock | None:
-    """Raw part, from the bounding geometry of the raw piece or the workpiece.
+    """Raw part given by the user, in the coordinates of every setup.
 
-    Otherwise the stock given by the user, in the coordinates of every setup.
+    Otherwise that of the file, from the bounding geometry of the raw piece or the workpiece.
     """
-    return drawn_stock(program, setup) or program.stock
+    return program.stock or drawn_stock(program, setup)
 
 
 def drawn_stock(program: Program, setup: Ref[Setup] | None) -> Stock | None:
@@ -197,7 +207,7 @@ def _described_stock(program: Program, setup: Ref[Setup] | None) -> Stock | None
 
 
 def _is_off(program: Program, setup: Ref[Setup] | None, stock: Stock) -> bool:
-    """Whether the floors of all features lie at or below a stock, and one feature as a whole.
+    """True if the floors of all features lie at or below a stock, and one feature as a whole.
 
     The first feature that ends within the stock decides, so that large programs cost little.
     """
@@ -230,7 +240,7 @@ def _span(
 
 
 def is_body(program: Program, representation: Ref[Entity]) -> bool:
-    """Whether a shape representation is that of a B-rep body."""
+    """True if a shape representation is that of a B-rep body."""
     return program.file.keyword(representation).endswith("BREP_SHAPE_REPRESENTATION")
 
 

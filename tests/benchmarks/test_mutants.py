@@ -13,7 +13,7 @@ from benchmarks.house import ROOT
 from benchmarks.mutants import Clone, Verdict
 from benchmarks.rings import Stage, imports, stages
 
-SAMPLES = ("controller/overload.py", "kbe/moments.py", "simulator/physics/power.py")
+SAMPLES = ("controller/overload.py", "kbe/statistics.py", "simulator/physics/power.py")
 
 
 @pytest.fixture(scope="module")

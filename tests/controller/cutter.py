@@ -61,8 +61,7 @@ class Cutter:
 
 
 def shown(forces: Floats, *, feed: float = FEED_PER_TOOTH, step: int = 1) -> Revolution:
-    return replace(
-        REVOLUTION,
+    return REVOLUTION._replace(
         force=float(forces.mean()),
         tooth_means=forces.mean(axis=1),
         tooth_peaks=forces.max(axis=1),

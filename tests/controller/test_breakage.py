@@ -240,7 +240,7 @@ def test_what_was_learnt_stays_while_nothing_is_cut_and_not_with_other_teeth() -
 )
 def test_revolution_that_lacks_something_is_not_judged(lacking: dict[str, Any]) -> None:
     state = learnt(Cutter(), np.random.default_rng(13))
-    revolution = replace(shown(Cutter().forces(broken=1)), **lacking)
+    revolution = shown(Cutter().forces(broken=1))._replace(**lacking)
     after = inspected(state, revolution, Cutter().expected)
     assert after.turns == ()
     assert after.offsets is state.offsets

@@ -1,6 +1,5 @@
 """Measured over expected force."""
 
-from dataclasses import replace
 from math import log, nan
 
 import numpy as np
@@ -13,13 +12,13 @@ from tests.controller.shown import REVOLUTION
 
 
 def test_ratio_is_measured_over_expected() -> None:
-    found = log_ratio(replace(REVOLUTION, force=460.0), 400.0, expected_before=400.0)
+    found = log_ratio(REVOLUTION._replace(force=460.0), 400.0, expected_before=400.0)
     assert found == pytest.approx(log(1.15))
 
 
 @pytest.mark.parametrize("coverage", [0.5, 1.0])
 def test_half_of_the_samples_is_enough(coverage: float) -> None:
-    revolution = replace(REVOLUTION, coverage=coverage)
+    revolution = REVOLUTION._replace(coverage=coverage)
     assert log_ratio(revolution, 400.0, expected_before=400.0) is not None
 
 
@@ -39,7 +38,7 @@ def test_half_of_the_samples_is_enough(coverage: float) -> None:
 def test_what_tells_nothing_of_the_ratio_is_left_out(
     change: dict[str, float], expected: float, before: float
 ) -> None:
-    revolution = replace(REVOLUTION, **change)  # type: ignore[arg-type]
+    revolution = REVOLUTION._replace(**change)  # type: ignore[arg-type]
     assert log_ratio(revolution, expected, expected_before=before) is None
 
 
@@ -72,8 +71,8 @@ def test_factor_on_the_force_is_found_through_entry_noise_and_losses() -> None:
         force = 1.15 * (0.5 * (expected + before) if row else expected)
         force *= np.exp(random.normal(0.0, 0.03))
         coverage = 0.2 if random.random() < 0.1 else 1.0
-        revolution = replace(
-            REVOLUTION, force=nan if coverage < 0.5 else float(force), coverage=coverage
+        revolution = REVOLUTION._replace(
+            force=nan if coverage < 0.5 else float(force), coverage=coverage
         )
         ratio = log_ratio(revolution, expected, expected_before=before)
         estimate = estimate if ratio is None else counted(estimate, ratio)

@@ -1,4 +1,3 @@
-from dataclasses import replace
 from math import inf, nan
 
 import numpy as np
@@ -85,8 +84,8 @@ def test_a_preview_is_told_when_it_is_asked_for() -> None:
 
 def test_an_overload_holds_the_feed_within_its_tooth_period() -> None:
     run = plugged([*even(5), reading(601.0)], law=Wishing(wish=1.0)).run()
-    assert run.cycles[-1].allowed == replace(
-        run.cycles[-1].allowed, override=0.0, holding=OverrideReason.OVERLOAD
+    assert run.cycles[-1].allowed == run.cycles[-1].allowed._replace(
+        override=0.0, holding=OverrideReason.OVERLOAD
     )
     assert run.kinds == [EventKind.WORKINGSTEP, EventKind.HOLD]
 

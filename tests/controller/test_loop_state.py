@@ -1,7 +1,6 @@
 """Transitions of the loop's state, one function of values after another."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from math import inf, nan
 
 import numpy as np
@@ -104,7 +103,7 @@ def test_holds_in_quick_succession_add_up_and_old_ones_are_forgotten() -> None:
 
 def test_only_an_override_that_stays_below_the_band_is_a_danger() -> None:
     # So great a force that the guard goes below the floor, and so slow that it does not hold.
-    hard = replace(REVOLUTION, force=550.0, override=0.1)
+    hard = REVOLUTION._replace(force=550.0, override=0.1)
     state = in_cut()
     assert after(state._replace(below=BELOW)).below == 0
     assert after(state._replace(below=BELOW - 1), hard).below == BELOW
@@ -138,7 +137,7 @@ def test_samples_that_make_no_revolution_are_waited_for_some_revolutions_more() 
 
 
 def test_a_revolution_with_too_few_samples_tells_no_force() -> None:
-    empty = replace(REVOLUTION, force=nan, coverage=0.2)
+    empty = REVOLUTION._replace(force=nan, coverage=0.2)
     assert after(in_cut(), empty).without_force == PERIOD
     assert after(in_cut(without_force=1.0)).without_force == 0.0
 
@@ -157,7 +156,7 @@ def test_while_the_override_does_not_act_the_cut_is_left() -> None:
 
 
 def test_while_the_feed_is_held_only_teeth_are_looked_at() -> None:
-    over = replace(REVOLUTION, force=1.3 * SET_POINT)
+    over = REVOLUTION._replace(force=1.3 * SET_POINT)
     assert EventKind.OVER in [event.kind for event in after(in_cut(), over).events]
     held = after(in_cut(), None, force=1.6 * SET_POINT)
     looked = after(held, over, force=1.3 * SET_POINT)
@@ -204,13 +203,13 @@ def test_the_law_is_told_the_revolution_and_its_band() -> None:
 
 def test_axes_that_stand_are_told_as_slow_ones() -> None:
     laws = Counting()
-    after(in_cut(), replace(REVOLUTION, override=0.0), law=laws)
+    after(in_cut(), REVOLUTION._replace(override=0.0), law=laws)
     assert laws.law.told[0].actual == pytest.approx(LEAST_WAY * 0.2)
 
 
 def test_what_lies_ahead_is_told_at_the_pace_of_now() -> None:
     laws = Counting()
-    near = replace(REVOLUTION, progress_before=0.93, progress=0.95)
+    near = REVOLUTION._replace(progress_before=0.93, progress=0.95)
     after(in_cut(LoopSettings(look_ahead=4)), near, law=laws)
     # 20 ms a revolution: the step at 1 s lies in the third, and is seen one before.
     assert laws.law.told[0].ahead == (200.0, 800.0, 800.0, 800.0)

@@ -29,8 +29,7 @@ class Watching:
 
     def show(self, force: float, *, ratio: float | None = None, **more: float) -> None:
         self._time += PERIOD
-        shown: Revolution = replace(
-            REVOLUTION,
+        shown: Revolution = REVOLUTION._replace(
             time=self._time,
             force=force,
             tooth_means=np.full(4, force),
@@ -183,7 +182,7 @@ THIN = Expected(
 def turned(watching: Watching, *means: float, time: float = 1.0) -> None:
     """One revolution more of teeth that take so much."""
     taken = np.array(means)
-    shown = replace(REVOLUTION, time=time, force=float(taken.mean()), tooth_means=taken)
+    shown = REVOLUTION._replace(time=time, force=float(taken.mean()), tooth_means=taken)
     watching.look(watching.monitor.seen(shown, KEEP, ratio=None, expected=THIN))
 
 

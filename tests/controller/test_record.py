@@ -1,4 +1,3 @@
-from dataclasses import replace
 from math import inf, log, nan
 
 import pytest
@@ -15,7 +14,7 @@ OVERRIDES = (1.0, 0.8, 0.6)
 
 def cycle(number: int, **more: float) -> LoopCycle:
     """A cycle of 20 ms that completes a revolution of 20 mm/s."""
-    revolution = replace(REVOLUTION, **more)  # type: ignore[arg-type]
+    revolution = REVOLUTION._replace(**more)  # type: ignore[arg-type]
     ratio = log(revolution.force / 400.0) if revolution.force > 0.0 else None
     return LoopCycle(
         reading=reading(0.0, workingstep=number, period=0.02),

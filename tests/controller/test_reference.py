@@ -19,8 +19,7 @@ from optimiser.modes import Mode
 from optimiser.optimise import optimise_program
 from optimiser.problem import BoundSide, Limit, LimitName, Monomial
 from optimiser.source import from_features
-from simulator.library import load_machine
-from simulator.matching import match_material
+from simulator.library import load_machine, match_material
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from tests.every_case import every_case

@@ -1,7 +1,5 @@
 """What the loop can no longer do is told, and told again when it can."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -41,7 +39,7 @@ def test_what_is_not_commanded_need_not_be_followed(phase: Phase) -> None:
 
 
 def test_readings_that_show_no_teeth_are_told_with_their_period() -> None:
-    averaged = replace(REVOLUTION, by_teeth=False)
+    averaged = REVOLUTION._replace(by_teeth=False)
     long = reading(100.0, period=0.012, spindle_speed=40.0, teeth=4)
     state = resolved(resolved(STATE, long, averaged), long, averaged)
     assert told(state) == [EventKind.AVERAGED]

@@ -1,7 +1,6 @@
 """Moving thresholds and the warning."""
 
 from collections.abc import Iterable
-from dataclasses import replace
 from math import exp, log, nan
 
 import numpy as np
@@ -21,7 +20,7 @@ def watch(
 ) -> list[ThresholdWatch]:
     now, found = begun or ThresholdWatch(), []
     for force in forces:
-        revolution = replace(REVOLUTION, force=float(force), workingstep=step)
+        revolution = REVOLUTION._replace(force=float(force), workingstep=step)
         now = watched(now, revolution, set_point=SET_POINT)
         found.append(now)
     return found
@@ -65,7 +64,7 @@ def test_over_the_margin_is_over_learnt_or_not(
     force: float, count: int, is_steady: bool
 ) -> None:
     before = steady(400.0, count=count)[-1] if count else ThresholdWatch()
-    revolution = replace(REVOLUTION, force=force)
+    revolution = REVOLUTION._replace(force=force)
     found = watched(before, revolution, set_point=SET_POINT, is_steady=is_steady)
     assert (found.level is AlarmLevel.OVER) == (force > (1.0 + USUAL.margin) * SET_POINT)
 
@@ -105,7 +104,7 @@ def test_what_passes_moves_the_threshold_little_and_what_stays_is_learnt() -> No
 
 def test_nothing_is_learnt_while_depth_or_feed_change() -> None:
     before = steady(380.0)[-1]
-    revolution = replace(REVOLUTION, force=490.0)
+    revolution = REVOLUTION._replace(force=490.0)
     after = watched(before, revolution, set_point=SET_POINT, is_steady=False)
     assert after == before
 

@@ -65,7 +65,7 @@ def test_a_period_that_was_expected_wrongly_is_within_the_errors() -> None:
 def test_a_revolution_that_lacks_something_is_not_compared(lacking: dict[str, Any]) -> None:
     revolution = shown(CUTTER.forces())
     assert force_ratio(revolution, CUTTER.expected) == pytest.approx(1.0)
-    assert force_ratio(replace(revolution, **lacking), CUTTER.expected) is None
+    assert force_ratio(revolution._replace(**lacking), CUTTER.expected) is None
 
 
 def test_nothing_is_compared_without_an_arc() -> None:

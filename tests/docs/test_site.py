@@ -110,7 +110,7 @@ def test_every_page_is_built(site: Path) -> None:
     wanted |= {
         f"{each}.html"
         for each in ("reference/commands", "reference/errors", "reference/entities",
-                     "changelog", "decisions/index")
+                         "reference/files", "changelog", "decisions/index")
     }  # fmt: skip
     assert wanted <= built
     assert built - wanted <= {"reference/rest.html"}

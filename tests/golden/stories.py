@@ -45,6 +45,8 @@ PLATE = (
     "vmc15",
 )  # fmt: skip
 
+KB = ("--kb", "k.db")
+
 
 def _advice() -> Mapping[str, tuple[tuple[str, ...], ...]]:
     """Stories of ``optimise``, one a sample."""
@@ -124,6 +126,92 @@ STORIES: Mapping[str, tuple[tuple[str, ...], ...]] = {
         ("kbe", "review", "--kb", "k.db", "--json"),
         ("kbe", "table", "--kb", "k.db"),
         ("kbe", "check", "--kb", "k.db"),
+    ),
+    "knowledge": (
+        ("kbe", "add", "outcomes.json", "--kb", "k.db"),
+        ("kbe", "add", "outcomes.json", "--kb", "k.db"),
+        ("kbe", "list", "--limit", "4", *KB),
+        ("kbe", "list", "--limit", "2", "--json", *KB),
+        ("kbe", "list", "--machine", "vmc15", "--feature-kind", "slot", "--since", "2020-03-03",
+         "--until", "2120-03-09T12:00Z", "--limit", "3", *KB),
+        ("kbe", "list", "--machine", "lathe", *KB),
+        ("kbe", "list", "--since", "2026-03-09", "--until", "2026-03-02", *KB),
+        ("kbe", "list", "--limit", "0", *KB),
+        ("kbe", "show", "000005", *KB),
+        ("kbe", "show", "000005", "--json", *KB),
+        ("kbe", "show", "9", *KB),
+        ("kbe", "review", "--machine", "vmc15", "--material", "C45", *KB),
+        ("kbe", "review", "--json", "--machine", "vmc15", "--tool", "DRILL 8.5", *KB),
+        ("kbe", "corrections", "--json", *KB),
+        ("kbe", "review", "--auto-accept", "--by", "A. Smith", "--least-confidence", "50%",
+         "--fewest-outcomes", "2", "--greatest-change", "0.4", *KB),
+        ("kbe", "corrections", *KB),
+        ("kbe", "accept", "1", "2", "--by", "B. Jones", *KB),
+        ("kbe", "accept", "99", "--by", "B. Jones", *KB),
+        ("kbe", "withdraw", "2", "--by", "B. Jones", "--json", *KB),
+        ("kbe", "show", "2", *KB),
+        ("kbe", "check", *KB),
+        ("kbe", "check", "--json", *KB),
+        ("kbe", "backup", "copy.db", *KB),
+        ("kbe", "restore", "copy.db", "--kb", "other.db", "--json"),
+        ("kbe", "restore", "copy.db", "--kb", "other.db"),
+    ),
+    "evaluation": (
+        ("kbe", "add", "outcomes.json", "--kb", "k.db"),
+        ("kbe", "table", *KB),
+        ("kbe", "table", "--json", "--by", "kind", "--sort", "time-to-win", *KB),
+        ("kbe", "table", "--format", "csv", "--only", "with-remarks", *KB),
+        ("kbe", "table", "--format", "html", "--machine", "vmc15", *KB),
+        ("kbe", "table", "--format", "parquet", *KB),
+        *(
+            ("kbe", "table", "--only", "violated", "--sort", "force", "-o", f"table.{form}",
+             *KB)
+            for form in ("txt", "csv", "json", "html", "parquet", "xlsx")
+        ),
+        ("kbe", "table", "-o", "table.xlsx", "--format", "csv", *KB),
+        ("kbe", "table", "--machine", "lathe", *KB),
+        ("kbe", "table", "--machine", "lathe", "-o", "empty.html", *KB),
+        ("kbe", "table", "--summary", *KB),
+        ("kbe", "table", "--summary", "--json", "--material", "C45", *KB),
+        ("kbe", "table", "--summary", "--format", "csv", *KB),
+        ("kbe", "table", "--summary", "-o", "summary.csv", *KB),
+        ("kbe", "table", "--summary", "-o", "summary.html", *KB),
+        ("kbe", "table", "-o", "k.db", "--format", "csv", *KB),
+        ("kbe", "review", "--machine", "vmc15", "--material", "C45", *KB),
+        *(
+            ("kbe", "export", what, "--run", "000005", "-o", f"{what}.{form}", *KB)
+            for what in ("outcomes", "corrections", "table")
+            for form in ("csv", "json", "html")
+        ),
+        ("kbe", "add", "plate.csv", *KB),
+    ),
+    "outcomes_in_program": (
+        ("control", "paper003_case1.stpnc", "--machine", "paper003", "--seed", "4", "--kb",
+         "k.db"),
+        ("kbe", "review", "--auto-accept", "--by", "A. Smith", *KB),
+        ("kbe", "write", "paper003_case1.stpnc", *KB),
+        ("kbe", "write", "paper003_case1.stpnc", "--run", "nonsense", "-o", "other.stpnc", *KB),
+        ("kbe", "write", "bracket.stpnc", *KB),
+        ("kbe", "read", "paper003_case1.recorded.stpnc"),
+        ("kbe", "read", "paper003_case1.recorded.stpnc", "--json"),
+        ("kbe", "read", "paper003_case1.stpnc"),
+        ("kbe", "read", "plate.nc"),
+    ),
+    "service": (
+        ("keys", "list", "--data", "data"),
+        ("keys", "create", "--for", "Anna", "--role", "operator", "--data", "data"),
+        ("keys", "create", "--for", "Ben", "--data", "data"),
+        ("keys", "create", "--for", " ", "--data", "data"),
+        ("keys", "list", "--data", "data"),
+        ("keys", "revoke", "nonsense", "--data", "data"),
+        ("serve", "--data", "data", "--host", "0.0.0.0", "--tls-cert", "x.crt"),
+        ("serve", "--data", "new", "--host", "0.0.0.0"),
+        ("serve", "--data", "data", "--port", "70000"),
+        ("serve", "--data", "data", "--rate", "nan"),
+        ("serve", "--data", "data", "--agent", "vmc15"),
+        ("serve", "--data", "data", "--agent", "x=http://127.0.0.1"),
+        ("serve", "--data", "data", "--log-level", "loud"),
+        ("serve", "--data", "data", "--job-memory", "1"),
     ),
     "verification": (
         ("simulate", "paper003_case1.stpnc", "--machine", "vmc15", "-o", "run.csv"),

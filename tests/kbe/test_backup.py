@@ -11,7 +11,7 @@ import pytest
 from sqlalchemy import insert, text
 
 from kbe.backup import _require_same, _take_name, backup, content, restore
-from kbe.connection import reading, writing
+from kbe.connection import parsed_place, reading, writing
 from kbe.errors import (
     BackupDiffers,
     BackupExists,
@@ -23,7 +23,6 @@ from kbe.errors import (
 from kbe.rows import outcome_row
 from kbe.schema import VERSION_TABLE, outcome
 from kbe.store import Store, open_store
-from kbe.store_location import parsed_place
 from stepnc_model.outcome import LearnedCorrection, ProcessOutcome
 
 OutcomeMaker = Callable[..., list[ProcessOutcome]]

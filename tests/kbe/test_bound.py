@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kbe.bound import BoundUse, is_overplanned, is_wasted, share_of, time_to_win, used
+from kbe.remarks import BoundUse, is_overplanned, is_wasted, share_of, time_to_win, used
 from stepnc_model.outcome import EvaluatedQuantity, ProcessOutcome
 from tests.kbe.cuts import SLOT
 

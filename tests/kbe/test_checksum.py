@@ -13,8 +13,7 @@ from random import Random
 
 import pytest
 
-from kbe.backup import backup, content, restore
-from kbe.checksum import CHECKSUMS, add_checksums, why_damaged
+from kbe.backup import CHECKSUMS, add_checksums, backup, content, restore, why_damaged
 from kbe.errors import KnowledgeError, StoreDamaged
 from kbe.store import open_store
 from stepnc_model.outcome import ProcessOutcome

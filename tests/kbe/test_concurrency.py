@@ -6,7 +6,7 @@ import sys
 from collections import Counter
 from collections.abc import Callable
 
-from kbe.selection import Selection
+from kbe.queries import Selection
 from kbe.store import open_store
 from stepnc_model.outcome import ProcessOutcome
 from tests.service.waiting import ended

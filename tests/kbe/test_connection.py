@@ -6,10 +6,9 @@ from pathlib import Path
 import pytest
 from sqlalchemy import text
 
-from kbe.connection import connected, reading, snapshot, writing
+from kbe.connection import connected, parsed_place, reading, snapshot, writing
 from kbe.errors import DriverMissing, StoreBusy
 from kbe.store import Store, open_store
-from kbe.store_location import parsed_place
 
 
 def test_sqlite_writes_ahead_and_syncs_every_commit(tmp_path: Path) -> None:

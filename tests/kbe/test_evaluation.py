@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 from kbe.evaluation import (
     EvaluationRow,
     Grouping,
+    Knowledge,
     RowFilter,
     SortKey,
     evaluation,
     ordered,
     selected,
 )
-from kbe.grade import EvaluationGrade
-from kbe.side import Knowledge
+from kbe.remarks import EvaluationGrade
 from kbe.statistics import Evaluated
 from stepnc_model.outcome import Context, EvaluatedQuantity, FeatureFacts, ProcessOutcome
 from tests.every_case import every_case

@@ -8,7 +8,7 @@ import pytest
 from sqlalchemy import text
 from sqlalchemy.exc import TimeoutError as NoFreeConnection
 
-from kbe.connection import connected, reading
+from kbe.connection import connected, fault, parsed_place, reading, translated
 from kbe.errors import (
     KnowledgeError,
     StoreBusy,
@@ -17,9 +17,7 @@ from kbe.errors import (
     StoreReadOnly,
     StoreUnavailable,
 )
-from kbe.faults import fault, translated
 from kbe.store import Store, open_store
-from kbe.store_location import parsed_place
 from tests.every_case import every_case
 
 FILE = parsed_place("kbe.db")

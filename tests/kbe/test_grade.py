@@ -6,8 +6,7 @@ from math import hypot
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kbe.bound import BoundUse
-from kbe.grade import EvaluationGrade, grade
+from kbe.remarks import BoundUse, EvaluationGrade, grade
 from kbe.statistics import DeviationStatistics, DeviationTally, Evaluated
 from tests.every_case import every_case
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kbe.groups import Spread, spread
+from kbe.queries import Spread, spread
 from kbe.store import Store
 from stepnc_model.outcome import Context, EvaluatedQuantity, ProcessOutcome
 

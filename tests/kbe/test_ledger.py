@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kbe.errors import StoreDamaged, UnknownCorrection
-from kbe.ledger import Standing
+from kbe.queries import Standing
 from kbe.store import Store, open_store
 from stepnc_model.outcome import LearnedCorrection
 

@@ -11,12 +11,10 @@ import psycopg
 import pytest
 from sqlalchemy import make_url, text
 
-from kbe.connection import connected, writing
+from kbe.connection import _write_ahead, connected, parsed_place, writing
 from kbe.errors import StoreDamaged, StoreTooNew, StoreUnavailable
-from kbe.migrate import _write_ahead
 from kbe.schema import VERSION_TABLE
 from kbe.store import Store, open_store
-from kbe.store_location import parsed_place
 from stepnc_model.outcome import ProcessOutcome
 
 OutcomeMaker = Callable[..., list[ProcessOutcome]]

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from kbe.moments import Moments
+from kbe.statistics import Moments
 
 
 def of(values: list[float]) -> Moments:

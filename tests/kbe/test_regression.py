@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy import stats
 from scipy.integrate import simpson
 
-from kbe.regression import (
+from kbe.corrections import (
     Floats,
     NormalInverseGamma,
     Observations,

@@ -5,10 +5,8 @@ from math import log
 
 import pytest
 
-from kbe.bound import BoundUse
-from kbe.moments import Trend
-from kbe.remarks import Action, Evidence, Remark, is_pending, remarks
-from kbe.statistics import DeviationStatistics, DeviationTally, Evaluated
+from kbe.remarks import Action, BoundUse, Evidence, Remark, is_pending, remarks
+from kbe.statistics import DeviationStatistics, DeviationTally, Evaluated, Trend
 from stepnc_model.outcome import LearnedCorrection
 from tests.kbe.cuts import correction
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from kbe.reservoir import Reservoir
+from kbe.statistics import Reservoir
 
 
 def filled(values: list[float], capacity: int = 1000) -> Reservoir:

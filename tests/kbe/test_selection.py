@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kbe.selection import Selection, conditions
+from kbe.queries import Selection, conditions
 from kbe.store import Store, open_store
 from stepnc_model.outcome import Context, ProcessOutcome
 

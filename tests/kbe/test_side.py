@@ -6,9 +6,8 @@ from math import exp, log
 import pytest
 from scipy import stats
 
-from kbe.grade import EvaluationGrade
-from kbe.remarks import Action
-from kbe.side import TYPES, Knowledge, QuantityTally, Side, SideTally
+from kbe.evaluation import TYPES, Knowledge, QuantityTally, Side, SideTally
+from kbe.remarks import Action, EvaluationGrade
 from kbe.statistics import Evaluated
 from stepnc_model.entities.optimisation import FaceMillingImmersion
 from stepnc_model.outcome import EvaluatedQuantity, ProcessOutcome

@@ -12,8 +12,8 @@ from sqlalchemy import text as text_of
 
 from kbe.connection import writing
 from kbe.errors import StoreDamaged, StoreUnavailable
+from kbe.queries import Selection
 from kbe.schema import outcome as outcome_table
-from kbe.selection import Selection
 from kbe.store import AT_ONCE, Store, open_store
 from stepnc_model.outcome import Context, EvaluatedQuantity, ProcessOutcome
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from kbe.connection import parsed_place, require_openable
 from kbe.errors import StoreUnavailable
-from kbe.store_location import parsed_place, require_openable
 from tests.every_case import every_case
 
 

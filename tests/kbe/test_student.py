@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from kbe.student import StudentT
+from kbe.statistics import StudentT
 from tests.every_case import every_case
 
 LAWS = st.builds(

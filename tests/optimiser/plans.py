@@ -9,8 +9,7 @@ from optimiser.formulate import OptimisationTask
 from optimiser.modes import Free
 from optimiser.optimise import optimise_program
 from optimiser.source import from_features
-from simulator.library import load_machine
-from simulator.matching import match_material
+from simulator.library import load_machine, match_material
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 

@@ -9,8 +9,7 @@ from optimiser.advice import AdviceStatus, LimitLoad, Plan
 from optimiser.formulate import OptimisationTask
 from optimiser.optimise import optimise_program
 from optimiser.problem import BoundSide, Limit, LimitName, Monomial
-from simulator.library import load_machine
-from simulator.matching import match_material
+from simulator.library import load_machine, match_material
 from stepnc_model.program import Program
 
 PART = Path(__file__).parents[2] / "examples" / "parts" / "bracket.stpnc"

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.assumed_stock import assumed_stock, words_of
-from optimiser.left_by_path import left_by_path
+from optimiser.clamped import assumed_stock, words_of
 from optimiser.measured import MeasuredCuts
+from optimiser.tolerance import left_by_path
 from simulator.library import load_machine, load_material
 from stepnc_model.program import Program
 

@@ -6,8 +6,7 @@ import pytest
 
 from optimiser.clamped import ClampedStocks, met_by
 from simulator.library import load_machine
-from simulator.motion.legs import Leg
-from simulator.motion.segments import lines
+from simulator.motion.segments import Leg, lines
 from simulator.motion.tool_path import ToolPathRun
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock

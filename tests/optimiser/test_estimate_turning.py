@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from optimiser.cut import Cut, CutKind, Texture
-from optimiser.estimate_turning import CLEARANCE, FALLBACK_DEPTH, mean_diameter, turning_cut
+from optimiser.estimated import CLEARANCE, FALLBACK_DEPTH, mean_diameter, turning_cut
 from simulator.spec import ToolKind
 from stepnc_model.errors import Finding, SchemaError
 from stepnc_model.part21.reader import Part21File

@@ -6,7 +6,7 @@ import pytest
 
 from benchmarks.problems import random_problem
 from optimiser.errors import OptimisationError
-from optimiser.feed_caps import FeedCaps, caps_at
+from optimiser.least_cost import FeedCaps, caps_at
 from optimiser.problem import BoundSide, Limit
 from optimiser.workingstep import limits_at
 

@@ -12,8 +12,7 @@ from optimiser.formulate import OptimisationTask, problem_of, state_of
 from optimiser.modes import Free
 from optimiser.optimise import optimise_program
 from optimiser.problem import LimitName, Setting
-from simulator.library import load_machine, load_material
-from simulator.matching import match_material
+from simulator.library import load_machine, load_material, match_material
 from simulator.physics.engagement import full_immersion
 from simulator.spec import CuttingMaterial, ToolKind
 from stepnc_model.program import Program

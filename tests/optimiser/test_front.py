@@ -6,12 +6,10 @@ from pathlib import Path
 import pytest
 
 from optimiser.advice import Advice, ParetoPoint
-from optimiser.formulate import OptimisationTask
-from optimiser.front import POINTS
+from optimiser.formulate import POINTS, OptimisationTask
 from optimiser.modes import Free, Mode
 from optimiser.optimise import optimise_program
-from simulator.library import load_machine
-from simulator.matching import match_material
+from simulator.library import load_machine, match_material
 from stepnc_model.program import Program
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"

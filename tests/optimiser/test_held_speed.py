@@ -8,8 +8,7 @@ import pytest
 from optimiser.advice import AdviceStatus, Plan
 from optimiser.formulate import OptimisationTask
 from optimiser.optimise import optimise_program
-from simulator.library import load_machine
-from simulator.matching import match_material
+from simulator.library import load_machine, match_material
 from simulator.spec import Machine
 from stepnc_model.errors import Severity
 from tests.optimiser.plans import ALL_FREE, advice_of, after, before, edited, plan_of

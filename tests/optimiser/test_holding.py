@@ -9,8 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from optimiser.advice import AdviceStatus, Plan
-from optimiser.bar_grip import BarGrip
-from optimiser.conditions import PermittedDeflection
+from optimiser.conditions import BarGrip, PermittedDeflection
 from optimiser.cut import CutKind, TurnedBar
 from optimiser.formulate import OptimisationTask, problem_of
 from optimiser.holding import chuck_limits, holding_limits, holding_load
@@ -21,12 +20,10 @@ from optimiser.problem import LimitName
 from optimiser.source import from_features
 from optimiser.workingstep import solve
 from simulator.errors import LibraryError
-from simulator.library import find_grade, load_machine
-from simulator.matching import match_material
+from simulator.library import find_grade, load_machine, match_material
 from simulator.physics.holding import GripSize, clamping_force, usable_speed
 from simulator.physics.slender_bar import BarSection
-from simulator.physics.spindle import available_power
-from simulator.physics.spindle_motion import idle_power
+from simulator.physics.spindle import available_power, idle_power
 from simulator.physics.turning import BACK_SHARE, FEED_SHARE
 from simulator.spec import (
     CuttingMaterial,

@@ -15,8 +15,8 @@ from simulator.removal.lathe import TurningStock
 from simulator.spec import Kienzle
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.generate import workingstep_path
-from stepnc_model.toolpath.path import length
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 STEEL = replace(load_material("c45"), kienzle=Kienzle(k_c11=1500.0, m_c=0.25))

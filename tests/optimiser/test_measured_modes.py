@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from optimiser.measured_modes import measured_modes, what_is_measured
+from optimiser.stability import measured_modes, what_is_measured
 from simulator.library import load_machine
 from simulator.spec import Machine, ModeDirection, VibratingPart, VibrationMode
 from tests.optimiser.cuts import CUT, DRILLED, TURNED

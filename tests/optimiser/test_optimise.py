@@ -14,10 +14,9 @@ from optimiser.modes import Free, Mode
 from optimiser.optimise import DEFAULT_QUALITY, optimise_program
 from optimiser.problem import LimitName
 from optimiser.source import from_features
-from simulator.library import load_machine
-from simulator.matching import match_material
+from simulator.library import load_machine, match_material
+from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.generate import workingstep_path
-from stepnc_model.toolpath.path import length
 from stepnc_model.units import mm_min_from_speed
 from tests.optimiser.plans import (
     ALL_FREE,

@@ -7,8 +7,7 @@ from optimiser.formulate import OptimisationTask
 from optimiser.optimise import optimise_program
 from optimiser.problem import LimitName
 from service.records import changes_of
-from simulator.library import load_machine
-from simulator.matching import match_material
+from simulator.library import load_machine, match_material
 from stepnc_model import writeback
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File

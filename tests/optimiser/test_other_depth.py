@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.other_depth import with_depth
+from optimiser.tried_path import with_depth
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program, ResolvedWorkingstep

@@ -6,8 +6,7 @@ from dataclasses import replace
 import pytest
 
 from optimiser.cut import Cut, PlungeEngagement
-from optimiser.plunge_feed import with_plunge_feed
-from optimiser.plunge_search import CLOSE, PlungeOptimum, best_plunge
+from optimiser.plunge_feed import CLOSE, PlungeOptimum, best_plunge, with_plunge_feed
 from optimiser.problem import Setting
 from simulator.physics.engagement import full_immersion
 from tests.optimiser.cuts import CARBIDE, CUT

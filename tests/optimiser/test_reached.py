@@ -14,9 +14,8 @@ from optimiser.hardest import KINDS, Bending, PathContacts
 from optimiser.reached import MachineRun, thickened, with_reached
 from simulator.motion.control import ExactStop
 from simulator.motion.fir import FixedTimeFilter
-from simulator.motion.legs import Leg
 from simulator.motion.passing import motion_of
-from simulator.motion.segments import AxisLimits, ControlModel, Segments, lines
+from simulator.motion.segments import AxisLimits, ControlModel, Leg, Segments, lines
 from simulator.motion.tool_path import ToolPathRun
 from simulator.physics.engagement import full_immersion
 from simulator.removal.stations import Stations, stretch_lengths

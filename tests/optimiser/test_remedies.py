@@ -5,8 +5,7 @@ import pytest
 from optimiser.advice import AdviceStatus
 from optimiser.formulate import LEAST_DEPTH, OptimisationTask
 from optimiser.problem import LimitName
-from optimiser.remedies import slower_than_programmed
-from optimiser.remedy_words import REMEDIES
+from optimiser.reasons import REMEDIES, slower_than_programmed
 from tests.optimiser.plans import advice_of, after, measured, plan_of
 
 SLENDER = (

@@ -8,23 +8,21 @@ import pytest
 
 from optimiser.advice import AdviceStatus, Plan
 from optimiser.cut import Cut
-from optimiser.depth_limits import depth_limits
 from optimiser.formulate import OptimisationTask, problem_of, state_of
 from optimiser.hardest import Bending, with_hardest
-from optimiser.impossible import why_impossible
-from optimiser.limits import allowance_limits, limits_of
+from optimiser.limits import allowance_limits, depth_limits, limits_of
 from optimiser.modes import Free
 from optimiser.optimise import optimise_program
 from optimiser.problem import BoundSide, Limit, LimitName
-from optimiser.required import REQUIRED, unchecked_limits
+from optimiser.required import REQUIRED, unchecked_limits, why_impossible
 from optimiser.source import from_features
-from optimiser.sourced_bound import borrowed_bound
+from optimiser.speed_limits import borrowed_bound
 from simulator.library import load_machine, load_material
 from simulator.material_file import read_material
 from simulator.physics.engagement import full_immersion
 from simulator.removal.stations import StationKind
 from simulator.spec import Certainty, CuttingMaterial, MaterialMatch, ToolKind, WorkMaterial
-from simulator.tool_windows import grade_for
+from simulator.tool_table import grade_for
 from stepnc_model.errors import Severity
 from tests.every_case import every_case
 from tests.optimiser.cuts import CARBIDE, CUT, DRILLED, TURNED, conditions, named, names

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.requirement import required_roughness
+from optimiser.roughness import required_roughness
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 

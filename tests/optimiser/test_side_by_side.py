@@ -17,8 +17,7 @@ from optimiser.formulate import OptimisationTask
 from optimiser.modes import Mode
 from optimiser.optimise import optimise_program
 from optimiser.side_by_side import LEAST, one_by_one, side_by_side
-from simulator.library import load_machine
-from simulator.matching import match_material
+from simulator.library import load_machine, match_material
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program, ResolvedWorkingstep
 

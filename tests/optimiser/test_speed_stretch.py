@@ -12,8 +12,7 @@ from optimiser.limits import segment_at
 from optimiser.speed_stretch import STEP, powers_of_speed, segment_within, stretch_ends
 from simulator.library import load_machine
 from simulator.physics.holding import clamping_force, usable_speed
-from simulator.physics.spindle import available_power
-from simulator.physics.spindle_motion import idle_power
+from simulator.physics.spindle import available_power, idle_power
 from simulator.spec import ToolKind
 from simulator.work_holding import Chuck
 from tests.optimiser.cuts import PAPER, TURNED, conditions

@@ -20,12 +20,10 @@ from optimiser.stability import (
     stability_limits,
     stability_of,
 )
-from simulator.library import find_grade, load_machine, load_material
-from simulator.matching import match_material
+from simulator.library import find_grade, load_machine, load_material, match_material
 from simulator.physics.cutting import chip_stiffness
 from simulator.physics.engagement import mean_chip_ratio, unidirectional
-from simulator.physics.receptance import ModalStructure
-from simulator.physics.stability import DynamicCut, least_stable_depth
+from simulator.physics.stability import DynamicCut, ModalStructure, least_stable_depth
 from simulator.physics.turning_stability import orthogonal_limit
 from simulator.spec import (
     CuttingMaterial,

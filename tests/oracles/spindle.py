@@ -2,7 +2,7 @@
 
 from math import log1p, pi
 
-from simulator.physics.spindle_motion import idle_power
+from simulator.physics.spindle import idle_power
 from simulator.spec import Spindle
 
 

@@ -21,8 +21,9 @@ from shapely.geometry.base import BaseGeometry
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
+from stepnc_model.toolpath.arc import points_along
 from stepnc_model.toolpath.generate import workingstep_path
-from stepnc_model.toolpath.path import MoveType, Point, ToolPath, points_along
+from stepnc_model.toolpath.path import MoveType, Point, ToolPath
 
 SIDE, TOP, DEPTH, RETRACT, AXIAL = 100.0, 2.0, 6.0, 5.0, 2.5
 """mm: half of the stock, its top, the feature's depth below z = 0, its retract plane"""

@@ -12,11 +12,9 @@ from random import Random
 
 import pytest
 
-from kbe.selection import Selection
+import stepnc
 from kbe.store import open_store
-from service.flat_file import Format
 from service.knowledge.added import add_outcomes
-from service.knowledge.export import export_outcomes
 from simulator.calibration.measured_run import read_run
 from simulator.calibration.modal_fit import read_response
 from simulator.factory.shop_file import read_shop
@@ -122,7 +120,7 @@ def test_outcomes_are_added_or_refused(tmp_path: Path) -> None:
     source, path = tmp_path / "source.db", tmp_path / "outcomes.json"
     with open_store(str(source)) as store:
         store.add(list(shop(1)))
-    export_outcomes(str(source), Selection(), file=path, form=Format.JSON)
+    stepnc.kbe_export("outcomes", kb=str(source), output=path)
     data, rng = path.read_bytes(), Random("outcomes")
     for _ in range(SEEDED):
         path.write_bytes(mutated(data, rng))
@@ -134,7 +132,7 @@ def test_a_feed_of_1e308_is_refused_with_its_outcome(tmp_path: Path) -> None:
     source, path = tmp_path / "source.db", tmp_path / "outcomes.json"
     with open_store(str(source)) as store:
         store.add(list(shop(1)))
-    export_outcomes(str(source), Selection(), file=path, form=Format.JSON)
+    stepnc.kbe_export("outcomes", kb=str(source), output=path)
     text = path.read_text()
     old = '"feed_measured_mm_s": '
     begin = text.index(old) + len(old)

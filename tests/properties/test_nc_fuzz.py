@@ -9,10 +9,11 @@ from pathlib import Path
 import pytest
 
 from stepnc_model.errors import PostError
+from stepnc_model.nc.exact import read
 from stepnc_model.post.blocks import Cycles, MachineType
 from stepnc_model.post.canonical import Canonical
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.dialects import read, write
+from stepnc_model.post.dialects import write
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program
 from stepnc_model.toolpath.generate import generate
@@ -99,7 +100,9 @@ def test_a_word_that_no_control_knows_is_never_skipped(
     machine: MachineType, control: Dialect, cycles: Cycles
 ) -> None:
     code = code_of(machine, control, cycles)
-    bare = [at for at, line in enumerate(code) if line and not re.search(r"[;(%]", line)]
+    # What stands behind the end of a program is not read.
+    no_words = re.compile(r"[;(%]|END PGM")
+    bare = [at for at, line in enumerate(code) if line and not no_words.search(line)]
     for seed in range(RUNS):
         at = random.Random(seed).choice(bare or [1])
         if "~" in code[at]:
@@ -112,25 +115,28 @@ def test_a_word_that_no_control_knows_is_never_skipped(
 @every_case(
     ("control", "lines", "words"),
     [
-        (Dialect.LINUXCNC, ["O100 CALL"], "not a word"),
-        (Dialect.FANUC, ["O1 G0 X5"], "not used"),
-        (Dialect.FANUC, ["M3 M4 S100"], "two spindle commands"),
-        (Dialect.FANUC, ["G17 G18"], "one group"),
-        (Dialect.FANUC, ["G0 X" + "9" * 400], "value exceeds 1e"),
-        (Dialect.FANUC, ["G1 X5 F-100"], "F-100"),
-        (Dialect.LINUXCNC, ["G33 K1"], "no length"),
-        (Dialect.LINUXCNC, ["G33 Z-5 K-1"], "lead must be positive"),
+        (Dialect.LINUXCNC, ["O100 CALL"], "the subprogram 100 is not in this file"),
+        (Dialect.FANUC, ["M3 M4 S100"], "two commands of the spindle"),
+        (Dialect.FANUC, ["G17 G18"], "two planes"),
+        (Dialect.FANUC, ["G0 X" + "9" * 400], "is no word"),
+        (Dialect.FANUC, ["G1 X5 F-100"], "no feed in force"),
+        (Dialect.LINUXCNC, ["G33 K1"], "K: not used"),
+        (Dialect.LINUXCNC, ["G33 Z-5 K0"], "a thread whose lead is not known"),
         (Dialect.LINUXCNC, ["F60 G83 X0 Y0 Z-1000 R1 Q0.0001"], "at most 10000"),
-        (Dialect.SINUMERIK, ["SPOS=90"], "angle 0"),
-        (Dialect.HEIDENHAIN, ["0 TOOL CALL " + "9" * 5000 + " Z S100"], "value exceeds 1e"),
+        (Dialect.SINUMERIK, ["SPOS=90"], "angles other than 0"),
+        (
+            Dialect.HEIDENHAIN,
+            ["0 TOOL CALL " + "9" * 5000 + " Z S100"],
+            "a number of 1e+09 or more",
+        ),
         (Dialect.HEIDENHAIN, ["0 CC X+1 FMAX"], "CC needs two"),
-        (Dialect.HEIDENHAIN, ["0 L X+ FMAX"], "unknown here"),
+        (Dialect.HEIDENHAIN, ["0 L X+ FMAX"], "'+' is not"),
         (
             Dialect.HEIDENHAIN,
             ["0 CYCL DEF 200 DRILLING Q200=+0 what?"],
-            "unknown text",
+            "Q200=nan is not read",
         ),
-        (Dialect.HEIDENHAIN, ["0 CYCL DEF 200 DRILLING Q204=+50"], "Q204=+50"),
+        (Dialect.HEIDENHAIN, ["0 CYCL DEF 200 DRILLING Q210=+5"], "Q210=5 is not read"),
         (Dialect.CANONICAL, ["1 STRAIGHT_FEED(1E999, 0, 0)"], "must be numbers"),
         (Dialect.CANONICAL, ["1 ARC_FEED(1, 1, 0, 0, 1.5, 0)"], "whole number"),
     ],

@@ -8,10 +8,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from stepnc_model.errors import Part21Error
+from stepnc_model.part21.index import parse_record
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.part21.record import parse_record
-from stepnc_model.part21.strings import decode, encode
-from stepnc_model.part21.tidy import is_tidy, tidy_values
+from stepnc_model.part21.tokens import decode, encode, is_tidy, tidy_values
 from stepnc_model.part21.values import DERIVED, Binary, Enumeration, Real, Ref, Typed, Value
 from stepnc_model.part21.writer import Edits, format_value
 

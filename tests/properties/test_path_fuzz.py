@@ -14,7 +14,9 @@ from stepnc_model.post.blocks import Cycles
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.dialects import write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Program, ProgramLine
+from stepnc_model.program import Program
+from stepnc_model.program_listing import ProgramLine
+from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.generate import generate
 from stepnc_model.toolpath.path import Function, ToolPath
 
@@ -61,7 +63,7 @@ def require_finite(items: list[ToolPath | Function]) -> None:
     """No tool path leads nowhere."""
     for item in items:
         if isinstance(item, ToolPath):
-            assert all(map(isfinite, item.stations()))
+            assert all(isfinite(length(at, move)) for at, move in item.segments())
             arcs = [move.arc for move in item.moves if move.arc is not None]
             assert all(isfinite(number) for arc in arcs for number in (*arc.centre, arc.turn))
 

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
-from stepnc_model.toolpath.path import MoveType, Point, ToolPath, points_along
+from stepnc_model.toolpath.arc import points_along
+from stepnc_model.toolpath.path import MoveType, Point, ToolPath
 from stepnc_model.toolpath.task import job_of
 from stepnc_model.toolpath.turning.offset import grown
 from stepnc_model.toolpath.turning.operation import turning_path

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stepnc_model import writeback
-from stepnc_model.edit_conditions import rounded
+from stepnc_model.cut_settings import rounded
 from stepnc_model.entities.optimisation import FaceMillingImmersion
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File

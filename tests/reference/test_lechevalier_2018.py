@@ -18,7 +18,9 @@ from simulator.physics import (
     kinematics,
     milling,
     power,
-    spindle_motion,
+)
+from simulator.physics import (
+    spindle as spindle_motion,
 )
 from simulator.spec import AxisDrive, Kienzle
 from stepnc_model.units import (

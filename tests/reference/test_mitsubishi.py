@@ -7,7 +7,7 @@ Pages "Formula for turning", "Formula for face milling", "Cutting power for turn
 
 import pytest
 
-from simulator.physics import kinematics, power, surface, travel
+from simulator.physics import engagement, kinematics, power, surface
 from stepnc_model.units import (
     kw_from_watts,
     m_min_from_speed,
@@ -63,7 +63,7 @@ def test_face_milling_300_mm_with_200_mm_cutter_takes_37_5_s(radial_width: float
     time = moves.machining_time(
         300.0,
         feed,
-        approach=travel.centred_approach(200.0, radial_width),
+        approach=engagement.centred_approach(200.0, radial_width),
         overrun=oracle.centred_overrun(200.0, radial_width),
     )
     assert mm_min_from_speed(feed) == pytest.approx(800.0)

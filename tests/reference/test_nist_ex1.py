@@ -15,9 +15,10 @@ import pytest
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from stepnc_model.nc.exact import read
 from stepnc_model.post.canonical import Canonical
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.dialects import read, write
+from stepnc_model.post.dialects import write
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program
 from stepnc_model.toolpath.generate import generate

@@ -10,7 +10,7 @@ from math import pi
 import pytest
 
 from simulator.library import load_machine
-from simulator.physics import spindle_motion, turning
+from simulator.physics import spindle, turning
 from simulator.spec import Kienzle
 from stepnc_model.units import nm_from_nmm
 from tests.oracles import spindle as oracle_spindle
@@ -32,7 +32,7 @@ ACCELERATION = SPINDLE.acceleration or 0.0
 
 @pytest.mark.parametrize(("seconds", "watts"), RAMP)
 def test_the_ramp_draws_what_the_figure_prints(seconds: float, watts: float) -> None:
-    power = spindle_motion.spindle_power(SPINDLE, ACCELERATION * seconds, ACCELERATION)
+    power = spindle.spindle_power(SPINDLE, ACCELERATION * seconds, ACCELERATION)
     assert power == pytest.approx(watts, rel=0.03)
 
 
@@ -41,7 +41,7 @@ def test_the_ramp_ends_between_the_last_high_sample_and_the_first_low_one() -> N
 
 
 def test_the_spindle_then_idles_at_535_watts() -> None:
-    power = spindle_motion.spindle_power(SPINDLE, SPEED)
+    power = spindle.spindle_power(SPINDLE, SPEED)
     assert power == pytest.approx(sum(IDLING) / len(IDLING), rel=0.005)
     torque = oracle_spindle.running_torque(SPINDLE, SPEED)
     assert nm_from_nmm(torque) == pytest.approx(3.05, rel=0.005)
@@ -56,10 +56,10 @@ def test_the_cut_adds_the_power_of_its_force_without_a_2_pi() -> None:
     kienzle = turning.cutting_force(Kienzle(k_c11=800.0, m_c=0.25), cut)
     assert kienzle == pytest.approx(707.0, rel=1e-3)
     cutting_power = kienzle * 166.5 * radius / 1000.0
-    idle = spindle_motion.spindle_power(SPINDLE, SPEED)
-    total = spindle_motion.spindle_power(SPINDLE, SPEED, cutting_power=cutting_power)
+    idle = spindle.spindle_power(SPINDLE, SPEED)
+    total = spindle.spindle_power(SPINDLE, SPEED, cutting_power=cutting_power)
     assert total - idle == pytest.approx(3098.0, rel=1e-3)
 
 
 def test_stopping_draws_nothing_and_returns_nothing() -> None:
-    assert spindle_motion.spindle_power(SPINDLE, SPEED, -ACCELERATION) == 0.0
+    assert spindle.spindle_power(SPINDLE, SPEED, -ACCELERATION) == 0.0

@@ -18,8 +18,7 @@ from simulator.physics.engagement import (
     full_immersion,
     unidirectional,
 )
-from simulator.physics.receptance import ModalStructure
-from simulator.physics.stability import DynamicCut, stable_depths
+from simulator.physics.stability import DynamicCut, ModalStructure, stable_depths
 from simulator.physics.turning_stability import orthogonal_limit
 from simulator.spec import ModeDirection, VibratingPart, VibrationMode
 from tests.reference.semidiscretisation import Case, is_border, multiplier, with_engagement

@@ -12,7 +12,6 @@ from simulator.physics import (
     power,
     surface,
     tool_life,
-    travel,
     turning,
 )
 from simulator.spec import Kienzle, LinearEdge, Taylor
@@ -56,7 +55,7 @@ def test_groover_peripheral_milling() -> None:
     spindle_speed = kinematics.spindle_speed(65.0, speed_from_m_min(60.0))
     feed = kinematics.feed(0.2, spindle_speed, teeth=5)
     time = moves.machining_time(
-        735.0, feed, approach=5.0 + travel.one_sided_approach(65.0, 7.5), overrun=25.0
+        735.0, feed, approach=5.0 + engagement.one_sided_approach(65.0, 7.5), overrun=25.0
     )
     rate = kinematics.milling_removal_rate(feed, axial_depth=50.0, radial_width=7.5)
     assert time / 60.0 == pytest.approx(2.675, rel=1e-3)

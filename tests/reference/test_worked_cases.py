@@ -14,7 +14,6 @@ from simulator.physics import (
     power,
     surface,
     tool_life,
-    travel,
     turning,
 )
 from simulator.spec import Kienzle, LinearEdge, Taylor
@@ -83,7 +82,7 @@ def face_milling_time(given: Figures) -> Figures:
     seconds = moves.machining_time(
         given["L"],
         feed,
-        approach=travel.centred_approach(given["D"], width),
+        approach=engagement.centred_approach(given["D"], width),
         overrun=oracle.centred_overrun(given["D"], width),
     )
     return {"vf": units.mm_min_from_speed(feed), "t": seconds / 60.0, "t_s": seconds}
@@ -92,7 +91,7 @@ def face_milling_time(given: Figures) -> Figures:
 def peripheral_milling(given: Figures) -> Figures:
     speed = kinematics.spindle_speed(given["D"], units.speed_from_m_min(given["v"]))
     feed = kinematics.feed(given["fz"], speed, teeth=int(given["z"]))
-    approach = given["approach"] + travel.one_sided_approach(given["D"], given["d"])
+    approach = given["approach"] + engagement.one_sided_approach(given["D"], given["d"])
     seconds = moves.machining_time(given["L"], feed, approach=approach, overrun=given["over"])
     rate = kinematics.milling_removal_rate(
         feed, axial_depth=given["w"], radial_width=given["d"]

@@ -11,15 +11,15 @@ import pytest
 from kbe.store import open_store
 from service.buckets import BucketedRun
 from service.control.run import ControlRun, control
+from service.simulation.gathering import TraceKeeper
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import Simulation
-from service.simulation.trace import TraceKeeper
 from service.verbs.calibrate.result import CalibrationResult, CycleTime
 from simulator.calibration.calibrated import Delay
 from simulator.calibration.features import Calibration, Estimate, Parameter
-from simulator.calibration.held_out import HeldOut
+from simulator.calibration.fit import HeldOut
 from simulator.calibration.measured_run import Component
-from simulator.calibration.skill import Skill
+from simulator.calibration.simulated import Skill
 from simulator.library import load_machine
 from simulator.machine.samples import Samples
 from simulator.machine.totals import Energy, Peak, Total

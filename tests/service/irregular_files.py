@@ -164,7 +164,7 @@ def make_files(folder: Path) -> None:
         (folder / f"device{suffix}").symlink_to("/dev/zero")
         (folder / f"folder{suffix}").mkdir()
         (folder / f"loop{suffix}").symlink_to(f"loop{suffix}")
-    (folder / "good.ngc").write_text("G21 G90\nT1 M6\nS1000 M3\nG1 X1 F100\nM2\n")
+    (folder / "good.ngc").write_text("G21 G90\nT1 M6\nS1000 M3\nG0 X0 Y0 Z5\nG1 X1 F100\nM2\n")
     heading = "time_s,x_mm,y_mm,z_mm,electric_wattage,load_wattage"
     rows = [f"{row},{row},0,0,{100 + row},10" for row in range(20)]
     (folder / "good.csv").write_text("\n".join((heading, *rows, "")))

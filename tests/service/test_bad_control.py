@@ -13,8 +13,8 @@ from pyarrow import parquet
 from kbe.store import open_store
 from service.cli.interrupts import INTERRUPTED
 from service.cli.main import main
-from service.cli.options import BAD_INPUT
 from service.control.run import control
+from service.exit_codes import BAD_INPUT
 from stepnc_model.errors import WriteError
 from tests.asking import AskedControl
 from tests.every_case import every_case
@@ -93,7 +93,6 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
         ([SLOT, "--disturb", "material:butter@1s"], "unknown material 'butter'"),
         ([SLOT, "--disturb", "depth:nan@1s"], "'nan' is not a number"),
         ([SLOT, "--deviation-mm", "nan"], "deviation nan mm"),
-        ([SLOT, "--stock", "1,2,3"], "omit --stock"),
         (
             [PARTS / "shaft.stpnc", "--machine", "vmc15"],
             "is a turning tool",

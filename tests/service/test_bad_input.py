@@ -459,13 +459,16 @@ def test_a_disk_that_takes_no_more_leaves_everything_as_it_was(
 
 
 @pytest.mark.skipif(not CORPUS.is_dir(), reason="../shared/corpus is not here")
-@pytest.mark.parametrize("name", ["ap238_cc1", "ap238_cc3_14649-11_example1"])
-def test_a_program_of_ap238_without_a_feed_is_refused(
-    tmp_path: Path, refused: Optimise, name: str
+@pytest.mark.parametrize(
+    ("name", "attribute"),
+    [("ap238_cc1", "spindle"), ("ap238_cc3_14649-11_example1", "feedrate")],
+)
+def test_a_program_of_ap238_without_a_feed_or_speed_is_refused(
+    tmp_path: Path, refused: Optimise, name: str, attribute: str
 ) -> None:
     path = CORPUS / "ap238" / f"{name}.stpnc"
     answer = refused("--material", "c45", "-o", tmp_path / "out.stpnc", file=path)
-    assert "MILLING_TECHNOLOGY.feedrate" in answer.error
+    assert f"MILLING_TECHNOLOGY.{attribute}" in answer.error
     assert not (tmp_path / "out.stpnc").exists()
 
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
+from service.cli.commands import print_result
 from service.cli.main import optimise_main
-from service.cli.verbs import print_result
 from service.confirmation import PASSED, Confirmation, ConfirmedStep, Figure
-from service.rendering.records import dump
+from service.rendering.columns import dump
 from service.verbs.optimise import program as advising
 from service.verbs.optimise.plan_result import ProgramAdvice
 from simulator.errors import SimulationError
@@ -216,12 +216,6 @@ def test_a_program_that_draws_no_raw_part_needs_one(part: Path, tmp_path: Path) 
     asked = asked_advice(file=bare, machine="vmc15", dry_run=True, confirm=True)
     with pytest.raises(StepNcError, match=r"cannot be confirmed.*--stock"):
         advising.advise_program(*asked)
-    with pytest.raises(StepNcError, match="defines its own raw part"):
-        advising.advise_program(
-            *asked_advice(
-                part, machine="vmc15", dry_run=True, confirm=True, stock="0,0,0,1,1,1"
-            )
-        )
 
 
 def test_a_raw_part_that_is_named_is_the_one_that_the_file_would_draw(

@@ -8,9 +8,9 @@ from optimiser.advice import Plan
 from optimiser.formulate import OptimisationTask
 from optimiser.optimise import optimise_program
 from optimiser.source import from_features
-from service.cli.verbs import print_result
-from service.plan_checks import unchecked_words
+from service.cli.commands import print_result
 from service.records import changes_of
+from service.verbs.optimise.plan_record import unchecked_words
 from service.verbs.optimise.plan_result import ProgramAdvice
 from simulator.library import load_machine, load_material
 from simulator.spec import Certainty, MaterialMatch

@@ -23,10 +23,10 @@ except MemoryError:
 
 GREEDY = """
 import sys
-from service.jobs import advise, child
+from service.jobs import child, verb_job
 from service.process_limits import GIB, ProcessLimits
 from service.storage.folder import FolderAddress
-advise.run = lambda task: bytes(4 * GIB)
+verb_job.run = lambda task: bytes(4 * GIB)
 address = FolderAddress(root=sys.argv[1], knowledge=sys.argv[2])
 limits = ProcessLimits(memory=3 * GIB, processor=600)
 child.limited_main(limits, address, sys.argv[3], int(sys.argv[4]))

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from service.raw_stock import GivenStock, raw_stock_of, stock_map
-from service.requests.stock import StockFile, raw_part_in
+from service.requests.given import StockFile, raw_part_in
 from simulator.library import load_machine
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from service.reading import one_of, read_program, silent, unit_profile
+from service.progress import silent
+from service.reading import one_of, read_program, unit_profile
 from stepnc_model.errors import StepNcError
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"

@@ -1,4 +1,4 @@
-"""A second run of ``optimise`` on its own file moves no feed, depth or speed."""
+"""A second run of ``optimise`` on its own file changes nothing: no feed, and no byte."""
 
 from pathlib import Path
 from typing import Any
@@ -28,7 +28,10 @@ CASES: list[tuple[Path, dict[str, Any]]] = [
         },
     ),
     (CORPUS / "EXAMPLE1_original.stp", {"feed": "240"}),
+    (CORPUS / "EXAMPLE3.stp", {}),
     (CORPUS / "ex1.stp", {}),
+    (CORPUS / "ex1E.stp", {}),
+    (CORPUS / "furo.p21", {"units": "revs-mmtooth"}),
     (CORPUS / "testePrecedencias.p21", {"units": "rpm-mmtooth"}),
 ]
 """Programs, and what is given beyond them."""
@@ -48,6 +51,7 @@ def test_nothing_moves(file: Path, given: dict[str, Any], tmp_path: Path) -> Non
     assert [settings(each.after) for each in two.plan.advices] == [
         settings(each.after) for each in one.plan.advices
     ]
+    assert second.read_bytes() == first.read_bytes()
 
 
 def settings(state: Any) -> tuple[Any, ...]:

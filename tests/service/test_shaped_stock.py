@@ -9,9 +9,8 @@ from optimiser.clamped import ClampedStocks
 from service.raw_stock import body_map, given_stock
 from service.reading import given_data, read_program
 from service.requests.advice import AdviceRequest
-from service.requests.given import ProgramRequest
+from service.requests.given import ProgramRequest, RawPart, StockFile
 from service.requests.runs import SimulationRequest
-from service.requests.stock import RawPart, StockFile
 from service.simulation.run import RunFiles, simulate
 from service.verbs.optimise.plan_result import ProgramAdvice
 from service.verbs.optimise.program import advise_program as optimise
@@ -88,8 +87,10 @@ def test_a_run_cuts_the_shape_of_a_stock(without_raw: Path, half_cut: StockFile)
     request = SimulationRequest(**PLAN, stock=half_cut)  # type: ignore[arg-type]
     found = simulate(request, RunFiles(file=without_raw))
     assert found.whole.volume == pytest.approx(HALF, rel=0.02)
-    with pytest.raises(StepNcError, match="defines its own raw part: omit --stock"):
-        simulate(request, RunFiles(file=SLOT))
+    told: list[str] = []
+    again = simulate(request, RunFiles(file=SLOT), tell=told.append)
+    assert again.whole.volume == pytest.approx(found.whole.volume)
+    assert any("as given, in place of that of" in each for each in told)
 
 
 def test_given_data_keep_the_shape_of_a_stock(without_raw: Path, half_cut: StockFile) -> None:

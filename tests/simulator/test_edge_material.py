@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from simulator.edge_material import correction_of, edge_material
 from simulator.library import find_grade, load_material
 from simulator.spec import CuttingMaterial, ToolKind
+from simulator.tool_kind import correction_of, edge_material
 from stepnc_model.units import rad_from_deg
 from tests.every_case import every_case
 

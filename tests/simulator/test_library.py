@@ -16,9 +16,9 @@ from simulator.library import (
     load_machine,
     load_material,
     machine_names,
+    match_material,
     material_names,
 )
-from simulator.matching import match_material
 from simulator.spec import CuttingMaterial, ToolConstruction, ToolKind
 from stepnc_model.plausibility import MAX_CUTTING_SPEED
 from stepnc_model.units import m_min_from_speed

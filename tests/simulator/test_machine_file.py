@@ -8,7 +8,7 @@ import pytest
 from simulator.errors import LibraryError
 from simulator.library import load_machine, machine_names
 from simulator.physics.axis import axis_power, motor_speed
-from simulator.physics.spindle_motion import spindle_power
+from simulator.physics.spindle import spindle_power
 from simulator.spec import (
     AxisDrive,
     Machine,

@@ -15,6 +15,7 @@ from simulator import machine_file as allowed
 from simulator.library import load_machine, machine_names
 from simulator.machine_file import MachineFile, machine_toml
 from simulator.material_file import MaterialHead
+from simulator.planner_settings import PlannerSettings
 from simulator.spec import (
     Axis,
     AxisDrive,
@@ -277,3 +278,12 @@ def test_the_head_of_the_file_is_read_without_the_rest(tmp_path: Path) -> None:
     path.write_text(machine_toml(load_machine("vmc15")), encoding="utf-8")
     assert read_toml_head(path, MaterialHead).title == "Vertical machining centre, 15 kW"
     assert load_machine(str(path)).spindle == load_machine("vmc15").spindle
+
+
+def test_the_planner_of_a_linuxcnc_is_written_where_it_is_not_the_usual(tmp_path: Path) -> None:
+    mill = load_machine("vmc15")
+    assert "[linuxcnc]" not in machine_toml(mill)
+    quick = replace(mill, planner=PlannerSettings(max_feed_override=1.5, servo_period=0.0005))
+    path = tmp_path / "vmc15.toml"
+    path.write_text(machine_toml(quick))
+    assert load_machine(str(path)) == quick

@@ -7,8 +7,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from simulator.errors import UnknownMaterial
-from simulator.library import DATA, load_material, material_names
-from simulator.matching import GuessFile, match_material, normalised
+from simulator.library import (
+    DATA,
+    GuessFile,
+    load_material,
+    match_material,
+    material_names,
+    normalised,
+)
 from simulator.spec import Certainty
 from simulator.toml_file import read_toml
 from tests.every_case import every_case

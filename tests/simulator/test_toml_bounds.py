@@ -12,14 +12,18 @@ from hypothesis import strategies as st
 
 from simulator.errors import LibraryError
 from simulator.library import DATA
-from simulator.toml_bounds import (
+from simulator.toml_file import (
     LONGEST_WORD,
     MOST_BYTES,
     MOST_NESTED,
     MOST_PARTS,
+    FileTable,
+    converted,
+    parsed,
+    quantity,
+    read_text,
     require_bounded,
 )
-from simulator.toml_file import FileTable, converted, parsed, quantity, read_text
 from tests.every_case import every_case
 
 SIZE = 1 << 16

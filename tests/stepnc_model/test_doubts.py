@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from stepnc_model.doubts import doubts
 from stepnc_model.errors import Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
+from stepnc_model.toolpath.remarks import doubts
 from tests.service.test_keep_going import program
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"

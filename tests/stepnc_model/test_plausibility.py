@@ -1,11 +1,12 @@
 """Numbers that no machine can mean are refused, with the units that would make sense."""
 
+import re
 from pathlib import Path
 
 import pytest
 
 from service.verbs.optimise.program import advise_program as optimise
-from stepnc_model.errors import SchemaError, Severity
+from stepnc_model.errors import SchemaError, Severity, StepNcError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.plausibility import RULE, implausible, refusal
 from stepnc_model.program import Program
@@ -200,12 +201,11 @@ class TestPublicFiles:
         if not path.exists():
             pytest.skip(f"{name}.p21 is not beside the project")
         output = tmp_path / "out.stpnc"
-        with pytest.raises(SchemaError) as caught:
+        with pytest.raises(StepNcError) as caught:
             optimise(*asked_advice(file=path, output=output))
         assert number in str(caught.value)
         assert f"plausible with --units {fitting}" in str(caught.value)
-        assert caught.value.entity.endswith("MILLING_TECHNOLOGY")
-        assert caught.value.line > 0
+        assert re.search(r"line [1-9]\d*: #\d+ MILLING_TECHNOLOGY", str(caught.value))
         assert not output.exists()
 
     @pytest.mark.parametrize(

@@ -10,8 +10,7 @@ from service.verbs.optimise.program import advise_program as optimise
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.record import AdviceRecord
-from stepnc_model.record_edit import find_record
-from stepnc_model.record_limits import NO_LIMITS, RecordLimits, record_limits
+from stepnc_model.record_edit import NO_LIMITS, RecordLimits, find_record, record_limits
 from tests.asking import asked_advice
 from tests.stepnc_model.test_record import RECORD
 

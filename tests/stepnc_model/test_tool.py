@@ -120,7 +120,9 @@ class TestRotating:
         assert rotating(dimension="10.,$,$,0.,$,$,$").cutting_edge_length is None
 
     def test_a_tool_without_body_is_refused(self) -> None:
-        with pytest.raises(SchemaError, match=r"#10 .*its_tool_body.*has no tool body"):
+        with pytest.raises(
+            SchemaError, match=r"#10 .*no tool body: --tools gives a table with tool 'T'"
+        ):
             read("#10=MILLING_CUTTING_TOOL('T',$,(),$,$,$);")
 
     def test_a_body_without_dimension_is_refused(self) -> None:
@@ -210,3 +212,23 @@ def test_a_probe_is_no_cutting_tool() -> None:
 def test_a_tool_that_is_not_there_is_refused() -> None:
     with pytest.raises(SchemaError, match="is referenced, but does not exist in the file"):
         read("#11=TOUCH_PROBE('P');")
+
+
+def test_a_length_that_no_tool_has_is_refused() -> None:
+    with pytest.raises(SchemaError, match=r"cutting edge length 1e\+300 mm"):
+        rotating(dimension="10.,$,$,1.E300,0.2,$,$")
+
+
+@every_case(
+    ("edge", "message"),
+    [
+        ("CUTTING_EDGE_PROPERTIES($,$,$,60.,$,60.,(#13),$,$)", "corner_radius"),
+        ("WORKPLAN('W',(),$,$,$)", "cutting_edge"),
+    ],
+)
+def test_a_turning_tool_without_its_edge_is_told_with_its_place(
+    edge: str, message: str
+) -> None:
+    tool = "GROOVING_TOOL('G',150.,32.,$,$,$,#12,.RIGHT.,3.,12.,0.2,$,$)"
+    with pytest.raises(SchemaError, match=message):
+        read(f"#10={tool};", f"#12={edge};", "#13=ROUNDED_CORNER($);")

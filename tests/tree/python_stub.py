@@ -6,18 +6,20 @@ editors cannot read declarations that are made into functions at run time.
 
 from collections.abc import Iterator
 from dataclasses import MISSING
+from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
 from typing import get_args, get_type_hints
 
 from service.requests.fields import RequestField, fields_of
-from service.verbs.verb import Verb, verbs
+from service.verbs.call import Verb, verbs
 
 STUB = Path(__file__).parents[2] / "stepnc" / "__init__.pyi"
 
 HEAD = '''"""Functions of ``stepnc``, made by ``python -m tests.tree.python_stub``."""
 
 from collections.abc import Iterable, Mapping
+from datetime import datetime
 from pathlib import Path
 from typing import Literal
 
@@ -42,8 +44,8 @@ def _results(verb: Verb) -> list[tuple[str, str]]:
 
 def _function(verb: Verb) -> Iterator[str]:
     files, request = fields_of(verb.files), fields_of(verb.request)
-    places = [each for each in files if each.about.use is not None and not each.about.flag]
-    yield f"def {verb.folder}("
+    places = [each for each in (*files, *request) if each.is_word]
+    yield f"def {verb.function}("
     for field in places:
         yield f"    {_argument(field)},"
     keywords = [field for field in (*files, *request) if field not in places]
@@ -70,6 +72,8 @@ def _type(field: RequestField) -> str:
 
 def _kind(field: RequestField) -> str:
     kind = field.kind
+    if kind is datetime:
+        return "datetime | str"
     if field.about.use is not None:
         return "str | Path"
     if isinstance(kind, type) and issubclass(kind, StrEnum):

@@ -14,7 +14,7 @@ from docs.hooks.error_page import error_classes, error_page
 from docs.hooks.express.reader import read_schemas
 from docs.hooks.markdown import cell, code
 from docs.hooks.rest_page import openapi_document, operations, rest_page
-from service.cli import options
+from service import exit_codes
 from service.cli.commands import parser
 from stepnc_model.errors import Severity, StepNcError
 from tests.docs.pages import DOCS, ROOT, section
@@ -64,7 +64,7 @@ def test_every_command_says_what_it_does() -> None:
 def test_every_exit_code_is_documented() -> None:
     codes = {
         value
-        for name, value in vars(options).items()
+        for name, value in vars(exit_codes).items()
         if name.isupper() and isinstance(value, int)
     }
     assert codes - set(EXIT_CODES) == set()

@@ -1,6 +1,5 @@
 """Bounds that the page about the service gives are those of the program."""
 
-from service.cli.serve import USUAL_RATE
 from service.code_check import LONGEST as LONGEST_CHECK
 from service.factory import asked
 from service.http_protocol import HEAD_S
@@ -13,9 +12,10 @@ from service.rest.verifications import PLACES_SHOWN
 from service.session.runner import FORGOTTEN_AFTER, MOST_ROWS
 from service.simulation.live import MOST_SAMPLES
 from service.storage.jobs import MOST_WAITING, OWNERS
+from service.verbs.serve.request import USUAL_RATE
 from service.verification.inputs import MOST_ELEMENTS
 from service.verification.inputs import MOST_ROWS as MOST_LOGGED
-from simulator.toml_bounds import MOST_BYTES as MOST_BYTES_OF_TOML
+from simulator.toml_file import MOST_BYTES as MOST_BYTES_OF_TOML
 from tests.docs.pages import DOCS
 
 

@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 from service.agent.run import AgentFiles, serve_agent
-from service.file_names import LOGS
-from service.reading import Tell, silent
+from service.files import LOGS
+from service.progress import Tell, silent
 from service.requests.agent import AgentRequest
-from service.simulation.run_files import run_files, run_request
+from service.simulation.run_files import placed_run
 from service.verbs.agent.request import AgentPlaces
 from service.verbs.result import ServedResult
 from stepnc_model.errors import StepNcError
@@ -26,12 +26,12 @@ def run(request: AgentRequest, files: AgentPlaces, *, tell: Tell = silent) -> Se
     is_log = file is not None and file.suffix.lower() in LOGS
     # A recorded run is neither a program nor NC code.
     named = replace(files, file=None) if is_log else files
-    run_places = run_files(named, request)
+    placed = placed_run(named, request)
     places = AgentFiles(
-        run=replace(run_places, file=file) if is_log else run_places,
+        run=replace(placed.files, file=file) if is_log else placed.files,
         device=files.device,
         schemas=files.schema_files,
         runs=files.runs,
     )
-    serve_agent(run_request(request, named), places, tell=tell)
+    serve_agent(placed.request, places, tell=tell)
     return ServedResult()

@@ -9,19 +9,20 @@ import pyarrow as pa
 
 from service.files import open_lines, require_place, write_atomically
 from service.numbers import numbers_in
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.recording.logged_run import read_logged_run
 from service.recording.table import TABLES, batches, headings
 from service.requests.length_unit import LengthUnit
 from service.simulation.of_code import dialect_of
 from service.verbs.blockfit.request import BlockFitFiles, BlockFitRequest
 from service.verbs.blockfit.result import BlockFitResult
-from simulator.calibration.block_circles import BlockCircle, circles_of
 from simulator.calibration.block_feed import (
+    BlockCircle,
     CircleFeed,
     MissedCircle,
     PositionLog,
     circle_feeds,
+    circles_of,
     zero_of_log,
 )
 from simulator.calibration.block_fit import BlockFit, SpacingFeed, fitted_block_time
@@ -29,10 +30,11 @@ from simulator.errors import CalibrationError
 from simulator.library import load_machine
 from simulator.machine_file import BlockTime, machine_toml
 from simulator.toml_file import complaint
+from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, PostError, Severity, StepNcError
+from stepnc_model.nc.exact import read_blocks
 from stepnc_model.post.blocks import MachineType
-from stepnc_model.post.dialects import read_blocks
-from stepnc_model.units import mm_from_inches, speed_from_mm_min
+from stepnc_model.units import mm_from_inches, ms_from_seconds, speed_from_mm_min
 
 COLUMNS = {
     LengthUnit.INCH: ("spacing_in", "feed_in_min", "radius_in", "commanded_in_min"),
@@ -191,7 +193,7 @@ def _nothing(
     circles: Sequence[BlockCircle],
     found: Sequence[CircleFeed | MissedCircle],
 ) -> str:
-    """Why no circle was found, with a guess."""
+    """Probable reason why no circle was found."""
     in_mm = replace(log, position=mm_from_inches(1.0) * log.position)
     if any(isinstance(each, CircleFeed) for each in circle_feeds(in_mm, circles)):
         return f"{files.log}: its positions are in inches; they must be in mm"
@@ -236,8 +238,8 @@ def _write_machine(machine: str, log: str, fit: BlockFit, output: Path) -> None:
     if refused := complaint(value, BlockTime):
         raise CalibrationError(f"block time: {refused}; check the unit", path=log)
     source = (
-        f"stepnc blockfit of {Path(log).name}: {len(fit.points)} points, "
-        f"{1e3 * time.low:.4g} to {1e3 * time.high:.4g} ms (95 %)"
+        f"stepnc blockfit of {Path(log).name}: {counted(len(fit.points), 'point')}, "
+        f"{ms_from_seconds(time.low):.4g} to {ms_from_seconds(time.high):.4g} ms (95 %)"
     )
     found = replace(load_machine(machine), block_time=value, block_time_source=source)
     write_atomically(output, machine_toml(found).encode())

@@ -7,7 +7,7 @@ from pathlib import Path
 from service.rendering.columns import Column
 from service.rendering.view import Fact, ResultView, Table
 from service.verbs.result import Result
-from simulator.calibration.block_circles import BlockTest
+from simulator.calibration.block_feed import BlockTest
 from stepnc_model.units import mm_min_from_speed
 
 Circle = tuple[float, float]

@@ -3,12 +3,12 @@
 from math import isfinite
 
 from service.files import write_lines
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.requests.length_unit import LengthUnit
 from service.simulation.of_code import dialect_of
 from service.verbs.blocktest.request import BlockTestFiles, BlockTestRequest
 from service.verbs.blocktest.result import BlockTestResult
-from simulator.calibration.block_circles import (
+from simulator.calibration.block_feed import (
     DWELL,
     LEAST_INCREMENTS,
     BlockTest,
@@ -17,6 +17,7 @@ from simulator.calibration.block_circles import (
 )
 from simulator.library import load_machine
 from simulator.spec import Machine, MachineKind
+from stepnc_model.counted import counted
 from stepnc_model.errors import StepNcError
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
@@ -62,7 +63,7 @@ def run(
     duration = _duration(test, machine)
     took = "" if duration is None else f", about {duration:.0f} s"
     circles = len(test.radii) * len(test.spacings)
-    tell(f"written: {output} ({count} lines, {circles} circles{took})")
+    tell(f"written: {output} ({counted(count, 'line')}, {counted(circles, 'circle')}{took})")
     return BlockTestResult(
         file=output, test=test, left_out=left_out, lines=count, duration=duration
     )

@@ -4,10 +4,36 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+from annotated_types import Interval
+
 from service.requests.fields import About, FileUse
 from service.requests.runs import MotionRequest
 from service.simulation.run_files import CodeOfRun
+from simulator.calibration.cut_laws import LawKind
 from simulator.spec import CuttingMaterial
+
+EdgeMaterial = Annotated[
+    CuttingMaterial,
+    About(
+        "edge material of the tool lives: hss, carbide or ceramic", name="edge material",
+        flag="--edge",
+    ),
+]  # fmt: skip
+Only = Annotated[
+    tuple[LawKind, ...],
+    About(
+        "quantities of a table to use: forces,roughness,life (default: all that it holds)",
+        flag="--only", metavar="WORDS",
+    ),
+]  # fmt: skip
+WearCriterion = Annotated[
+    float,
+    Interval(ge=0.01, le=5.0),
+    About(
+        "flank wear at which an edge of a table is worn out", unit="mm", name="wear criterion",
+        flag="--wear-criterion-mm", metavar="MM",
+    ),
+]  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,13 +47,15 @@ class CalibrationRequest(MotionRequest):
             flag="--life", metavar="V:T",
         ),
     ] = ()  # fmt: skip
-    edge: Annotated[
-        CuttingMaterial,
+    edge: EdgeMaterial = CuttingMaterial.CARBIDE
+    only: Only = ()
+    wear_criterion_mm: WearCriterion = 0.3
+    anyway: Annotated[
+        bool,
         About(
-            "edge material of the tool lives: hss, carbide or ceramic", name="edge material",
-            flag="--edge",
+            "write a law of a table that predicts worse than a simpler rule", flag="--anyway"
         ),
-    ] = CuttingMaterial.CARBIDE  # fmt: skip
+    ] = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,6 +73,13 @@ class CalibrationFiles(CodeOfRun):
             flag="--tool-life", use=FileUse.INPUT, metavar="CSV",
         ),
     ] = None  # fmt: skip
+    table: Annotated[
+        Path | None,
+        About(
+            "table of measured cuts: forces, roughness and tool life of --material",
+            flag="--table", use=FileUse.INPUT, metavar="CUTS.csv",
+        ),
+    ] = None  # fmt: skip
     file: Annotated[
         Path | None,
         About(
@@ -55,7 +90,7 @@ class CalibrationFiles(CodeOfRun):
     output: Annotated[
         Path | None,
         About(
-            "write the calibrated machine, or the [[tool_life]] table of a material",
+            "write the calibrated machine or material, or a [[tool_life]] table",
             flag="--output", short="-o", use=FileUse.OUTPUT, metavar="TOML",
         ),
     ] = None  # fmt: skip

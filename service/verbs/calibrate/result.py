@@ -4,15 +4,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import isfinite
 
-from service.rendering.columns import Cell, Column
-from service.rendering.records import record
+from service.rendering.columns import Cell, Column, record
 from service.rendering.view import Fact, Findings, ResultView, Table, TextLine
 from service.verbs.result import Result
 from simulator.calibration.calibrated import Delay
 from simulator.calibration.features import Calibration, Estimate, Parameter
-from simulator.calibration.held_out import HeldOut
+from simulator.calibration.fit import HeldOut
 from simulator.calibration.measured_run import Component
-from simulator.calibration.skill import Skill
+from simulator.calibration.simulated import Skill
 from simulator.spec import Machine
 from stepnc_model.errors import Finding
 

@@ -5,16 +5,16 @@ from pathlib import Path
 
 from service.errors import MissingArgument
 from service.files import require_place, write_atomically
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.requests.runs import MotionRequest, SimulationRequest
 from service.simulation.run import RunFiles, waiting_machine
-from service.simulation.run_files import run_files, run_request
+from service.simulation.run_files import placed_run
+from service.verbs.calibrate.cuts import CutsResult, calibrated_cuts
 from service.verbs.calibrate.request import CalibrationFiles, CalibrationRequest
 from service.verbs.calibrate.result import CalibrationResult, CycleTime
 from service.verbs.calibrate.tool_life import ToolLifeResult, tool_life_fit
 from simulator.calibration.calibrated import calibrated, fitted_delay, notes, priors
-from simulator.calibration.fit import fitted
-from simulator.calibration.held_out import held_out
+from simulator.calibration.fit import fitted, held_out
 from simulator.calibration.measured_run import TIME, MeasuredRun, read_run, thinned
 from simulator.calibration.simulated import features
 from simulator.machine.interpreter import interpret
@@ -36,14 +36,22 @@ MOST_TIME_ERROR = 0.05
 
 def run(
     request: CalibrationRequest, files: CalibrationFiles, *, tell: Tell = silent
-) -> CalibrationResult | ToolLifeResult:
-    """Fit a machine or a tool life and, if an output is named, write its file.
+) -> CalibrationResult | CutsResult | ToolLifeResult:
+    """Fit a machine, a material or a tool life and, if an output is named, write its file.
 
     Raises
     ------
     StepNcError
         When the program, a run, a pair, a name or an output is invalid.
     """
+    if files.table is not None:
+        if files.runs or files.file is not None or request.life or files.tool_life is not None:
+            raise StepNcError(
+                "calibrate runs, pairs of tool life and a table in separate calls"
+            )
+        return calibrated_cuts(
+            request, files.table, files.output, is_forced=request.anyway, tell=tell
+        )
     if not request.life and files.tool_life is None:
         return _machine_fit(request, files, tell)
     if files.runs or files.file is not None:
@@ -56,13 +64,16 @@ def _machine_fit(
 ) -> CalibrationResult:
     """Fit a machine to measured runs and, if an output is named, write its machine file."""
     if not files.runs:
-        raise MissingArgument("name the measured runs, or tool lives with --life")
+        raise MissingArgument(
+            "name the measured runs, or a table of cuts with --table, or tool lives with --life"
+        )
     simulation = _simulation(request)
-    of_run = replace(run_files(files, simulation), output=None)
+    placed = placed_run(files, simulation)
+    of_run = replace(placed.files, output=None)
     if files.output is not None:
         _require_output(request, files, files.output)
     runs = [thinned(read_run(path), most=MOST_SAMPLES) for path in files.runs]
-    samples, machine = _simulated(run_request(simulation, files), of_run, tell)
+    samples, machine = _simulated(placed.request, of_run, tell)
     known = [features(samples, run) for run in runs]
     efficiency = machine.spindle.efficiency
     before = priors(machine)

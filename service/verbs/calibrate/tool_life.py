@@ -10,7 +10,7 @@ from math import isfinite
 from pathlib import Path
 
 from service.files import open_lines, require_place, write_atomically
-from service.reading import Tell
+from service.progress import Tell
 from service.rendering.view import Fact, ResultView, TextLine
 from service.verbs.calibrate.request import CalibrationFiles, CalibrationRequest
 from service.verbs.result import Result

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from service.requests.fields import About, Request
-from service.requests.files import KeepsGoing, ProgramFile
+from service.requests.files import KeepsGoing, NamedTools, ProgramFile
 from service.requests.given import ProgramRequest
 from stepnc_model.post.dialect import Dialect
 
@@ -30,6 +30,7 @@ class CanonicalFiles(Request):
     """Files of ``canonical``."""
 
     file: ProgramFile
+    tools: NamedTools = None
 
 
 REQUEST, FILES = CanonicalRequest, CanonicalFiles

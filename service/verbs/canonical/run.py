@@ -4,17 +4,18 @@ from pathlib import Path
 
 from service.files import read_bytes
 from service.paths.toolpaths import paths_for_code
-from service.program_kind import ProgramKind, kind_for
-from service.reading import Tell, read_given, silent
+from service.program_kind import NO_TABLE, ProgramKind, kind_for
+from service.progress import Tell, silent
+from service.reading import read_given, tool_library
 from service.requests.serves import require_served
 from service.verbs.canonical.request import CanonicalFiles, CanonicalRequest
 from service.verbs.canonical.result import CanonicalResult
 from stepnc_model.errors import PostError, StepNcError
+from stepnc_model.nc.exact import read
 from stepnc_model.nc.recognise import RecognisedControl, recognise
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.canonical import commands
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.dialects import read
 from stepnc_model.post.neutral import blocks_of
 
 
@@ -32,18 +33,24 @@ def run(
     kind = kind_for(files.file, request.dialect or "")
     require_served(request, kind)
     if kind is ProgramKind.NC_CODE:
+        if files.tools is not None:
+            raise StepNcError(NO_TABLE)
         if request.stock:
             raise StepNcError("--stock cannot be used with NC code: its moves are in the code")
         return _of_code(request, files.file, tell)
     if request.is_lathe:
         raise StepNcError("--lathe cannot be used with a STEP-NC program: it says what turns")
-    return _of_program(request, files.file, tell)
+    return _of_program(request, files, tell)
 
 
-def _of_program(request: CanonicalRequest, file: Path, tell: Tell) -> CanonicalResult:
-    program = read_given(file, request, tell=tell).program
+def _of_program(
+    request: CanonicalRequest, files: CanonicalFiles, tell: Tell
+) -> CanonicalResult:
+    program = read_given(
+        files.file, request, tools=tool_library(files.tools), tell=tell
+    ).program
     paths = paths_for_code(program, keep_going=request.keep_going, tell=tell)
-    blocks = blocks_of(program, paths.items, name=file.stem)
+    blocks = blocks_of(program, paths.items, name=files.file.stem)
     return CanonicalResult(
         name=program.name, control=None, commands=tuple(commands(blocks)), faults=paths.faults
     )

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from service.requests.fields import About, Request
-from service.requests.files import CodeControl, MostRepeats, ProgramFile
+from service.requests.files import CodeControl, MostRepeats, NamedTools, ProgramFile
 from service.requests.given import Name, ProgramRequest
 
 
@@ -20,6 +20,7 @@ class CheckFiles(Request):
     """Files of ``check``."""
 
     file: ProgramFile
+    tools: NamedTools = None
     name: Annotated[Name, About("name of the program in messages; empty: that of its file")] = (
         ""
     )

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from math import isnan
 
 from service.exit_codes import BAD_INPUT, OK
-from service.rendering.columns import Column
-from service.rendering.records import records
+from service.program_needs import ProgramNeeds
+from service.rendering.columns import Column, records
 from service.rendering.text import YELLOW
 from service.rendering.view import Fact, Findings, ResultView, Table, TextLine
 from service.uses import Use, UseName
 from service.verbs.result import Result
+from stepnc_model.counted import counted
 from stepnc_model.errors import Finding
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.units import mm_min_from_speed
@@ -111,6 +112,46 @@ COUNTS: tuple[Column[MoveCount], ...] = (
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class FoundTool:
+    """Tool that comments of NC code describe."""
+
+    number: int
+    kind: str
+    diameter: float
+    """Diameter, mm."""
+    teeth: int
+    guessed: str
+    """Which values are guessed, in words; empty: none."""
+    line: int
+    """Line of the comment."""
+
+
+TOOLS: tuple[Column[FoundTool], ...] = (
+    Column(key="number", heading="tool", value=lambda row: row.number, form="d", is_key=True),
+    Column(key="kind", heading="kind", value=lambda row: row.kind),
+    Column(
+        key="diameter_mm", heading="diameter mm", value=lambda row: row.diameter, form=".4g"
+    ),
+    Column(key="teeth", heading="teeth", value=lambda row: row.teeth, form="d"),
+    Column(key="guessed", heading="guessed", value=lambda row: row.guessed),
+    Column(key="line", heading="line", value=lambda row: row.line, form="d"),
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CodeNeeds:
+    """Setup that ``optimise`` finds in NC code, and what it still needs."""
+
+    tools: tuple[FoundTool, ...] = ()
+    stock: str = ""
+    """Numbers of the stock that the code states or that its moves suggest; empty: none."""
+    is_stock_guessed: bool = False
+    missing: tuple[str, ...] = ()
+    command: str = ""
+    """Command with a name in capitals for everything that is missing."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramContents(Result):
     """Contents and findings of a checked STEP-NC file."""
 
@@ -123,10 +164,12 @@ class ProgramContents(Result):
     """Uses of the program; none where it could not be read."""
     remarks: tuple[Finding, ...] = ()
     """Those of the findings that every command tells."""
+    needs: ProgramNeeds | None = None
+    """What the program lacks for advice; None where it could not be read."""
 
     @property
     def is_usable(self) -> bool:
-        """Whether feeds can be advised or NC code written, with a material if need be."""
+        """True if feeds can be advised or NC code written, with a material if need be."""
         wanted = {UseName.CODE, UseName.ADVICE}
         return any(
             use.is_possible or use.is_possible_with_material
@@ -136,7 +179,7 @@ class ProgramContents(Result):
 
     @property
     def is_of_use(self) -> bool:
-        """Whether the program can be used for anything."""
+        """True if the program can be used for anything."""
         return any(use.is_possible or use.is_possible_with_material for use in self.uses)
 
     @property
@@ -149,7 +192,9 @@ class ProgramContents(Result):
         program = self.program
         schemas = ", ".join(self.schemas) or "none"
         return ResultView([
-            TextLine(text=f"{self.name}: {self.instances} instances, schemas {schemas}"),
+            TextLine(
+                text=f"{self.name}: {counted(self.instances, 'instance')}, schemas {schemas}"
+            ),
             Fact(key="program", value=self.name),
             Fact(key="schemas", value=list(self.schemas)),
             Fact(key="instances", value=self.instances),
@@ -163,8 +208,11 @@ class ProgramContents(Result):
                 key="workingsteps", columns=STEPS, is_shown=False,
                 rows=() if program is None else program.workingsteps,
             ),
+            Fact(key="missing", value=list(self.needs.missing) if self.needs else []),
+            Fact(key="command", value=self.needs.command if self.needs else ""),
             Findings(found=self.findings, told=self.remarks),
             *self._use_lines(),
+            *(TextLine(text=line) for line in _need_lines(self.needs)),
         ])  # fmt: skip
 
     def _use_lines(self) -> Iterator[TextLine]:
@@ -195,6 +243,7 @@ class CodeContents(Result):
     is_lossless: bool
     """Whether rewriting without advice gives the file byte for byte."""
     findings: tuple[Finding, ...]
+    needs: CodeNeeds
 
     def view(self) -> ResultView:
         """Return the control, the moves by tool and kind, and what was not understood."""
@@ -202,8 +251,8 @@ class CodeContents(Result):
         return ResultView([
             TextLine(
                 text=f"{self.name}: {self.control} {self.machine}{hints}, "
-                f"{'inch' if self.is_inch else 'mm'}, {self.blocks} blocks, "
-                f"{self.executed} executed moves, frames {', '.join(self.frames)}"
+                f"{'inch' if self.is_inch else 'mm'}, {counted(self.blocks, 'block')}, "
+                f"{counted(self.executed, 'executed move')}, frames {', '.join(self.frames)}"
             ),
             Fact(key="program", value=self.name),
             Fact(key="control", value=self.control),
@@ -214,6 +263,14 @@ class CodeContents(Result):
             Fact(key="executed_moves", value=self.executed),
             Fact(key="frames", value=list(self.frames)),
             Table(key="moves", columns=COUNTS, rows=self.counts),
+            Table(
+                key="tools", columns=TOOLS, rows=self.needs.tools,
+                is_shown=bool(self.needs.tools),
+            ),
+            Fact(key="stock", value=self.needs.stock),
+            Fact(key="is_stock_guessed", value=self.needs.is_stock_guessed),
+            Fact(key="missing", value=list(self.needs.missing)),
+            Fact(key="command", value=self.needs.command),
             Fact(key="is_lossless", value=self.is_lossless),
             Findings(found=self.findings),
             TextLine(
@@ -221,7 +278,25 @@ class CodeContents(Result):
                 if self.is_lossless
                 else "rewriting does not give the file byte for byte: please report this"
             ),
-        ])
+            *(TextLine(text=line) for line in self._need_lines()),
+        ])  # fmt: skip
+
+    def _need_lines(self) -> Iterator[str]:
+        """Say what optimise would take, what is missing, and the command to complete."""
+        needs = self.needs
+        if needs.stock:
+            guessed = " (guessed from the cutting moves)" if needs.is_stock_guessed else ""
+            yield f"stock: {needs.stock} mm{guessed}"
+        if needs.missing:
+            yield f"missing for optimise: {'; '.join(needs.missing)}"
+        yield f"ready: {needs.command}"
+
+
+def _need_lines(needs: ProgramNeeds | None) -> Iterator[str]:
+    """Say what is missing for advice, and the command to complete."""
+    if needs is not None and needs.missing:
+        yield f"missing for optimise: {'; '.join(needs.missing)}"
+        yield f"ready: {needs.command}"
 
 
 def _answer(use: Use) -> str:

@@ -9,18 +9,22 @@ from service.files import read_bytes
 from service.paths.remarks import all_findings, program_remarks, tell_remarks
 from service.paths.toolpaths import Paths, paths_of
 from service.program_kind import ProgramKind, kind_for
-from service.reading import (
-    Tell,
-    given_data,
-    program_in,
-    read_stock,
-    require_no_other_stock,
-    silent,
-)
+from service.program_needs import needs_of
+from service.progress import Tell, silent
+from service.reading import given_data, given_tools, program_in, read_stock, tool_library
 from service.requests.serves import require_served
+from service.simulation.code_setup import CodeSetup, GivenSetup, code_setup
+from service.simulation.spindle_hand import turned_against
 from service.uses import uses_of
 from service.verbs.check.request import CheckFiles, CheckRequest
-from service.verbs.check.result import CodeContents, MoveCount, ProgramContents
+from service.verbs.check.result import (
+    CodeContents,
+    CodeNeeds,
+    FoundTool,
+    MoveCount,
+    ProgramContents,
+)
+from simulator.removal.cutter import Cutter
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError
 from stepnc_model.given import completed
 from stepnc_model.nc.moves import MoveKind, NcMoves
@@ -28,6 +32,7 @@ from stepnc_model.nc.program import read_program
 from stepnc_model.nc.rewrite import rewrite
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
+from stepnc_model.toolpath.generate import KeptPaths
 
 
 def run(
@@ -49,14 +54,16 @@ def run(
         if request.stock:
             raise StepNcError("--stock cannot be used with NC code: its check cuts nothing")
         return _code(request, files, name)
-    found = _program(request, files.file, name, tell)
+    found = _program(request, files, name, tell)
     tell_remarks(found.remarks, tell)
     return found
 
 
-def _program(request: CheckRequest, path: Path, called: str, tell: Tell) -> ProgramContents:
+def _program(
+    request: CheckRequest, files: CheckFiles, called: str, tell: Tell
+) -> ProgramContents:
     """Contents and findings of a STEP-NC file."""
-    file = Part21File.from_bytes(read_bytes(path), name=called)
+    file = Part21File.from_bytes(read_bytes(files.file), name=called)
     raw = read_stock(request.stock)
     try:
         program = program_in(file, units=request.units, name=called, stock=raw, tell=tell)
@@ -72,10 +79,12 @@ def _program(request: CheckRequest, path: Path, called: str, tell: Tell) -> Prog
             program=None,
             findings=(*file.findings, fault),
         )
-    require_no_other_stock(program)
+    library = tool_library(files.tools)
+    program.tools = () if library is None else given_tools(library)
     program = completed(program, given_data(request)).program
-    made = _paths(program)
-    found = program_remarks(program) if isinstance(made, StepNcError) else made.remarks
+    kept = KeptPaths()
+    made = _paths(program, kept)
+    found = program_remarks(program, kept) if isinstance(made, StepNcError) else made.remarks
     return ProgramContents(
         name=called,
         schemas=file.schemas,
@@ -83,14 +92,22 @@ def _program(request: CheckRequest, path: Path, called: str, tell: Tell) -> Prog
         program=program,
         findings=(*all_findings(program), *found),
         uses=uses_of(program, made),
+        needs=needs_of(
+            program, request, file=files.name or str(files.file), tools=_word(files.tools)
+        ),
         remarks=found,
     )
 
 
-def _paths(program: Program) -> Paths | StepNcError:
+def _word(path: Path | None) -> str:
+    """Path as it is typed; empty for none."""
+    return "" if path is None else str(path)
+
+
+def _paths(program: Program, kept: KeptPaths) -> Paths | StepNcError:
     """Return the tool paths of a program, or the reason why they cannot be made."""
     try:
-        return paths_of(program)
+        return paths_of(program, path_of=kept)
     except StepNcError as error:
         return error
 
@@ -99,6 +116,8 @@ def _code(request: CheckRequest, files: CheckFiles, name: str) -> CodeContents:
     """Contents and findings of NC code, which is executed."""
     data = read_bytes(files.file)
     program = read_program(data, dialect=request.dialect, most_repeats=files.most_repeats)
+    given = GivenSetup(file=Path(name), tools=files.tools)
+    setup = code_setup(program, given)
     return CodeContents(
         name=name,
         control=program.dialect.value,
@@ -110,8 +129,35 @@ def _code(request: CheckRequest, files: CheckFiles, name: str) -> CodeContents:
         frames=program.moves.frames,
         counts=tuple(_counts(program.moves)),
         is_lossless=rewrite(program, ()).data == program.text.data,
-        findings=program.findings,
+        findings=(
+            *program.findings,
+            *setup.library.findings,
+            *setup.findings,
+            *(each for _, each in turned_against(program, setup.library.by_number)),
+        ),
+        needs=CodeNeeds(
+            tools=tuple(_tools(setup)),
+            stock=str(setup.stock),
+            is_stock_guessed=setup.is_stock_guessed,
+            missing=setup.missing,
+            command=setup.command,
+        ),
     )
+
+
+def _tools(setup: CodeSetup) -> Iterator[FoundTool]:
+    """Tools of the comments of NC code."""
+    for tool in setup.library.tools:
+        guess = setup.guesses[tool.number]
+        guessed = ("teeth", guess.has_teeth), ("cutting material", guess.has_edge)
+        yield FoundTool(
+            number=tool.number,
+            kind=tool.kind.value,
+            diameter=tool.shape.diameter if isinstance(tool.shape, Cutter) else 0.0,
+            teeth=tool.teeth,
+            guessed=", ".join(name for name, is_so in guessed if is_so),
+            line=setup.lines.get(tool.number, 0),
+        )
 
 
 def _counts(moves: NcMoves) -> Iterator[MoveCount]:

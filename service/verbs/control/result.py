@@ -24,8 +24,7 @@ from service.control.facts import (
 )
 from service.control.run import ControlRun
 from service.exit_codes import BAD_INPUT, LIMIT_EXCEEDED, OK
-from service.rendering.columns import Cell, Change, Column
-from service.rendering.records import record
+from service.rendering.columns import Cell, Change, Column, record
 from service.rendering.text import RED
 from service.rendering.view import Fact, Findings, Item, ResultView, Table, TextLine
 from service.verbs.result import Result

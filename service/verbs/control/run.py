@@ -5,9 +5,9 @@ from pathlib import Path
 
 from service.control.record import control_recorded
 from service.numbers import numbers_in
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.requests.runs import ControlRequest
-from service.simulation.run_files import run_files, run_request
+from service.simulation.run_files import placed_run
 from service.verbs.control.request import ControlFiles
 from service.verbs.control.result import ControlResult
 from stepnc_model.errors import StepNcError
@@ -24,16 +24,15 @@ def run(request: ControlRequest, files: ControlFiles, *, tell: Tell = silent) ->
     if files.band:
         low, high = numbers_in(files.band, "override band", counts=(2,))
         request = replace(request, override_low_percent=low, override_high_percent=high)
+    placed = placed_run(files, request)
     places = replace(
-        run_files(files, request),
+        placed.files,
         recorded=_recorded(files, tell),
         loads=files.loads,
         is_teaching=files.teach,
         cut_log=files.cut_log,
     )
-    found = control_recorded(
-        run_request(request, files), places, knowledge=files.kb, by=files.by, tell=tell
-    )
+    found = control_recorded(placed.request, places, knowledge=files.kb, by=files.by, tell=tell)
     return ControlResult(run=found)
 
 

@@ -22,7 +22,7 @@ class ConvertResult(Result):
 
     @property
     def said(self) -> str:
-        """What was done, in a line."""
+        """Summary in one line."""
         if isinstance(self.form, Standard):
             return f"{self.written}: written by standard '{self.form.value}'"
         return f"{self.written}: records converted to profile '{self.form.value}'"

@@ -2,7 +2,8 @@
 
 from service.files import read_bytes, require_place, write_atomically
 from service.program_kind import require_step_nc
-from service.reading import Tell, read_program, silent
+from service.progress import Tell, silent
+from service.reading import read_program
 from service.verbs.convert.request import ConvertFiles, ConvertRequest, Standard
 from service.verbs.convert.result import ConvertResult
 from stepnc_model import writeback

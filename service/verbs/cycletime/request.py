@@ -8,10 +8,11 @@ from annotated_types import Interval
 
 from service.requests.advice import MachineName
 from service.requests.fields import About, FileUse, Request
-from service.requests.files import MostRepeats, Report
+from service.requests.files import MostRepeats, NamedTools, Report, SetupOfCode
 from service.requests.given import Name, ProgramRequest
 from service.requests.runs import JUNCTION_DEVIATION
 from simulator.motion.model_name import ControlModelName
+from stepnc_model.errors import Finding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,8 +29,11 @@ class CycleTimeRequest(ProgramRequest):
     ] = ""  # fmt: skip
     control: Annotated[
         ControlModelName,
-        About("motion control: exact-stop, junction or fir", flag="--control", metavar="NAME"),
-    ] = ControlModelName.FIR
+        About(
+            "motion control: exact-stop, junction, fir or linuxcnc",
+            flag="--control", metavar="NAME",
+        ),
+    ] = ControlModelName.FIR  # fmt: skip
     deviation_mm: Annotated[
         float,
         Interval(gt=0.0, le=10.0),
@@ -48,6 +52,7 @@ class CycleTimeFiles(Request):
         Path,
         About("a STEP-NC program (Part 21), or NC code", use=FileUse.PROGRAM, metavar="FILE"),
     ]
+    tools: NamedTools = None
     log: Annotated[
         str | None,
         About(
@@ -55,6 +60,9 @@ class CycleTimeFiles(Request):
             use=FileUse.INPUT, metavar="LOG",
         ),
     ] = None  # fmt: skip
+    log_findings: tuple[Finding, ...] = ()
+    """What is to be said of the log by those who got it."""
+    setup: SetupOfCode = None
     most_repeats: MostRepeats = None
     output: Annotated[
         Path | None,

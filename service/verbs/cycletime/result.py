@@ -1,7 +1,8 @@
 """Result of ``cycletime``: times by workingstep and tool, and where time is lost."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from service.rendering.columns import Column
 from service.rendering.view import Fact, Findings, ResultView, Table, TextLine
@@ -10,7 +11,7 @@ from simulator.machine.block_times import BlockTimes, LossCause
 from simulator.motion.model_name import ControlModelName
 from simulator.spec import Machine
 from stepnc_model.errors import Finding
-from stepnc_model.units import mm_min_from_speed
+from stepnc_model.units import mm_min_from_speed, ms_from_seconds
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -128,17 +129,23 @@ class CycleTimeResult(Result):
     """Stretches that lose most, in order of their loss."""
     hints: tuple[str, ...]
     findings: tuple[Finding, ...]
+    log: str | None = None
+    """Name of the log; None without one."""
+
+    def kept(self, folder: Path) -> dict[str, Any]:
+        """Return the record with the name of the log."""
+        return {**Result.kept(self, folder), "log": self.log}
 
     def view(self) -> ResultView:
         """Return times by workingstep and tool, the blocks that lose most, and hints."""
         time, control = self.machine.block_time, self.control.value
-        rate = "" if time is None else f", {1e3 * time:g} ms a block"
+        rate = "" if time is None else f", {ms_from_seconds(time):g} ms a block"
         return ResultView([
             TextLine(text=f"{self.name}: machine {self.machine.name}{rate}, control {control}"),
             Fact(key="program", value=self.name),
             Fact(key="machine", value=self.machine.name),
             Fact(key="control", value=control),
-            Fact(key="block_time_ms", value=None if time is None else 1e3 * time),
+            Fact(key="block_time_ms", value=None if time is None else ms_from_seconds(time)),
             Table(key="rows", columns=ROWS, rows=self.rows, total=self.total),
             Table(
                 key="stretches", columns=STRETCHES, rows=self.stretches,

@@ -10,13 +10,15 @@ import numpy as np
 from service.chosen import machine_for, require_axes
 from service.files import require_place, write_atomically, write_lines
 from service.paths.toolpaths import paths_of, with_feeds
-from service.program_kind import ProgramKind, kind_of_file
-from service.reading import Tell, read_given, silent
+from service.program_kind import NO_TABLE, ProgramKind, kind_of_file
+from service.progress import Tell, silent
+from service.reading import read_given, tool_library
 from service.recording.logged_run import LoggedRun, read_logged_run
 from service.requests.runs import RunRequest
 from service.requests.serves import require_served
 from service.simulation.of_code import IDLE, CodeRequest, dialect_of, from_code
 from service.simulation.setup import PreparedRun
+from service.simulation.setup_file import SetupFile, setup_of
 from service.verbs.cycletime.request import CycleTimeFiles, CycleTimeRequest
 from service.verbs.cycletime.result import CycleRow, CycleTimeResult, LosingStretch
 from simulator.errors import SimulationError
@@ -26,6 +28,7 @@ from simulator.machine.virtual import MachineSetup, VirtualMachine
 from simulator.motion.control import control_model
 from simulator.motion.segments import Bools, axis_limits
 from simulator.spec import Machine
+from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.nc.advice import BlockAdvice
 from stepnc_model.nc.moves import MoveKind
@@ -63,10 +66,15 @@ class _Source:
                 dialect=request.dialect,
                 most_repeats=files.most_repeats,
             ),
-            RunRequest(machine=request.machine),
+            RunRequest(machine=request.machine or self._machine_of_setup()),
             program=None,
             keep_going=True,
         )
+
+    def _machine_of_setup(self) -> str:
+        """Name of the machine in the code's setup file; empty without one."""
+        found = setup_of(self.files.file, self.files.setup)
+        return found.machine if isinstance(found, SetupFile) else ""
 
     def opened(self, tell: Tell) -> tuple[Machine, Iterator[Numbered], tuple[Finding, ...]]:
         """Machine, numbered blocks, and what is left out of them."""
@@ -75,7 +83,9 @@ class _Source:
             prepared = self.code()
             found = tuple(each for each in prepared.findings if each is not IDLE)
             return prepared.machine, prepared.blocks, found
-        program = read_given(self.files.file, request, tell=tell).program
+        program = read_given(
+            self.files.file, request, tools=tool_library(self.files.tools), tell=tell
+        ).program
         paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
         blocks = blocks_of(program, paths.items, name=Path(program.name).stem)
         return machine_for(request.machine, program), enumerate(blocks, start=1), ()
@@ -93,11 +103,14 @@ def run(
     """
     kind = kind_of_file(files.file)
     require_served(request, kind)
+    require_served(files, kind)
     is_program = kind is ProgramKind.STEP_NC
+    if files.tools is not None and not is_program:
+        raise StepNcError(NO_TABLE)
     source = _Source(request=request, files=files, is_program=is_program)
     if files.output is not None:
         require_place(files.output, apart_from=files.file)
-        if is_program or source.code().code is None:
+        if is_program:
             dialect_of(files.output, request.dialect)
     machine, blocks, left_out = source.opened(tell)
     require_axes(machine)
@@ -121,7 +134,13 @@ def run(
         total=total,
         stretches=stretches[:MOST_STRETCHES],
         hints=tuple(_hints(times, names, machine, least=WORTH * total.predicted)),
-        findings=(*left_out, *virtual.findings, *_doubts(machine, names, log)),
+        log=Path(files.log).name if files.log else None,
+        findings=(
+            *files.log_findings,
+            *left_out,
+            *virtual.findings,
+            *_doubts(machine, names, log),
+        ),
     )
 
 
@@ -129,7 +148,10 @@ def _virtual(machine: Machine, request: CycleTimeRequest) -> VirtualMachine:
     """Machine without tools and stock, as only time counts."""
     try:
         control = control_model(
-            request.control, axis_limits(machine), deviation=request.deviation_mm
+            request.control,
+            axis_limits(machine),
+            deviation=request.deviation_mm,
+            planner=machine.planner,
         )
     except ValueError as error:
         text = f"machine '{machine.name}', control {request.control.value}: {error}"
@@ -241,13 +263,14 @@ def _stretches(times: BlockTimes, names: Sequence[str]) -> tuple[LosingStretch, 
                 cause=LossCause(cause[low]),
             )
         )
-    return tuple(sorted(found, key=lambda each: -each.lost))
+    # Equal blocks lose the same but for its last bits, which differ between processors.
+    return tuple(sorted(found, key=lambda each: -round(each.lost, 6)))
 
 
 def _hints(
     times: BlockTimes, names: Sequence[str], machine: Machine, *, least: float
 ) -> Iterator[str]:
-    """What spacing or tolerance in CAM gives back the time that the block rate takes."""
+    """Spacing or tolerance in CAM that recovers the time lost to the block rate."""
     rate = times.cause == LossCause.BLOCK_RATE
     for number, name in enumerate(names):
         rows = rate & (times.workingstep == number) & (times.programmed > 0.0)
@@ -259,7 +282,7 @@ def _hints(
         needed = machine.block_time * float(np.median(feed))
         place = f"workingstep '{name}': " if name else ""
         text = (
-            f"{place}{lost:.2f} s for the block rate in {int(rows.sum())} blocks of "
+            f"{place}{lost:.2f} s for the block rate in {counted(int(rows.sum()), 'block')} of "
             f"{now:.4g} mm: points {needed:.4g} mm apart would give it back"
         )
         radii = times.radius[rows]
@@ -282,11 +305,10 @@ def _write_modified(source: _Source, times: BlockTimes, output: Path, tell: Tell
     share: dict[int, float] = {}
     for line, part in zip(times.line.tolist(), times.reached.tolist(), strict=True):
         share[line] = min(part, share.get(line, 1.0))
-    if not source.is_program:
-        code = source.code().code
-        if code is not None:
-            _write_rewritten(code, share, output, tell)
-            return
+    code = None if source.is_program else source.code().code
+    if code is not None:
+        _write_rewritten(code, share, output, tell)
+        return
     _, blocks, _ = source.opened(silent)
     changed = 0
 
@@ -303,7 +325,8 @@ def _write_modified(source: _Source, times: BlockTimes, output: Path, tell: Tell
 
     dialect = dialect_of(output, source.request.dialect)
     count = write_lines(output, write(lowered(), dialect))
-    tell(f"written: {output} ({count} lines, feed lowered in {changed} blocks)")
+    lines = counted(count, "line")
+    tell(f"written: {output} ({lines}, feed lowered in {counted(changed, 'block')})")
 
 
 def _write_rewritten(
@@ -326,4 +349,4 @@ def _write_rewritten(
     found = rewrite(code, advice)
     write_atomically(output, found.data)
     left = f", {len(found.unchanged)} left as they are" if found.unchanged else ""
-    tell(f"written: {output} (feed lowered in {found.changed} blocks{left})")
+    tell(f"written: {output} (feed lowered in {counted(found.changed, 'block')}{left})")

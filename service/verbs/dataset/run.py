@@ -3,9 +3,10 @@
 from service.dataset.folder import PROGRAMS
 from service.dataset.run import DatasetFiles, make_dataset
 from service.execution.pools import pools_of
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.verbs.dataset.request import DatasetPlaces, DatasetRequest
 from service.verbs.dataset.result import DatasetReport
+from stepnc_model.counted import counted
 
 
 def run(request: DatasetRequest, files: DatasetPlaces, *, tell: Tell = silent) -> DatasetReport:
@@ -24,7 +25,7 @@ def run(request: DatasetRequest, files: DatasetPlaces, *, tell: Tell = silent) -
         files=DatasetFiles(has_csv=request.has_csv, has_programs=request.has_programs),
         pools=pools_of(files.cluster),
     )
-    tell(f"written: {made.folder} ({made.rows} rows, {made.made} of them new)")
+    tell(f"written: {made.folder} ({counted(made.rows, 'row')}, {made.made} of them new)")
     if made.csv is not None:
         tell(f"CSV: {made.csv}")
     programs = made.folder / PROGRAMS if request.has_programs else None

@@ -8,11 +8,10 @@ from io import StringIO
 from math import isfinite, isnan
 from typing import TYPE_CHECKING
 
+from service.factory.asked import SweptCase
 from service.factory.run import FactoryResult
-from service.factory.sweep import SweptCase
 from service.formula import disarmed
-from service.rendering.columns import Column
-from service.rendering.records import records
+from service.rendering.columns import Column, records
 from service.rendering.view import Fact, Item, ResultView, Table, TextLine
 from service.verbs.result import Result
 from simulator.factory.measures import Level, MeasureInterval, Quantity
@@ -232,7 +231,7 @@ class ShopResult(Result):
 
 
 def headline(result: FactoryResult) -> str:
-    """What was run, in one line."""
+    """Summary of the run, in one line."""
     shop, run = result.shop, result.first
     hours = f"{hours_from_seconds(shop.duration):g} h"
     warm_up = f", {hours_from_seconds(shop.warm_up):g} h warm-up" if shop.warm_up else ""

@@ -6,13 +6,14 @@ from service.execution.pools import pools_of
 from service.factory.run import run_factory
 from service.factory.serve import serve_shop
 from service.files import write_atomically
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.requests.factory import FactoryRequest, LiveFactoryRequest
 from service.requests.fields import fields_of
 from service.requests.serves import given_values
 from service.verbs.factory.request import FactoryFiles
 from service.verbs.factory.result import ShopResult
 from service.verbs.result import ServedResult
+from stepnc_model.counted import counted
 from stepnc_model.errors import StepNcError
 
 REPORT = "factory.html"
@@ -45,7 +46,7 @@ def run(
         found=run_factory(files.shop, request, folder=folder, pools=pools, tell=tell)
     )
     if folder is not None:
-        tell(f"written: {folder} ({found.found.parts_written} parts)")
+        tell(f"written: {folder} ({counted(found.found.parts_written, 'part')})")
     if request.documents:
         tell(f"MTConnect documents: {found.found.documents_written}")
     if folder is not None and files.has_report:

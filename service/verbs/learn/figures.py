@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import plotly.graph_objects as go
 
-from service.learning.learned import LearnedModel
-from service.learning.score_table import CurvePoint
+from service.learning.models import LearnedModel
+from service.learning.scores import CurvePoint
 from service.learning.table import Floats, unit_of
 from service.panels import BLUE, GREY
 

@@ -4,20 +4,20 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
-from service.learning.force_factor import ForceFactor
-from service.learning.learned import LearnedModel
-from service.learning.score_table import (
+from service.learning.models import ForceFactor, LearnedModel
+from service.learning.scores import (
     CurvePoint,
+    Score,
     ScoredModel,
     error_columns,
     model_name,
     score_columns,
 )
-from service.learning.scores import Score
 from service.learning.table import Floats, unit_of
 from service.rendering.columns import Column
 from service.rendering.view import Fact, Item, ResultView, Table, TextLine
 from service.verbs.result import Result
+from stepnc_model.counted import counted
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -139,14 +139,14 @@ def row_columns(target: str) -> tuple[Column[tuple[float, float]], ...]:
 
 
 def headline(result: LearnResult) -> str:
-    """What was learned, in one line."""
+    """Summary of the learned model, in one line."""
     model = result.model
-    trained = f"trained with {model.rows} rows, tested with the next {result.test}"
+    trained = f"trained with {counted(model.rows, 'row')}, tested with the next {result.test}"
     return f"{model_name(model)}: {trained}"
 
 
 def ceiling_text(result: LearnResult) -> str:
-    """What a model of the settings can reach at most; empty if it is not known."""
+    """Best score that a model of the settings can reach; empty if it is not known."""
     if result.ceiling is None:
         return ""
     return (
@@ -172,5 +172,5 @@ def factor_text(result: LearnResult) -> str:
     wide, off = 1.96 * found.factor_error, 1.96 * found.offset_error
     return (
         f"k_c × {found.factor:.4f} ± {wide:.2g} and idle power {found.offset:+.4g} ± {off:.2g} "
-        f"W beside the physics, by least squares of {found.runs} rows (95 %)"
+        f"W beside the physics, by least squares of {counted(found.runs, 'row')} (95 %)"
     )

@@ -8,7 +8,9 @@ from stepnc_model.units import (
     kn_from_newtons,
     kw_from_watts,
     mm_min_from_speed,
+    ms_from_seconds,
     n_um_from_n_mm,
+    nm_from_nmm,
     rpm_from_rev_s,
 )
 
@@ -44,13 +46,14 @@ def machine_facts(machine: Machine) -> list[EntryFact]:
         (
             f"spindle at {rpm_from_rev_s(point.speed):g} rpm",
             f"{kw_from_watts(point.power):g} kW"
-            + (f", {point.torque / 1000.0:g} N·m" if point.torque else ""),
+            + (f", {nm_from_nmm(point.torque):g} N·m" if point.torque else ""),
         )
         for point in machine.spindle.curve
     ]
     facts.append(("efficiency", f"{machine.spindle.efficiency:g}"))
+    fastest = machine.spindle.max_speed
     for name, value in (
-        ("maximum speed rpm", machine.spindle.max_speed and machine.spindle.max_speed * 60.0),
+        ("maximum speed rpm", fastest and rpm_from_rev_s(fastest)),
         ("rapid mm/min", machine.rapid and mm_min_from_speed(machine.rapid)),
         ("maximum feed mm/min", machine.max_feed and mm_min_from_speed(machine.max_feed)),
         ("maximum cutting force N", machine.max_cutting_force),
@@ -60,7 +63,7 @@ def machine_facts(machine: Machine) -> list[EntryFact]:
         facts.append((name, "not limited" if value is None else f"{value:g}"))
     if machine.block_time is not None:
         of = f" ({machine.block_time_source})" if machine.block_time_source else ""
-        facts.append(("block time ms", f"{1e3 * machine.block_time:g}{of}"))
+        facts.append(("block time ms", f"{ms_from_seconds(machine.block_time):g}{of}"))
     for name, value in (
         ("least block mm", machine.least_block),
         ("least feed change", machine.least_feed_change),

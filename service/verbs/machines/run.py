@@ -1,6 +1,6 @@
 """Machines of the library, or one of them."""
 
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.verbs.library import EntryResult, ListingResult
 from service.verbs.machines.request import MachinesFiles, MachinesRequest
 from service.verbs.machines.result import MACHINES, machine_facts

@@ -1,7 +1,7 @@
 """Materials of the library, or one of them."""
 
 from service.chosen import load_material_named
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.verbs.library import EntryResult, ListingResult
 from service.verbs.materials.request import MaterialsFiles, MaterialsRequest
 from service.verbs.materials.result import MATERIALS, material_facts

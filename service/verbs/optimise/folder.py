@@ -16,11 +16,9 @@ from optimiser.advice import Advice, AdviceStatus, Plan
 from optimiser.errors import OptimisationError
 from service.execution.executors import Pools, processes, results
 from service.execution.pools import pools_of
-from service.file_names import PROGRAMS, naming
-from service.files import is_same, write_atomically
+from service.files import PROGRAMS, is_same, naming, write_atomically
 from service.program_kind import ProgramKind
-from service.progress import Ticker
-from service.reading import Tell, silent
+from service.progress import Tell, Ticker, silent
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
 from service.requests.serves import require_served
@@ -230,12 +228,12 @@ def _names(conflicts: list[Advice]) -> str:
 
 
 def _is_there(files: FolderFiles, row: ProgramRow) -> bool:
-    """Whether what a row promises is written."""
+    """True if what a row promises is written."""
     return files.dry_run or not row.advised or (files.output / row.program).is_file()
 
 
 def _common(request: AdviceRequest, files: FolderFiles) -> bytes:
-    """What determines the advice beside the program.
+    """Everything beside the program that determines the advice.
 
     Raises
     ------

@@ -26,7 +26,7 @@ ROWS: tuple[Column[ProgramRow], ...] = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FolderAdvice(OptimiseResult):
-    """What became of the programs of a folder."""
+    """Results of the programs of a folder."""
 
     rows: tuple[ProgramRow, ...]
     """By name."""
@@ -34,7 +34,7 @@ class FolderAdvice(OptimiseResult):
     """Number of programs that were optimised in this run; others had been before."""
 
     def has(self, status: ProgramStatus) -> bool:
-        """Whether a program has a status."""
+        """True if a program has a status."""
         return any(row.status is status for row in self.rows)
 
     @property

@@ -18,7 +18,7 @@ LEDGER = "advice.csv"
 
 
 class ProgramStatus(StrEnum):
-    """What became of a program."""
+    """Status of a program."""
 
     ADVISED = "advised"
     NOTHING = "nothing to advise"

@@ -1,12 +1,23 @@
-"""Advice for a workingstep as a JSON object. Keys carry their units."""
+"""Advice for a workingstep as a JSON object. Keys carry their units.
 
+Unchecked limits of a plan: required ones without a bound, and the risk of chatter.
+
+Notes on depths of passes that a user sets and that do not divide the whole depth.
+"""
+
+from collections.abc import Iterable, Iterator
+from math import ceil
 from typing import TYPE_CHECKING, Any
 
-from optimiser.advice import Advice, EvaluatedSetting, LimitLoad, tightest
+from optimiser.advice import Advice, EvaluatedSetting, LimitLoad, Plan, tightest
+from optimiser.cut import CutKind
+from optimiser.required import UncheckedLimit
 from optimiser.roughness import IDEAL
-from service.plan_checks import UNCHECKED, chatter_record
-from service.rendering.columns import Column
-from service.rendering.records import record, records
+from service.rendering.columns import Column, record, records
+from stepnc_model.counted import counted
+from stepnc_model.errors import Finding, Severity
+from stepnc_model.given import SetAttribute
+from stepnc_model.program import Program
 from stepnc_model.units import (
     kw_from_watts,
     mm_min_from_speed,
@@ -17,6 +28,85 @@ from stepnc_model.units import (
 
 if TYPE_CHECKING:
     from optimiser.advice import ParetoPoint
+
+UNCHECKED: tuple[Column[UncheckedLimit], ...] = (
+    Column(key="name", value=lambda limit: limit.name.value),
+    Column(key="why", value=lambda limit: limit.why),
+    Column(key="datum", value=lambda limit: limit.datum),
+)
+"""Columns of a required limit that could not be looked at."""
+
+
+def unchecked_words(plan: Plan) -> str:
+    """State how many required limits could not be looked at; empty if none."""
+    if not plan.unchecked:
+        return ""
+    steps = len({advice.workingstep.ref for advice, _ in plan.unchecked})
+    limits = "limit is" if len(plan.unchecked) == 1 else "limits are"
+    where = counted(steps, "workingstep")
+    return f"; {len(plan.unchecked)} required {limits} unchecked in {where}"
+
+
+def chatter_words(advice: Advice) -> str | None:
+    """Depth beyond the estimated stable depth; None without such a risk."""
+    risk = advice.chatter_risk
+    return None if risk is None else risk.words
+
+
+def chatter_record(advice: Advice) -> dict[str, float] | None:
+    """Return depth and estimated stable depth for JSON; None without a risk."""
+    risk = advice.chatter_risk
+    if risk is None:
+        return None
+    return {"depth_mm": risk.depth, "stable_mm": risk.stable}
+
+
+DEPTHS = {"axial_cutting_depth", "cutting_depth"}
+"""Attributes that set the depth of passes."""
+
+DIVIDES = 1e-6
+"""Relative difference within which equal passes have the depth that was set."""
+
+DECIMALS = 4
+
+
+def depth_notes(
+    program: Program, plan: Plan, given: Iterable[SetAttribute]
+) -> tuple[Finding, ...]:
+    """Notes on depths that were set and became passes of another depth."""
+    refs = {int(each.ref) for each in given if each.attribute in DEPTHS}
+    return tuple(_notes(program, plan, refs)) if refs else ()
+
+
+def _notes(program: Program, plan: Plan, refs: set[int]) -> Iterator[Finding]:
+    for advice in plan.advices:
+        step = advice.workingstep
+        strategy = getattr(step.operation, "its_machining_strategy", None)
+        if refs & {int(ref) for ref in (step.operation_ref, strategy) if ref is not None}:
+            text = _text(advice)
+            if text:
+                yield program.finding(Severity.NOTE, text, step.operation_ref)
+
+
+def _text(advice: Advice) -> str:
+    """Number and depth of the passes as programmed; empty where the depth divides."""
+    cut = advice.cut
+    if cut is None or cut.kind is not CutKind.MILLING or not cut.is_depth_free:
+        return ""
+    given, whole = cut.programmed, cut.total_depth
+    real = whole / given.passes
+    if abs(real / given.depth - 1.0) <= DIVIDES:
+        return ""
+    text = (
+        f"a depth of {given.depth:g} mm does not divide {whole:g} mm: as programmed they are "
+        f"{counted(given.passes, 'pass', 'passes')} of {real:.4g} mm"
+    )
+    fewer = given.passes - 1
+    if fewer < 1:
+        return text
+    least = ceil(whole / fewer * 10**DECIMALS - DIVIDES) / 10**DECIMALS
+    passes = "1 pass needs" if fewer == 1 else f"{fewer} passes need"
+    return f"{text}; {passes} at least {least:g} mm"
 
 
 def plunge_feed_mm_min(state: EvaluatedSetting) -> float | None:

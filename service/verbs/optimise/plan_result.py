@@ -12,19 +12,29 @@ from typing import TYPE_CHECKING, Any
 from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, Plan
 from optimiser.modes import Mode
 from optimiser.problem import LimitName
-from optimiser.remedies import slower_than_programmed
+from optimiser.reasons import slower_than_programmed
 from optimiser.roughness import IDEAL
 from optimiser.stability import Basis
 from service.exit_codes import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED, OK
-from service.plan_checks import chatter_words, unchecked_words
-from service.rendering.columns import Cell, Change, Column
-from service.rendering.records import finding_record
+from service.rendering.columns import Cell, Change, Column, finding_record
 from service.rendering.text import RED
 from service.rendering.view import Fact, Findings, Item, ResultView, Table, TextLine
-from service.verbs.optimise.plan_record import FRONT, advice_record, plunge_feed_mm_min
+from service.verbs.optimise.plan_record import (
+    FRONT,
+    advice_record,
+    chatter_words,
+    plunge_feed_mm_min,
+    unchecked_words,
+)
 from service.verbs.optimise.result import OptimiseResult
 from stepnc_model.errors import Finding
-from stepnc_model.units import kw_from_watts, mm_min_from_speed, rpm_from_rev_s
+from stepnc_model.units import (
+    kj_from_joules,
+    kw_from_watts,
+    mm_min_from_speed,
+    rpm_from_rev_s,
+    um_from_mm,
+)
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -128,6 +138,11 @@ class ProgramAdvice(OptimiseResult):
     """Comparison with the simulated run; None if it was not requested."""
     told: tuple[Finding, ...] = ()
     """Warnings about the program that were told already."""
+
+    @property
+    def name(self) -> str:
+        """Name of the program."""
+        return self.plan.program
 
     @property
     def time_before(self) -> float:
@@ -260,9 +275,9 @@ def _totals(plan: Plan) -> Iterator[Item]:
         yield TextLine(
             text=f"a free spindle speed would save {saving:.1f} s (--free feed,depth,speed)"
         )
+    before, after = map(kj_from_joules, (plan.energy_before, plan.energy_after))
     yield TextLine(
-        text=f"energy {plan.energy_before / 1e3:.1f} -> {plan.energy_after / 1e3:.1f} kJ; "
-        f"totals leave out {plan.left_out}"
+        text=f"energy {before:.1f} -> {after:.1f} kJ; totals leave out {plan.left_out}"
     )
     for advice in plan.advices:
         yield TextLine(text=f"  {advice.workingstep.id}: {_reason(advice)}")
@@ -339,7 +354,8 @@ def _figure_at(place: int, step: "ConfirmedStep") -> str:
 def _reason(advice: Advice) -> str:
     """Explain the advised feed, and which change would allow a higher one."""
     if advice.status is not AdviceStatus.ADVISED or advice.after is None:
-        return f"{advice.status.value}: {advice.reason}"
+        is_told = advice.reason.startswith(advice.status.value)
+        return advice.reason if is_told else f"{advice.status.value}: {advice.reason}"
     text = advice.reason
     limit = next(load.limit for load in advice.after.loads if load.limit.name is advice.active)
     if advice.saving_of_one_more > 0.0:
@@ -349,7 +365,7 @@ def _reason(advice: Advice) -> str:
         and advice.cut is not None
         and advice.cut.is_finishing
     ):
-        text += f"; leaves Ra {advice.after.roughness * 1e3:.3g} µm ({IDEAL})"
+        text += f"; leaves Ra {um_from_mm(advice.after.roughness):.3g} µm ({IDEAL})"
     if advice.cut is not None:
         text += "".join(f"; {each.words}" for each in advice.cut.refused_passes[:1])
     deepest = advice.deepest_first_time

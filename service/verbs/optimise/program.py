@@ -11,7 +11,6 @@ from optimiser.formulate import OptimisationTask
 from optimiser.optimise import optimise_program
 from optimiser.source import along_paths
 from service.chosen import machine_for, material_for, require_axes, with_holding
-from service.divided_depth import depth_notes
 from service.files import (
     beside,
     require_places,
@@ -20,24 +19,27 @@ from service.files import (
 )
 from service.knowledge.corrected import factors_for, finding_of, with_corrections
 from service.knowledge.place import named_place, require_apart
-from service.progress import Progress
-from service.reading import Tell, read_given, selected, silent
+from service.program_needs import needs_of
+from service.progress import Progress, Tell, silent
+from service.reading import read_given, selected, tool_library
 from service.records import changes_of, lost_plunge_feeds
 from service.refusals import Writable, advisable, apart_from
 from service.requests.advice import AdviceRequest
 from service.requests.fields import fields_of, require_bounds
 from service.requests.serves import OF_PATHS, given_values
-from service.verbs.optimise.places import output_of
+from service.verbs.optimise.plan_record import depth_notes
 from service.verbs.optimise.plan_result import ProgramAdvice
-from service.verbs.optimise.request import AdviceFiles
+from service.verbs.optimise.request import AdviceFiles, output_of
 from simulator.spec import Certainty, Machine, MaterialMatch
 from stepnc_model import writeback
+from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.file_profile import FileProfile, RecordChoice
 from stepnc_model.given import Completed
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.toolpath.generate import KeptPaths
 from stepnc_model.toolpath.task import stock_of
 from stepnc_model.units import mm_from_um
 from stepnc_model.withdrawal import without_given
@@ -47,6 +49,7 @@ if TYPE_CHECKING:
     from service.along_path.run import FeedsAlongPath
     from service.confirmation import Confirmation
     from service.knowledge.verbs import AcceptedFactor
+    from simulator.tool_files.read import ToolLibrary
     from simulator.tool_table import TableTool
     from stepnc_model.entities.executables import Setup
     from stepnc_model.part21.values import Ref
@@ -65,14 +68,14 @@ def advise_program(
         When the file, a name, a limit or an output is invalid; nothing is written.
     """
     _require_sense(request, files)
-    task = _task(request, _table(files.tools))
-    profile = None if request.records is RecordChoice.NONE else request.profile
+    library, paths = tool_library(files.tools, files.tools_unit), KeptPaths()
+    task = _task(request, library, paths)
     output = output_of(files, ".optimised.stpnc")
     nc_place = _nc_place(request, files, output)
     require_apart(named_place(files.kb), output, files.report, files.feeds_csv, nc_place)
-    whole = read_given(files.file, request, name=files.name, tell=tell)
+    whole = _read_whole(request, files, library, tell)
     program = whole.program
-    profile = writeback.profile_for(program, profile)
+    profile = writeback.profile_for(program, _profile(request))
     chosen = selected(program, request.workingsteps)
     findings = program.file.findings + program.model.findings()
     possible = advisable(program, chosen, keep_going=request.keep_going)
@@ -97,7 +100,7 @@ def advise_program(
         selected=lambda step: int(step.ref) in wanted,
         progress=Progress(tell, total=len(chosen)),
     )
-    told = _remarks(program, tell)
+    told = _remarks(program, paths, tell)
     notes = (*notes, *depth_notes(program, plan, whole.given))
     plan = replace(
         _with_file_findings(plan, (*findings, *notes, *told), match),
@@ -119,7 +122,7 @@ def advise_program(
         # NC code first: where it cannot be made, nothing is written.
         code = _nc_code(_read_again(program, data), request, along, tell)
         if not files.dry_run:
-            tell(f"NC code: {nc_place} ({write_lines(nc_place, code)} lines)")
+            tell(f"NC code: {nc_place} ({counted(write_lines(nc_place, code), 'line')})")
     if along is not None and request.writes_toolpaths:
         plan, data = _with_tool_paths(plan, _read_again(program, data), along, profile, tell)
     written = None
@@ -133,6 +136,8 @@ def advise_program(
     return ProgramAdvice(
         plan=plan,
         written=written,
+        code=None if files.dry_run else nc_place,
+        control=request.nc_control,
         confirmation=confirmation,
         along=along,
         told=told,
@@ -223,11 +228,11 @@ def _factor_notes(
     return notes
 
 
-def _remarks(program: Program, tell: Tell) -> tuple[Finding, ...]:
+def _remarks(program: Program, paths: KeptPaths, tell: Tell) -> tuple[Finding, ...]:
     """Tell the warnings about a program that every command gives."""
     from service.paths.remarks import program_remarks, tell_remarks  # noqa: PLC0415 (shapely)
 
-    found = program_remarks(program)
+    found = program_remarks(program, paths)
     tell_remarks(found, tell)
     return found
 
@@ -248,6 +253,18 @@ def _with_tool_paths(
     return replace(plan, findings=(*plan.findings, *file.findings)), file.data
 
 
+def _read_whole(
+    request: AdviceRequest, files: AdviceFiles, library: "ToolLibrary | None", tell: Tell
+) -> Completed:
+    """Read a program; refuse one that lacks data, with all of them as one command."""
+    whole = read_given(files.file, request, name=files.name, tools=library, tell=tell)
+    if not request.keep_going:
+        tools = "" if files.tools is None else str(files.tools)
+        name = files.name or str(files.file)
+        needs_of(whole.program, request, file=name, tools=tools).require_whole()
+    return whole
+
+
 def _write(output: Path, data: bytes, tell: Tell) -> Path:
     """Write the optimised program."""
     write_atomically(output, data)
@@ -261,7 +278,7 @@ def _write_feeds(files: AdviceFiles, along: "FeedsAlongPath | None", tell: Tell)
         from service.along_path.output import profile_lines  # noqa: PLC0415 (numpy)
 
         lines = write_lines(files.feeds_csv, profile_lines(along))
-        tell(f"feeds: {files.feeds_csv} ({lines} lines)")
+        tell(f"feeds: {files.feeds_csv} ({counted(lines, 'line')})")
 
 
 def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
@@ -303,8 +320,16 @@ def _tell_conflicts(plan: Plan, tell: Tell) -> None:
         tell(f"infeasible, left as programmed: {names}")
 
 
-def _task(request: AdviceRequest, tools: "tuple[TableTool, ...]") -> OptimisationTask:
+def _profile(request: AdviceRequest) -> FileProfile | None:
+    """Form of the records that is requested; None for no records."""
+    return None if request.records is RecordChoice.NONE else request.profile
+
+
+def _task(
+    request: AdviceRequest, library: "ToolLibrary | None", paths: KeptPaths
+) -> OptimisationTask:
     """Build the optimiser's task from a request, in internal units."""
+    tools = () if library is None else library.tools
     roughness = request.roughness_um
     return OptimisationTask(
         mode=request.mode,
@@ -316,7 +341,9 @@ def _task(request: AdviceRequest, tools: "tuple[TableTool, ...]") -> Optimisatio
         safety=request.safety,
         centre_cutting={**request.centre_cutting, **_centre_cutting(tools)},
         allow_plunge=request.allow_plunge,
-        source=partial(along_paths, is_run=request.is_confirmed, body_map=_body_map),
+        source=partial(
+            along_paths, is_run=request.is_confirmed, body_map=_body_map, path_of=paths
+        ),
         keep_going=request.keep_going,
         ignores_records=request.ignore_record,
     )
@@ -332,18 +359,9 @@ def _body_map(
 
 
 def _centre_cutting(tools: tuple["TableTool", ...]) -> dict[str, bool]:
-    """Whether tools cut over centre, by tool id; only tools for which the table says so."""
+    """True if tools cut over centre, by tool id; only tools for which the table says so."""
     said = {tool.id: tool.centre_cutting for tool in tools}
     return {name: does for name, does in said.items() if does is not None}
-
-
-def _table(tools: Path | None) -> tuple["TableTool", ...]:
-    """Read a tool table; empty without a file."""
-    if tools is None:
-        return ()
-    from simulator.tool_files.read import read_tools  # noqa: PLC0415 (numpy)
-
-    return read_tools(tools).tools
 
 
 def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path | None:

@@ -1,12 +1,17 @@
-"""Request of ``optimise``: the values are those of REST, the files are named by people."""
+"""Request of ``optimise``: the values are those of REST, the files are named by people.
+
+Place of the advised program: another file than the input, unless it is asked for.
+"""
 
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+from service.files import beside, is_same, require_place, require_places
 from service.requests.advice import AdviceRequest
 from service.requests.fields import About, FileUse, Request
-from service.requests.files import Knowledge, MostRepeats, Report, ToolsUnit
+from service.requests.files import Knowledge, MostRepeats, Report, SetupOfCode, ToolsUnit
+from stepnc_model.errors import StepNcError, WriteError
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,12 +49,13 @@ class AdviceFiles(Request):
     tools: Annotated[
         Path | None,
         About(
-            "tool table: the tools of NC code; of a program, which cut over centre or have "
-            "wipers",
+            "tool table: the tools of NC code; of a program, those that it only names, and "
+            "which cut over centre or have wipers",
             group="NC code", flag="--tools", use=FileUse.INPUT, metavar="TABLE",
         ),
     ] = None  # fmt: skip
     tools_unit: ToolsUnit = None
+    setup: SetupOfCode = None
     most_repeats: MostRepeats = None
     kb: Knowledge = ""
     feeds_csv: Annotated[
@@ -75,3 +81,32 @@ class AdviceFiles(Request):
 
 
 REQUEST, FILES = AdviceRequest, AdviceFiles
+
+
+def output_of(files: AdviceFiles, suffix: str) -> Path:
+    """Return the path of the advised program.
+
+    Parameters
+    ----------
+    files : AdviceFiles
+    suffix : str
+        End of its name where none is given.
+
+    Raises
+    ------
+    StepNcError
+        When an output would take the place of another file.
+    """
+    if files.in_place:
+        if files.output is not None:
+            raise StepNcError("--in-place and --output exclude each other")
+        output = files.file
+    else:
+        output = files.output or beside(files.file, suffix)
+        if is_same(files.file, output):
+            message = "is the input file; use --in-place to overwrite it"
+            raise WriteError(message, path=str(output))
+        if not files.dry_run:
+            require_place(output, apart_from=files.file)
+    require_places([files.report, files.feeds_csv], apart_from=[files.file, output])
+    return output

@@ -1,7 +1,7 @@
 """Optimise a program of any kind, or the programs of a folder."""
 
 from service.program_kind import ProgramKind, kind_of_file
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.requests.advice import AdviceRequest
 from service.requests.serves import require_served
 from service.verbs.optimise.program import advise_program

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Annotated
 
 from service.requests.fields import About, FileUse, Request
-from service.requests.files import KeepsGoing
+from service.requests.files import KeepsGoing, NamedTools
 from service.requests.given import ProgramRequest
 from stepnc_model.post.dialect import Dialect
 
@@ -41,6 +41,7 @@ class PostFiles(Request):
     file: Annotated[
         Path, About("a STEP-NC program (Part 21)", use=FileUse.INPUT, metavar="FILE")
     ]
+    tools: NamedTools = None
     output: Annotated[
         Path | None,
         About(

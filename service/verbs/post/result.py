@@ -5,9 +5,10 @@ from pathlib import Path
 
 from service.exit_codes import BAD_INPUT, OK
 from service.paths.toolpaths import Paths
-from service.rendering.records import finding_record
+from service.rendering.columns import finding_record
 from service.rendering.view import Fact, ResultView, TextLine
 from service.verbs.result import Result
+from stepnc_model.counted import counted
 from stepnc_model.post.dialect import Dialect
 
 
@@ -35,5 +36,7 @@ class PostResult(Result):
             Fact(key="lines", value=self.lines),
             Fact(key="left_out", value=[str(fault) for fault in paths.faults]),
             Fact(key="findings", value=[finding_record(each) for each in paths.findings]),
-            TextLine(text=f"written: {self.written} ({self.lines} lines)", is_told=True),
+            TextLine(
+                text=f"written: {self.written} ({counted(self.lines, 'line')})", is_told=True
+            ),
         ])

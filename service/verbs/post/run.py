@@ -3,9 +3,11 @@
 from service.files import beside, require_place, write_lines
 from service.paths.toolpaths import nc_lines, paths_for_code
 from service.program_kind import require_step_nc
-from service.reading import Tell, read_given, silent
+from service.progress import Tell, silent
+from service.reading import read_given, tool_library
 from service.verbs.post.request import PostFiles, PostRequest
 from service.verbs.post.result import PostResult
+from stepnc_model.counted import counted
 from stepnc_model.post.blocks import Cycles
 
 NO_CODE = (
@@ -28,10 +30,12 @@ def run(request: PostRequest, files: PostFiles, *, tell: Tell = silent) -> PostR
     output = files.output or beside(files.file, control.suffix)
     require_place(output, apart_from=files.file)
     require_step_nc(files.file, NO_CODE)
-    program = read_given(files.file, request, tell=tell).program
+    program = read_given(
+        files.file, request, tools=tool_library(files.tools), tell=tell
+    ).program
     paths = paths_for_code(program, keep_going=request.keep_going, tell=tell)
     cycles = Cycles.OWN if request.cycles else Cycles.EXPANDED
     lines = nc_lines(paths, control, cycles, is_exact=request.exact_path)
     count = write_lines(output, lines)
-    tell(f"written: {output} ({count} lines)")
+    tell(f"written: {output} ({counted(count, 'line')})")
     return PostResult(paths=paths, control=control, written=output, lines=count)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from service.learning.learned import LearnedModel
+from service.learning.models import LearnedModel
 from service.learning.table import Floats, unit_of
 from service.rendering.columns import Column
 from service.rendering.view import Fact, ResultView, Table, TextLine

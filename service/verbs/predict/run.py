@@ -6,7 +6,7 @@ import pyarrow as pa
 
 from service.learning.model_file import load_model
 from service.learning.source import read_table
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.verbs.predict.request import PredictFiles, PredictRequest
 from service.verbs.predict.result import PredictResult
 from stepnc_model.errors import StepNcError

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from service.recording.run import Recording
 from service.rendering.view import Fact, ResultView, TextLine
 from service.verbs.result import Result
+from stepnc_model.counted import counted
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -17,12 +18,14 @@ class RecordingResult(Result):
         """Return the size of the file, and the interruptions if there were any."""
         found = self.recording
         written = (
-            f"{found.file}: {found.rows} rows, {len(found.columns)} columns, "
-            f"{found.observations} observations"
+            f"{found.file}: {counted(found.rows, 'row')}, "
+            f"{counted(len(found.columns), 'column')}, "
+            f"{counted(found.observations, 'observation')}"
         )
         interrupted = (
-            f"interrupted: {found.faults} times without connection, {found.restarts} restarts "
-            f"of the agent, {found.lost} observations lost"
+            f"interrupted: {counted(found.faults, 'time')} without connection, "
+            f"{counted(found.restarts, 'restart')} of the agent, "
+            f"{counted(found.lost, 'observation')} lost"
         )
         has_gaps = found.lost or found.restarts or found.faults
         return ResultView([

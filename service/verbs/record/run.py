@@ -1,6 +1,6 @@
 """Recording of what an agent tells."""
 
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.recording.run import record
 from service.requests.recording import RecordingRequest
 from service.verbs.record.request import RecordingFiles

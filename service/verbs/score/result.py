@@ -4,12 +4,12 @@ from dataclasses import asdict, dataclass
 
 from service.exit_codes import LIMIT_EXCEEDED, OK
 from service.learning.drift import Drift
-from service.learning.learned import LearnedModel
-from service.learning.score_table import ScoredModel, model_name, score_columns
-from service.learning.scores import Score
+from service.learning.models import LearnedModel
+from service.learning.scores import Score, ScoredModel, model_name, score_columns
 from service.learning.table import unit_of
 from service.rendering.view import Fact, ResultView, Table, TextLine
 from service.verbs.result import Result
+from stepnc_model.counted import counted
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -34,7 +34,7 @@ class ScoreResult(Result):
         """Return the scores, and the diagnosis."""
         model, drift, rows = self.model, self.drift, self.rows
         left = (
-            f"left out: {len(self.left_out)} runs, first row {row}: {text}"
+            f"left out: {counted(len(self.left_out), 'run')}, first row {row}: {text}"
             for row, text in self.left_out[:1]
         )
         return ResultView([

@@ -4,15 +4,12 @@ import numpy as np
 import pyarrow as pa
 
 from service.learning.drift import drift_of
-from service.learning.learned import LearnedModel
 from service.learning.model_file import load_model
-from service.learning.models import ModelKind
-from service.learning.recorded import with_recorded
-from service.learning.score_table import MEAN, PHYSICS_ALONE, ScoredModel
-from service.learning.scores import scores_of
+from service.learning.models import LearnedModel, ModelKind
+from service.learning.scores import MEAN, PHYSICS_ALONE, ScoredModel, scores_of
 from service.learning.source import RowSource
-from service.learning.table import PHYSICS, Floats, feature_values, positive_of
-from service.reading import Tell, silent
+from service.learning.table import PHYSICS, Floats, feature_values, positive_of, with_recorded
+from service.progress import Tell, silent
 from service.verbs.score.request import ScoreFiles, ScoreRequest
 from service.verbs.score.result import ScoreResult
 from stepnc_model.errors import StepNcError

@@ -6,15 +6,19 @@ from typing import Annotated
 
 from annotated_types import Interval
 
+from service.live.journal import LiveFolder
 from service.requests.fields import About, FileUse
 from service.requests.runs import SimulationRequest
 from service.simulation.run_files import RunOutputs
-from simulator.agent.names import NameSet, SchemaVersion
+from simulator.agent.machine_model import NameSet, SchemaVersion
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimulateFiles(RunOutputs):
     """Files of ``simulate``."""
+
+    live: LiveFolder | None = None
+    """Folder of live samples for people who watch; None: nobody does."""
 
     carbon_g_kwh: Annotated[
         float | None,

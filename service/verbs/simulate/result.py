@@ -10,19 +10,17 @@ from math import nan
 from typing import TYPE_CHECKING, Any
 
 from service.exit_codes import BAD_INPUT, LIMIT_EXCEEDED, OK
-from service.rendering.columns import Column
-from service.rendering.records import record
+from service.rendering.columns import Column, record
 from service.rendering.text import RED
 from service.rendering.view import Fact, Findings, ResultView, Table, TextLine
-from service.simulation.carbon import WORLD, CarbonFactor, kilowatt_hours
 from service.simulation.facts import COMPONENTS as NAMES
-from service.simulation.facts import SimulationRow, exceeded, ratio, rows
+from service.simulation.facts import WORLD, CarbonFactor, SimulationRow, exceeded, ratio, rows
 from service.simulation.run import Simulation
 from service.verbs.result import Result
 from simulator.machine.deviation import SeededDeviation
 from simulator.machine.totals import Peak, Total
 from stepnc_model.errors import StepNcError
-from stepnc_model.units import kw_from_watts, rpm_from_rev_s
+from stepnc_model.units import kw_from_watts, kwh_from_joules, rpm_from_rev_s
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -227,7 +225,7 @@ class SimulateResult(Result):
             for name, heading in NAMES.items()
             if getattr(whole.energy, name)
         )
-        yield f"energy {kilowatt_hours(energy):.4g} kWh: {shares}"
+        yield f"energy {kwh_from_joules(energy):.4g} kWh: {shares}"
         yield (
             f"carbon {carbon.grams(energy):.4g} g CO₂ at {carbon.grams_per_kwh:g} g/kWh "
             f"({carbon.source})"
@@ -273,7 +271,7 @@ class SimulateResult(Result):
             exceeded=exceeded(simulation, found),
             figure=plot(self.plot(), "run"),
             width=trace.width,
-            energy_kwh=kilowatt_hours(energy),
+            energy_kwh=kwh_from_joules(energy),
             mean_power=kw_from_watts(ratio(energy, whole.duration)),
             cutting_share=ratio(whole.cutting_time, whole.duration),
             times=(NAME, BEGIN, *TIMES),
@@ -319,7 +317,7 @@ def _carbon(carbon: CarbonFactor, whole: float) -> Columns:
     return (
         _of(lambda total: 100.0 * ratio(total.energy.total, whole), heading="share %",
             form=".1f"),
-        _of(lambda total: kilowatt_hours(total.energy.total), heading="kWh", form=".4f"),
+        _of(lambda total: kwh_from_joules(total.energy.total), heading="kWh", form=".4f"),
         _of(lambda total: carbon.grams(total.energy.total), heading="g CO₂", form=".2f"),
     )  # fmt: skip
 

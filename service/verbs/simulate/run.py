@@ -2,11 +2,11 @@
 
 from dataclasses import replace
 
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.requests.runs import SimulationRequest
-from service.simulation.carbon import WORLD, stated
+from service.simulation.facts import WORLD, stated
 from service.simulation.run import simulate
-from service.simulation.run_files import run_files, run_request
+from service.simulation.run_files import placed_run
 from service.verbs.simulate.request import SimulateFiles
 from service.verbs.simulate.result import SimulateResult
 
@@ -22,9 +22,14 @@ def run(
         When a file, a name, a number or an output is not valid.
     """
     carbon = WORLD if files.carbon_g_kwh is None else stated(files.carbon_g_kwh)
-    places = replace(run_files(files, request), kept=files.keep_stock)
-    request = run_request(request, files)
-    if files.mtconnect is None:
+    placed = placed_run(files, request)
+    places, request = replace(placed.files, kept=files.keep_stock), placed.request
+    if files.live is not None:
+        from service.simulation.live import watched  # noqa: PLC0415 (numpy)
+
+        with watched(files.live, request.pace) as live:
+            found = simulate(request, places, tell=tell, watchers=(live,))
+    elif files.mtconnect is None:
         found = simulate(request, places, tell=tell)
     else:
         from service.agent.run import DocumentChoice, simulated_with_document  # noqa: PLC0415 (lxml)

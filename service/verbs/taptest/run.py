@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from service.files import require_place, write_atomically
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.verbs.taptest.request import TapTestFiles, TapTestRequest
 from service.verbs.taptest.result import TapTestResult
 from simulator.calibration.modal_fit import ModalFit, fitted_modes, read_response

@@ -16,7 +16,8 @@ from stepnc_model.nc.moves import MoveKind, NcMove
 from stepnc_model.nc.program import NcProgram
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.program import Stock
-from stepnc_model.toolpath.path import Arc, Move, MoveType, Point, ToolPath, points_along
+from stepnc_model.toolpath.arc import points_along
+from stepnc_model.toolpath.path import Move, MoveType, Point, ToolPath
 
 COLOURS = {
     MoveType.RAPID: "#9aa0a6",
@@ -118,15 +119,13 @@ def _runs_of_code(moves: Iterable[NcMove]) -> Iterator[tuple[str, Iterator[Segme
 def _is_drawn(move: NcMove) -> bool:
     if move.kind in {MoveKind.DWELL, MoveKind.UNKNOWN}:
         return False
-    return isfinite(sum(move.start) + sum(move.end) + move.turn)
+    turn = 0.0 if move.arc is None else move.arc.turn
+    return isfinite(sum(move.start) + sum(move.end) + turn)
 
 
 def _segment(move: NcMove) -> Segment:
     """Start of a move of NC code, and the move as one of a tool path."""
-    arc = None
-    if move.centre is not None:
-        arc = Arc(centre=move.centre, turn=move.turn, plane=move.plane)
-    return move.start, Move(type=MoveType.CONTACT, end=move.end, arc=arc)
+    return move.start, Move(type=MoveType.CONTACT, end=move.end, arc=move.arc)
 
 
 def _points(segments: Iterable[Segment]) -> Iterator[Point]:

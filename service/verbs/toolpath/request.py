@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Annotated
 
 from service.requests.fields import About, FileUse, Request
-from service.requests.files import CodeControl, KeepsGoing, MostRepeats, ProgramFile
+from service.requests.files import CodeControl, KeepsGoing, MostRepeats, NamedTools, ProgramFile
 from service.requests.given import ProgramRequest
 
 
@@ -22,6 +22,7 @@ class ToolPathFiles(Request):
     """Files of ``toolpath``."""
 
     file: ProgramFile
+    tools: NamedTools = None
     most_repeats: MostRepeats = None
     plot: Annotated[
         Path | None,

@@ -10,10 +10,12 @@ from service.rendering.columns import Column
 from service.rendering.view import Fact, Findings, ResultView, Table, TextLine
 from service.verbs.result import Result
 from service.verbs.toolpath.stretches import ToolStretch, called_tool, stretches, tool_label
+from stepnc_model.counted import counted
 from stepnc_model.nc.moves import NcMove, NcMoves
 from stepnc_model.nc.program import NcProgram
 from stepnc_model.nc.text import NcText
 from stepnc_model.program import Stock
+from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.path import (
     Dwell,
     Function,
@@ -23,7 +25,6 @@ from stepnc_model.toolpath.path import (
     SpindleSpeedChange,
     Step,
     ToolPath,
-    length,
 )
 from stepnc_model.units import deg_from_rad, mm_min_from_speed, rpm_from_rev_s
 
@@ -94,7 +95,7 @@ class ToolPathResult(Result):
         """Return a row for each tool path, every move for programs, and the assumptions."""
         paths = self.paths
         return ResultView([
-            TextLine(text=f"{paths.program.name}: {len(paths.paths)} tool paths"),
+            TextLine(text=f"{paths.program.name}: {counted(len(paths.paths), 'tool path')}"),
             Fact(key="program", value=paths.program.name),
             Fact(key="clamping_positions_mm", value=paths.clamps),
             Fact(key="items", value=lambda: [_item(item) for item in paths.items]),
@@ -168,14 +169,14 @@ def _move_columns(text: NcText) -> tuple[Column[NcMove], ...]:
         Column(key="tool", value=lambda move: tool_label(called_tool(move.setting)), kind=str),
         Column(key="kind", value=lambda move: move.kind.name.lower(), kind=str),
         *_axes("", lambda move: move.end),
-        *_axes("centre_", lambda move: move.centre),
+        *_axes("centre_", lambda move: None if move.arc is None else move.arc.centre),
         Column(
             key="turn_deg",
-            value=lambda move: None if move.centre is None else deg_from_rad(move.turn),
+            value=lambda move: None if move.arc is None else deg_from_rad(move.arc.turn),
         ),
         Column(
             key="plane", kind=str,
-            value=lambda move: None if move.centre is None else move.plane.value,
+            value=lambda move: None if move.arc is None else move.arc.plane.value,
         ),
         Column(key="feed_mm_min", value=lambda move: mm_min_from_speed(move.feed)),
         Column(key="spindle_rpm", value=_spindle),

@@ -4,9 +4,10 @@ from pathlib import Path
 
 from service.files import read_bytes, require_place, write_atomically
 from service.paths.toolpaths import paths_of, with_remarks
-from service.program_kind import ProgramKind, kind_for
+from service.program_kind import NO_TABLE, ProgramKind, kind_for
+from service.progress import Tell, silent
 from service.raw_stock import raw_stock_of
-from service.reading import Tell, read_given, silent
+from service.reading import read_given, tool_library
 from service.requests.serves import require_served
 from service.verbs.toolpath.request import ToolPathFiles, ToolPathRequest
 from service.verbs.toolpath.result import CodePathResult, ToolPathResult
@@ -45,12 +46,16 @@ def _require_picture(picture: Path, *, apart_from: Path) -> None:
 
 
 def _program(request: ToolPathRequest, files: ToolPathFiles, tell: Tell) -> ToolPathResult:
-    program = read_given(files.file, request, tell=tell).program
+    program = read_given(
+        files.file, request, tools=tool_library(files.tools), tell=tell
+    ).program
     paths = paths_of(program, keep_going=request.keep_going, tell=tell)
     return ToolPathResult(paths=with_remarks(paths, tell))
 
 
 def _code(request: ToolPathRequest, files: ToolPathFiles) -> CodePathResult:
+    if files.tools is not None:
+        raise StepNcError(NO_TABLE)
     if request.stock and files.plot is None:
         raise StepNcError("--stock of NC code is only drawn: name a picture with --plot")
     stock = raw_stock_of(request.stock).bounds if request.stock else None

@@ -7,6 +7,7 @@ from typing import Annotated
 from service.requests.fields import About, FileUse, Request
 from service.requests.files import Report
 from service.requests.verification import VerificationRequest
+from stepnc_model.errors import Finding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,6 +22,8 @@ class VerificationFiles(Request):
             use=FileUse.INPUT, metavar="LOG",
         ),
     ]  # fmt: skip
+    log_findings: tuple[Finding, ...] = ()
+    """What is to be said of the log by those who got it."""
     program: Annotated[
         Path | None,
         About(

@@ -3,16 +3,16 @@
 from dataclasses import dataclass
 from math import isfinite, isnan
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from service.exit_codes import LIMIT_EXCEEDED, OK
-from service.rendering.columns import Column
-from service.rendering.records import record
+from service.rendering.columns import Column, record
 from service.rendering.text import RED
 from service.rendering.view import Fact, Findings, ResultView, Table, TextLine
 from service.run_file import ColumnKind, RunColumn, RunFile, Words
+from service.storage.results import PLACES, SURFACE
 from service.verbs.result import Result
 from service.verification.facts import (
     RAW,
@@ -24,6 +24,7 @@ from service.verification.facts import (
     log_resolution,
     surface_deviations,
     tolerance_bands,
+    write_surface,
 )
 from service.verification.run import Verification
 
@@ -184,7 +185,7 @@ class VerificationResult(Result):
 
     @property
     def resolution(self) -> str:
-        """What the log can resolve, in words."""
+        """Resolution of the log, in words."""
         facts, can = self.found.facts, log_resolution(self.found)
         rounding = f"rounded to {facts.rounding:g} mm" if facts.rounding else "not rounded"
         rate = f"{1.0 / facts.interval:.3g} Hz" if facts.interval > 0.0 else "unknown rate"
@@ -223,6 +224,13 @@ class VerificationResult(Result):
             resolution=self.resolution,
             unseen=UNSEEN,
         )
+
+    def kept(self, folder: Path) -> dict[str, Any]:
+        """Write places as CSV and Parquet, and the surface for maps."""
+        for suffix in (".csv", ".parquet"):
+            self.write_places(folder / f"{PLACES}{suffix}")
+        write_surface(folder / SURFACE, self.found)
+        return self.record()
 
     def write_places(self, path: Path) -> int:
         """Write places as Parquet or CSV: all on walls, others beyond their uncertainty.

@@ -1,15 +1,17 @@
 """Verification of logged positions with the files that people name."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from service.files import require_places
 from service.part_file import part_place
-from service.reading import Tell, silent
+from service.progress import Tell, silent
 from service.requests.verification import VerificationRequest
 from service.run_file import require_suffix
 from service.verbs.verify.request import VerificationFiles
 from service.verbs.verify.result import VerificationResult
 from service.verification.run import VerificationInputs, verify
+from stepnc_model.counted import counted
 
 
 def run(
@@ -29,9 +31,9 @@ def run(
     if files.output is not None:
         require_suffix(files.output)
     inputs = VerificationInputs(tools=files.tools, required=required[0], solid=required[1])
-    result = VerificationResult(
-        found=verify(files.log, files.program, request, inputs=inputs, tell=tell)
-    )
+    found = verify(files.log, files.program, request, inputs=inputs, tell=tell)
+    findings = (*files.log_findings, *found.findings)
+    result = VerificationResult(found=replace(found, findings=findings))
     if files.output is not None:
-        tell(f"written: {files.output} ({result.write_places(files.output)} places)")
+        tell(f"written: {files.output} ({counted(result.write_places(files.output), 'place')})")
     return result

@@ -9,7 +9,7 @@ chords within ``CHORD_TOLERANCE``.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from math import ceil, dist, pi, sqrt
+from math import ceil, dist, pi
 
 from stepnc_model.draft import Draft
 from stepnc_model.entities.enums import Logical, TransitionCode, TrimmingPreference
@@ -26,9 +26,10 @@ from stepnc_model.entities.geometry import (
     TrimmedCurve,
 )
 from stepnc_model.part21.values import Ref
+from stepnc_model.toolpath.arc import begun_turns, chord_angle, inner_points, length, radius
 from stepnc_model.toolpath.curve import CHORD_TOLERANCE
 from stepnc_model.toolpath.frame import Frame
-from stepnc_model.toolpath.path import Arc, Move, Point, length, minus, point_at, radius
+from stepnc_model.toolpath.path import Arc, Move, Point, minus
 
 LEVEL = 1e-9
 """Greatest rise of an arc that is not a helix, mm."""
@@ -108,10 +109,8 @@ class CurveWriter:
             return [move.end]
         if self._form is HelixForm.HELIX or not _is_helix(at, move):
             return []
-        step = 2.0 * sqrt(2.0 * CHORD_TOLERANCE / max(radius(at, arc), CHORD_TOLERANCE))
-        count = max(2, ceil(abs(arc.turn) / step))
-        inner = [point_at(at, move, index / count) for index in range(1, count)]
-        return [*inner, move.end]
+        count = max(2, ceil(abs(arc.turn) / chord_angle(radius(at, arc), CHORD_TOLERANCE)))
+        return [*inner_points(at, move, count), move.end]
 
     def _polyline(self, corners: Sequence[Point]) -> list[Ref[BoundedCurve]]:
         """Add a polyline if there are two points."""
@@ -127,9 +126,8 @@ class CurveWriter:
             return []
         if _is_helix(at, move):
             return [self._bend(at, move.end, arc)]
-        count = max(1, ceil(abs(arc.turn) / (2.0 * pi) - LEVEL))
-        inner = [point_at(at, move, index / count) for index in range(1, count)]
-        ends = [at, *inner, move.end]
+        count = begun_turns(arc.turn)
+        ends = [at, *inner_points(at, move, count), move.end]
         part = replace(arc, turn=arc.turn / count)
         return [self._bend(ends[row], ends[row + 1], part) for row in range(count)]
 
@@ -199,7 +197,7 @@ class CurveWriter:
 
 
 def _is_helix(at: Point, move: Move) -> bool:
-    """Whether an arc rises along the normal of its plane."""
+    """True if an arc rises along the normal of its plane."""
     if move.arc is None:
         return False
     normal = move.arc.plane.axes[2]

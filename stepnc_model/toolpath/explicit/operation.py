@@ -17,7 +17,8 @@ from stepnc_model.entities.executables import RapidMovement
 from stepnc_model.entities.operations import Toolpath, ToolpathList
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, ProgramLine, ResolvedWorkingstep
+from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.program_listing import ProgramLine
 from stepnc_model.toolpath.explicit.path_builder import ExplicitPathBuilder, PathSurroundings
 from stepnc_model.toolpath.frame import (
     Frame,
@@ -55,8 +56,10 @@ def explicit_path(job: ToolPathTask) -> ToolPath:
         program=job.program,
         security_z=job.security_z,
         stock=job.stock,
-        tool=job.tool,
+        tool=lambda: job.tool,
         technology=step.technology_ref,
+        functions=step.functions_ref,
+        alike=step.technologies,
     )
     with job.program.using(step.operation_ref, *step.features):
         paths = _paths(job.program, step.operation_ref, step.operation.its_toolpath)

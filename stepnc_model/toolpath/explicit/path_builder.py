@@ -11,7 +11,7 @@ A lift is an approach run backwards. The standard only draws the two paths; the 
 they are interpreted here.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import atan2, cos, dist, inf, pi, sin, sqrt
@@ -28,10 +28,11 @@ from stepnc_model.entities.operations import (
     Toolpath,
     Trajectory,
 )
-from stepnc_model.errors import Finding, Severity
+from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, Stock
 from stepnc_model.tool import Tool
+from stepnc_model.toolpath.arc import points_along
 from stepnc_model.toolpath.curve import Bend, Segment, move_of
 from stepnc_model.toolpath.explicit.trajectory import (
     MoveSpeeds,
@@ -52,7 +53,6 @@ from stepnc_model.toolpath.path import (
     dot,
     minus,
     plus,
-    points_along,
     times,
 )
 from stepnc_model.toolpath.task import DEFAULT_CLEARANCE
@@ -197,9 +197,14 @@ class PathSurroundings:
     security_z: float
     """Height z of the security plane, mm."""
     stock: Stock | None
-    tool: Tool | None
+    tool: Callable[[], Tool] | None
+    """Tool, read where it is needed; None if everything is rapid."""
     technology: Ref[Entity] | None
     """Technology of the operation; None if everything is rapid."""
+    functions: Ref[Entity] | None = None
+    """Machine functions of the operation."""
+    alike: tuple[Ref[Entity], ...] = ()
+    """Technologies for which that of the operation stands."""
 
 
 class ExplicitPathBuilder:
@@ -227,14 +232,17 @@ class ExplicitPathBuilder:
         path = program.get(ref)
         if not isinstance(path, Toolpath):
             raise program.error("is not a tool path, where one is expected", ref)
-        pace = pace_of(program, ref, self._around.technology)
-        if path.its_machine_functions is not None:
+        pace = self._pace(ref)
+        if path.its_machine_functions not in (None, self._around.functions):
             self._note("machine functions of a single tool path are ignored", ref)
         if pace.feed is None and path.its_technology is not None:
             # Tools that fold open by the direction of rotation depend on the spindle here.
             self.steps.append(SpindleSpeedChange(technology=path.its_technology))
         if isinstance(path, Trajectory):
-            self._trace(self._segments(Ref(ref), frame), pace)
+            segments = self._segments(Ref(ref), frame)
+            if not segments:
+                self._note("the trajectory has no length: left out", ref)
+            self._trace(segments, pace)
         elif isinstance(path, Feedstop):
             self._pause(ref, path)
         elif isinstance(path, ConnectSecplane):
@@ -245,6 +253,11 @@ class ExplicitPathBuilder:
             self._approach_or_lift(ref, path, self._next(rest, frame), frame)
         else:
             raise program.path_error("this kind of tool path is not supported", ref)
+
+    def _pace(self, ref: Ref[Toolpath]) -> MoveSpeeds:
+        """Move type and feed of a tool path."""
+        around = self._around
+        return pace_of(around.program, ref, around.technology, around.alike)
 
     def _segments(self, ref: Ref[Trajectory], frame: Frame) -> tuple[Segment, ...]:
         """Segments of a trajectory."""
@@ -263,7 +276,7 @@ class ExplicitPathBuilder:
         """Follow segments, moving to their start first."""
         if not segments:
             return
-        self._join(segments[0].start)
+        self._join(segments[0].start, is_rapid=pace.feed is None)
         first = segments[0].start
         moves = [move for each in segments for move in _moves(each, pace)]
         if pace.factors is not None and pace.feed is not None:
@@ -278,8 +291,11 @@ class ExplicitPathBuilder:
             raise self._around.program.path_error(message, ref)
         self.steps.append(Dwell(seconds=path.dwell))
 
-    def _join(self, target: Point) -> None:
-        """Move to the start of the next trajectory, straight or over the security plane."""
+    def _join(self, target: Point, *, is_rapid: bool) -> None:
+        """Move to the start of the next trajectory, straight or over the security plane.
+
+        Where the next one is rapid, no material is at its start.
+        """
         if self.at is None:
             self.start = self.at = target
             return
@@ -290,7 +306,14 @@ class ExplicitPathBuilder:
             self._add([Move(end=target, type=MoveType.NO_CONTACT, feed=self._feed)])
             return
         self._rise((self.at[0], self.at[1], self._around.security_z))
-        self._down((target[0], target[1], self._around.security_z), target)
+        above = (target[0], target[1], self._around.security_z)
+        if is_rapid:
+            self._add([
+                Move(end=(*above[:2], max(above[2], self.at[2])), type=MoveType.RAPID),
+                Move(end=target, type=MoveType.RAPID),
+            ])
+            return
+        self._down(above, target)
 
     def _over(self, path: ConnectSecplane, following: Segment | None, frame: Frame) -> None:
         """Move up to the security plane, over, and down."""
@@ -319,7 +342,7 @@ class ExplicitPathBuilder:
     ) -> None:
         """Move to the next cut, or away from the last one, by the type of the path."""
         program = self._around.program
-        pace = pace_of(program, ref, self._around.technology)
+        pace = self._pace(ref)
         cut = self._last if path.its_type is ToolpathType.LIFT else following
         if cut is None:
             raise program.path_error("there is no trajectory to approach or leave", ref)
@@ -355,13 +378,16 @@ class ExplicitPathBuilder:
         self._add([Move(end=target, type=MoveType.APPROACH, feed=self._feed)])
 
     def _is_clear(self, target: Point) -> bool:
-        """Whether a tool at a point stands beside or above the raw part."""
+        """True if a tool at a point stands beside or above the raw part."""
         stock, tool = self._around.stock, self._around.tool
         if stock is None:
             return False
         if target[2] >= stock.high[2]:
             return True
-        radius = 0.5 * tool.diameter if tool is not None else 0.0
+        try:
+            radius = 0.0 if tool is None else 0.5 * tool().diameter
+        except SchemaError:
+            return False
         return any(
             target[axis] + radius <= stock.low[axis]
             or target[axis] - radius >= stock.high[axis]

@@ -30,11 +30,12 @@ from stepnc_model.entities.operations import (
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.values import Real, Ref, Typed
 from stepnc_model.program import Program
+from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.curve import Spline
 from stepnc_model.toolpath.explicit.curve_writer import CurveWriter, HelixForm
 from stepnc_model.toolpath.explicit.factor_curve import SHORTEST, FactorPart, factor_curve
 from stepnc_model.toolpath.explicit.planned_path import PlannedMove, PlannedPath
-from stepnc_model.toolpath.path import Dwell, MoveType, Point, length
+from stepnc_model.toolpath.path import Dwell, MoveType, Point
 
 MOST_MOVES = 1000
 """Greatest number of moves of one trajectory; readers bound the curves of a chain."""
@@ -93,7 +94,7 @@ def write_paths(program: Program, paths: Sequence[PlannedPath], profile: FilePro
 
 @dataclass(frozen=True, slots=True)
 class _Kind:
-    """What the moves of one trajectory have in common."""
+    """Common properties of the moves of one trajectory."""
 
     type: MoveType
     technology: Ref[Entity] | None

@@ -11,7 +11,7 @@ path. Moves are split where a curve of degree 1 changes its slope; a change of t
 """
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 from math import ceil, dist, hypot, inf
@@ -31,9 +31,10 @@ from stepnc_model.entities.operations import (
 from stepnc_model.part21.values import Ref, Typed
 from stepnc_model.program import Program
 from stepnc_model.tool import Tool
-from stepnc_model.toolpath.curve import Segment, Spline, segments_of, spline_of
+from stepnc_model.toolpath.arc import length, point_at
+from stepnc_model.toolpath.curve import Segment, Spline, path_segments, spline_of
 from stepnc_model.toolpath.frame import Frame, point_of
-from stepnc_model.toolpath.path import Feed, Move, MoveType, Point, length, point_at
+from stepnc_model.toolpath.path import Feed, Move, MoveType, Point
 
 PIECES = 64
 """Least number of pieces of a path along which a curve of factors is sampled."""
@@ -69,7 +70,12 @@ class MoveSpeeds:
     """Factors on the feed along the path."""
 
 
-def pace_of(program: Program, ref: Ref[Toolpath], technology: Ref[Entity] | None) -> MoveSpeeds:
+def pace_of(
+    program: Program,
+    ref: Ref[Toolpath],
+    technology: Ref[Entity] | None,
+    alike: Collection[Ref[Entity]] = (),
+) -> MoveSpeeds:
     """Move type and feed of a tool path.
 
     Parameters
@@ -78,6 +84,8 @@ def pace_of(program: Program, ref: Ref[Toolpath], technology: Ref[Entity] | None
     ref : Ref
     technology : Ref or None
         Technology of the operation; None for a rapid movement, where everything is rapid.
+    alike : collection of Ref
+        Technologies for which that of the operation stands.
 
     Raises
     ------
@@ -90,7 +98,8 @@ def pace_of(program: Program, ref: Ref[Toolpath], technology: Ref[Entity] | None
     if technology is None or speed is SpeedName.RAPID:
         is_own = type in {MoveType.APPROACH, MoveType.RETRACT}
         return MoveSpeeds(type=type if is_own else MoveType.RAPID, feed=None)
-    feed = Feed(technology=path.its_technology or technology)
+    own = path.its_technology
+    feed = Feed(technology=technology if own is None or own in alike else own)
     if speed is None:
         return MoveSpeeds(type=type, feed=feed)
     if isinstance(speed, Ref):
@@ -273,7 +282,7 @@ def trajectory_segments(
     ref: Ref[Trajectory],
     *,
     frame: Frame,
-    tool: Tool | None,
+    tool: Callable[[], Tool] | None,
     at: Point | None,
 ) -> tuple[Segment, ...]:
     """Path of the tool tip along a trajectory, in its direction.
@@ -284,8 +293,8 @@ def trajectory_segments(
     ref : Ref
     frame : Frame
         Frame in which the curve is given.
-    tool : Tool or None
-        Needed for curves of the cutter contact point.
+    tool : callable or None
+        Gives the tool, which is needed for curves of the cutter contact point.
     at : Point or None
         Position of the tool: axes that are not named stay there.
 
@@ -305,7 +314,7 @@ def trajectory_segments(
     elif isinstance(trajectory, (CutterLocationTrajectory, CutterContactTrajectory)):
         _check_axis(program, ref, trajectory.its_toolaxis, frame)
         if isinstance(trajectory, CutterLocationTrajectory):
-            curve = segments_of(program, trajectory.basiccurve)
+            curve = path_segments(program, trajectory.basiccurve)
             segments = tuple(segment.within(frame) for segment in curve)
         else:
             segments = _contact(program, ref, trajectory, frame=frame, tool=tool)
@@ -354,21 +363,22 @@ def _contact(
     trajectory: CutterContactTrajectory,
     *,
     frame: Frame,
-    tool: Tool | None,
+    tool: Callable[[], Tool] | None,
 ) -> tuple[Segment, ...]:
     """Path of the tip of a tool that touches a surface, from the surface normals."""
     curve = program.get(trajectory.basiccurve)
     if not isinstance(curve, CurveWithNormalVector):
         message = "the curve has no surface normals: the tool position is not known"
         raise program.path_error(message, ref)
-    if tool is None or tool.diameter <= 0.0:
+    cutter = None if tool is None else tool()
+    if cutter is None or cutter.diameter <= 0.0:
         raise program.path_error("a contact trajectory needs a rotating tool", ref)
     contacts = _points(program, ref, curve.basiccurve)
     normals = _points(program, ref, curve.surface_normal)
     if len(contacts) != len(normals):
         raise program.path_error(f"{len(contacts)} points, but {len(normals)} normals", ref)
     points = [
-        _tip(program, ref, tool, contact=frame.point(contact), normal=frame.direction(normal))
+        _tip(program, ref, cutter, contact=frame.point(contact), normal=frame.direction(normal))
         for contact, normal in zip(contacts, normals, strict=True)
     ]
     return tuple(Segment(start=a, end=b) for a, b in pairwise(points) if a != b)

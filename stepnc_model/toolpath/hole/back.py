@@ -291,7 +291,7 @@ def _length(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) -> 
 
 
 def _is_reduced(job: ToolPathTask, operation: DrillingTypeOperation) -> bool:
-    """Whether a strategy asks for other feeds or speeds at the start or the end."""
+    """True if a strategy asks for other feeds or speeds at the start or the end."""
     ref = operation.its_machining_strategy
     strategy = job.program.get(ref) if ref is not None else None
     return isinstance(strategy, DrillingTypeStrategy) and any(

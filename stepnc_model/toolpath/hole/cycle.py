@@ -159,7 +159,7 @@ class HoleCut:
 
     @property
     def is_one_feed(self) -> bool:
-        """Whether one feed applies over the whole depth."""
+        """True if one feed applies over the whole depth."""
         return len(self.stages) == 1
 
 
@@ -260,7 +260,7 @@ def _bore(course: PathBuilder, cut: HoleCut, operation: BoringOperation) -> None
 
 
 def _is_oriented(cut: HoleCut) -> bool:
-    """Whether the spindle stops at a defined angle."""
+    """True if the spindle stops at a defined angle."""
     ref = cut.job.step.functions_ref
     functions = cut.job.program.get(ref) if ref is not None else None
     return (

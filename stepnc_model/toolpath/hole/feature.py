@@ -84,12 +84,12 @@ class Hole:
 
     @property
     def is_tapered(self) -> bool:
-        """Whether the hole narrows with depth."""
+        """True if the hole narrows with depth."""
         return self.narrowest != self.diameter
 
     @property
     def is_through(self) -> bool:
-        """Whether the hole is a through hole."""
+        """True if the hole is a through hole."""
         return isinstance(self.bottom, (ThroughBottomCondition, ThroughPocketBottomCondition))
 
     def at(self, z: float) -> Point:

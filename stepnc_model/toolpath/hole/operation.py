@@ -50,13 +50,13 @@ from stepnc_model.toolpath.hole.feature import (
 )
 from stepnc_model.toolpath.path import MoveType, ToolPath
 from stepnc_model.toolpath.task import DEFAULT_CLEARANCE, PathBuilder, ToolPathTask
+from stepnc_model.units import MM_PER_INCH
 
 LEAST_RADIUS = 0.02
 """Least radius of the helix, mm; controls treat smaller arcs as points."""
 
 MOST_TURNS = 1000
 
-INCH = 25.4
 """Millimetres per inch, by definition."""
 
 PITCHES = ("MM", "MILLIMETRE", "MILLIMETER", "PITCH")
@@ -236,7 +236,7 @@ def _pitch(cut: HoleCut) -> float:
     if unit in PITCHES:
         return value
     if unit in DENSITIES:
-        return INCH / value
+        return MM_PER_INCH / value
     message = f"unit '{unit}': expected a pitch in MM, or threads per INCH"
     raise cut.job.fault(message, ref, "number_of_threads")
 

@@ -8,12 +8,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
-from math import ceil, pi, sqrt
+from math import ceil, pi
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely import Polygon
+
+from stepnc_model.toolpath.arc import chord_angle
 
 Floats = NDArray[np.float64]
 Points = NDArray[np.complex128]
@@ -167,8 +169,7 @@ def vertices(chain: Chain, *, tolerance: float) -> list[complex]:
     for edge in chain:
         count = 1
         if edge.centre is not None:
-            radius = abs(edge.start - edge.centre)
-            step = 2.0 * sqrt(2.0 * min(tolerance / max(radius, tolerance), 0.5))
+            step = chord_angle(abs(edge.start - edge.centre), tolerance)
             count = max(1, ceil(abs(edge.turn) / step))
         points += [edge.at(i / count) for i in range(count)]
     return points

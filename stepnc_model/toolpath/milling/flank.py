@@ -11,7 +11,6 @@ from math import ceil
 import numpy as np
 
 from stepnc_model.tool import body_of
-from stepnc_model.toolpath.milling.area import Area, Flank, TeeSlotUndercut, extra
 from stepnc_model.toolpath.milling.contour import (
     Chain,
     Loop,
@@ -20,7 +19,7 @@ from stepnc_model.toolpath.milling.contour import (
     rotated_to,
     stretched,
 )
-from stepnc_model.toolpath.milling.cover import MillingPass
+from stepnc_model.toolpath.milling.cover import Area, Flank, MillingPass, TeeSlotUndercut, extra
 from stepnc_model.toolpath.milling.layer import CentreArea, CutLevel, Layer, nowhere
 from stepnc_model.toolpath.milling.layer import beside as clearance
 from stepnc_model.toolpath.milling.offset import ContourEdges, beside, distances, erode

@@ -9,7 +9,6 @@ import numpy as np
 import shapely
 
 from stepnc_model.toolpath.curve import JOINED
-from stepnc_model.toolpath.milling.area import Area, upright
 from stepnc_model.toolpath.milling.contour import (
     REMEMBERED,
     TINY,
@@ -23,7 +22,14 @@ from stepnc_model.toolpath.milling.contour import (
     vertices,
 )
 from stepnc_model.toolpath.milling.contour import area as contour_area
-from stepnc_model.toolpath.milling.cover import MillingPass, area_of, rings, swept
+from stepnc_model.toolpath.milling.cover import (
+    Area,
+    MillingPass,
+    area_of,
+    rings,
+    swept,
+    upright,
+)
 from stepnc_model.toolpath.milling.offset import ContourEdges, distances, erode, offset
 from stepnc_model.toolpath.milling.strategy import (
     Covering,
@@ -63,11 +69,11 @@ class CentreArea:
     """Side of the path that is free: i for the left, -i for the right."""
 
     def holds(self, chain: Chain) -> bool:
-        """Whether a path of the cutter's centre stays within the area."""
+        """True if a path of the cutter's centre stays within the area."""
         return all(self._holds(edge) for edge in chain)
 
     def _holds(self, edge: ContourEdge) -> bool:
-        """Whether an edge stays inside, by bisection with the clearance at midpoints."""
+        """True if an edge stays inside, by bisection with the clearance at midpoints."""
         parts = [(0.0, 1.0)]
         while parts:
             low, high = parts.pop()
@@ -80,7 +86,7 @@ class CentreArea:
         return all(self.clearance(point) >= -HAIR for point in (edge.start, edge.end))
 
     def holds_circle(self, centre: complex, radius: float) -> bool:
-        """Whether a circle lies within the area."""
+        """True if a circle lies within the area."""
         return self.clearance(centre) >= radius - HAIR
 
 

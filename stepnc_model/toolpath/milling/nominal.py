@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from stepnc_model.errors import SchemaError
 from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.frame import placements
-from stepnc_model.toolpath.milling.area import Area, Flank, Inset
 from stepnc_model.toolpath.milling.contour import Chain
+from stepnc_model.toolpath.milling.cover import Area, Flank, Inset
 from stepnc_model.toolpath.milling.shapes import shapes
 from stepnc_model.toolpath.task import job_of
 

@@ -328,7 +328,7 @@ def beside(chain: Chain, distance: float) -> tuple[Chain, ...]:
 def contains(
     loops: Sequence[Loop], points: Iterable[complex], *, tolerance: float
 ) -> list[bool]:
-    """Whether points lie on the left of every loop, with arcs as chords within a tolerance."""
+    """True if points lie on the left of every loop, with arcs as chords within a tolerance."""
     found = np.array(list(points), dtype=complex)
     inside = np.ones(len(found), dtype=bool)
     for loop in loops:
@@ -488,7 +488,7 @@ def _merged(chain: list[ContourEdge]) -> list[ContourEdge]:
 
 
 def _continues(one: ContourEdge, other: ContourEdge) -> bool:
-    """Whether two edges are parts of one line, or of one arc of half a turn at most."""
+    """True if two edges are parts of one line, or of one arc of half a turn at most."""
     if one.centre is None or other.centre is None:
         if one.centre is not other.centre:
             return False

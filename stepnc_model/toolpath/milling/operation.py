@@ -24,9 +24,8 @@ from stepnc_model.entities.milling import (
     Two5dMillingOperation,
 )
 from stepnc_model.toolpath.frame import placements
-from stepnc_model.toolpath.milling.area import Area, Flank
 from stepnc_model.toolpath.milling.contour import TINY, Chain, line
-from stepnc_model.toolpath.milling.cover import MillingPass
+from stepnc_model.toolpath.milling.cover import Area, Flank, MillingPass
 from stepnc_model.toolpath.milling.enter import Heights, enter, leave, trace
 from stepnc_model.toolpath.milling.flank import flank_layer, tee_layers
 from stepnc_model.toolpath.milling.layer import CutLevel, Layer, clear, wall_passes
@@ -384,7 +383,7 @@ def _travel_z(job: ToolPathTask, retract_z: float) -> float:
 def _is_linked(
     here: complex, following: MillingPass, layer: Layer, way: ResolvedStrategy
 ) -> bool:
-    """Whether the tool may go to the next pass at the feed without lifting."""
+    """True if the tool may go to the next pass at the feed without lifting."""
     distance = abs(following.start - here)
     if distance < TINY:
         return True

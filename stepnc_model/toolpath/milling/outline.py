@@ -43,15 +43,6 @@ from stepnc_model.outline import MOST, size, vee_angle
 from stepnc_model.part21.values import Ref
 from stepnc_model.toolpath.curve import JOINED, Segment, move_of, segments_of
 from stepnc_model.toolpath.frame import Frame, direction_of, frame_of
-from stepnc_model.toolpath.milling.area import (
-    Area,
-    Inset,
-    TeeSlotUndercut,
-    Wall,
-    chord,
-    rounding,
-    upright,
-)
 from stepnc_model.toolpath.milling.contour import (
     TINY,
     Chain,
@@ -67,6 +58,15 @@ from stepnc_model.toolpath.milling.contour import (
     reversed_chain,
     shape,
     stretched,
+)
+from stepnc_model.toolpath.milling.cover import (
+    Area,
+    Inset,
+    LeaningWall,
+    TeeSlotUndercut,
+    Wall,
+    chord,
+    upright,
 )
 from stepnc_model.toolpath.milling.offset import beside, erode, rounded
 from stepnc_model.toolpath.milling.strategy import run_out
@@ -426,10 +426,10 @@ def _section(job: ToolPathTask, ref: Ref[Entity], depth: float) -> tuple[float, 
         return 0.5 * size(job.program, profile.width, ref), _square(job, profile, depth)
     if isinstance(profile, RoundedUProfile):
         half = 0.5 * size(job.program, profile.width, ref)
-        return half, lambda height: rounding(height, half)
+        return half, LeaningWall(depth=depth, slope=0.0, fillet=half)
     if isinstance(profile, VeeProfile):
         slope = tan(0.5 * vee_angle(profile.profile_angle))
-        return depth * slope, lambda height: max(depth - height, 0.0) * slope
+        return depth * slope, LeaningWall(depth=depth, slope=slope, fillet=0.0)
     if isinstance(profile, PartialCircularProfile):
         radius = size(job.program, profile.radius, ref)
         half = chord(radius, depth)
@@ -453,7 +453,7 @@ def _square(job: ToolPathTask, profile: SquareUProfile | TeeProfile, depth: floa
     )
     sizes = [job.program.get(radius).theoretical_size or 0.0 for radius in radii if radius]
     radius = max(sizes, default=0.0)
-    return lambda height: max(depth - height, 0.0) * slope + rounding(height, radius)
+    return LeaningWall(depth=depth, slope=slope, fillet=radius)
 
 
 def _general(

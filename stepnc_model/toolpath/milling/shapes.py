@@ -46,7 +46,6 @@ from stepnc_model.outline import (
 )
 from stepnc_model.part21.values import Ref
 from stepnc_model.toolpath.frame import Frame, frame_of, point_of
-from stepnc_model.toolpath.milling.area import Area, Flank, Inset, Wall, chord, leaning, upright
 from stepnc_model.toolpath.milling.contour import (
     Chain,
     Loop,
@@ -57,6 +56,15 @@ from stepnc_model.toolpath.milling.contour import (
     polygon,
     reversed_chain,
     shape,
+)
+from stepnc_model.toolpath.milling.cover import (
+    Area,
+    Flank,
+    Inset,
+    Wall,
+    chord,
+    leaning,
+    upright,
 )
 from stepnc_model.toolpath.milling.offset import rounded
 from stepnc_model.toolpath.milling.outline import (

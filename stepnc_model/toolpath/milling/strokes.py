@@ -99,7 +99,7 @@ def linked(start: complex, end: complex, loops: Sequence[Loop]) -> Chain | None:
 
 
 def is_inside(start: complex, end: complex, loops: Sequence[Loop]) -> bool:
-    """Whether the straight line between two points of the area stays in it."""
+    """True if the straight line between two points of the area stays in it."""
     edges = [edge for loop in loops for edge in loop]
     way = line(start, end)
     parts = crossings_with([way], edges)[0]
@@ -110,7 +110,7 @@ def is_inside(start: complex, end: complex, loops: Sequence[Loop]) -> bool:
 
 
 def contains_point(point: complex, loops: Sequence[Loop]) -> bool:
-    """Whether a point lies in the area or nearly on its boundary."""
+    """True if a point lies in the area or nearly on its boundary."""
     if any(
         abs(loop[i].at(part) - point) < 10.0 * ASIDE
         for loop in loops
@@ -126,7 +126,7 @@ def zigzags(rows: Sequence[Sequence[Stroke]], loops: Sequence[Loop]) -> tuple[Mi
 
 
 def _is_within(point: complex, loops: Sequence[Loop]) -> bool:
-    """Whether a point lies within an outer loop and outside all islands."""
+    """True if a point lies within an outer loop and outside all islands."""
     outer = [loop for loop in loops if area(loop) > 0.0]
     islands = [loop for loop in loops if area(loop) <= 0.0]
     return any(contains([loop, *islands], [point], tolerance=CHORD)[0] for loop in outer)
@@ -167,7 +167,7 @@ def _cells(rows: Sequence[Sequence[Stroke]]) -> list[list[Stroke]]:
 
 
 def _overlap(one: Stroke, other: Stroke) -> bool:
-    """Whether two strokes of adjacent rows overlap sideways."""
+    """True if two strokes of adjacent rows overlap sideways."""
     way = one.high - one.low
     way /= abs(way)
     ends = [((point - one.low) / way).real for point in (other.low, other.high)]

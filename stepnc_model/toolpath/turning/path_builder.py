@@ -99,7 +99,7 @@ class TurningPathBuilder:
                 self._straight(part.end, MoveType.RAPID, None)
 
     def meets(self, piece: ProfilePiece) -> bool:
-        """Whether the tool would cut along a piece; sliding along a wall does not count."""
+        """True if the tool would cut along a piece; sliding along a wall does not count."""
         return any(self._is_in(part.point(0.5)) for part in _parts(piece, self._rim))
 
     def _is_in(self, spot: Spot) -> bool:

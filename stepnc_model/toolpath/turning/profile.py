@@ -25,6 +25,7 @@ from itertools import pairwise
 from math import atan2, cos, dist, hypot, inf, pi, sin, sqrt
 
 from stepnc_model.entities.enums import HandOfToolType
+from stepnc_model.toolpath.arc import circles_meet, line_meets_circle
 from stepnc_model.toolpath.path import Arc, ArcPlane, Point
 
 Spot = tuple[float, float]
@@ -58,7 +59,7 @@ class ProfilePiece:
 
     @property
     def is_upright(self) -> bool:
-        """Whether the piece is a line perpendicular to the passes (along v)."""
+        """True if the piece is a line perpendicular to the passes (along v)."""
         return self.centre is None and self.high - self.low < UPRIGHT
 
     @property
@@ -208,30 +209,15 @@ def _line_circle(line: ProfilePiece, arc: ProfilePiece) -> tuple[float, ...]:
     if line.is_upright or arc.centre is None:
         return ()
     (a, b), (c, d) = line.start, line.end
-    length = hypot(c - a, d - b)
-    p, q = (c - a) / length, (d - b) / length
-    u, v = a - arc.centre[0], b - arc.centre[1]
-    along = -(u * p + v * q)
-    inside = arc.radius**2 - (p * v - q * u) ** 2
-    if inside < 0.0:
-        return ()
-    return a + (along - sqrt(inside)) * p, a + (along + sqrt(inside)) * p
+    size = dist(line.start, line.end)
+    way = (c - a) / size, (d - b) / size
+    return tuple(u for u, _ in line_meets_circle(line.start, way, arc.centre, arc.radius))
 
 
 def _circle_circle(one: ProfilePiece, other: ProfilePiece) -> tuple[float, ...]:
     if one.centre is None or other.centre is None:
         return ()
-    u, v = other.centre[0] - one.centre[0], other.centre[1] - one.centre[1]
-    apart = hypot(u, v)
-    if apart < UPRIGHT:
-        return ()
-    along = (apart**2 + one.radius**2 - other.radius**2) / (2.0 * apart)
-    inside = one.radius**2 - along**2
-    if inside < 0.0:
-        return ()
-    beside = sqrt(inside)
-    foot = one.centre[0] + along * u / apart
-    return foot - beside * v / apart, foot + beside * v / apart
+    return tuple(u for u, _ in circles_meet(one.centre, one.radius, other.centre, other.radius))
 
 
 NARROW = 1e-9

@@ -6,7 +6,7 @@ from pathlib import Path
 from alembic.config import Config
 from alembic.script import ScriptDirectory
 
-from kbe.migrate import MIGRATIONS
+from kbe.connection import MIGRATIONS
 from kbe.schema import VERSION
 
 

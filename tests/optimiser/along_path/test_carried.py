@@ -45,7 +45,7 @@ def greatest_in_cut(stretch: PathStretch, cut: tuple[float, float]) -> float:
     where = offsets[at.segment] + at.station
     inside = (where > cut[0] + 1e-6) & (where < cut[1] - 1e-6)
     speed: Floats = np.linalg.norm(at.velocity, axis=1)
-    return float(speed[inside].max() / met_caps(stretch).feed.min())
+    return float(speed[inside].max() / met_caps(stretch).caps.feed.min())
 
 
 @settings(max_examples=40)
@@ -68,7 +68,7 @@ def test_slower_pieces_keep_the_cap(feeds: list[float], begin: float, end: float
 
 
 def test_a_fast_way_to_a_cut_is_slow_only_before_it() -> None:
-    permitted = float(met_caps(entering([1.0, 1.0, 1.0])).feed.min())
+    permitted = float(met_caps(entering([1.0, 1.0, 1.0])).caps.feed.min())
     stretch = entering([200.0, permitted, permitted])
     pieces = slower_pieces(stretch, FIR, PieceRules())
     assert pieces is not None
@@ -85,7 +85,7 @@ def test_a_fast_way_to_a_cut_is_slow_only_before_it() -> None:
 
 def test_the_excess_is_the_feed_over_the_permitted_one() -> None:
     stretch = entering([40.0, 50.0, 20.0])
-    permitted = float(met_caps(stretch).feed.min())
+    permitted = float(met_caps(stretch).caps.feed.min())
     assert excess(stretch, FIR).tolist() == pytest.approx([
         40.0 / permitted,
         50.0 / permitted,
@@ -99,7 +99,7 @@ def test_the_excess_is_the_feed_over_the_permitted_one() -> None:
 
 def test_feeds_per_revolution_are_judged_as_such() -> None:
     """A faster spindle after the cut: the same feed per revolution is permitted everywhere."""
-    permitted = float(met_caps(entering([1.0, 1.0, 1.0])).feed.min())
+    permitted = float(met_caps(entering([1.0, 1.0, 1.0])).caps.feed.min())
     faster = replace(
         entering([permitted, permitted, 1.2 * permitted], cut=(1.0, 29.0)),
         spindle=np.array([50.0, 50.0, 60.0]),

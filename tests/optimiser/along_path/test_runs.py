@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from optimiser.along_path import runs
 from optimiser.along_path.caps import NAMES, CapName
 from optimiser.along_path.pieces import (
     FeedPieces,
@@ -92,6 +93,23 @@ def test_wider_caps_take_no_more_time(places: list[tuple[float, float]], factor:
 
     # The greatest feed is tried on a grid, so that a wider cap may miss the best by little.
     assert time(factor) <= 1.02 * time(1.0)
+
+
+@settings(max_examples=20)
+@given(PLACES)
+def test_trials_that_a_bound_leaves_out_change_nothing(
+    places: list[tuple[float, float]],
+) -> None:
+    ends = np.cumsum([length for length, _ in places]).tolist()
+    segments = straight([ends[-1]])
+    found = []
+    for certain in (runs.CERTAIN, 0.0):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(runs, "CERTAIN", certain)  # nothing is left out at 0
+            within = places_of(segments, ends, [cap for _, cap in places])
+            found.append(commands_of(stretch_of(segments), within, FIR))
+    assert np.array_equal(found[0].ends, found[1].ends)
+    assert np.array_equal(found[0].caps.feed, found[1].caps.feed)
 
 
 def test_corners_are_rounded_no_more_than_permitted() -> None:

@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from optimiser.along_path.caps import NAMES, CapName
+from optimiser.along_path.caps import NAMES, CapName, CutBounds
 from optimiser.along_path.stretch import (
     ENTRY_LENGTH,
     ENTRY_SHARE,
@@ -13,6 +13,7 @@ from optimiser.along_path.stretch import (
     place_caps,
     segment_caps,
 )
+from optimiser.cut import CutKind
 from simulator.motion.segments import arc
 from simulator.removal.stations import Stations
 from tests.optimiser.along_path.stretches import (
@@ -98,3 +99,65 @@ def test_the_block_time_limits_short_blocks() -> None:
         CapName.BLOCK_TIME,
         CapName.FEED_MECHANISM,
     ]
+
+
+def feed_at(found: PathStretch, at: float) -> float:
+    """Greatest feed at a place, mm/s."""
+    caps = place_caps(found)
+    return float(caps.caps.feed[caps.ends.searchsorted(at)])
+
+
+CUT = half_cut([10.0, 30.0], [False, True])
+FEW = replace(BOUNDS, cut=replace(BOUNDS.cut, tool=replace(BOUNDS.cut.tool, teeth=1)))
+"""Bounds of the same tool with one tooth, whose chip is thicker."""
+
+
+def with_bounds(bounds: CutBounds, *, speed: float) -> PathStretch:
+    """Line of 30 mm at a feed, from 10 mm on in material."""
+    return replace(stretch_of(straight([30.0], speed=speed)), met=CUT, bounds=bounds)
+
+
+def test_a_feed_rises_only_to_what_all_guesses_permit() -> None:
+    slow = 1.0
+    one, other = (feed_at(with_bounds(each, speed=slow), 20.0) for each in (BOUNDS, FEW))
+    both = replace(BOUNDS, plausible=(FEW,))
+    assert other < one
+    assert feed_at(with_bounds(both, speed=slow), 20.0) == min(one, other)
+
+
+def test_a_feed_falls_only_to_what_the_best_guess_permits() -> None:
+    one, other = (feed_at(with_bounds(each, speed=1.0), 20.0) for each in (BOUNDS, FEW))
+    both = replace(BOUNDS, plausible=(FEW,))
+    between, above = 0.5 * (one + other), 2.0 * one
+    assert feed_at(with_bounds(both, speed=between), 20.0) == pytest.approx(between)
+    assert feed_at(with_bounds(both, speed=above), 20.0) == pytest.approx(one)
+
+
+def test_no_feed_falls_for_a_guessed_stock() -> None:
+    guessed = replace(BOUNDS, is_stock_guessed=True)
+    permitted = feed_at(with_bounds(BOUNDS, speed=1.0), 20.0)
+    assert feed_at(with_bounds(guessed, speed=1.0), 20.0) == permitted
+    fast = 2.0 * permitted
+    found = with_bounds(guessed, speed=fast)
+    assert feed_at(found, 20.0) == fast
+    assert feed_at(found, 10.2) == fast
+    assert names_at(found, [20.0]) == [CapName.GUESSED]
+
+
+def test_a_guessed_stock_makes_no_air() -> None:
+    guessed = replace(BOUNDS, is_stock_guessed=True)
+    assert feed_at(with_bounds(BOUNDS, speed=7.0), 5.0) == np.inf
+    assert feed_at(with_bounds(guessed, speed=7.0), 5.0) == 7.0
+
+
+def test_the_feed_before_any_plan_counts_as_programmed() -> None:
+    guessed = replace(BOUNDS, is_stock_guessed=True)
+    planned = replace(with_bounds(guessed, speed=9.0), programmed=np.array([7.0]))
+    assert feed_at(planned, 5.0) == 7.0
+
+
+def test_a_drill_has_its_feed_before_it_meets_material() -> None:
+    drill = replace(BOUNDS, cut=replace(BOUNDS.cut, kind=CutKind.DRILLING))
+    guessed = replace(drill, is_stock_guessed=True)
+    inside = feed_at(with_bounds(guessed, speed=1.0), 20.0)
+    assert feed_at(with_bounds(guessed, speed=1.0), 5.0) == inside

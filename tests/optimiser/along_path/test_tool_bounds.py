@@ -9,7 +9,7 @@ from optimiser.along_path.caps import CutBounds
 from optimiser.along_path.stretch import met_caps
 from optimiser.along_path.tool_bounds import bounds_of_tool, window_findings
 from simulator.library import load_machine, load_material
-from simulator.removal.cutter import Cutter, Insert
+from simulator.removal.cutter import Cutter, Holder, Insert
 from simulator.removal.stations import StationKind
 from simulator.spec import CuttingMaterial, ToolKind, WorkMaterial
 from simulator.tool_table import TableTool
@@ -73,11 +73,17 @@ def test_the_stiffness_of_a_mill_counts_without_a_group() -> None:
     assert bounds(MILL, replace(C45, iso_group="")).at.grade is not None
 
 
+def test_a_stated_overhang_is_that_of_the_cut() -> None:
+    held = Cutter(diameter=12.0, teeth=4, holder=Holder(diameter=24.0, overhang=90.0))
+    assert bounds(replace(MILL, shape=held), C45).cut.tool.overhang == 90.0
+    assert bounds(MILL, C45).cut.tool.overhang is None
+
+
 def test_a_kept_feed_is_that_of_each_block_where_there_is_material() -> None:
     met = half_cut([5.0, 10.0], [True, False])
     path = replace(stretch_of(straight([10.0], speed=2.0)), met=met, bounds=BOUNDS)
-    free = met_caps(path).feed
-    kept = met_caps(replace(path, bounds=replace(BOUNDS, keeps_programmed=True))).feed
+    free = met_caps(path).caps.feed
+    kept = met_caps(replace(path, bounds=replace(BOUNDS, keeps_programmed=True))).caps.feed
     assert free[0] > 2.0
     assert kept[0] == 2.0
     assert np.isinf(kept[1])
@@ -116,7 +122,7 @@ def test_a_place_deeper_than_the_insert_may_cut_keeps_its_feed() -> None:
         diameter=np.full(2, 40.0),
     )
     path = replace(stretch_of(straight([10.0], speed=0.5)), met=met)
-    shallow, deep = met_caps(replace(path, bounds=told)).feed
+    shallow, deep = met_caps(replace(path, bounds=told)).caps.feed
     assert shallow > 0.5
     assert deep == 0.5
-    assert met_caps(replace(path, bounds=of_library)).feed[1] > 0.5
+    assert met_caps(replace(path, bounds=of_library)).caps.feed[1] > 0.5

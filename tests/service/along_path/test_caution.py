@@ -1,12 +1,16 @@
 """Caution with NC code: moves that meet no stock, straight plunges, and the greatest rise."""
 
+import gc
 import re
+import weakref
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from service.requests.advice import AdviceRequest
 from service.verbs.optimise.code_result import CodeAdvice
+from simulator.removal.engage import MillingStock
 from tests.every_case import every_case
 from tests.service.along_path.foreign import MILL, advised
 
@@ -72,6 +76,53 @@ def test_air_that_the_stock_or_the_program_explains_is_faster(moves: str) -> Non
     assert not said(found, "meets no stock")
     last = found.rewritten.data.splitlines()[-4]
     assert float(FEED.findall(last)[0]) == 900.0
+
+
+BESIDE = "G0 X-30. Y{y}.\nZ-2.\nG1 X80. F300.\nG0 Z50.\n"
+"""Pass along the far edge of the block, which ends at y = 40, with a mill of 10 mm."""
+
+
+def test_a_pass_beside_the_stock_is_not_explained_by_the_one_before_it() -> None:
+    """The first pass took the last 7 mm of the given block; the second lies beside it."""
+    found = advice(HEAD + SLOT + BESIDE.format(y=38) + BESIDE.format(y=44) + END)
+    first, second = (
+        float(FEED.findall(line)[-1])
+        for line in found.rewritten.data.splitlines()
+        if line.startswith(b"G1 X80.") or line.startswith(b"X80.")
+    )
+    assert first > 300.0
+    assert second == 300.0
+    (text,) = said(found, "within 5 mm of it")
+    assert text.startswith("T1: 1 move at cutting feed meets no stock")
+
+
+def test_no_stock_outlives_its_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where the larger one was asked for; a circle would keep it until a collection."""
+    made: list[weakref.ref[MillingStock]] = []
+    make = MillingStock.__init__
+
+    def noted(self: MillingStock, *args: object, **named: object) -> None:
+        make(self, *args, **named)  # type: ignore[arg-type]
+        made.append(weakref.ref(self))
+
+    monkeypatch.setattr(MillingStock, "__init__", noted)
+    other = (HEAD + SLOT).replace("F500", "F510")  # no test has asked for its advice
+    gc.disable()
+    try:
+        found = advice(other + BESIDE.format(y=38) + BESIDE.format(y=44) + END)
+        left = [each for each in made if each() is not None]
+    finally:
+        gc.enable()
+    assert said(found, "within 5 mm of it")
+    assert len(made) > 4
+    assert not left
+
+
+def test_a_way_back_through_a_pass_that_goes_beyond_the_stock_is_faster() -> None:
+    back = BESIDE.format(y=38).replace("G0 Z50.\n", "X-30. F300.\nG0 Z50.\n")
+    found = advice(HEAD + SLOT + back + END)
+    assert not said(found, "meets no stock")
+    assert b"X-30. F900." in found.rewritten.data
 
 
 def test_a_straight_plunge_keeps_its_feed_unless_it_may_be_faster() -> None:

@@ -12,9 +12,10 @@ from service.along_path.course import PathSource
 from service.along_path.run import FeedsAlongPath, along_path
 from service.along_path.task import task_of
 from service.cli.main import optimise_main
-from service.cli.options import BAD_INPUT
+from service.exit_codes import BAD_INPUT
 from service.files import beside
-from service.reading import read_program, silent
+from service.progress import silent
+from service.reading import read_program
 from service.requests.advice import AdviceRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, simulate

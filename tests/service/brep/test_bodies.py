@@ -10,7 +10,8 @@ import stepnc
 from benchmarks.verification import FAST, SHAFT_REQUEST, run_log
 from service.brep.bodies import ProgramBodies, body_triangles
 from service.chosen import material_for
-from service.reading import read_program, silent
+from service.progress import silent
+from service.reading import read_program
 from service.requests.verification import VerificationRequest
 from service.simulation.setup import prepared_program
 from service.verbs.verify.result import VerificationResult

@@ -100,7 +100,7 @@ def test_another_failure_stays_what_it_is(monkeypatch: pytest.MonkeyPatch) -> No
 @pytest.mark.parametrize("number", SIGNALS)
 def test_while_its_modules_are_loaded(tmp_path: Path, number: int) -> None:
     with command(tmp_path, ["machines"]) as machines:
-        machines.wait_for("service.cli.options")
+        machines.wait_for("service.cli.commands")
         machines.send(number)
         machines.require_quiet(INTERRUPTED)
     assert machines.said == "interrupted\n"

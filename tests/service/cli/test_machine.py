@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from service.cli.main import main
-from service.cli.options import BAD_INPUT, LIMIT_EXCEEDED, OK
+from service.exit_codes import BAD_INPUT, LIMIT_EXCEEDED, OK
 from simulator.library import load_machine
 
 USAGE = 2
@@ -90,10 +90,9 @@ def test_a_drive_above_its_limit_is_an_exit_code_of_its_own(
     assert "limit exceeded" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("option", ["--dialect", "--tools"])
-def test_options_of_code_want_code(capsys: pytest.CaptureFixture[str], option: str) -> None:
-    assert run(SLOT, option, "x") == BAD_INPUT
-    assert "need NC code: name it with --nc" in capsys.readouterr().err
+def test_the_dialect_wants_code(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(SLOT, "--dialect", "x") == BAD_INPUT
+    assert "needs NC code: name it with --nc" in capsys.readouterr().err
 
 
 def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:

@@ -234,6 +234,6 @@ def test_a_fault_of_something_else_is_not_told_as_one_of_stdout(
             "error: a.txt: Permission denied\n",
         ),
     ):
-        options = argparse.Namespace(command="check", run=partial(work, error))
+        options = argparse.Namespace(command="check", work=partial(work, error))
         assert commands._run(options) == BAD_INPUT
         assert capsys.readouterr().err == said

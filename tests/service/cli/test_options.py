@@ -1,17 +1,17 @@
 """What the commands share."""
 
-from service.cli import options as cli_options
+from service import exit_codes
 from service.cli.interrupts import INTERRUPTED
 from service.requests.fields import fields_of
 from service.simulation.run_files import CodeOfRun
 from stepnc_model.post.dialect import Dialect
 
 
-def test_exit_codes_can_be_told_apart_and_none_is_that_of_usage() -> None:
-    names = ("OK", "BAD_INPUT", "INFEASIBLE", "LIMIT_EXCEEDED")
-    codes = {INTERRUPTED, *(getattr(cli_options, name) for name in names)}
+def test_exit_codes_can_be_told_apart_and_usage_is_that_of_argparse() -> None:
+    names = ("OK", "USAGE", "BAD_INPUT", "INFEASIBLE", "LIMIT_EXCEEDED")
+    codes = {INTERRUPTED, *(getattr(exit_codes, name) for name in names)}
     assert len(codes) == len(names) + 1
-    assert 2 not in codes
+    assert exit_codes.USAGE == 2
 
 
 def test_every_control_is_named() -> None:

@@ -8,10 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from service.cli.commands import parser
+from service.cli.commands import CommandParser, parser, require_own_places
 from service.cli.main import main
-from service.cli.options import CommandParser
-from service.cli.places import require_own_places
 from service.files import require_distinct
 from service.requests.fields import output_path
 from stepnc_model.errors import StepNcError, WriteError

@@ -14,7 +14,7 @@ from service.control.holding import OFF
 from service.control.live import LiveControl
 from service.control.run import control, prepare
 from service.requests.runs import ControlChanges
-from service.session.rows import RunUpdate
+from service.session.runner import RunUpdate
 from stepnc_model.errors import StepNcError
 from tests.asking import AskedControl
 

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from service.control.run import ControlRun
-from service.rendering.records import dump
+from service.rendering.columns import dump
 from service.verbs.control.result import ControlResult
 
 

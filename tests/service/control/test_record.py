@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from kbe.selection import EVERYTHING
+from kbe.queries import EVERYTHING
 from service.control.record import control_recorded
 from service.knowledge.verbs import newest
 from tests.asking import AskedControl, asked_control

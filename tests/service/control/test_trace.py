@@ -13,7 +13,7 @@ from controller.cycle import LoopCycle
 from service.control.run import ControlRun, control, prepare
 from service.control.trace import COLUMNS, ControlSignal
 from service.run_file import arrow_schema
-from service.session.rows import Moment
+from service.session.runner import Moment
 from simulator.plant.controlled import TrueState
 from tests.asking import AskedControl
 

@@ -5,15 +5,10 @@ there ``asyncio.run`` fails for everybody else. All that touches the browser, th
 folder included, therefore runs in a thread of its own.
 """
 
-import fcntl
-import os
-import shutil
-import subprocess
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
 from inspect import signature
-from pathlib import Path
 from typing import TypeVar
 
 import pytest
@@ -27,6 +22,7 @@ from playwright.sync_api import (
 )
 
 from kbe.store import open_store
+from tests.debian import installed
 from tests.service.rest.server import Server
 from tests.service.shop import outcomes
 from tests.service.waiting import ROOT, until
@@ -87,7 +83,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
 
 @pytest.fixture(scope="session")
 def browser(browser_thread: ThreadPoolExecutor) -> Iterator[Browser]:
-    with inside(browser_thread, opened_browser(installed_chromium())) as browser:
+    with inside(browser_thread, opened_browser(installed("chromium", "chromium"))) as browser:
         yield browser
 
 
@@ -97,28 +93,6 @@ def opened_browser(program: str) -> Iterator[Browser]:
         browser = playwright.chromium.launch(executable_path=program, args=FLAGS)
         yield browser
         browser.close()
-
-
-def installed_chromium() -> str:
-    """Debian's chromium, installed where one may; else the test is skipped, and says why."""
-    found = shutil.which("chromium")
-    if found is not None:
-        return found
-    if os.geteuid() != 0 or shutil.which("apt-get") is None:
-        pytest.skip("chromium is not installed, and may not be (apt-get install chromium)")
-    # Several processes of tests may come here at once.
-    with Path("/tmp/stepnc-chromium.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        for words in (["update"], ["install", "-y", "--no-install-recommends", "chromium"]):
-            done = subprocess.run(
-                ["apt-get", "-qq", *words], capture_output=True, timeout=900, check=False
-            )
-            if done.returncode:
-                pytest.skip(f"apt-get {words[0]}: {done.stderr.decode()[-200:]}")
-    found = shutil.which("chromium")
-    if found is None:
-        pytest.skip("chromium is not installed after apt-get install chromium")
-    return found
 
 
 @pytest.fixture

@@ -62,6 +62,30 @@ def test_code_is_chosen_with_its_tools_and_rewritten(page: Page, tmp_path: Path)
     expect(refused).to_have_text("plate.nc is NC code: this page needs a STEP-NC program.")
 
 
+def test_code_that_is_too_deep_is_slower_and_not_green(page: Page, tmp_path: Path) -> None:
+    deep = (
+        "%\nO1\nG21 G90 G54\nT1 M6\nS3000 M3\nG0 X-20. Y30.\nZ-15.\nG1 X120. F{feed}\nG0 Z50.\n"
+        "M30\n%\n"
+    )
+    (tmp_path / "slow.nc").write_text(deep.format(feed="20."))
+    (tmp_path / "fast.nc").write_text(deep.format(feed="2000."))
+    (tmp_path / "tools.csv").write_text("number,kind,diameter_mm,teeth\n1,endmill,10,4\n")
+    page.goto("/dashboard/plan.html")
+    page.locator("#program-file").set_input_files(tmp_path / "slow.nc")
+    page.locator("#tools-file").set_input_files(tmp_path / "tools.csv")
+    page.locator("#code-stock").fill("0,0,-20,100,60,0")
+    page.locator("#material").select_option("c45")
+    page.locator("#optimise").click()
+    told = page.locator("#result-findings")
+    expect(told).to_contain_text("Not fully checked: too deep in T1")
+    expect(page.locator("#figures")).to_contain_text("saved")
+    expect(page.locator("#figures .good")).to_have_count(0)
+    page.locator("#program-file").set_input_files(tmp_path / "fast.nc")
+    expect(page.locator("#program-shown")).to_contain_text("fast.nc")
+    page.locator("#optimise").click()
+    expect(told).to_contain_text("as programmed on line 8")
+
+
 def test_a_program_gets_feeds_along_its_paths(page: Page) -> None:
     page.goto("/dashboard/plan.html")
     page.locator("#program-example").select_option("paper002")

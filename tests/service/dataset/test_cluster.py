@@ -10,11 +10,10 @@ import pyarrow as pa
 
 from benchmarks.cluster import DESIGN
 from benchmarks.local_cluster import LocalCluster, running_cluster
-from service.dataset.folder import DatasetFolder
-from service.dataset.rows import table_of
+from service.dataset.folder import DatasetFolder, table_of
 from service.dataset.run import dataset_source, make_dataset
 from service.execution.cluster import cluster
-from service.reading import silent
+from service.progress import silent
 from simulator.factory.design_file import read_design
 
 ROWS, PARTITION = 24, 6

@@ -19,7 +19,7 @@ from service.chosen import material_for
 from service.dataset.folder import DatasetFolder
 from service.dataset.run import DatasetFiles, DatasetResult, dataset_source, make_dataset
 from service.factory.cycles import part_cycle
-from service.reading import silent
+from service.progress import silent
 from simulator.factory.design_file import read_design
 from simulator.library import load_machine
 from stepnc_model.cut_settings import CutSettings

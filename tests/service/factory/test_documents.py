@@ -12,7 +12,8 @@ from service.factory.documents import FirstParts, PartDocuments
 from service.factory.plan import machining_plan
 from service.factory.replications import run_shop
 from service.factory.run import run_factory
-from service.reading import read_program, silent
+from service.progress import silent
+from service.reading import read_program
 from service.requests.factory import FactoryRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.run import machine_of

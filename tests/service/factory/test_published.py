@@ -11,9 +11,8 @@ from service.factory.cycles import PartCycles
 from service.factory.devices import shop_devices
 from service.factory.live import LiveShop
 from service.factory.plan import machining_plan
-from service.factory.published import ShopPublisher
-from service.factory.timelines import PartTimeline, part_timelines
-from service.reading import silent
+from service.factory.published import PartTimeline, ShopPublisher, part_timelines
+from service.progress import silent
 from simulator.agent.buffer import Value
 from simulator.factory.machining import MachiningPlan, Place
 from simulator.factory.shop import Shop

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from service.factory.source import chosen_shop, source_of_file
+from service.factory.asked import chosen_shop, source_of_file
 from service.requests.factory import ShopTimes
 from stepnc_model.errors import StepNcError
 from tests.service.factory.shops import timed_file

@@ -6,7 +6,7 @@ import pytest
 
 from service.chosen import material_for
 from service.factory.cycles import part_cycle
-from service.factory.timelines import part_timeline
+from service.factory.published import part_timeline
 from service.reading import read_program
 from simulator.library import load_machine
 from stepnc_model.errors import StepNcError

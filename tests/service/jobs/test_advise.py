@@ -2,11 +2,11 @@
 
 import json
 
-from service.jobs.task import CURVES, FEEDS, NC_CODE, OPTIMISED, REPORT, RESULT
 from service.program_kind import ProgramKind
 from service.storage import programs
 from service.storage.files import FileKind, FileUpload
 from service.storage.jobs import JobKind, JobState
+from service.storage.results import CURVES, FEEDS, NC_CODE, OPTIMISED, REPORT, RESULT
 from stepnc_model.part21.reader import Part21File
 from tests.service.jobs.conftest import Shop
 from tests.service.rest.samples import CODE, CODE_STOCK, CODE_TOOLS

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from service.jobs import advise, child
+from service.jobs import child, verb_job
 from service.jobs.task import RunningJob
 from service.problem import problem_of
 from service.storage import database, jobs, programs
@@ -102,7 +102,7 @@ def test_a_fault_of_the_program_is_no_fault_of_the_client(
     def fail(_task: RunningJob) -> None:
         raise ZeroDivisionError("of the inside")
 
-    monkeypatch.setattr(advise, "run", fail)
+    monkeypatch.setattr(verb_job, "run", fail)
     job = idle.order(JobKind.ADVICE)
     with pytest.raises(ZeroDivisionError):
         ran(idle, job)
@@ -142,7 +142,7 @@ def test_an_end_is_said_once_the_database_answers_again(
 
 
 ON_FULL_DISK = """
-from service.jobs import advise, child
+from service.jobs import child, verb_job
 from service.storage.folder import FolderAddress
 child.main(FolderAddress(root=sys.argv[1], knowledge="none.db"), sys.argv[2], 1)
 """
@@ -230,7 +230,7 @@ def test_an_error_in_place_of_a_request_to_end_is_no_fault(
         except child.Cancelled:
             raise error("interrupted") from None
 
-    monkeypatch.setattr(advise, "run", swallow)
+    monkeypatch.setattr(verb_job, "run", swallow)
     job = ran(idle, idle.order(JobKind.ADVICE))
     assert (job.state, job.problem) == (JobState.CANCELLED, None)
 

@@ -6,13 +6,12 @@ from datetime import UTC, datetime, timedelta
 
 from pyarrow import parquet
 
-from service.jobs.evaluate import TABLE
-from service.jobs.task import REPORT, RESULT
 from service.knowledge import verbs
 from service.requests.fields import dumped
 from service.requests.knowledge import EvaluationRequest, ReviewRequest
 from service.storage import jobs
 from service.storage.jobs import Job, JobKind, JobRequest, JobState
+from service.storage.results import REPORT, RESULT, TABLE
 from tests.service.jobs.conftest import Shop
 
 

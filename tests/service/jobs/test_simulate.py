@@ -4,9 +4,9 @@ import json
 
 from pyarrow import parquet
 
-from service.jobs.task import REPORT, RESULT, SAMPLES
 from service.live.series import open_series
 from service.storage.jobs import JobKind, JobState
+from service.storage.results import REPORT, RESULT, SAMPLES
 from tests.service.jobs.conftest import Shop
 
 

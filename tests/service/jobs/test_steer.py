@@ -2,13 +2,12 @@
 
 import json
 
-from kbe.selection import EVERYTHING
-from service.jobs.task import REPORT, RESULT, SAMPLES
+from kbe.queries import EVERYTHING
 from service.knowledge import verbs
-from service.live.folder import LiveFolder
-from service.live.journal import append, read_on
+from service.live.journal import LiveFolder, append, read_on
 from service.live.series import open_series
 from service.storage.jobs import JobKind, JobState
+from service.storage.results import REPORT, RESULT, SAMPLES
 from tests.service.jobs.conftest import Shop
 from tests.service.waiting import until
 

@@ -9,10 +9,11 @@ import pytest
 from service.errors import NotFound
 from service.ids import new_id
 from service.jobs.child import ProgressHandler
-from service.jobs.task import OPTIMISED, RESULT, RunningJob, optimised_name, program_file
+from service.jobs.task import RunningJob, optimised_name, program_file
 from service.storage import jobs, programs
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobKind, JobRequest
+from service.storage.results import OPTIMISED, RESULT
 from tests.service.storage.conftest import data_folder  # noqa: F401 (a fixture)
 
 

@@ -30,7 +30,7 @@ from service.jobs import runner
 from service.storage.folder import FolderAddress
 runner.BEAT = 0.2
 # All that these jobs need: a host that was killed is soon at work again.
-runner.LOADED = ("service.jobs.preloaded_common", "service.jobs.review")
+runner.LOADED = ("service.jobs.preloaded_common", "service.verbs.kbe.review.run")
 folder = FolderAddress(root=sys.argv[1], files=sys.argv[2], database=sys.argv[3])
 runner.main(folder, 2, os.getppid())
 """

@@ -6,12 +6,10 @@ from typing import Any
 
 import pytest
 
+import stepnc
 from kbe.errors import OutcomeDiffers
-from kbe.selection import EVERYTHING
 from kbe.store import open_store
-from service.flat_file import Format
 from service.knowledge.added import add_outcomes
-from service.knowledge.export import export_outcomes
 from stepnc_model.errors import StepNcError
 from tests.every_case import every_case
 
@@ -42,7 +40,7 @@ def written(folder: Path, rows: Any) -> Path:
 
 def test_what_was_exported_is_added_unchanged(kb: str, tmp_path: Path) -> None:
     file, place = tmp_path / "out.json", str(tmp_path / "new.db")
-    count = export_outcomes(kb, EVERYTHING, file=file, form=Format.JSON)
+    count = stepnc.kbe_export("outcomes", kb=kb, output=file).rows
     assert add_outcomes(place, file).new == count
     with open_store(kb) as old, open_store(place) as new:
         assert list(new.outcomes()) == list(old.outcomes())

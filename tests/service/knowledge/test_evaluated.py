@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from kbe.evaluation import Grouping, RowFilter, SortKey
-from kbe.grade import EvaluationGrade
-from kbe.selection import Selection
+from kbe.queries import Selection
+from kbe.remarks import EvaluationGrade
 from kbe.statistics import Evaluated
 from service.knowledge import evaluated
 from service.knowledge import verbs as knowledge

@@ -16,9 +16,9 @@ from service.knowledge.evaluation_columns import (
     lines,
     screen_columns,
 )
-from service.knowledge.evaluation_output import evaluation_page, key_figures
 from service.rendering.columns import shown, visible
 from service.requests.knowledge import EvaluationRequest
+from service.verbs.kbe.table.result import EvaluationResult, key_figures
 from stepnc_model.outcome import EvaluatedQuantity, ProcessOutcome
 from tests.kbe.cuts import SLOT, deviating, in_run
 
@@ -140,7 +140,7 @@ def test_a_side_in_two_rows_counts_once() -> None:
     )
     assert dict(key_figures(table))["violated"] == "1"
     # Two remarks, and the legend.
-    page = evaluation_page(table)
+    page = EvaluationResult(found=table).page()
     assert page.count("passed its bound") + page.count("exceeded its bound") == 3
 
 

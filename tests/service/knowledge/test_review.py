@@ -10,8 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kbe.acceptance import AcceptanceBounds
-from kbe.ledger import Standing
-from kbe.selection import Selection
+from kbe.queries import Selection, Standing
 from service.knowledge import verbs as knowledge
 from service.knowledge.review import (
     Acceptance,

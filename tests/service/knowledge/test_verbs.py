@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 from scipy.stats import t as student
 
 from kbe.errors import StoreNotEmpty, StoreUnavailable, UnknownCorrection
-from kbe.ledger import Standing
-from kbe.selection import EVERYTHING, Selection
+from kbe.queries import EVERYTHING, Selection, Standing
 from kbe.store import open_store
 from service.knowledge import verbs as knowledge
 from service.knowledge.place import usual_place

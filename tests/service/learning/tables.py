@@ -7,7 +7,7 @@ import numpy as np
 import pyarrow as pa
 from pyarrow import parquet
 
-from service.dataset.rows import SCHEMA
+from service.dataset.folder import SCHEMA
 
 
 def law_table(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from service.learning.force_factor import force_factor_of
+from service.learning.models import force_factor_of
 from service.learning.table import Features, LearningTable
 
 FEATURES = Features(numbers=("feed_mm_s",), names={})

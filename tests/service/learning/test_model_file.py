@@ -12,9 +12,8 @@ from sklearn.linear_model import Ridge
 from sklearn.preprocessing import FunctionTransformer
 
 import stepnc
-from service.learning.learned import LearnedModel
 from service.learning.model_file import HEADER, load_model, save_model
-from service.learning.models import ModelKind
+from service.learning.models import LearnedModel, ModelKind
 from stepnc_model.errors import StepNcError
 from tests.every_case import every_case
 from tests.service.learning.tables import law_table, written

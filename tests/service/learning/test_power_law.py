@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from service.learning.power_law import fitted_law, logarithms
+from service.learning.models import fitted_law, logarithms
 from service.learning.table import Features, Floats, LearningTable
 
 FEATURES = Features(numbers=("feed_mm_s", "flank_wear_mm"), names={"machine": ("a", "b", "c")})

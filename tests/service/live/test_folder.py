@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from service.errors import StorageFull
-from service.live.folder import LiveFolder
+from service.live.journal import LiveFolder
 
 
 def test_every_file_lies_in_the_folder(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from service.errors import StorageFull, Unavailable
-from service.live.storage import FULL, storing, write_whole
+from service.live.journal import FULL, storing, write_whole
 from tests.service.live.room import within_room
 
 
@@ -28,7 +28,7 @@ def test_bytes_that_were_taken_in_part_are_no_success(tmp_path: Path) -> None:
     told = within_room(
         """
 import os
-from service.live.storage import write_whole
+from service.live.journal import write_whole
 descriptor = os.open(sys.argv[1], os.O_WRONLY | os.O_CREAT)
 try:
     write_whole(descriptor, b"x" * 1500)

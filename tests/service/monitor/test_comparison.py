@@ -5,14 +5,15 @@ from math import isnan
 
 import pytest
 
-from service.monitor.comparison import (
+from service.monitor.observed import (
     AlignedPart,
+    ObservedRun,
+    ObservedStep,
     PredictedStep,
     StepState,
     compared,
     predicted_steps,
 )
-from service.monitor.observed import ObservedRun, ObservedStep
 
 PREDICTED = (
     PredictedStep(id="", begin=0.0, time=2.0, energy=20.0),

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from pyarrow import parquet
 
-from service.recording.kept import RunFinder, keep_run
+from service.recording.logged_run import RunFinder, keep_run
 from simulator.client.columns import RecordedColumn, RowMaker
 from simulator.client.connection import ClientObservation
 from simulator.errors import AgentError

@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 from pyarrow import csv, parquet
 
-from service.recording.row_journal import RowJournal
-from service.recording.run import record
+from service.recording.run import RowJournal, record
 from service.requests.recording import RecordingRequest
 from service.run_file import ColumnKind, RunColumn
 from stepnc_model.errors import WriteError

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from service.recording.signals import read_signals
+from service.recording.table import read_signals
 from stepnc_model.errors import StepNcError
 from tests.every_case import every_case
 

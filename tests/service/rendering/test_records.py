@@ -4,8 +4,15 @@ from datetime import UTC, datetime
 from math import inf
 
 from service.flat_file import FileColumn
-from service.rendering.columns import Change, Column
-from service.rendering.records import dump, file_columns, file_rows, record, records
+from service.rendering.columns import (
+    Change,
+    Column,
+    dump,
+    file_columns,
+    file_rows,
+    record,
+    records,
+)
 
 AT = datetime(2026, 3, 5, tzinfo=UTC)
 

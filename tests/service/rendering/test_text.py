@@ -3,7 +3,7 @@
 import pytest
 
 from service.rendering.columns import Column
-from service.rendering.text import GREEN, RED, one_line, print_line, print_table, table
+from service.rendering.text import GREEN, RED, one_line, print_line, table
 
 ENDLESS = 10**9
 
@@ -18,7 +18,7 @@ ROWS = (("a", 1.0), ("a", 20.0), ("b", 3.0))
 
 def test_lines_of_one_row_share_cells() -> None:
     found = table(COLUMNS, ROWS, width=ENDLESS, nothing="–", row_of=lambda row: row[0])
-    assert list(found) == [
+    assert [text for text, _ in found] == [
         "      Cut",
         "name  force N  twice  none",
         "----  -------  -----  ----",
@@ -29,7 +29,7 @@ def test_lines_of_one_row_share_cells() -> None:
 
 
 def test_each_row_stands_for_itself_where_nothing_else_is_said() -> None:
-    assert [line[0] for line in list(table(COLUMNS, ROWS, width=ENDLESS))[3:]] == [
+    assert [line[0] for line, _ in list(table(COLUMNS, ROWS, width=ENDLESS))[3:]] == [
         "a",
         "a",
         "b",
@@ -37,7 +37,7 @@ def test_each_row_stands_for_itself_where_nothing_else_is_said() -> None:
 
 
 def test_blocks_begin_with_the_key_and_keep_groups_together() -> None:
-    heads = [line for line in table(COLUMNS, ROWS, width=22) if line.startswith("name")]
+    heads = [line for line, _ in table(COLUMNS, ROWS, width=22) if line.startswith("name")]
     assert heads == ["name  force N  twice", "name  none"]
 
 
@@ -45,13 +45,12 @@ def test_lines_are_coloured_where_that_is_asked_for() -> None:
     lines = list(
         table(COLUMNS, ROWS, width=ENDLESS, colour=lambda row: RED if row[1] > 10.0 else "")
     )
-    assert lines[4].startswith("\x1b[31m")
-    assert "\x1b" not in lines[3]
+    assert [colour for _, colour in lines] == ["", "", "", "", RED, ""]
 
 
-def test_a_name_cannot_steer_the_terminal(capsys: pytest.CaptureFixture[str]) -> None:
-    print_table(COLUMNS, [("a\x1b[2J\nb", 1.0)])
-    assert "a�[2J b" in capsys.readouterr().out
+def test_a_name_cannot_steer_the_terminal() -> None:
+    found = table(COLUMNS, [("a\x1b[2J\nb", 1.0)], width=ENDLESS)
+    assert any("a�[2J b" in line for line, _ in found)
     assert one_line(" a\n b ") == "a b"
     assert one_line(" \n ") == "–"
 

@@ -42,6 +42,18 @@ def test_text_has_totals_and_leaves_out_what_was_told() -> None:
     assert "warning: told before" in dict(VIEW.lines(width=80, is_told=False))
 
 
+def test_a_sentence_goes_on_in_the_next_line() -> None:
+    view = ResultView([TextLine(text="one two  three four five six", is_wrapped=True)])
+    assert [text for text, _ in view.lines(width=20)] == ["one two three four", "   five six"]
+
+
+def test_a_row_has_its_colour() -> None:
+    rows = [Part(name="a", time=1.0), Part(name="b", time=2.0)]
+    table = Table(columns=COLUMNS, rows=rows, colour=lambda row: "31" if row.time > 1 else "")
+    lines = list(ResultView([table]).lines(width=80))
+    assert [colour for _, colour in lines] == ["", "", "", "31"]
+
+
 def test_json_has_every_member_with_a_key() -> None:
     record = VIEW.record()
     assert list(record) == ["count", "parts", "total", "none", "findings"]
@@ -54,6 +66,7 @@ def test_html_is_escaped() -> None:
     html = VIEW.html()
     assert "two parts &lt;1&gt;" in html
     assert "<td>2.0</td>" in html
+    assert "<details><summary>warning: 1, note: 1</summary>" in html
 
 
 def test_a_table_is_found_by_its_key() -> None:

@@ -8,6 +8,7 @@ from typing import Annotated
 import pytest
 from annotated_types import Interval, MaxLen
 
+from kbe.evaluation import RowFilter
 from service.requests.fields import (
     About,
     Request,
@@ -42,6 +43,9 @@ class Order(Request):
     ] = None
     share: Annotated[float, Interval(ge=0.0, lt=1.0), About("of it", flag="--share")] = 0.25
     is_big: Annotated[bool, About("or small", flag="--big")] = False
+    steps: Annotated[
+        tuple[Annotated[int, Interval(ge=1, le=9)], ...], About("some", is_word=True)
+    ] = ()
     hidden: Annotated[int, About("has no option")] = 3
     plain: int = 4
 
@@ -61,11 +65,11 @@ def test_nothing_typed_is_the_usual() -> None:
 def test_words_become_values() -> None:
     asked = typed(
         "--colour", "BLUE", "--colours", "red, blue", "--name", "a,b", "--name", "c",
-        "--size", "2.5", "--big",
+        "--size", "2.5", "--big", "2", "3",
     )  # fmt: skip
     assert asked == Order(
         colour=Colour.BLUE, colours=(Colour.RED, Colour.BLUE), names=("a,b", "c"),
-        size_mm=2.5, is_big=True,
+        size_mm=2.5, is_big=True, steps=(2, 3),
     )  # fmt: skip
 
 
@@ -77,6 +81,7 @@ def test_words_become_values() -> None:
         (("--size", "11"), "size 11 mm: it must be above 0 to 10 mm"),
         (("--share", "1"), "share 1: it must be at least 0 and below 1"),
         (("--share", "-0.1"), "share -0.1: it must be at least 0 and below 1"),
+        (("1", "10"), "steps 10: it must be 1 to 9"),
         (("--colour", "green"), "unknown colour 'green'; known: red, Blue"),
         (
             ("--name", "a", "--name", "b", "--name", "c"),
@@ -114,5 +119,7 @@ def test_a_request_made_in_python_is_checked_too() -> None:
     require_bounds(Order(size_mm=10.0))
 
 
-def test_members_are_found_whatever_their_case() -> None:
+def test_members_are_found_whatever_their_case_and_with_hyphens() -> None:
     assert member_of(Colour, "bLUE", "colour") is Colour.BLUE
+    assert member_of(RowFilter, "With-Remarks", "only") is RowFilter.WITH_REMARKS
+    assert member_of(RowFilter, "with remarks", "only") is RowFilter.WITH_REMARKS

@@ -49,7 +49,7 @@ def test_options_of_a_step_nc_program_are_refused_with_nc_code(
     "words",
     [
         ("--greatest-rise", "3"), ("--finish", "T1"), ("--keep", "T1"), ("--unroll",),
-        ("--dialect", "haas"), ("--mark",), ("--tools-unit", "mm"), ("--most-repeats", "9"),
+        ("--dialect", "haas"), ("--mark",), ("--most-repeats", "9"),
     ],
 )  # fmt: skip
 def test_options_of_nc_code_are_refused_with_a_step_nc_program(
@@ -64,13 +64,13 @@ def test_options_of_nc_code_are_refused_with_a_step_nc_program(
 
 def test_the_declaration_names_fields_of_the_request() -> None:
     fields = {each.name: each for each in fields_of(StoredAdviceRequest)}
-    assert set(SERVES) - set(fields) == {"most_repeats"}
+    assert set(SERVES) - set(fields) == {"most_repeats", "setup"}
     of_code = {
         name for name, each in fields.items() if each.about.text.startswith("of NC code")
     }
     assert of_code == {
         name for name, each in SERVES.items() if each.kind is ProgramKind.NC_CODE
-    } - {"tools_unit", "most_repeats"}
+    } - {"tools_unit", "most_repeats", "setup"}
 
 
 def test_a_request_is_refused_by_its_values() -> None:

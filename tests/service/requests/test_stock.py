@@ -6,9 +6,8 @@ import pytest
 
 from service.raw_stock import raw_stock_of
 from service.requests.fields import dumped, loaded
-from service.requests.given import ProgramRequest
+from service.requests.given import ProgramRequest, StockFile, raw_part_in
 from service.requests.runs import ControlRequest, SimulationRequest
-from service.requests.stock import StockFile, raw_part_in
 from service.requests.stored_advice import StoredAdviceRequest
 from service.requests.stored_cycle_time import QueuedCycleTime
 from service.requests.stored_verification import QueuedVerification

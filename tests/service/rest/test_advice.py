@@ -7,11 +7,11 @@ import pytest
 
 from service.errors import Conflict, NotFound
 from service.ids import new_id
-from service.jobs.task import RESULT
 from service.rest import advice
 from service.rest.advice import AdviceCache, CachedAdvice
 from service.storage import jobs
 from service.storage.folder import open_data_folder
+from service.storage.results import RESULT
 from tests.service.rest.conftest import Done
 from tests.service.rest.server import is_problem, made, over
 

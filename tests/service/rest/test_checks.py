@@ -1,10 +1,12 @@
 """Checks: two at a time, none twice, answers within a bound of bytes."""
 
 import asyncio
+from contextlib import ExitStack
 from threading import Lock, Semaphore
 
 import pytest
 
+from service.errors import Unavailable
 from service.rest import checks
 from service.rest.checks import MOST_AT_ONCE, CheckCache, in_turn
 
@@ -78,3 +80,14 @@ def test_those_asked_for_last_stay_within_the_bound(monkeypatch: pytest.MonkeyPa
         assert answers._size == 0
 
     asyncio.run(asked())
+
+
+def test_readings_that_hang_hold_no_more_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(checks, "READING_WAIT", 0.01)
+    with ExitStack() as hanging:
+        for _ in range(2):
+            hanging.enter_context(checks.reading_in_turn())
+        with pytest.raises(Unavailable, match="still being read"), checks.reading_in_turn():
+            pass
+    with checks.reading_in_turn():
+        """One of them may go on."""

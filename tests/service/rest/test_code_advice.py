@@ -106,7 +106,8 @@ def test_feeds_and_curves_are_given_in_bounds(client: httpx.Client, code: CodeDo
     ("change", "detail"),
     [
         ({"tools_id": None}, "missing: tools_id"),
-        ({"stock": "", "material": ""}, "missing: stock, material"),
+        ({"stock": "", "material": ""}, "missing: stock, material: material"),
+        ({"material": ""}, "missing: material: material (`stepnc materials`)"),
         ({"stock": "/etc/passwd"}, "stock '/etc/passwd'"),
         ({"stock": "part.stl"}, "stock 'part.stl': expected 2, 3, 5 or 6 numbers"),
         ({"finish": ["mill"]}, "tool 'mill'"),
@@ -119,6 +120,16 @@ def test_advice_on_code_is_refused_before_there_is_a_job(
 ) -> None:
     answer = client.post(f"/v1/programs/{code.program}/advice", json={**code.wish, **change})
     assert detail in is_problem(answer, 422)["detail"]
+
+
+def test_code_that_tells_tools_and_stock_needs_neither(client: httpx.Client) -> None:
+    told = b"(T1 D=10. - FLAT END MILL)\n"
+    program = made(client.post("/v1/programs?name=told.NC", content=told + CODE), 201)
+    wish = {"material": "c45", "machine": "vmc15"}
+    job = made(client.post(f"/v1/programs/{program}/advice", json=wish))
+    assert over(client, job, within=120.0)["state"] == "succeeded"
+    findings = str(client.get(f"/v1/advice/{job}").json()["findings"])
+    assert "no stock is given: a box around the cutting moves is taken" in findings
 
 
 def test_a_table_without_the_tool_is_told(client: httpx.Client, code: CodeDone) -> None:

@@ -1,13 +1,11 @@
 """What tells one request from another."""
 
-from contextlib import ExitStack
 from dataclasses import replace
 
 import pytest
 from fastapi import Request
 
-from service.errors import Unavailable, Unreadable
-from service.rest import context
+from service.errors import Unreadable
 from service.rest.access import ANYBODY
 from service.rest.context import PROBLEMS, cursor_of, idempotency_of
 from service.storage.jobs import LOCAL
@@ -44,17 +42,6 @@ def test_path_query_and_body_make_another_request() -> None:
     other = idempotency_of(request(owner="bert"), "k", b"")
     assert other is not None
     assert other.owner == "bert"
-
-
-def test_readings_that_hang_hold_no_more_threads(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(context, "READING_WAIT", 0.01)
-    with ExitStack() as hanging:
-        for _ in range(2):
-            hanging.enter_context(context.reading_in_turn())
-        with pytest.raises(Unavailable, match="still being read"), context.reading_in_turn():
-            pass
-    with context.reading_in_turn():
-        """One of them may go on."""
 
 
 def test_problems_are_documented_by_their_content_type() -> None:

@@ -67,6 +67,15 @@ def test_outcomes_are_found_by_what_they_are_of(client: httpx.Client, done: Done
     is_problem(client.get("/v1/outcomes?limit=2001"), 422)
 
 
+def test_a_time_that_ends_before_it_starts_is_refused_before_a_job_exists(
+    client: httpx.Client,
+) -> None:
+    times = {"since": "2026-03-06T00:00:00Z", "until": "2026-03-05T00:00:00Z"}
+    for path in ("/v1/evaluations", "/v1/reviews"):
+        is_problem(client.post(path, json=times), 400)
+    is_problem(client.get("/v1/outcomes", params=times), 400)
+
+
 @pytest.mark.parametrize("moment", ["2026-01-01", "x", "0001-01-01T00:00:00+23:59", "1e400"])
 def test_a_moment_that_no_clock_shows_is_refused(client: httpx.Client, moment: str) -> None:
     for path in ("/v1/evaluations", "/v1/reviews"):

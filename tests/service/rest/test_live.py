@@ -77,7 +77,10 @@ def test_a_run_under_control_is_changed_and_ends(client: httpx.Client, done: Don
 
 def test_what_a_run_under_control_has_left(client: httpx.Client, done: Done) -> None:
     path = f"/v1/control-runs/{done.control}"
-    assert client.get(path).json()["is_good"] in {True, False}
+    result = client.get(path).json()
+    assert result["is_good"] in {True, False}
+    # The log of the cuts, which `--cut-log` writes.
+    assert {"workingstep", "time_s", "least_override_percent", "done"} <= set(result["cuts"][0])
     assert client.get(f"{path}/samples").content.startswith(b"PAR1")
     assert client.get(f"{path}/report").text.startswith("<!DOCTYPE html>")
     assert client.get(f"{path}/status").json()["is_done"]

@@ -14,8 +14,7 @@ import numpy as np
 import pytest
 
 from service.errors import TooMany
-from service.live.folder import LiveFolder
-from service.live.journal import append
+from service.live.journal import LiveFolder, append
 from service.live.series import SeriesWriter
 from service.rest import streams
 from service.rest.streams import (

@@ -5,7 +5,7 @@ from math import nan
 import pytest
 
 from controller.orders import EventKind, LoopEvent
-from service.session.rows import LIT, LiveRows, Moment, known
+from service.session.runner import LIT, LiveRows, Moment, known
 
 EVENT = LoopEvent(time=1.0, kind=EventKind.ORDER, text="depth 2 -> 4 mm")
 

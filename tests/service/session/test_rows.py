@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from service.session.rows import COLUMNS, Moment, rows_of
+from service.session.runner import COLUMNS, Moment, rows_of
 
 NUMBERS = {name: float(place + 1) for place, name in enumerate(Moment._fields)}
 MOMENT = Moment(**{**NUMBERS, "workingstep": "", "level": "", "holding": "", "event": None})  # type: ignore[arg-type]

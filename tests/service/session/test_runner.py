@@ -9,13 +9,19 @@ import pytest
 from controller.orders import EventKind, LoopEvent
 from service.errors import StorageFull
 from service.live import series
-from service.live.folder import LiveFolder
-from service.live.journal import append, read_on
+from service.live.journal import LiveFolder, append, read_on
 from service.live.playback import TICK
 from service.live.series import open_series
 from service.session import runner as live_runner
-from service.session.rows import COLUMNS, RunUpdate
-from service.session.runner import AT_ONCE, FORGOTTEN, FULL, REFUSED, LiveRunner
+from service.session.runner import (
+    AT_ONCE,
+    COLUMNS,
+    FORGOTTEN,
+    FULL,
+    REFUSED,
+    LiveRunner,
+    RunUpdate,
+)
 from stepnc_model.errors import StepNcError
 from tests.service.live.test_playback import Clock
 from tests.service.session.test_rows import MOMENT

@@ -2,7 +2,7 @@
 
 import json
 
-from service.session.status import UNITS
+from service.session.runner import UNITS
 from service.trial.inputs import Inputs
 from service.trial.run import TrialRun
 

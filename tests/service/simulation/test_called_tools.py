@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from service.cli.verbs import print_result
+from service.cli.commands import print_result
 from service.verbs.optimise.code import optimise_code
 from service.verbs.optimise.code_result import CodeAdvice
 from service.verbs.optimise.request import AdviceFiles

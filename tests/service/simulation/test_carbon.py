@@ -2,13 +2,12 @@
 
 import pytest
 
-from service.simulation.carbon import WORLD, CarbonFactor, kilowatt_hours, stated
+from service.simulation.facts import WORLD, CarbonFactor, stated
 from stepnc_model.errors import StepNcError
 from tests.every_case import every_case
 
 
 def test_a_kilowatt_hour_is_3_6_megajoules() -> None:
-    assert kilowatt_hours(3.6e6) == 1.0
     assert WORLD.grams(3.6e6) == 480.0
 
 

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from service.along_path.course import BlockLog, stretches_of
-from service.simulation.code_paths import BRIDGE, CodePaths
+from service.simulation.code_paths import CodePaths
+from service.simulation.detour import BRIDGE
 from simulator.motion.control import control_model
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import axis_limits
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
-from stepnc_model.post.blocks import Comment, Rapid
+from stepnc_model.post.blocks import Comment, Coolant, CoolantKind, ProgramStopBlock, Rapid
 from stepnc_model.post.dialect import Dialect
 from tests.service.along_path.foreign import BAR, END, HEAD, lines_of, paths_of, slot
 
@@ -142,8 +143,18 @@ def test_a_comment_in_a_subprogram_concerns_its_calls_alone() -> None:
     )
     code = paths_of(text, dialect=Dialect.FANUC)
     assert [part.is_finishing for part in code.parts] == [False, True, False]
-    names = [block.text for _, block in code.prepared(0.0).blocks if isinstance(block, Comment)]
-    assert names == ["T1", "T1 (2)", "T1 (3)"]
+    comments = [each for _, each in code.prepared(0.0).blocks if isinstance(each, Comment)]
+    assert [each.text for each in comments if each.workingstep] == ["T1", "T1 (2)", "T1 (3)"]
+    assert [each.text for each in comments if not each.workingstep] == ["FINISH SLOT", "ROUGH"]
+
+
+def test_coolant_and_stops_of_any_code_run() -> None:
+    text = HEAD + "M8\n" + slot(10.0) + "/M7\nM9\nM0\n" + END
+    found = [each for _, each in paths_of(text, dialect=Dialect.FANUC).prepared(0.0).blocks]
+    flood = Coolant(kinds=frozenset({CoolantKind.FLOOD}))
+    # What the operator may skip does not run.
+    assert [each for each in found if isinstance(each, Coolant)] == [flood, Coolant()]
+    assert ProgramStopBlock() in found
 
 
 def test_lines_that_run_more_than_once_are_not_split() -> None:

@@ -10,8 +10,8 @@ from service.buckets import BucketedRun
 from service.panels import MOST_BANDS
 from service.simulation.facts import rows
 from service.simulation.figures import run_figure
+from service.simulation.gathering import SimulationSignal, TraceKeeper
 from service.simulation.run import Simulation
-from service.simulation.trace import SimulationSignal, TraceKeeper
 
 
 @pytest.fixture(scope="module")

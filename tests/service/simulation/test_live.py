@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from service.live.folder import LiveFolder
+from service.live.journal import LiveFolder
 from service.live.series import open_series
 from service.simulation import live
 from service.simulation.live import COLUMNS, LiveSamples

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from service.reading import silent
+from service.progress import silent
 from service.requests.advice import AdviceRequest
 from service.requests.runs import RunRequest
 from service.simulation.of_code import IDLE, CodeRequest, from_code
@@ -13,6 +13,8 @@ from service.simulation.run import simulate
 from service.simulation.setup import PreparedRun, from_program
 from service.verbs.optimise.code import optimise_code
 from service.verbs.optimise.request import AdviceFiles
+from simulator.machine.virtual import LoadedTool
+from simulator.removal.cutter import Cutter
 from simulator.removal.lathe import TurningStock
 from stepnc_model.errors import StepNcError
 from stepnc_model.post import blocks as post
@@ -46,13 +48,23 @@ N75 M30
 """
 
 
+def without_holder(tool: LoadedTool) -> LoadedTool:
+    """Tool of which the holder is not compared: the program states the assembly's length."""
+    assert isinstance(tool.shape, Cutter)
+    return replace(tool, shape=replace(tool.shape, holder=None))
+
+
 def test_the_table_of_the_example_holds_the_tools_of_its_program(tmp_path: Path) -> None:
     code = tmp_path / "a.ngc"
     code.touch()
     request = CodeRequest(code=code, tools=TOOLS, stock="-3,-3,-40,153,93,2")
     prepared = from_code(request, RunRequest(machine="vmc15", material="c45"), program=None)
     known = from_program(BRACKET, RunRequest(machine="vmc15"), tell=silent)
-    assert prepared.tools == known.tools
+    tools, others = (
+        {number: without_holder(tool) for number, tool in (each.tools or {}).items()}
+        for each in (prepared, known)
+    )
+    assert tools == others
     assert prepared.raw == known.raw
 
 
@@ -108,10 +120,10 @@ def test_a_bar_has_a_diameter_and_two_ends(tmp_path: Path) -> None:
     assert isinstance(prepared.stock(""), TurningStock)
 
 
-def test_share_of_code_is_that_of_its_bytes(tmp_path: Path) -> None:
-    prepared = coded(tmp_path, "G90\n" * 10)
+def test_share_of_code_is_that_of_its_blocks(tmp_path: Path) -> None:
+    prepared = coded(tmp_path, "(A)\n" * 10)
     assert prepared.done() == 0.0
-    assert list(prepared.blocks) == []
+    assert len(list(prepared.blocks)) == 12
     assert prepared.done() == 1.0
 
 
@@ -139,9 +151,7 @@ def test_code_of_another_cam_runs_as_its_plan_says(tmp_path: Path) -> None:
         )
     )  # fmt: skip
     assert after.whole.duration == pytest.approx(advice.along.time_after, rel=1e-4)
-    assert "note: read as code of any origin, for haas: line 5: word G53" in "\n".join(
-        map(str, run.findings)
-    )
+    assert "note: read as code for haas, guessed from O01001" in map(str, run.findings)
 
 
 @pytest.mark.parametrize("suffix", [".tap", ".nc", ""])
@@ -214,8 +224,6 @@ def test_small_letters_remove_what_plain_code_removes(tmp_path: Path) -> None:
     assert plain.whole.volume == pytest.approx(4800.0, rel=0.002)
     assert foreign.whole.volume == pytest.approx(plain.whole.volume)
     assert foreign.whole.cutting_time == pytest.approx(plain.whole.cutting_time)
-    origins = ["any origin" in "".join(map(str, each.findings)) for each in (plain, foreign)]
-    assert origins == [False, True]
 
 
 def test_code_of_a_lathe_may_show_it_by_nothing(tmp_path: Path) -> None:
@@ -230,5 +238,5 @@ def test_an_error_in_the_code_of_a_program_names_its_file(tmp_path: Path) -> Non
     code = CodeRequest(code=tmp_path / "part.ngc")
     code.code.write_text("G21 G90\nG199 X1\n", encoding="ascii")
     asked = asked_simulation(BRACKET, code=code, machine="vmc15")
-    with pytest.raises(StepNcError, match=r"^part.ngc: line 2: word G199"):
+    with pytest.raises(StepNcError, match=r"^part.ngc: line 2: G199 is not known"):
         simulate(*asked)

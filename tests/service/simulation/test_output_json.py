@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from service.rendering.records import dump
-from service.simulation.carbon import CarbonFactor
+from service.rendering.columns import dump
+from service.simulation.facts import CarbonFactor
 from service.simulation.run import Simulation
 from service.verbs.simulate.result import SimulateResult
 

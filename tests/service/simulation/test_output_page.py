@@ -8,9 +8,9 @@ from html.parser import HTMLParser
 import pytest
 
 from service.buckets import BucketedRun
-from service.simulation.carbon import CarbonFactor
+from service.simulation.facts import CarbonFactor
+from service.simulation.gathering import TraceKeeper
 from service.simulation.run import Simulation
-from service.simulation.trace import TraceKeeper
 from service.verbs.simulate.result import SimulateResult
 from simulator.library import load_material
 from simulator.machine.totals import Total

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from pyarrow import parquet
 
 from service.agent.run import DocumentChoice, simulated_with_document
-from service.cli.verbs import print_result
+from service.cli.commands import print_result
 from service.simulation.run import Simulation, simulate
 from service.verbs.simulate.result import SimulateResult
-from simulator.agent.names import NameSet, SchemaVersion
+from simulator.agent.machine_model import NameSet, SchemaVersion
 from stepnc_model.errors import StepNcError
 from tests.asking import asked_simulation
 

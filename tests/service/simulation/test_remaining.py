@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from service.raw_stock import raw_stock_of
-from service.requests.stock import StockFile, raw_part_in
+from service.requests.given import StockFile, raw_part_in
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles, Simulation, simulate
 from simulator.removal.engage import MillingStock

@@ -10,8 +10,8 @@ import pytest
 from pyarrow import csv, parquet
 
 from service.run_file import arrow_schema
-from service.simulation import timeline_file
-from service.simulation.timeline_file import ROWS, TimelineFile, timeline_columns
+from service.simulation import gathering
+from service.simulation.gathering import ROWS, TimelineFile, timeline_columns
 from simulator.machine.samples import Samples
 from simulator.timeline import COLUMNS
 from stepnc_model.errors import WriteError
@@ -91,7 +91,7 @@ def test_groups_of_rows_are_bounded_however_samples_come(tmp_path: Path) -> None
 def test_single_samples_make_the_same_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(timeline_file, "MOST_PARTS", 4)
+    monkeypatch.setattr(gathering, "MOST_PARTS", 4)
     whole, parts = tmp_path / "whole.parquet", tmp_path / "parts.parquet"
     written(whole, samples(21))
     written(parts, *(samples(1, first=row) for row in range(21)))

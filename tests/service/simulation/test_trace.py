@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from service.buckets import MOST, BucketedRun
-from service.simulation.trace import SimulationSignal, TraceKeeper
+from service.simulation.gathering import SimulationSignal, TraceKeeper
 from simulator.machine.samples import Samples
 from simulator.motion.segments import Floats
 

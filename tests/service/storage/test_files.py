@@ -6,7 +6,7 @@ import pytest
 
 from service.agent.replay import DOCUMENTS, LINES
 from service.errors import Conflict, NotFound, Unavailable, Unreadable
-from service.file_names import LOGS
+from service.files import LOGS
 from service.ids import new_id
 from service.recording.table import TABLES
 from service.storage import files, jobs

@@ -7,7 +7,7 @@ import pytest
 from service.errors import Unavailable
 from service.jobs.runner import beat, is_alive
 from service.knowledge.verbs import require_usable
-from service.live.storage import has_room
+from service.live.journal import has_room
 from service.storage import jobs
 from service.storage.folder import open_data_folder
 from tests.full_disk import files_of_at_most

@@ -5,10 +5,13 @@ from math import pi
 import numpy as np
 import pytest
 
-from service.trial.cut import (
+from service.trial.inputs import (
     AIR,
     ENDLESS,
     ENTRY,
+    Inputs,
+    MillingType,
+    changed,
     course_of,
     engagement_of,
     force_bound,
@@ -17,7 +20,6 @@ from service.trial.cut import (
     step_of,
     trial_cut,
 )
-from service.trial.inputs import Inputs, MillingType, changed
 from simulator.physics.milling import mean_force
 
 INPUTS = Inputs()

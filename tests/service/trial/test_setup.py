@@ -5,9 +5,9 @@ import pytest
 from controller.laws.choice import LawName
 from controller.orders import EventKind
 from service.control.holding import OFF, PROGRAMMED
-from service.session.rows import Moment
+from service.session.runner import Moment
 from service.trial.inputs import Inputs, changed
-from service.trial.setup import TrialSetup
+from service.trial.run import TrialSetup
 
 INPUTS = Inputs()
 

@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 
 import stepnc
-from service.verbs.call import call
-from service.verbs.verb import verbs
+from service.verbs.call import call, verbs
 from stepnc_model.errors import StepNcError
 from tests.every_case import every_case
 
@@ -59,8 +58,8 @@ def test_a_page_is_written_where_one_is_named(
 
 
 def test_every_verb_is_an_attribute_with_its_help() -> None:
-    for name, verb in verbs().items():
-        assert getattr(stepnc, name).__doc__ == verb.about
-        assert name in dir(stepnc)
+    for verb in verbs().values():
+        assert getattr(stepnc, verb.function).__doc__ == verb.about
+        assert verb.function in dir(stepnc)
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         stepnc.__getattr__("nothing")

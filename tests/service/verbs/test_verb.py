@@ -8,7 +8,7 @@ import pytest
 
 from service import verbs as package
 from service.cli.main import main
-from service.verbs.verb import Verb, verbs
+from service.verbs.call import Verb, verbs
 
 FOLDER = {
     "__init__.py": '"""Say a word, often.\n\nIt is said to nobody."""\n',
@@ -92,6 +92,7 @@ def test_a_folder_is_a_command_with_help_bounds_text_and_json(
 
 
 def test_names_of_two_words_have_their_group() -> None:
-    assert Verb(folder="kbe_review").name == "kbe review"
-    assert Verb(folder="cycletime").name == "cycletime"
+    review = verbs()["kbe.review"]
+    assert (review.name, review.function, review.group) == ("kbe review", "kbe_review", "kbe")
+    assert verbs()["cycletime"].name == "cycletime"
     assert list(verbs()) == sorted(verbs())

@@ -6,7 +6,7 @@ import pytest
 
 from benchmarks.verification import SHAFT, SHAFT_REQUEST
 from service.cli.main import main
-from service.cli.options import BAD_INPUT
+from service.exit_codes import BAD_INPUT
 from service.requests.agent import AgentRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, simulate

@@ -5,9 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from service.recording.signals import POSITIONS
-from service.verification.document import table_of
-from service.verification.log import LogFile
+from service.recording.table import POSITIONS
+from service.verification.log import LogFile, table_of
 from simulator.library import load_machine
 from stepnc_model.errors import StepNcError
 from tests.service.verification.test_log import ONE

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from service.raw_stock import raw_stock_of, stock_map
-from service.requests.stock import StockFile
+from service.requests.given import StockFile
 from service.verification.run import Verification, VerificationInputs, verify
 from simulator.library import load_machine
 from simulator.motion.segments import Floats

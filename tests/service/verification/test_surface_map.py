@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from service.verification.surface_map import read_map, shown_rows, write_surface
+from service.verification.facts import read_map, shown_rows, write_surface
 from simulator.motion.segments import Floats
 from tests.service.verification.runs import clean
 

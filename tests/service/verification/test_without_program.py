@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from service.cli.main import main
-from service.cli.options import BAD_INPUT, LIMIT_EXCEEDED
-from service.requests.stock import StockFile
+from service.exit_codes import BAD_INPUT, LIMIT_EXCEEDED
+from service.requests.given import StockFile
 from service.requests.verification import VerificationRequest
 from service.verification.facts import surface_deviations
 from service.verification.run import Verification, VerificationInputs, verify

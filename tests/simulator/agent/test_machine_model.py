@@ -5,8 +5,13 @@ from dataclasses import replace
 import pytest
 
 from simulator.agent.documents import DocumentWriter
-from simulator.agent.machine_model import MachineModel, device_uuid, machine_model
-from simulator.agent.names import NameSet, SchemaVersion
+from simulator.agent.machine_model import (
+    MachineModel,
+    NameSet,
+    SchemaVersion,
+    device_uuid,
+    machine_model,
+)
 from simulator.library import load_machine, machine_names
 from tests.every_case import every_case
 from tests.simulator.agent.conftest import require_valid

@@ -22,10 +22,9 @@ from service.agent.run import AgentFiles, serve_agent
 from service.requests.agent import AgentRequest
 from service.simulation.run import RunFiles
 from simulator.agent import mqtt as publishing
-from simulator.agent.agent import Agent, Asset
+from simulator.agent.agent import Agent, Asset, StreamQuery
 from simulator.agent.documents import as_json
 from simulator.agent.mqtt import MqttPublisher
-from simulator.agent.requests import StreamQuery
 from stepnc_model.errors import StepNcError
 from tests.service.waiting import ended
 from tests.simulator.agent.conftest import BEGIN, mill

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from lxml import etree
 
-from simulator.agent.agent import Agent
+from simulator.agent.agent import Agent, StreamQuery
 from simulator.agent.buffer import ConditionValue, TimeSeriesValue, Value
 from simulator.agent.model import DeviceModel, model_of
-from simulator.agent.requests import StreamQuery
 from simulator.agent.streams_document import read_streams
 from tests.simulator.agent.conftest import require_valid
 

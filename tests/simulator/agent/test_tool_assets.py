@@ -5,7 +5,7 @@ from math import pi
 from lxml import etree
 
 from simulator.agent.documents import DocumentWriter
-from simulator.agent.names import SchemaVersion
+from simulator.agent.machine_model import SchemaVersion
 from simulator.agent.tool_assets import tool_asset
 from simulator.machine.cutting import CuttingEdge
 from simulator.machine.virtual import LoadedTool, Shape

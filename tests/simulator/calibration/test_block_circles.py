@@ -2,16 +2,17 @@
 
 import pytest
 
-from simulator.calibration.block_circles import (
+from simulator.calibration.block_feed import (
     LEVEL,
     BlockTest,
     circles_of,
     program_blocks,
     written_spacings,
 )
+from stepnc_model.nc.exact import read_blocks
 from stepnc_model.post.blocks import Linear, MachineType, ProgramEnd, Rapid, Rate
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.dialects import coordinate_increment, read_blocks, write
+from stepnc_model.post.dialects import coordinate_increment, write
 
 PAPER = tuple(
     25.4 * each for each in (0.0001, 0.00025, 0.0005, 0.00075, 0.001, 0.0025, 0.005, 0.01)

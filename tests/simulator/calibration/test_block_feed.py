@@ -3,18 +3,16 @@
 import numpy as np
 import pytest
 
-from simulator.calibration.block_circles import (
+from simulator.calibration.block_feed import (
     DWELL,
     BlockCircle,
     BlockTest,
-    circles_of,
-    program_blocks,
-)
-from simulator.calibration.block_feed import (
     CircleFeed,
     MissedCircle,
     PositionLog,
     circle_feeds,
+    circles_of,
+    program_blocks,
     zero_of_log,
 )
 from simulator.motion.segments import Floats

@@ -11,7 +11,7 @@ from simulator.calibration.features import PARAMETERS, Calibration, Estimate, Pa
 from simulator.library import load_machine
 from simulator.machine_file import machine_toml
 from simulator.physics.axis import axis_power
-from simulator.physics.spindle_motion import spindle_power
+from simulator.physics.spindle import spindle_power
 from simulator.spec import AxisDrive, Machine
 
 FOUND = {

@@ -16,7 +16,7 @@ from simulator.calibration.features import (
 )
 from simulator.calibration.measured_run import Component
 from simulator.physics.axis import axis_power
-from simulator.physics.spindle_motion import spindle_power
+from simulator.physics.spindle import spindle_power
 from simulator.spec import AxisDrive, Spindle, SpindlePoint
 
 EFFICIENCY = 0.8

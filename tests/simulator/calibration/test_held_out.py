@@ -13,7 +13,7 @@ from simulator.calibration.features import (
     design,
     powers,
 )
-from simulator.calibration.held_out import held_out
+from simulator.calibration.fit import held_out
 from simulator.calibration.measured_run import Component
 
 PRIORS = {name: ParameterPrior(value=0.0, scale=500.0) for name in Parameter} | {

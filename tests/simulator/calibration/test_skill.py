@@ -5,7 +5,7 @@ from math import inf, sqrt
 import numpy as np
 import pytest
 
-from simulator.calibration.skill import compared, estimated_lag, mean_power, skill
+from simulator.calibration.simulated import compared, estimated_lag, mean_power, skill
 
 MEASURED = np.array([100.0, 200.0, 300.0, 200.0])
 MODEL = np.array([100.0, 210.0, 280.0, 200.0])

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from simulator.client.document import read_document
+from simulator.client.columns import read_document
 from simulator.errors import AgentError
 from tests.every_case import every_case
 

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from simulator.errors import Deadlock
 from simulator.factory.floor import Floor
 from simulator.factory.machining import MachiningPlan
+from simulator.factory.measured import measures_of
 from simulator.factory.measures import Level, Quantity
 from simulator.factory.records import Listeners, PartMade, StateSpent
 from simulator.factory.states import TRANSITIONS, MachineState
@@ -177,9 +178,9 @@ def test_an_illegal_transition_is_refused(folder: Path) -> None:
     case = {"hours": 3, "warm_up": 0, "firsts": 1, "capacity": 1, "batch": 2, "batches": 2}
     run = ran(shop_of(SHOP.format(**case), folder))
     station = run.floor.stations[0]
-    station.state = MachineState.PART_SETUP
+    station.book.state = MachineState.PART_SETUP
     with pytest.raises(RuntimeError, match="no transition part set-up -> starved"):
-        station.enter(MachineState.STARVED, 0.0, run.floor.env.now)
+        station.book.enter(MachineState.STARVED, 0.0, run.floor.env.now)
 
 
 PLAIN = """
@@ -233,6 +234,71 @@ def test_a_part_in_one_event_is_that_of_three(tmp_path: Path) -> None:
     assert found[0][1] == found[1][1]
     assert found[0][2] == pytest.approx(found[1][2])
     assert MachineState.REPAIR in found[0][1]
+
+
+JOINED = """
+hours = {hours}
+warm_up_hours = {warm_up}
+[[machine]]
+name = "first"
+idle_power_w = 300
+count = 2
+[machine.handling]
+batch_setup_s = {{ kind = "uniform", low = 50, high = 70 }}
+batch_setup_w = 900
+part_setup_s = {setup}
+part_setup_w = 500
+part_ejection_s = {{ kind = "uniform", low = 5, high = 10 }}
+part_ejection_w = 250
+batch_ejection_s = 20
+[[machine.failure]]
+every_h = {{ kind = "exponential", mean = 3 }}
+repair_min = {{ kind = "exponential", mean = 20 }}
+scrap = 0.5
+[[machine]]
+name = "second"
+idle_power_w = 200
+[[buffer]]
+name = "between"
+capacity = 1
+[[product]]
+name = "red"
+batch = {batch}
+[[product.step]]
+machines = ["first"]
+time_s = {{ kind = "exponential", mean = 200 }}
+power_w = 2000
+into = "between"
+scrap = 0.1
+[[product.step]]
+machines = {last}
+time_s = {{ kind = "lognormal", mean = 90, variation = 0.5 }}
+power_w = 1500
+"""
+
+
+@pytest.mark.parametrize("batch", [1, 7, 300])
+@pytest.mark.parametrize("setup", ["0", '{ kind = "uniform", low = 20, high = 30 }'])
+@pytest.mark.parametrize("last", ['["second"]', '["second", "first"]'])
+@pytest.mark.parametrize("warm_up", [0, 2.3])
+def test_batches_in_one_event_are_those_of_their_parts(
+    tmp_path: Path, batch: int, setup: str, last: str, warm_up: float
+) -> None:
+    text = JOINED.format(hours=30, warm_up=warm_up, batch=batch, setup=setup, last=last)
+    shop = shop_of(text, tmp_path)
+    told: list[int] = []
+    joined = Listeners(count=(lambda count, _: told.append(count),))
+    alone = Listeners(part=(lambda _: None,))
+    floors = []
+    for listeners in (joined, alone):
+        floor = Floor(shop, MachiningPlan(), Streams(seed=3), listeners)
+        for hour in range(1, 31):
+            floor.run(hour * 3600.0)
+        floors.append(floor)
+    one, other = ([each.value for each in measures_of(floor)] for floor in floors)
+    assert one == pytest.approx(other, rel=1e-9, nan_ok=True)
+    assert floors[0].env.now == floors[1].env.now
+    assert (max(told) > 1) == (batch > 1)
 
 
 def test_all_orders_are_made(tmp_path: Path) -> None:

@@ -34,6 +34,27 @@ def test_arrays_of_another_layout_have_machine_code_of_their_own() -> None:
     assert into.tolist() == [height(LINE, value) for value in x[:, 0]]
 
 
+@pytest.mark.usefixtures("folder")
+def test_bound_arguments_keep_their_place_and_change_their_contents() -> None:
+    x, into = np.array([1.0, 2.0]), np.zeros(2)
+    run = KernelEntry(heights.function).bound(LINE, x, 0, into)
+    run()
+    assert into.tolist() == [height(LINE, 1.0), height(LINE, 2.0)]
+    x[:] = 3.0, 4.0
+    run()
+    assert into.tolist() == [height(LINE, 3.0), height(LINE, 4.0)]
+
+
+@pytest.mark.usefixtures("folder")
+def test_bound_arrays_live_as_long_as_the_kernel() -> None:
+    into = np.zeros(1000)
+    run = KernelEntry(heights.function).bound(LINE, np.full(1000, 5.0), 0, into)
+    others = [np.full(1000, value) for value in (1.0, 2.0)]
+    run()
+    assert (into == height(LINE, 5.0)).all()
+    assert len(others) == 2
+
+
 @pytest.mark.parametrize("value", [True, "x", None, np.int64(1)])
 def test_what_a_kernel_does_not_take_is_refused(value: Any) -> None:
     with pytest.raises(TypeError, match="a kernel takes numbers"):
@@ -43,6 +64,8 @@ def test_what_a_kernel_does_not_take_is_refused(value: Any) -> None:
 def test_arguments_have_no_names() -> None:
     with pytest.raises(TypeError, match="by position"):
         heights(line=LINE, x=np.zeros(1), first=0, into=np.zeros(1))
+    with pytest.raises(TypeError, match="by position"):
+        heights.bound(line=LINE, x=np.zeros(1), first=0, into=np.zeros(1))
 
 
 @pytest.mark.usefixtures("folder")

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from simulator.machine.virtual import LEAST_VOLUME, MOST, contacts
+from simulator.machine.contacts import LEAST_VOLUME, MOST, contacts
 from simulator.removal.collision import Collision
 from stepnc_model.errors import Severity
 

@@ -14,6 +14,7 @@ from simulator.machine.acts import (
     CoolantTo,
     EndOfProgram,
     MoveStretch,
+    PathControlTo,
     ProgramAct,
     SpindleReached,
     SpindleTo,
@@ -27,8 +28,9 @@ from simulator.spec import Machine
 from stepnc_model.post import blocks as nc
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program
+from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.generate import generate
-from stepnc_model.toolpath.path import ArcPlane, CycleKind, ToolPath, length
+from stepnc_model.toolpath.path import Arc, ArcPlane, CycleKind, ToolPath
 from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
@@ -156,10 +158,8 @@ def test_arc_in_every_plane_keeps_centre_turn_and_rise(mill: Machine) -> None:
         end[normal] += 3.0
         arc = nc.Circular(
             end=(end[0], end[1], end[2]),
-            centre=(1.0, 1.0, 1.0),
-            turn=2.5 * pi,
+            arc=Arc(centre=(1.0, 1.0, 1.0), turn=2.5 * pi, plane=plane),
             rate=FEED,
-            plane=plane,
         )
         begin = nc.Rapid(end=(start[0], start[1], start[2]))
         (found,) = stretches(steps(mill, begin, arc))
@@ -293,3 +293,29 @@ def test_feeds_of_a_program_are_as_long_as_its_tool_paths(
         if move.feed is not None
     )
     assert fed == pytest.approx(wanted, rel=1e-9)
+
+
+def test_stretches_know_what_waits_for_their_end(mill: Machine) -> None:
+    """A tool change, a dwell and the end do; more moves and the spindle do not."""
+    found = steps(
+        mill,
+        HOME,
+        nc.Rapid(end=(9.0, 0.0, 50.0)),
+        nc.ToolChange(number=1),
+        nc.SpindleOn(speed=20.0),
+        nc.Rapid(end=(0.0, 0.0, 50.0)),
+        nc.Linear(end=(0.0, 0.0, 0.0), rate=FEED),
+        nc.Comment(text="WS", workingstep="WS"),
+        nc.Rapid(end=(0.0, 0.0, 50.0)),
+        nc.Pause(seconds=1.0),
+        nc.Rapid(end=(9.0, 0.0, 50.0)),
+    )
+    ends = [each.is_drained for each in stretches(found)]
+    assert ends == [True, False, False, True, True]
+
+
+def test_path_control_changes_where_it_differs(mill: Machine) -> None:
+    fine, coarse = nc.PathControl(tolerance=0.01), nc.PathControl(tolerance=0.05)
+    found = steps(mill, fine, HOME, fine, coarse)
+    told = [step.act.control for step in found if isinstance(step.act, PathControlTo)]
+    assert told == [fine, coarse]

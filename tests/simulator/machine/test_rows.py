@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from simulator.machine.interpreter import PieceSpeed, Rows
 from stepnc_model.post.blocks import Circular, Rate
-from stepnc_model.toolpath.path import ArcPlane, Point
+from stepnc_model.toolpath.path import Arc, ArcPlane, Point
 
 
 def test_lines_keep_speed_line_and_spindle() -> None:
@@ -62,7 +62,9 @@ def test_pieces_of_an_arc_lie_on_it_and_add_up(
     begin: Point = (start[0], start[1], start[2])
     there: Point = (float(end[0]), float(end[1]), float(end[2]))
     rows = Rows()
-    block = Circular(end=there, centre=centre, turn=turn, rate=Rate(value=1.0), plane=plane)
+    block = Circular(
+        end=there, arc=Arc(centre=centre, turn=turn, plane=plane), rate=Rate(value=1.0)
+    )
     rows.arc(
         begin,
         block,
@@ -86,7 +88,7 @@ def test_pieces_of_an_arc_lie_on_it_and_add_up(
 
 def test_whole_circle_ends_where_it_began() -> None:
     rows, at = Rows(), (5.0, 0.0, 0.0)
-    block = Circular(end=at, centre=(0.0, 0.0, 0.0), turn=2 * pi, rate=Rate(value=1.0))
+    block = Circular(end=at, arc=Arc(centre=(0.0, 0.0, 0.0), turn=2 * pi), rate=Rate(value=1.0))
     rows.arc(
         at, block, pieces=4, paces=lambda _a, _b: PieceSpeed(speed=1.0, spindle=1.0), line=1
     )

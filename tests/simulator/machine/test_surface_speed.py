@@ -15,7 +15,7 @@ from simulator.machine.acts import (
 from simulator.machine.interpreter import PIECE
 from simulator.spec import Machine
 from stepnc_model.post import blocks as nc
-from stepnc_model.toolpath.path import ArcPlane
+from stepnc_model.toolpath.path import Arc, ArcPlane
 from tests.simulator.machine.test_interpreter import (
     PER_REVOLUTION,
     SURFACE,
@@ -129,10 +129,8 @@ def test_arc_at_constant_surface_speed_takes_the_integral(lathe: Machine, turn: 
         SURFACE,
         nc.Circular(
             end=end,
-            centre=(centre, 0.0, 0.0),
-            turn=turn,
+            arc=Arc(centre=(centre, 0.0, 0.0), turn=turn, plane=ArcPlane.ZX),
             rate=PER_REVOLUTION,
-            plane=ArcPlane.ZX,
         ),
     )
     (part,) = stretches(found)

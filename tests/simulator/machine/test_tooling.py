@@ -9,10 +9,10 @@ import pytest
 from simulator.library import find_window, load_material
 from simulator.machine.tooling import loaded_tool, table_tool
 from simulator.machine.virtual import LoadedTool
-from simulator.removal.cutter import Cutter, Insert
-from simulator.removal.profile import profile_of
+from simulator.removal.cutter import Cutter, Holder, Insert, profile_of
 from simulator.spec import CuttingMaterial, ToolKind
 from simulator.tool_table import TableTool
+from stepnc_model.given_tool import GivenTool
 from stepnc_model.post.neutral import tool_numbers
 from stepnc_model.program import Program
 from stepnc_model.tool import tool_of
@@ -114,6 +114,27 @@ def test_an_end_mill_has_the_helix_of_its_grade_and_gives_way() -> None:
     assert (edge.flutes.teeth, edge.flutes.diameter) == (3, 8.0)
     expected = 64.0 * 24.0**3 / (3.0 * 600_000.0 * pi * 6.4**4)
     assert edge.compliance == pytest.approx(expected)
+
+
+def test_a_stated_overhang_bends_the_tool_of_a_table() -> None:
+    """The bend grows with the cube of the length: by 125 from 3 D to 15 D."""
+    mill = table(ToolKind.ENDMILL)
+    assert isinstance(mill.shape, Cutter)
+    held = replace(mill.shape, holder=Holder(diameter=20.0, overhang=120.0))
+    usual = table_tool(mill, STEEL).edge.compliance
+    stated = table_tool(replace(mill, shape=held), STEEL).edge.compliance
+    assert stated == pytest.approx(125.0 * usual)
+
+
+def test_an_overhang_of_a_table_bends_the_tool_of_a_program() -> None:
+    """The assembly length of the file includes the holder, and bends nothing."""
+    plain = Program.load(PARTS / "bracket.stpnc")
+    ref = plain.workingsteps[2].tool_ref
+    id = tool_of(plain, ref).id
+    given = GivenTool(number=1, id=id, body="ENDMILL", diameter=20.0, teeth=2, overhang=120.0)
+    told = Program(plain.file, tools=[given])
+    usual, stated = (loaded_tool(each, ref, 1, STEEL).edge.compliance for each in (plain, told))
+    assert stated == pytest.approx(8.0 * usual)
 
 
 def test_a_table_may_say_the_helix() -> None:

@@ -26,7 +26,7 @@ from simulator.motion.control import ExactStop
 from simulator.motion.fir import FixedTimeFilter
 from simulator.motion.segments import ControlModel, Segments, arc, axis_limits, lines
 from simulator.physics.flutes import CuttingEdges
-from simulator.physics.spindle_motion import spindle_power
+from simulator.physics.spindle import spindle_power
 from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock

@@ -15,6 +15,7 @@ from simulator.machine.sensing import Sampler, sensed
 from simulator.machine.travel import Zero
 from simulator.machine.virtual import LoadedTool, MachineSetup, Shape, StockMap, VirtualMachine
 from simulator.motion.control import ExactStop
+from simulator.motion.linuxcnc_planner import LinuxCncPlanner
 from simulator.physics.tool_life import LIFE_CRITERION
 from simulator.removal.cutter import Cutter, Holder, Insert
 from simulator.removal.engage import MillingStock
@@ -361,3 +362,21 @@ def test_what_met_the_stock_is_told_at_the_end(mill: Machine) -> None:
     )
     assert any("a rapid move cuts" in text for text in found.messages)
     assert any("the holder is 4 mm deep" in text for text in found.messages)
+
+
+def test_linuxcnc_rounds_corners_as_far_as_the_program_lets_it(mill: Machine) -> None:
+    def nearest(tolerance: float) -> float:
+        blocks: list[nc.Block] = [
+            nc.PathControl(tolerance=tolerance),
+            nc.Rapid(end=(0.0, 0.0, 0.0)),
+            nc.Linear(end=(9.0, 0.0, 0.0), rate=nc.Rate(value=50.0)),
+            nc.Linear(end=(9.0, 9.0, 0.0), rate=nc.Rate(value=50.0)),
+        ]
+        setup = MachineSetup(machine=mill, control=LinuxCncPlanner())
+        run = VirtualMachine(setup).run(interpret(enumerate(blocks, 1), mill))
+        (course,) = [episode.course for episode in run if episode.course is not None]
+        places = course.motion.at(np.linspace(0.0, course.motion.duration, 9999)).position
+        return float(np.linalg.norm(places - np.array([9.0, 0.0, 0.0]), axis=1).min())
+
+    assert [nearest(each) for each in (0.01, 0.1)] == pytest.approx([0.01, 0.1], rel=0.01)
+    assert nearest(0.0) == pytest.approx(0.0, abs=1e-3)

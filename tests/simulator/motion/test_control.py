@@ -2,12 +2,19 @@ import pytest
 
 from simulator.motion.control import DEVIATION, ExactStop, JunctionDeviation, control_model
 from simulator.motion.fir import FilterWithinLimits
+from simulator.motion.linuxcnc_planner import LinuxCncPlanner
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import AxisLimits, lines
+from simulator.planner_settings import PlannerSettings
 
 
 def test_names_are_those_of_the_command_line() -> None:
-    assert [str(each) for each in ControlModelName] == ["exact-stop", "junction", "fir"]
+    assert [str(each) for each in ControlModelName] == [
+        "exact-stop",
+        "junction",
+        "fir",
+        "linuxcnc",
+    ]
 
 
 def test_each_name_gives_its_model(limits: AxisLimits) -> None:
@@ -16,6 +23,9 @@ def test_each_name_gives_its_model(limits: AxisLimits) -> None:
         deviation=DEVIATION
     )
     assert control_model(ControlModelName.FIR, limits) == FilterWithinLimits()
+    planner = PlannerSettings(max_feed_override=2.0)
+    found = control_model(ControlModelName.LINUXCNC, limits, planner=planner)
+    assert found == LinuxCncPlanner(settings=planner)
 
 
 def test_deviation_is_handed_on(limits: AxisLimits) -> None:

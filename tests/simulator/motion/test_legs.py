@@ -4,7 +4,7 @@ from math import inf
 
 import pytest
 
-from simulator.motion.legs import SpindleRamp
+from simulator.motion.segments import SpindleRamp
 
 UP = SpindleRamp(speed=50.0, acceleration=20.0, is_awaited=True)
 

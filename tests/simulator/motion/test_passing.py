@@ -105,7 +105,9 @@ def test_the_axes_are_at_a_place_when_it_is_passed(
     times = passing.times(places)
     assert (np.diff(times) >= 0.0).all()
     found = passing.motion.at(times)
-    assert passing.offsets[found.segment] + found.station == pytest.approx(places, abs=1e-6)
+    # On a rounded corner the way that is moved is not that along the path.
+    within = 1e-4 if control is ControlModelName.LINUXCNC else 1e-6
+    assert passing.offsets[found.segment] + found.station == pytest.approx(places, abs=within)
 
 
 @pytest.mark.parametrize("length", [0.5, 3.0, 200.0])

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from simulator.motion.control import ExactStop, control_model
 from simulator.motion.fir import FixedTimeFilter
-from simulator.motion.legs import Leg
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.passing import motion_of
 from simulator.motion.segments import (
@@ -17,6 +16,7 @@ from simulator.motion.segments import (
     ControlModel,
     Floats,
     Ints,
+    Leg,
     Segments,
     arc,
     chained,

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simulator.motion.segments import FIRST, SECOND, Segments, arc, chained, lines
+from simulator.motion.segments import Segments, arc, chained, distinct, lines
+from stepnc_model.toolpath.arc_columns import FIRST, SECOND
 from tests.every_case import every_case
 
 
@@ -107,3 +108,8 @@ def test_column_that_does_not_fit_is_refused(
     }
     with pytest.raises(ValueError, match=message):
         Segments(**(columns | {column: value}))
+
+
+@given(st.lists(st.integers(-5, 5)))
+def test_distinct_values_are_those_of_a_set_in_order(values: list[int]) -> None:
+    assert distinct(np.array(values, dtype=np.int64)).tolist() == sorted(set(values))

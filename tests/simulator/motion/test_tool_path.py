@@ -16,6 +16,7 @@ from simulator.motion.passing import motion_of
 from simulator.motion.segments import AxisLimits, axis_limits
 from simulator.motion.tool_path import (
     LookUp,
+    PathGeometry,
     SpeedRatios,
     ToolPathRun,
     follows,
@@ -85,7 +86,7 @@ def path_of(steps: Sequence[Step], start: Point = (0.0, 0.0, 0.0)) -> ToolPath:
 
 
 def run(*steps: Step, look_up: LookUp = by_time, start: Point = (0.0, 0.0, 0.0)) -> ToolPathRun:
-    return run_of(path_of(steps, start), look_up, SPINDLE)
+    return run_of(PathGeometry(path_of(steps, start)), look_up, SPINDLE)
 
 
 def time(ran: ToolPathRun) -> float:
@@ -228,3 +229,20 @@ def test_a_machine_without_axes_runs_at_commanded_speed() -> None:
     control, limits = usual_motion(load_machine("paper002"))
     ran = run(cut(30, 0, 0), cut(30, 40, 0), cut(0, 0, 0, feed=None))
     assert motion_of(ran, control, limits).duration == pytest.approx(7.0, rel=1e-6)
+
+
+def test_runs_at_other_feeds_share_the_lines_of_a_path() -> None:
+    def twice(feed: Feed) -> ModalState:
+        found = by_time(feed)
+        rate = found.rate
+        assert rate is not None
+        return replace(found, rate=replace(rate, value=2.0 * rate.value))
+
+    shape = PathGeometry(path_of([cut(30, 40, 0), cut(0, 0, 90, feed=None), cut(0, 10, 90)]))
+    once, faster = run_of(shape, by_time, SPINDLE), run_of(shape, twice, SPINDLE)
+    assert faster.segments.end.tolist() == once.segments.end.tolist()
+    fed = ~once.segments.is_rapid
+    assert faster.segments.speed[fed] == pytest.approx(2.0 * once.segments.speed[fed])
+    alone = run_of(PathGeometry(shape.path), twice, SPINDLE)
+    assert faster.segments.speed.tolist() == alone.segments.speed.tolist()
+    assert faster.segments.block.tolist() == alone.segments.block.tolist() == [0, 1, 2]

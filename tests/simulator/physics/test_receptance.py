@@ -6,7 +6,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from simulator.physics.receptance import ModalStructure, chatter_frequencies, receptance
+from simulator.physics.stability import ModalStructure, chatter_frequencies, receptance
 from simulator.spec import ModeDirection, VibratingPart, VibrationMode
 
 MODE = VibrationMode(

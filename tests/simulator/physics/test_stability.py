@@ -16,16 +16,17 @@ from simulator.physics.engagement import (
     full_immersion,
     unidirectional,
 )
-from simulator.physics.receptance import ModalStructure, receptance
 from simulator.physics.stability import (
     DAMPED_WAVELENGTH,
     MOST_DEPTH,
     DynamicCut,
+    ModalStructure,
     borders,
     damped_speed,
     directional_coefficients,
     least_stable_depth,
     lobes,
+    receptance,
     stable_depths,
 )
 from simulator.spec import ModeDirection, VibratingPart, VibrationMode

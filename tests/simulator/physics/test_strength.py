@@ -88,6 +88,10 @@ def test_an_end_mill_stands_out_three_diameters_or_its_edge(
     length: float | None, overhang: float
 ) -> None:
     shank = strength.end_mill(12.0, cutting_edge_length=length, youngs_modulus=6e5)
+    stated = strength.end_mill(
+        12.0, cutting_edge_length=None, youngs_modulus=6e5, overhang=overhang
+    )
+    assert shank == stated
     expected = overhang**3 / (3.0 * 6e5 * pi * 9.6**4 / 64.0)
     assert shank.compliance == pytest.approx(expected)
     assert shank.stress(100.0) == pytest.approx(32.0 * 100.0 * overhang / (pi * 9.6**3))

@@ -1,7 +1,7 @@
 """Volumes that moves remove, against solids and closed forms."""
 
 import itertools
-from math import isnan, nan, pi, sqrt
+from math import hypot, pi, sqrt
 
 import manifold3d
 import numpy as np
@@ -9,9 +9,8 @@ import pytest
 
 from simulator.motion.segments import Floats, arc, lines
 from simulator.removal import carve
-from simulator.removal.cutter import Cutter
+from simulator.removal.cutter import Cutter, CutterProfile, profile_of, rise
 from simulator.removal.engage import MillingStock
-from simulator.removal.profile import profile_of
 from simulator.removal.trial import rows_of
 from stepnc_model.program import Stock
 
@@ -102,37 +101,75 @@ def test_ball_on_a_slope_cuts_its_circle_across_the_slope() -> None:
     assert work.volume == pytest.approx(float(expected), rel=2e-3)
 
 
+def height_by_search(profile: CutterProfile, u: float, v: float, fall: float) -> float:
+    """Lowest height over a cell of a line of 6 mm, by ternary search: it is convex along it."""
+    low, high = 0.0, 6.0
+
+    def height(along: float) -> float:
+        away = hypot(u - along, v)
+        if away > profile.radius:
+            # Outside the tool, as steep as its flank would be.
+            return 1e3 * (away - profile.radius) + 20.0
+        return rise(profile, away) - fall * along
+
+    for _ in range(120):
+        one, other = (2.0 * low + high) / 3.0, (low + 2.0 * high) / 3.0
+        if height(one) < height(other):
+            high = other
+        else:
+            low = one
+    return min(height(0.0), height(0.5 * (low + high)), height(6.0))
+
+
 @pytest.mark.parametrize("corner", [0.02, 0.2, 1.0, 2.9])
-@pytest.mark.parametrize("slope", [-0.9, -0.05, 0.003, 0.3])
-def test_an_expected_contact_spares_steps_and_changes_no_height(
-    corner: float, slope: float, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("fall", [0.003, 0.05, 0.3, 0.9, 4.0])
+def test_a_corner_on_a_slope_is_lowest_where_a_search_finds_it(
+    corner: float, fall: float
 ) -> None:
     profile = profile_of(Cutter(diameter=6.0, corner_radius=corner), reach=20.0)
     random = np.random.default_rng(66)
-    cells = random.uniform((-3.0, -3.0), (9.0, 3.0), (1000, 2)).tolist()
-    found = [carve.lowest(profile, u, v, 6.0, slope) for u, v in cells]
-    expected = [carve.corner_contact(profile, v, slope) for _, v in cells]
-    assert corner > profile.flat or sum(map(isnan, expected)) < 900
-    monkeypatch.setattr(carve, "corner_contact", lambda *_: nan)
-    assert found == [carve.lowest(profile, u, v, 6.0, slope) for u, v in cells]
+    cells = random.uniform((-3.0, -3.0), (9.0, 3.0), (300, 2)).tolist()
+    within = [(u, v) for u, v in cells if hypot(u - min(max(u, 0.0), 6.0), v) < 3.0]
+    found = [carve.corner_lowest(profile, u, v, 6.0, fall) for u, v in within]
+    assert found == pytest.approx(
+        # Beside the flat a bisection ends within 0.1 µm along the line.
+        [height_by_search(profile, u, v, fall) for u, v in within],
+        abs=1e-4 * fall,
+    )
+    inside = [at for at, (_, v) in enumerate(within) if abs(v) < profile.flat - 0.1]
+    for at in inside:
+        searched = height_by_search(profile, *within[at], fall)
+        assert found[at] == pytest.approx(searched, abs=2e-8)
 
 
 @pytest.mark.parametrize("corner", [0.0, 0.2, 1.0])
-def test_cells_under_the_end_of_a_ramp_have_the_height_of_the_general_way(
+def test_cells_under_the_flat_have_the_height_of_the_general_way(
     corner: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     cutter = Cutter(diameter=6.0, corner_radius=corner)
-    ramp = lines([(8.0, 8.0, 0.5), (30.0, 20.0, -1.0), (12.0, 21.0, -2.5)], speed=1.0)
-    heights = []
-    for under in (carve.UNDER, -1.0):
+    ramp = lines(
+        [
+            (8.0, 8.0, 0.5),
+            (30.0, 20.0, -1.0),
+            (12.0, 21.0, -2.5),
+            (25.0, 5.0, -2.5),
+            (20.0, 25.0, -1.5),
+        ],
+        speed=1.0,
+    )
+    bend = arc((30.0, 15.0, -3.0), (20.0, 15.0, -3.0), -0.5 * pi, speed=1.0)
+    found = []
+    for under in (carve.UNDER, 0.0):
         monkeypatch.setattr(carve, "UNDER", under)
-        stock = MillingStock(BOX, cell=0.5)
+        grid = MillingStock(BOX, cell=0.5).map.grid
         volume = sum(
-            carve.carve_part(
-                stock.map.grid, profile_of(cutter, reach=20.0), row, (0.0, 1.0), 0, on
-            )[0]
-            for row, on in zip(rows_of(ramp), (False, True), strict=True)
+            carve.carve_part(grid, profile_of(cutter, reach=20.0), row, (0.0, 1.0), 0, on)[0]
+            for row, on in zip(
+                [*rows_of(ramp), *rows_of(bend)], (False, True, True, True, False), strict=True
+            )
         )
-        heights.append((volume, stock.map.grid.heights.tobytes()))
-    assert heights[0] == heights[1]
-    assert heights[0][0] > 100.0
+        found.append((volume, grid.heights, grid.owner))
+    assert found[0][0] == pytest.approx(found[1][0], rel=1e-12)
+    assert found[0][0] > 100.0
+    assert found[0][1] == pytest.approx(found[1][1], abs=1e-12)
+    assert (found[0][2] == found[1][2]).all()

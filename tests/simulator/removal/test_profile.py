@@ -4,8 +4,8 @@ from math import cos, pi, sin, tan
 
 import pytest
 
-from simulator.removal.cutter import Cutter
-from simulator.removal.profile import (
+from simulator.removal.cutter import (
+    Cutter,
     cylinder,
     is_plain,
     is_upright,

@@ -14,10 +14,12 @@ from simulator.removal.ring import (
     SAMPLES,
     Pose,
     RimBuffers,
+    Ring,
     cell_at,
     circle_of,
     levels,
     read_ring,
+    turns_of,
 )
 from simulator.removal.zmap import OUTSIDE, UNCUT, HeightGrid
 
@@ -34,13 +36,24 @@ def step() -> HeightGrid:
     return HeightGrid(heights, owner, -20.0, -20.0, 0.5, 0.5, BOTTOM, 0.0, 0.0)
 
 
+def samples() -> Ring:
+    return Ring(np.empty(SAMPLES), np.empty(SAMPLES, dtype=np.int64))
+
+
+def ring_at(circle: ToolCircle) -> Ring:
+    found = samples()
+    read_ring(step(), found, turns_of(SAMPLES), circle, GAP)
+    return found
+
+
 def room() -> RimBuffers:
     empty: Any = None
     return RimBuffers(
         arcs=empty,
         total=empty,
-        heights=np.empty(SAMPLES),
-        owner=np.empty(SAMPLES, dtype=np.int64),
+        turns=empty,
+        wide=samples(),
+        inner=empty,
         solid=np.empty(SAMPLES, dtype=np.int64),
         bounds=np.empty(MOST_LEVELS + CORNER_SLICES + 3),
         areas=np.zeros(MOST_LEVELS + CORNER_SLICES + 3),
@@ -53,22 +66,18 @@ def test_the_ring_begins_on_the_side_that_the_spindle_turns_from(
     side: float, first: float
 ) -> None:
     """Ahead is +Y, so the left is −X: the low half."""
-    work = room()
-    circle = ToolCircle(0.0, 0.0, RADIUS, 0.0, 1.0, side)
-    read_ring(step(), work, circle, GAP)
+    ring = ring_at(ToolCircle(0.0, 0.0, RADIUS, 0.0, 1.0, side))
     half = SAMPLES // 2
-    assert (work.heights[:half] == first).all()
-    assert (work.heights[half:] == LOW + HIGH - first).all()
-    assert ((work.owner == 7) == (work.heights == LOW)).all()
+    assert (ring.heights[:half] == first).all()
+    assert (ring.heights[half:] == LOW + HIGH - first).all()
+    assert ((ring.owner == 7) == (ring.heights == LOW)).all()
 
 
 @pytest.mark.parametrize("distance", [-3.0, -1.0, 0.5, 2.5])
 def test_the_step_shares_the_ring_by_its_angle(distance: float) -> None:
     """A chord at a distance from the axis, across the feed: acos(d/r) of either side."""
-    work = room()
-    circle = ToolCircle(-distance, 0.0, RADIUS, 1.0, 0.0, 1.0)
-    read_ring(step(), work, circle, GAP)
-    angle = pi * float((work.heights == HIGH).mean())
+    ring = ring_at(ToolCircle(-distance, 0.0, RADIUS, 1.0, 0.0, 1.0))
+    angle = pi * float((ring.heights == HIGH).mean())
     beyond = max(0.0, distance) / (RADIUS + GAP)
     # Only the front half counts: a step behind the axis leaves all of it high.
     exact = pi if distance <= 0.0 else 2.0 * float(np.arccos(beyond))
@@ -76,10 +85,18 @@ def test_the_step_shares_the_ring_by_its_angle(distance: float) -> None:
 
 
 def test_beside_the_stock_the_ring_is_at_the_bottom_and_nobodys() -> None:
-    work = room()
-    read_ring(step(), work, ToolCircle(100.0, 0.0, RADIUS, 1.0, 0.0, 1.0), GAP)
-    assert (work.heights == BOTTOM).all()
-    assert (work.owner == OUTSIDE).all()
+    ring = ring_at(ToolCircle(100.0, 0.0, RADIUS, 1.0, 0.0, 1.0))
+    assert (ring.heights == BOTTOM).all()
+    assert (ring.owner == OUTSIDE).all()
+
+
+@pytest.mark.parametrize("ahead", [(0.6, 0.8), (-1.0, 0.0)])
+def test_each_sample_is_the_cell_at_its_angle(ahead: tuple[float, float]) -> None:
+    circle = ToolCircle(-0.37, 1.13, RADIUS, *ahead, -1.0)
+    ring = ring_at(circle)
+    for index, angle in enumerate((np.arange(SAMPLES) + 0.5) * pi / SAMPLES):
+        expected = cell_at(step(), circle, RADIUS + GAP, float(angle))
+        assert (ring.heights[index], ring.owner[index]) == expected
 
 
 def test_the_height_at_an_angle_is_that_of_its_cell() -> None:
@@ -92,14 +109,14 @@ def test_the_height_at_an_angle_is_that_of_its_cell() -> None:
 
 def test_slices_lie_between_the_heights_in_order() -> None:
     work = room()
-    work.heights[:] = np.resize([-2.0, -6.0, -4.0, -8.0], SAMPLES)
+    work.wide.heights[:] = np.resize([-2.0, -6.0, -4.0, -8.0], SAMPLES)
     assert levels(work, -7.0) == 3
     assert work.bounds[:4] == pytest.approx([-7.0, -6.0, -4.0, -2.0])
 
 
 def test_many_heights_are_blurred_into_equal_slices() -> None:
     work = room()
-    work.heights[:] = np.linspace(-4.0, 0.0, SAMPLES)
+    work.wide.heights[:] = np.linspace(-4.0, 0.0, SAMPLES)
     count = levels(work, -4.0)
     assert count == BLURRED_SLICES
     assert work.bounds[: count + 1] == pytest.approx(np.linspace(-4.0, 0.0, count + 1))

@@ -7,9 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simulator.motion.segments import lines
-from simulator.removal.cutter import Cutter
+from simulator.removal.cutter import Cutter, CutterProfile, profile_of
 from simulator.removal.engage import MillingStock
-from simulator.removal.profile import CutterProfile, profile_of
 from simulator.removal.rim import FORGETTING, past
 from simulator.removal.sink import LIP_ERROR, hole, lip
 from simulator.removal.zmap import zmap_of

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from simulator.motion.segments import arc, lines
-from simulator.removal.cutter import Cutter
-from simulator.removal.profile import profile_of
+from simulator.removal.cutter import Cutter, profile_of
 from simulator.removal.ring import ROUND_SAMPLES, SAMPLES, RimTool
 from simulator.removal.trial import desk_for, rows_of
 
@@ -26,5 +25,5 @@ def test_a_rounded_tool_looks_at_more_rings_of_fewer_samples(
 ) -> None:
     cutter = Cutter(diameter=8.0, corner_radius=corner)
     desk = desk_for(RimTool(profile_of(cutter, reach=20.0), 1.0, 1.0))
-    assert len(desk.rim.heights) == samples
+    assert len(desk.rim.wide.heights) == samples
     assert desk.raised.dtype == np.float64

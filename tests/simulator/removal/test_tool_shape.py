@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from simulator.removal.cutter import Cutter, Insert
-from simulator.removal.tool_shape import shape_of
+from simulator.removal.cutter import Cutter, Insert, shape_of
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 

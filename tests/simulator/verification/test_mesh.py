@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from simulator.verification.mesh import height_deviation, outline_at
-from simulator.verification.nominal import wall_deviation
+from simulator.verification.mesh import height_deviation, outline_at, wall_deviation
 from tests.simulator.verification.box import box
 
 

@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from simulator.verification.mesh_stock import (
+from simulator.verification.revolved import (
     bounds_of,
     milling_stock_of,
     turning_stock_of,

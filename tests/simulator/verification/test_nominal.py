@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from simulator.verification.nominal import (
+from simulator.verification.mesh import (
     NominalOutline,
     floor_deviation,
     profile_side,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from simulator.removal.lathe import TurningStock
-from simulator.verification.profile import (
+from simulator.verification.logged_bar import (
     PIECE,
     face_places,
     nearest_on,

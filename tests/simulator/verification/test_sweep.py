@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from simulator.motion.segments import Floats
-from simulator.removal.cutter import Cutter
-from simulator.removal.profile import profile_of
+from simulator.removal.cutter import Cutter, profile_of
 from simulator.removal.zmap import zmap_of
 from simulator.verification.path import rows_between
 from simulator.verification.sweep import FAR, approach, foot, renewed, sweep, targets_at

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from simulator.verification.zero import distance_from, fitted_zero
+from simulator.verification.path import distance_from, fitted_zero
 from tests.simulator.verification.block import SLOT, sampled, slot_path
 
 

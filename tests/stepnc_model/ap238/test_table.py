@@ -1,6 +1,6 @@
 """The table of reference paths: it fits the entities, the dictionary fits the long form."""
 
-from stepnc_model.ap238.dictionary import attributes, dictionary, is_a, lineage
+from stepnc_model.ap238.instances import attributes, dictionary, is_a, lineage
 from stepnc_model.ap238.table import Kind, PathMove, rules
 from stepnc_model.entities.conversion import slots_of
 from tests.every_case import every_case

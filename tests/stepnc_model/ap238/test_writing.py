@@ -7,8 +7,8 @@ import pytest
 
 from stepnc_model import writeback
 from stepnc_model.ap238.view import AimView
+from stepnc_model.cut_settings import edit_depth
 from stepnc_model.draft import Draft
-from stepnc_model.edit_conditions import edit_depth
 from stepnc_model.errors import SchemaError
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.outcome_record import write_outcomes

@@ -65,11 +65,11 @@ def require_same(text: str, linuxcnc: Oracle) -> None:
         move = moves.move(row)
         for value, wanted in zip(move.end, true.end, strict=True):
             assert isnan(value) or value == pytest.approx(wanted, abs=2e-4 * unit)
-        assert (move.centre is None) is (true.centre is None)
-        if move.centre is not None and true.centre is not None:
-            centre = [move.centre[axis] for axis in true.axes[:2]]
+        assert (move.arc is None) is (true.centre is None)
+        if move.arc is not None and true.centre is not None:
+            centre = [move.arc.centre[axis] for axis in true.axes[:2]]
             assert centre == pytest.approx(true.centre, abs=3e-4 * unit)
-            assert (move.turn > 0.0) is (true.rotation > 0)
+            assert (move.arc.turn > 0.0) is (true.rotation > 0)
     assert not (moves.flags & int(MoveFlag.COMPENSATED)).any()
 
 

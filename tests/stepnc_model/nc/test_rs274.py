@@ -81,8 +81,8 @@ def test_a_sample_is_executed_as_by_linuxcnc(
             assert isnan(value) or value == pytest.approx(wanted, abs=digit(program))
         if not isnan(move.feed):
             assert move.feed * 60.0 == pytest.approx(true.feed, rel=1e-3)
-        if move.centre is not None and true.centre is not None:
-            centre = [move.centre[axis] for axis in true.axes[:2]]
+        if move.arc is not None and true.centre is not None:
+            centre = [move.arc.centre[axis] for axis in true.axes[:2]]
             assert centre == pytest.approx(true.centre, abs=2.0 * digit(program))
 
 

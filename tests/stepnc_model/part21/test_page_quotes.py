@@ -1,7 +1,6 @@
 r"""Apostrophes that ``\S\`` takes: whole valid files are read, and stay as they are."""
 
-from stepnc_model.part21.page_quotes import masked
-from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.reader import Part21File, masked
 from stepnc_model.part21.writer import Edits
 from tests.every_case import every_case
 

@@ -1,6 +1,6 @@
 """The tolerant parser: places of values and of errors."""
 
-from stepnc_model.part21.record import parse_record
+from stepnc_model.part21.index import parse_record
 from stepnc_model.part21.values import Enumeration, Ref, Typed
 from tests.every_case import every_case
 

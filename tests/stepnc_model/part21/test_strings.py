@@ -2,7 +2,7 @@
 
 import pytest
 
-from stepnc_model.part21.strings import decode, encode
+from stepnc_model.part21.tokens import decode, encode
 from tests.every_case import every_case
 
 

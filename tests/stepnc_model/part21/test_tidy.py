@@ -2,7 +2,7 @@
 
 import pytest
 
-from stepnc_model.part21.tidy import is_tidy, tidy_values
+from stepnc_model.part21.tokens import is_tidy, tidy_values
 from stepnc_model.part21.values import Real, Ref, Typed
 from tests.every_case import every_case
 

@@ -47,7 +47,7 @@ from stepnc_model.post.blocks import (
 )
 from stepnc_model.post.canonical import Canonical, read
 from stepnc_model.post.grid import LEAST_RADIUS
-from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
+from stepnc_model.toolpath.path import Arc, ArcPlane, CycleKind, Point
 
 PACKAGES = ("linuxcnc-uspace", "libboost-python1.74.0")
 CACHE = Path(__file__).parents[3] / "build" / "cache"
@@ -166,28 +166,33 @@ def milled() -> list[Block]:
         Rapid(end=(0.0, 0.0, 50.0)),
         Rapid(end=(0.0, 0.0, 5.0)),
         Linear(end=(0.0, 0.0, -1.0), rate=PER_MINUTE),
-        Circular(end=(10.0, 10.0, -1.0), centre=(10.0, 0.0, 0.0), turn=-0.5 * pi, rate=FASTER),
-        Circular(end=(10.0, 10.0, -4.0), centre=(10.0, 0.0, 0.0), turn=-6 * pi, rate=FASTER),
+        Circular(
+            end=(10.0, 10.0, -1.0),
+            arc=Arc(centre=(10.0, 0.0, 0.0), turn=-0.5 * pi),
+            rate=FASTER,
+        ),
+        Circular(
+            end=(10.0, 10.0, -4.0), arc=Arc(centre=(10.0, 0.0, 0.0), turn=-6 * pi), rate=FASTER
+        ),
         Circular(
             end=(20.0, 0.0, -8.0),
-            centre=(10.0, 0.0, 0.0),
-            turn=-4.5 * pi,
+            arc=Arc(centre=(10.0, 0.0, 0.0), turn=-4.5 * pi),
             rate=PER_REVOLUTION,
         ),
-        Circular(end=(20.0, 0.0, -8.0), centre=(10.0, 0.0, 0.0), turn=2 * pi, rate=PER_MINUTE),
+        Circular(
+            end=(20.0, 0.0, -8.0),
+            arc=Arc(centre=(10.0, 0.0, 0.0), turn=2 * pi),
+            rate=PER_MINUTE,
+        ),
         Circular(
             end=(30.0, 0.0, 2.0),
-            centre=(20.0, 0.0, 2.0),
-            turn=-1.5 * pi,
+            arc=Arc(centre=(20.0, 0.0, 2.0), turn=-1.5 * pi, plane=ArcPlane.ZX),
             rate=PER_MINUTE,
-            plane=ArcPlane.ZX,
         ),
         Circular(
             end=(30.0, 10.0, 12.0),
-            centre=(0.0, 10.0, 2.0),
-            turn=1.5 * pi,
+            arc=Arc(centre=(0.0, 10.0, 2.0), turn=1.5 * pi, plane=ArcPlane.YZ),
             rate=PER_MINUTE,
-            plane=ArcPlane.YZ,
         ),
         Pause(seconds=0.5),
         Linear(end=(30.0, 20.0, 12.0), rate=PER_MINUTE),
@@ -220,10 +225,8 @@ def drilled() -> list[Block]:
         Rapid(end=(0.0, 0.0, 30.0)),
         Circular(
             end=(10.0, 0.0, 40.0),
-            centre=(10.0, 0.0, 30.0),
-            turn=0.5 * pi,
+            arc=Arc(centre=(10.0, 0.0, 30.0), turn=0.5 * pi, plane=ArcPlane.ZX),
             rate=PER_MINUTE,
-            plane=ArcPlane.ZX,
         ),
         Rapid(end=(10.0, 0.0, 10.0)),
     ]
@@ -265,10 +268,8 @@ def tapped() -> list[Block]:
         Rapid(end=(0.0, 0.0, 5.0)),
         Circular(
             end=(0.0, 0.0, 5.0),
-            centre=(0.0, 0.0, 10.0),
-            turn=2 * pi,
+            arc=Arc(centre=(0.0, 0.0, 10.0), turn=2 * pi, plane=ArcPlane.ZX),
             rate=PER_MINUTE,
-            plane=ArcPlane.ZX,
         ),
     ]
     for tap in taps:
@@ -290,10 +291,8 @@ def turned() -> list[Block]:
         Linear(end=(30.0, 0.0, 0.0), rate=PER_REVOLUTION),
         Circular(
             end=(40.0, 0.0, -10.0),
-            centre=(30.0, 0.0, -10.0),
-            turn=-0.5 * pi,
+            arc=Arc(centre=(30.0, 0.0, -10.0), turn=-0.5 * pi, plane=ArcPlane.ZX),
             rate=PER_REVOLUTION,
-            plane=ArcPlane.ZX,
         ),
         Linear(end=(40.5, 0.0, -20.0), rate=PER_MINUTE),
         SurfaceSpeed(speed=3000.0, limit=60.0),
@@ -364,9 +363,7 @@ def motions(draw: st.DrawFn) -> list[Block]:
             blocks.append(
                 Circular(
                     end=at,
-                    centre=(centre[0], centre[1], centre[2]),
-                    turn=turn,
-                    plane=plane,
+                    arc=Arc(centre=(centre[0], centre[1], centre[2]), turn=turn, plane=plane),
                     rate=draw(rates),
                 )
             )

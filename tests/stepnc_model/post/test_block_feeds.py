@@ -18,11 +18,13 @@ from stepnc_model.post.blocks import (
     Rate,
     expanded,
 )
-from stepnc_model.toolpath.path import CycleKind
+from stepnc_model.toolpath.path import Arc, CycleKind
 
 START = Rapid(end=(0.0, 0.0, 5.0))
 LINE = Linear(end=(30.0, 40.0, 5.0), rate=Rate(value=2.0))
-ARC = Circular(end=(0.0, 20.0, 15.0), centre=(0.0, 10.0, 0.0), turn=pi, rate=Rate(value=2.0))
+ARC = Circular(
+    end=(0.0, 20.0, 15.0), arc=Arc(centre=(0.0, 10.0, 0.0), turn=pi), rate=Rate(value=2.0)
+)
 SHARES = st.lists(st.floats(0.01, 0.99), max_size=4, unique=True).map(sorted)
 
 
@@ -49,7 +51,7 @@ def test_parts_of_a_line_lie_on_it(shares: list[float]) -> None:
 def test_parts_of_a_helix_lie_on_it(shares: list[float]) -> None:
     found = fed(ARC, shares)
     blocks = [each.block for each in found if isinstance(each.block, Circular)]
-    assert sum(block.turn for block in blocks) == pytest.approx(pi)
+    assert sum(block.arc.turn for block in blocks) == pytest.approx(pi)
     assert blocks[-1].end == ARC.end
     for block, share in zip(blocks, shares, strict=False):
         x, y, z = block.end

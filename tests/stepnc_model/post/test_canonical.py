@@ -27,7 +27,7 @@ from stepnc_model.post.blocks import (
     ToolChange,
 )
 from stepnc_model.post.canonical import Canonical, commands, synchronised, write
-from stepnc_model.toolpath.path import ArcPlane
+from stepnc_model.toolpath.path import Arc, ArcPlane
 
 RATE = Rate(value=40.0)
 
@@ -48,7 +48,9 @@ def test_an_arc_has_its_end_its_centre_its_turns_and_its_height() -> None:
     """As in line 90 of NIST's file: from (77.2, 55) to (70, 55) about (73.6, 55)."""
     found = texts(
         Rapid(end=(77.2, 55.0, -5.9)),
-        Circular(end=(70.0, 55.0, -5.9), centre=(73.6, 55.0, 0.0), turn=-pi, rate=RATE),
+        Circular(
+            end=(70.0, 55.0, -5.9), arc=Arc(centre=(73.6, 55.0, 0.0), turn=-pi), rate=RATE
+        ),
     )
     assert found[1:] == [
         "SET_FEED_RATE(2400.0000)",
@@ -62,9 +64,7 @@ def test_an_arc_in_zx_says_z_first() -> None:
         Rapid(end=(20.0, 0.0, -10.0)),
         Circular(
             end=(30.0, 0.0, -20.0),
-            centre=(20.0, 0.0, -20.0),
-            turn=0.5 * pi,
-            plane=ArcPlane.ZX,
+            arc=Arc(centre=(20.0, 0.0, -20.0), turn=0.5 * pi, plane=ArcPlane.ZX),
             rate=RATE,
         ),
     )
@@ -76,7 +76,7 @@ def test_an_arc_in_zx_says_z_first() -> None:
 
 def test_several_turns_are_counted() -> None:
     end = (0.0, 0.0, -3.0)
-    helix = Circular(end=end, centre=(5.0, 0.0, 0.0), turn=6.0 * pi, rate=RATE)
+    helix = Circular(end=end, arc=Arc(centre=(5.0, 0.0, 0.0), turn=6.0 * pi), rate=RATE)
     assert texts(helix)[-1] == "ARC_FEED(0.0000, 0.0000, 5.0000, 0.0000, 3, -3.0000)"
 
 

@@ -13,11 +13,10 @@ from stepnc_model.post.blocks import (
     Rapid,
     RigidTap,
     SpindleDirection,
-    SpindleOn,
     ThreadingMove,
     ToolChange,
 )
-from stepnc_model.post.fanuc import Fanuc, FanucReader
+from stepnc_model.post.fanuc import Fanuc
 
 
 def lines(machine: MachineType, *blocks: Block) -> list[str]:
@@ -96,14 +95,3 @@ def test_a_lathe_taps_right_hand_threads_only() -> None:
 def test_a_thread_from_nowhere_is_refused() -> None:
     with pytest.raises(PostError, match="unknown position"):
         lines(MachineType.MILL, ThreadingMove(end=(0.0, 0.0, -5.0), lead=1.0))
-
-
-def test_a_tap_is_read_by_lead_only() -> None:
-    reader = FanucReader(MachineType.MILL)
-    with pytest.raises(PostError, match="per revolution"):
-        list(reader.blocks(["M29 S300", "G94 G84 Z-5. R2. F375."]))
-
-
-def test_a_turret_is_read() -> None:
-    found = list(FanucReader(MachineType.LATHE).blocks(["T0303", "G97 S600 M3"]))
-    assert found == [ToolChange(number=3), SpindleOn(speed=10.0)]

@@ -18,7 +18,6 @@ from stepnc_model.post.blocks import (
     ThreadingMove,
 )
 from stepnc_model.post.grid import (
-    along,
     cut,
     end_of,
     flat,
@@ -27,10 +26,10 @@ from stepnc_model.post.grid import (
     pieces,
     rounded,
     single_turns,
-    sweep,
     turns,
 )
-from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
+from stepnc_model.toolpath.arc import point_at
+from stepnc_model.toolpath.path import Arc, CycleKind, Point
 
 RATE = Rate(value=1.0)
 ORIGIN = (0.0, 0.0, 0.0)
@@ -43,7 +42,7 @@ def arc(start: Point, centre: Point, turn: float, rise: float = 0.0) -> Circular
     angle = atan2(v, u) + turn
     size = hypot(u, v)
     end = (centre[0] + size * cos(angle), centre[1] + size * sin(angle), start[2] + rise)
-    return Circular(end=end, centre=centre, turn=turn, rate=RATE)
+    return Circular(end=end, arc=Arc(centre=centre, turn=turn), rate=RATE)
 
 
 coordinates = st.floats(-300.0, 300.0)
@@ -63,9 +62,8 @@ def test_both_radii_of_every_arc_agree_within_the_rounding(block: Circular) -> N
     for piece in on_grid([block], PLACES):
         assert isinstance(piece, (Circular, Linear))
         if isinstance(piece, Circular):
-            radii = [
-                hypot(p[0] - piece.centre[0], p[1] - piece.centre[1]) for p in (at, piece.end)
-            ]
+            centre = piece.arc.centre
+            radii = [hypot(p[0] - centre[0], p[1] - centre[1]) for p in (at, piece.end)]
             assert abs(radii[0] - radii[1]) <= 1.5 * UNIT
         at = piece.end
 
@@ -77,23 +75,23 @@ def test_the_path_ends_where_it_should_and_goes_round_as_often(block: Circular) 
         assert dist(ORIGIN, block.end) < 2.0 * UNIT
         return
     assert end_of(found[-1], ORIGIN) == rounded(block.end, PLACES)
-    size = hypot(block.centre[0], block.centre[1])
+    size = hypot(block.arc.centre[0], block.arc.centre[1])
     if size < 0.01:
         return
-    total = sum(piece.turn for piece in found if isinstance(piece, Circular))
+    total = sum(piece.arc.turn for piece in found if isinstance(piece, Circular))
     # What is left out is a line of a few units, which is less of a turn on a greater radius.
-    assert total == pytest.approx(block.turn, abs=max(1e-5, 10.0 * UNIT / size))
+    assert total == pytest.approx(block.arc.turn, abs=max(1e-5, 10.0 * UNIT / size))
 
 
 @given(arcs)
 def test_no_point_of_an_arc_strays(block: Circular) -> None:
     """The middle of each piece lies on the programmed circle, two units of rounding beside."""
-    size = hypot(block.centre[0], block.centre[1])
+    size = hypot(block.arc.centre[0], block.arc.centre[1])
     at: Point = ORIGIN
     for piece in on_grid([block], PLACES):
         if isinstance(piece, Circular):
-            x, y, _ = along(at, piece, 0.5 * piece.turn, 0.5)
-            beside = hypot(x - block.centre[0], y - block.centre[1]) - size
+            x, y, _ = point_at(at, piece, 0.5)
+            beside = hypot(x - block.arc.centre[0], y - block.arc.centre[1]) - size
             assert abs(beside) <= 2.5 * UNIT
         at = end_of(piece, at)
 
@@ -107,7 +105,7 @@ def test_a_short_arc_of_a_large_radius_never_becomes_a_full_circle() -> None:
     """Its ends round to a chord that points backwards."""
     short = arc((0.0, 0.0, 0.0), (0.0, 100.0, 0.0), 1e-5)
     for piece in on_grid([short], PLACES):
-        assert not isinstance(piece, Circular) or abs(piece.turn) < 0.1
+        assert not isinstance(piece, Circular) or abs(piece.arc.turn) < 0.1
 
 
 @pytest.mark.parametrize("turn", [2 * pi, -6 * pi])
@@ -115,17 +113,18 @@ def test_full_turns_come_back_exactly(turn: float) -> None:
     (piece,) = on_grid([arc(ORIGIN, (12.3456, -7.8912, 0.0), turn, rise=3.0)], PLACES)
     assert isinstance(piece, Circular)
     assert piece.end == (0.0, 0.0, 3.0)
-    assert piece.turn == turn
+    assert piece.arc.turn == turn
 
 
 def test_a_nearly_full_circle_is_cut_in_two() -> None:
-    assert [abs(p.turn) for p in pieces(ORIGIN, arc(ORIGIN, (10.0, 0.0, 0.0), 6.0))] == [3, 3]
+    found = pieces(ORIGIN, arc(ORIGIN, (10.0, 0.0, 0.0), 6.0))
+    assert [abs(piece.arc.turn) for piece in found] == [3, 3]
 
 
 def test_turns_are_full_ones_and_the_rest() -> None:
     """Two and a half turns that rise by 5 mm: 2 mm in each full one."""
     found = list(turns(ORIGIN, arc(ORIGIN, (10.0, 0.0, 0.0), -5.0 * pi, rise=5.0)))
-    assert [p.turn for p in found] == pytest.approx([-2 * pi, -2 * pi, -pi])
+    assert [p.arc.turn for p in found] == pytest.approx([-2 * pi, -2 * pi, -pi])
     assert [p.end[2] for p in found] == pytest.approx([2.0, 4.0, 5.0])
     assert found[0].end[:2] == (0.0, 0.0)
     assert found[2].end[0] == pytest.approx(20.0)
@@ -144,22 +143,6 @@ def test_single_turns_know_where_they_start() -> None:
     assert isinstance(second, Circular)
     assert first.end == (5.0, 0.0, 2.0)
     assert second.end == pytest.approx((5.0, 0.0, 3.0))
-
-
-@pytest.mark.parametrize(
-    ("end", "plane", "sense", "angle"),
-    [
-        ((0.0, 1.0, 0.0), ArcPlane.XY, 1.0, 0.5 * pi),
-        ((0.0, 1.0, 0.0), ArcPlane.XY, -1.0, 1.5 * pi),
-        ((1.0, 0.0, 0.0), ArcPlane.XY, 1.0, 2.0 * pi),
-        ((0.0, 0.0, 1.0), ArcPlane.ZX, -1.0, 0.5 * pi),
-    ],
-)
-def test_a_sweep_is_counted_from_the_first_axis_to_the_second(
-    end: Point, plane: ArcPlane, sense: float, angle: float
-) -> None:
-    found = sweep((1.0, 0.0, 0.0), end, ORIGIN, plane, sense=sense)
-    assert found == pytest.approx(angle)
 
 
 def test_lines_that_round_to_nothing_vanish() -> None:

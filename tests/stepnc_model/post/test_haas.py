@@ -16,7 +16,7 @@ from stepnc_model.post.blocks import (
     SpindleDirection,
     ThreadingMove,
 )
-from stepnc_model.post.fanuc import HAAS, Fanuc, FanucReader
+from stepnc_model.post.fanuc import HAAS, Fanuc
 
 
 def lines(*blocks: Block, machine: MachineType = MachineType.MILL) -> list[str]:
@@ -30,12 +30,6 @@ def test_programs_have_five_digits() -> None:
 
 def test_a_dwell_with_a_point_is_in_seconds() -> None:
     assert lines(Pause(seconds=2.0))[-1] == "N20 G4 P2."
-
-
-@pytest.mark.parametrize(("word", "seconds"), [("P2.", 2.0), ("P500", 0.5), ("P0.5", 0.5)])
-def test_a_dwell_without_a_point_is_read_in_milliseconds(word: str, seconds: float) -> None:
-    found = list(FanucReader(MachineType.MILL, HAAS).blocks(["%", "O00001", f"G4 {word}"]))
-    assert Pause(seconds=seconds) in found
 
 
 def test_coolant_through_the_spindle_has_codes_of_its_own() -> None:

@@ -31,7 +31,7 @@ from stepnc_model.post.blocks import (
     expanded,
 )
 from stepnc_model.post.heidenhain import Heidenhain
-from stepnc_model.toolpath.path import ArcPlane, CycleKind
+from stepnc_model.toolpath.path import Arc, ArcPlane, CycleKind
 
 RATE = Rate(value=5.0)
 
@@ -94,7 +94,7 @@ def test_feed_per_revolution_is_fu() -> None:
 
 
 def test_an_arc_has_its_centre_before_it() -> None:
-    arc = Circular(end=(20.0, 0.0, 0.0), centre=(10.0, 0.0, 0.0), turn=-pi, rate=RATE)
+    arc = Circular(end=(20.0, 0.0, 0.0), arc=Arc(centre=(10.0, 0.0, 0.0), turn=-pi), rate=RATE)
     assert lines(Rapid(end=(0.0, 0.0, 0.0)), arc)[1:] == [
         "CC X+10 Y+0",
         "C X+20 Y+0 DR- F300",
@@ -102,7 +102,9 @@ def test_an_arc_has_its_centre_before_it() -> None:
 
 
 def test_a_helix_is_polar_with_all_its_turns() -> None:
-    helix = Circular(end=(20.0, 0.0, -6.0), centre=(10.0, 0.0, 0.0), turn=7 * pi, rate=RATE)
+    helix = Circular(
+        end=(20.0, 0.0, -6.0), arc=Arc(centre=(10.0, 0.0, 0.0), turn=7 * pi), rate=RATE
+    )
     assert lines(Rapid(end=(0.0, 0.0, 0.0)), helix)[1:] == [
         "CC X+10 Y+0",
         "CP IPA+1260 IZ-6 DR+ F300",
@@ -111,8 +113,12 @@ def test_a_helix_is_polar_with_all_its_turns() -> None:
 
 def test_an_arc_after_a_helix_starts_from_an_exact_point() -> None:
     """The angle of a helix has four decimals; a full circle must meet its start exactly."""
-    helix = Circular(end=(20.0, 0.0, -6.0), centre=(10.0, 0.0, 0.0), turn=pi, rate=RATE)
-    circle = Circular(end=(20.0, 0.0, -6.0), centre=(10.0, 0.0, 0.0), turn=2 * pi, rate=RATE)
+    helix = Circular(
+        end=(20.0, 0.0, -6.0), arc=Arc(centre=(10.0, 0.0, 0.0), turn=pi), rate=RATE
+    )
+    circle = Circular(
+        end=(20.0, 0.0, -6.0), arc=Arc(centre=(10.0, 0.0, 0.0), turn=2 * pi), rate=RATE
+    )
     assert lines(Rapid(end=(0.0, 0.0, 0.0)), helix, circle)[2:] == [
         "CP IPA+180 IZ-6 DR+ F300",
         "L X+20 Y+0",
@@ -123,7 +129,9 @@ def test_an_arc_after_a_helix_starts_from_an_exact_point() -> None:
 
 def test_a_helix_in_another_plane_is_refused() -> None:
     helix = Circular(
-        end=(0.0, 5.0, 0.0), centre=(10.0, 0.0, 0.0), turn=2 * pi, rate=RATE, plane=ArcPlane.ZX
+        end=(0.0, 5.0, 0.0),
+        arc=Arc(centre=(10.0, 0.0, 0.0), turn=2 * pi, plane=ArcPlane.ZX),
+        rate=RATE,
     )
     with pytest.raises(PostError, match="in XY only"):
         lines(Rapid(end=(0.0, 0.0, 0.0)), helix)

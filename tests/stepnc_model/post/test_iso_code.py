@@ -24,7 +24,7 @@ from stepnc_model.post.blocks import (
     expanded,
 )
 from stepnc_model.post.fanuc import Fanuc
-from stepnc_model.toolpath.path import CycleKind
+from stepnc_model.toolpath.path import Arc, CycleKind
 
 RATE = Rate(value=5.0)
 
@@ -61,12 +61,14 @@ def test_a_new_mode_of_feed_says_its_feed_again() -> None:
 
 
 def test_an_arc_names_both_axes_of_its_plane() -> None:
-    full = Circular(end=(5.0, 0.0, 0.0), centre=(0.0, 0.0, 0.0), turn=2 * pi, rate=RATE)
+    full = Circular(
+        end=(5.0, 0.0, 0.0), arc=Arc(centre=(0.0, 0.0, 0.0), turn=2 * pi), rate=RATE
+    )
     assert lines(Rapid(end=(5.0, 0.0, 0.0)), full)[1] == "G3 X5. Y0. I-5. J0. F300."
 
 
 def test_an_arc_from_nowhere_is_refused() -> None:
-    arc = Circular(end=(5.0, 5.0, 0.0), centre=(0.0, 5.0, 0.0), turn=pi, rate=RATE)
+    arc = Circular(end=(5.0, 5.0, 0.0), arc=Arc(centre=(0.0, 5.0, 0.0), turn=pi), rate=RATE)
     with pytest.raises(PostError, match="unknown position"):
         lines(arc)
 

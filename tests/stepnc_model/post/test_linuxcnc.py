@@ -1,24 +1,27 @@
 """LinuxCNC's code, judged by LinuxCNC's own interpreter."""
 
 from collections.abc import Callable, Iterable
+from math import inf
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from stepnc_model.errors import PostError
+from stepnc_model.nc.exact import read, read_blocks
 from stepnc_model.post.blocks import (
     Block,
     Comment,
     Cycles,
     MachineType,
+    PathControl,
     ProgramEnd,
     ProgramStart,
     Rapid,
 )
 from stepnc_model.post.canonical import Canonical, commands
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.dialects import read, write
+from stepnc_model.post.dialects import write
 from tests.stepnc_model.post.trace import difference
 
 Interpreter = Callable[[Iterable[str]], tuple[Canonical, ...]]
@@ -103,3 +106,19 @@ def test_a_lathe_has_no_y() -> None:
     ]
     with pytest.raises(PostError, match="y = 2 mm: a lathe has no y"):
         list(write(blocks, Dialect.LINUXCNC))
+
+
+@pytest.mark.parametrize(
+    ("words", "control"),
+    [
+        ("G64 P0.02", PathControl(tolerance=0.02)),
+        ("G64 P0.02 Q0.01", PathControl(tolerance=0.02, joining=0.01)),
+        ("G64", PathControl(tolerance=inf)),
+        ("G61", PathControl(tolerance=0.0)),
+        ("G61.1", PathControl(tolerance=0.0, is_exact_stop=True)),
+    ],
+)
+def test_path_control_is_read_and_written_back(words: str, control: PathControl) -> None:
+    (found,) = read_blocks([words], Dialect.LINUXCNC)
+    assert found == control
+    assert list(write([found], Dialect.LINUXCNC)) == [f"N10 {words}"]

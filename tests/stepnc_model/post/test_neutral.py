@@ -7,6 +7,7 @@ import pytest
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import PostError
+from stepnc_model.nc.exact import read
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.post.blocks import (
@@ -20,6 +21,7 @@ from stepnc_model.post.blocks import (
     MachineType,
     Message,
     OptionalStopBlock,
+    PathControl,
     Pause,
     ProgramEnd,
     ProgramStart,
@@ -37,7 +39,7 @@ from stepnc_model.post.blocks import (
 )
 from stepnc_model.post.canonical import commands
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.dialects import read, write
+from stepnc_model.post.dialects import write
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program
 from stepnc_model.toolpath.path import (
@@ -128,7 +130,8 @@ def test_a_whole_program(part: Program) -> None:
     assert found == [
         ProgramStart(name="PART"),
         Comment(text="T1 MILL 10MM D10"),
-        Comment(text="WS", workingstep="WS", tolerance=0.01),
+        Comment(text="WS", workingstep="WS"),
+        PathControl(tolerance=0.01),
         SpindleOff(),
         ToolChange(number=1, id="MILL 10MM"),
         SpindleOn(speed=20.0),
@@ -149,8 +152,9 @@ def test_between_tools_everything_stops_and_the_tool_rises_first(part: Program) 
     higher = replace(one, tool_ref=DRILL, start=(50.0, 60.0, 80.0))
     found = blocks(part, one, higher)
     at = found.index(ToolChange(number=2, id="DRILL 8MM"))
-    assert found[at - 4 : at + 5] == [
-        Comment(text="WS", workingstep="WS", tolerance=0.01),
+    assert found[at - 5 : at + 5] == [
+        Comment(text="WS", workingstep="WS"),
+        PathControl(tolerance=0.01),
         SpindleOff(),
         Coolant(),
         Retract(z=80.0, is_way=True),
@@ -175,7 +179,7 @@ def test_the_same_tool_goes_up_across_and_down(part: Program) -> None:
     low = replace(one, start=(50.0, 60.0, 10.0))
     found = blocks(part, one, low)
     at = len(found) - 1 - found[::-1].index(found[2])
-    assert found[at + 1 : at + 4] == [
+    assert found[at + 2 : at + 5] == [
         Retract(z=30.0, is_way=True),
         Rapid(end=(50.0, 60.0, 30.0), is_way=True),
         Rapid(end=(50.0, 60.0, 10.0), is_way=True),
@@ -193,8 +197,8 @@ def test_arcs_and_dwells(part: Program) -> None:
     arc = Arc(centre=(5.0, 0.0, 0.0), turn=pi)
     bend = Move(end=(5.0, -5.0, 30.0), type=MoveType.CONTACT, feed=FEED, arc=arc)
     found = blocks(part, path(bend, Dwell(seconds=0.5), Dwell(revolutions=5.0)))
-    assert found[9:12] == [
-        Circular(end=(5.0, -5.0, 30.0), centre=(5.0, 0.0, 0.0), turn=pi, rate=RATE),
+    assert found[10:13] == [
+        Circular(end=(5.0, -5.0, 30.0), arc=Arc(centre=(5.0, 0.0, 0.0), turn=pi), rate=RATE),
         Pause(seconds=0.5),
         Pause(seconds=0.25),
     ]
@@ -213,7 +217,7 @@ def test_the_spindle_does_what_the_path_says(part: Program) -> None:
             SpindleCommand.START,
         ),
     )
-    assert found[9:15] == [
+    assert found[10:16] == [
         reverse,
         Linear(end=(9.0, 5.0, 2.0), rate=RATE),
         SpindleOff(),
@@ -247,7 +251,7 @@ def drilled(kind: CycleKind, *, feed: Feed = FEED) -> ToolPath:
 
 
 def test_a_cycle_carries_what_it_stands_for(part: Program) -> None:
-    cycle = blocks(part, drilled(CycleKind.DRILL))[10]
+    cycle = blocks(part, drilled(CycleKind.DRILL))[11]
     assert isinstance(cycle, DrillingCycle)
     assert (cycle.at, cycle.retract_z, cycle.bottom_z) == ((5.0, 5.0), 2.0, -9.0)
     assert cycle.expansion == (
@@ -280,12 +284,13 @@ def test_functions_stand_between_workingsteps(part: Program) -> None:
         function("EXCHANGE_PALLET"),
     )
     at = found.index(OptionalStopBlock())
-    assert found[at - 3 : at + 4] == [
+    assert found[at - 3 : at + 5] == [
         Comment(text="F"),
         SpindleOff(),
         Coolant(),
         OptionalStopBlock(),
-        Comment(text="WS", workingstep="WS", tolerance=0.01),
+        Comment(text="WS", workingstep="WS"),
+        PathControl(tolerance=0.01),
         SpindleOn(speed=20.0),
         FLOOD,
     ]

@@ -7,9 +7,9 @@ import pytest
 
 from service.paths.toolpaths import nc_lines, paths_of
 from stepnc_model.errors import PostError
+from stepnc_model.nc.exact import read_blocks
 from stepnc_model.post.blocks import Linear, MachineType
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.dialects import read_blocks
 from stepnc_model.post.path_tolerance import FINISHING, LEAST, ROUGHING, path_tolerance
 from stepnc_model.program import Program
 

@@ -11,8 +11,9 @@ from math import dist, pi
 
 from stepnc_model.post.blocks import Circular, Rate
 from stepnc_model.post.canonical import PLANES, Canonical
-from stepnc_model.post.grid import along, sweep, turns
-from stepnc_model.toolpath.path import ArcPlane, Point
+from stepnc_model.post.grid import turns
+from stepnc_model.toolpath.arc import point_at, swept
+from stepnc_model.toolpath.path import Arc, ArcPlane, Point
 
 LENGTH = 1e-3
 """mm, the last digit of most controls"""
@@ -158,13 +159,13 @@ class _Tracer:
         point[normal] = numbers[5]
         end, middle = (point[0], point[1], point[2]), (centre[0], centre[1], centre[2])
         sense = 1.0 if numbers[4] > 0.0 else -1.0
-        angle = sweep(self.at, end, middle, self.plane, sense=sense)
+        angle = swept(self.at, end, middle, self.plane, sense=sense)
         turn = sense * (angle + 2.0 * pi * (abs(numbers[4]) - 1.0))
         arc = Circular(
-            end=end, centre=middle, turn=turn, plane=self.plane, rate=Rate(value=0.0)
+            end=end, arc=Arc(centre=middle, turn=turn, plane=self.plane), rate=Rate(value=0.0)
         )
         for single in turns(self.at, arc):
-            middle = along(self.at, single, 0.5 * single.turn, 0.5)
+            middle = point_at(self.at, single, 0.5)
             self.at = single.end
             words = (self.plane.value, "CCW" if sense > 0.0 else "CW")
             yield self._cutting("arc", (*single.end, *middle), *words)

@@ -11,6 +11,7 @@ from stepnc_model.errors import PathError, SchemaError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
+from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.curve import (
     CHORD_TOLERANCE,
     Bend,
@@ -20,7 +21,7 @@ from stepnc_model.toolpath.curve import (
     segments_of,
 )
 from stepnc_model.toolpath.frame import Frame
-from stepnc_model.toolpath.path import ArcPlane, MoveType, Point, length
+from stepnc_model.toolpath.path import ArcPlane, MoveType, Point
 from tests.every_case import every_case
 
 HEADER = (

@@ -1,5 +1,6 @@
 """A whole program: its order, what is not made, and what goes on all the same."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -7,7 +8,7 @@ import pytest
 from stepnc_model.errors import PathError, SchemaError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
-from stepnc_model.toolpath.generate import generate, workingstep_path
+from stepnc_model.toolpath.generate import KeptPaths, generate, workingstep_path
 from stepnc_model.toolpath.path import Function, ToolPath
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
@@ -36,6 +37,18 @@ def test_paths_and_functions_come_in_the_order_of_the_program() -> None:
     stop = items[4]
     assert isinstance(stop, Function)
     assert (stop.keyword, stop.id) == ("OPTIONAL_STOP", "LOOK AT THE CLAMPING")
+
+
+def test_a_path_is_kept_for_its_own_program_and_workingstep_only() -> None:
+    program, kept = edited(), KeptPaths()
+    step = program.workingsteps[0]
+    path = kept(program, step)
+    assert kept(program, step) is path
+    assert next(generate(program, path_of=kept)) is path
+    assert kept(program, replace(step)) is not path
+    assert kept(edited(), step) is not path
+    few = KeptPaths(most=len(path.steps) - 1)
+    assert few(program, step) is not few(program, step)
 
 
 def test_every_kind_of_operation_finds_its_maker() -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from service.cli.interrupts import INTERRUPTED
 from service.cli.main import main
-from service.cli.options import BAD_INPUT, OK
+from service.exit_codes import BAD_INPUT, OK
 from tests.service.waiting import ended
 
 PART = Path(__file__).parents[4] / "examples" / "parts" / "paper000.stpnc"

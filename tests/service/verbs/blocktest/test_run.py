@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 
 import stepnc
-from simulator.calibration.block_circles import circles_of
+from simulator.calibration.block_feed import circles_of
 from stepnc_model.errors import StepNcError
+from stepnc_model.nc.exact import read_blocks
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.dialects import read_blocks
 from tests.every_case import every_case
 
 

@@ -103,7 +103,7 @@ def code(tmp_path: Path) -> Result:
 def test_control_tools_feeds_and_what_is_not_understood_are_told(code: Result) -> None:
     shown = str(code)
     assert "fanuc mill (guessed from O0100, G65 P), mm, 14 blocks" in shown
-    assert "line 9: not understood: a macro call: G65 P9100 A1." in shown
+    assert "line 9: not understood: a macro call; --keeps-state P9100 if it" in shown
     assert "rewriting without advice gives the file byte for byte" in shown
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from controller.orders import EventKind, LoopEvent
 from controller.record import RunRecord
-from service.cli.verbs import print_result
+from service.cli.commands import print_result
 from service.control.run import ControlRun
 from service.verbs.control.result import ControlResult
 

@@ -8,9 +8,9 @@ import pytest
 from service.knowledge.added import add_outcomes
 from service.knowledge.review import review
 from service.knowledge.verbs import accept, accepted_factors
-from service.learning.force_factor import ForceFactor
+from service.learning.models import ForceFactor
 from service.requests.knowledge import ReviewRequest
-from service.verbs.learn.outcome import write_outcome
+from service.verbs.learn.run import write_outcome
 from stepnc_model.errors import StepNcError
 from tests.every_case import every_case
 

@@ -14,10 +14,10 @@ from optimiser.along_path.caps import CapName
 from optimiser.along_path.tool_bounds import bounds_of_tool
 from service.along_path.run import along_path
 from service.along_path.task import task_of
-from service.cli.verbs import print_result
-from service.rendering.records import dump
+from service.cli.commands import print_result
+from service.rendering.columns import dump
 from service.requests.advice import AdviceRequest
-from service.requests.stock import RawPart, StockFile
+from service.requests.given import RawPart, StockFile
 from service.verbs.optimise.code import optimise_code, source_of
 from service.verbs.optimise.code_result import CodeAdvice
 from service.verbs.optimise.program import advise_program as optimise
@@ -313,6 +313,11 @@ def test_a_program_that_calls_itself_is_refused_with_the_line() -> None:
         advised(HEAD + "M98 P1\n" + END)
 
 
+def test_a_turning_tool_that_cuts_nothing_where_a_bound_is_broken_gives_a_plan() -> None:
+    text, request = PROGRAMS["turning"]
+    assert advised(text[:164] + text[169:], request).along is not None
+
+
 @settings(max_examples=15, deadline=None)
 @given(st.data())
 def test_mutilated_programs_give_a_plan_or_a_message(data: st.DataObject) -> None:
@@ -402,3 +407,19 @@ def test_our_own_code_is_left_by_a_second_run(own: CodeAdvice, tmp_path: Path) -
     )
     assert again.rewritten.changed == 0
     assert again.rewritten.data == code.rewritten.data
+
+
+THREADED = TURNED.replace(
+    "M30\n", "T0404\nG97 S600 M3\nG0 X48. Z4.\nG32 Z-26. F1.5\nG0 X100.\nZ50.\nM30\n"
+)
+
+
+def test_a_thread_takes_its_lead_per_turn_and_keeps_it() -> None:
+    found = advised(THREADED, LATHE)
+    rapid = advised(THREADED.replace("G32 Z-26. F1.5", "G0 Z-26."), LATHE)
+    # 30 mm at 1.5 mm per turn and 10 turns/s take 2 s.
+    assert 1.5 < found.along.time_before - rapid.along.time_before < 2.1
+    step = next(each for each in found.along.steps if each.name == "T4")
+    assert step.before.duration == pytest.approx(step.after.duration)
+    assert "G32 Z-26. F1.5\n" in found.rewritten.data.decode()
+    assert not any("meets no stock" in each.message for each in found.findings)

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from optimiser.advice import tightest
-from service.rendering.records import dump
+from service.rendering.columns import dump
 from service.verbs.optimise import program as advising
 from service.verbs.optimise.plan_result import ProgramAdvice
 from tests.asking import asked_advice

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from service.cli.verbs import print_result
+from service.cli.commands import print_result
 from service.verbs.optimise import program as advising
 from simulator.library import load_machine
 from simulator.machine_file import machine_toml

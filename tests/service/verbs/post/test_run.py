@@ -9,8 +9,8 @@ import stepnc
 from service.cli.main import main
 from service.exit_codes import BAD_INPUT
 from stepnc_model.errors import PostError, SchemaError, StepNcError
+from stepnc_model.nc.exact import read
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.dialects import read
 from stepnc_model.toolpath.path import Function
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"

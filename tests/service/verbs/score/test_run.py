@@ -10,7 +10,7 @@ from pyarrow import csv, parquet
 import stepnc
 from service.cli.main import main
 from service.learning.model_file import save_model
-from service.learning.score_table import MEAN, PHYSICS_ALONE
+from service.learning.scores import MEAN, PHYSICS_ALONE
 from stepnc_model.errors import StepNcError
 from tests.service.learning.tables import changed, law_table, written
 

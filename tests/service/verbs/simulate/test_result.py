@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from service.cli.verbs import print_result
-from service.simulation.carbon import WORLD, CarbonFactor
+from service.cli.commands import print_result
+from service.simulation.facts import WORLD, CarbonFactor
 from service.simulation.run import Simulation
 from service.verbs.simulate.result import SimulateResult
 from simulator.machine.totals import Total

@@ -35,7 +35,7 @@ def test_a_run_has_tables_a_page_and_a_figure(tmp_path: Path) -> None:
 
 
 def test_options_of_nc_code_need_it(tmp_path: Path) -> None:
-    with pytest.raises(StepNcError, match="--dialect and --tools need NC code"):
+    with pytest.raises(StepNcError, match="--dialect needs NC code"):
         stepnc.simulate(PAPER, machine="vmc15", dialect="haas")
     with pytest.raises(StepNcError, match="--tools-unit needs a tool table"):
         stepnc.simulate(PAPER, machine="vmc15", tools_unit="mm")

@@ -6,7 +6,7 @@ import pytest
 
 from benchmarks.verification import BRACKET, offset
 from service.cli.main import main
-from service.cli.options import BAD_INPUT, LIMIT_EXCEEDED
+from service.exit_codes import BAD_INPUT, LIMIT_EXCEEDED
 from tests.service.verification.runs import fast_log, program
 
 

@@ -10,10 +10,11 @@ from stepnc_model.draft import Draft
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
+from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.curve import CHORD_TOLERANCE, Segment, move_of, segments_of
 from stepnc_model.toolpath.explicit.curve_writer import CurveWriter, HelixForm, WrittenCurve
 from stepnc_model.toolpath.frame import Frame
-from stepnc_model.toolpath.path import Arc, ArcPlane, Move, MoveType, Point, length
+from stepnc_model.toolpath.path import Arc, ArcPlane, Move, MoveType, Point
 
 EMPTY = (
     b"ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('MACHINING_SCHEMA'));\nENDSEC;\nDATA;\n"

@@ -61,7 +61,7 @@ def walked(
             program=Program(Part21File.from_bytes(text.encode())),
             security_z=30.0,
             stock=stock,
-            tool=Tool(id="T", keyword="ENDMILL", diameter=10.0),
+            tool=lambda: Tool(id="T", keyword="ENDMILL", diameter=10.0),
             technology=None if technology is None else Ref(technology),
         )
     )

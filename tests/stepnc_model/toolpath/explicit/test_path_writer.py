@@ -14,11 +14,12 @@ from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
+from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.explicit.operation import path_frames
 from stepnc_model.toolpath.explicit.path_writer import MOST_MOVES, write_paths
 from stepnc_model.toolpath.explicit.planned_path import MovePart, PlannedMove, PlannedPath
 from stepnc_model.toolpath.generate import workingstep_path
-from stepnc_model.toolpath.path import Dwell, Feed, Move, MoveType, Point, ToolPath, length
+from stepnc_model.toolpath.path import Dwell, Feed, Move, MoveType, Point, ToolPath
 from tests.stepnc_model.toolpath.explicit.test_operation import FILE
 
 START = (100.0, 0.0, 30.0)

@@ -49,7 +49,13 @@ def traced(
         f"#10={trajectory};\nENDSEC;\nEND-ISO-10303-21;\n"
     )
     program = Program(Part21File.from_bytes(text.encode()))
-    return trajectory_segments(program, Ref(10), frame=frame or Frame(), tool=tool, at=at)
+    return trajectory_segments(
+        program,
+        Ref(10),
+        frame=frame or Frame(),
+        tool=None if tool is None else lambda: tool,
+        at=at,
+    )
 
 
 def location(direction: str = "$", axis: str = "$") -> str:

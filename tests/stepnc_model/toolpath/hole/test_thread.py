@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
+from stepnc_model.toolpath.arc import points_along, radius
 from stepnc_model.toolpath.hole.operation import hole_path
-from stepnc_model.toolpath.path import Dwell, Move, MoveType, ToolPath, points_along, radius
+from stepnc_model.toolpath.path import Dwell, Move, MoveType, ToolPath
 from stepnc_model.toolpath.task import job_of
 from tests.every_case import every_case
 from tests.stepnc_model.places import place_of

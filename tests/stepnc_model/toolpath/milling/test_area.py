@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.values import Ref
-from stepnc_model.toolpath.milling.area import (
+from stepnc_model.toolpath.milling.contour import area, circle, clockwise, polygon
+from stepnc_model.toolpath.milling.cover import (
     Area,
     Flank,
     Wall,
@@ -18,7 +19,6 @@ from stepnc_model.toolpath.milling.area import (
     rounding,
     upright,
 )
-from stepnc_model.toolpath.milling.contour import area, circle, clockwise, polygon
 from stepnc_model.toolpath.milling.strategy import EndMillShape
 
 FLAT = EndMillShape(radius=5.0)

@@ -8,11 +8,12 @@ import pytest
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
+from stepnc_model.toolpath.arc import length, points_along
 from stepnc_model.toolpath.milling.contour import Chain, circle, line, polygon
 from stepnc_model.toolpath.milling.cover import MillingPass
 from stepnc_model.toolpath.milling.enter import Heights, enter, leave, trace
 from stepnc_model.toolpath.milling.layer import CentreArea, Clearance, nowhere, within
-from stepnc_model.toolpath.path import MoveType, ToolPath, length, points_along
+from stepnc_model.toolpath.path import MoveType, ToolPath
 from stepnc_model.toolpath.task import PathBuilder, ToolPathTask, job_of
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"

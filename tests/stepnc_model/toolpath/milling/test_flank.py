@@ -11,8 +11,8 @@ from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
-from stepnc_model.toolpath.milling.area import Flank, leaning, upright
 from stepnc_model.toolpath.milling.contour import chain_length, circle, clockwise, line, polygon
+from stepnc_model.toolpath.milling.cover import Flank, leaning, upright
 from stepnc_model.toolpath.milling.flank import flank_layer
 from stepnc_model.toolpath.milling.layer import CutLevel, Layer
 from stepnc_model.toolpath.milling.strategy import Covering, EndMillShape, ResolvedStrategy

@@ -8,8 +8,9 @@ import pytest
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
+from stepnc_model.toolpath.arc import length, points_along
 from stepnc_model.toolpath.milling.operation import allowance_of, levels, milling_path
-from stepnc_model.toolpath.path import Move, MoveType, Point, ToolPath, length, points_along
+from stepnc_model.toolpath.path import Move, MoveType, Point, ToolPath
 from stepnc_model.toolpath.task import ToolPathTask, job_of
 from tests.every_case import every_case
 from tests.stepnc_model.places import place_of

@@ -1,0 +1,252 @@
+"""Table of the stored verbs over REST: kind of job, request, result and files of each.
+
+A new one needs an entry here, its kind in :mod:`service.storage.jobs`, its path in
+:data:`service.rest.views.PLACES`, and its verb in :data:`service.jobs.verb_job.STORED`. Routes
+that only one resource has stand in a module of their own.
+"""
+
+from dataclasses import asdict
+
+from service.factory.run import STATES
+from service.jobs.produce import FIGURES, TABLES
+from service.requests.factory import FactoryOrder
+from service.requests.knowledge import EvaluationRequest, ReviewRequest
+from service.requests.runs import ControlRequest, SimulationRequest
+from service.requests.stored_cycle_time import StoredCycleTimeRequest
+from service.requests.stored_verification import StoredVerificationRequest
+from service.rest.bodies import TrialBody
+from service.rest.orders import (
+    producible,
+    runnable,
+    selectable,
+    startable,
+    timeable,
+    verifiable,
+)
+from service.rest.resource import Creation, Download, Resource, Shown, TableFormat
+from service.rest.verification_views import CycleTimeView, VerificationView
+from service.rest.views import SimulationView
+from service.storage.jobs import JobKind
+from service.storage.results import LOG, PLACES, SAMPLES, TABLE
+from service.trial.inputs import Inputs
+
+CSV_OR_PARQUET = (TableFormat.CSV, TableFormat.PARQUET)
+
+RUN_STATUS = (
+    "Show inputs, feeds, force, power and the active limit; null before the run begins."
+)
+
+USUAL = {"content": {"application/json": {"example": {"inputs": asdict(Inputs())}}}}
+"""Example request of a trial cut; the service fills in missing inputs with these values."""
+
+RESOURCES = (
+    Resource(kind=JobKind.ADVICE, tag="advice", plural="advice"),
+    Resource(
+        kind=JobKind.CONTROL,
+        tag="control",
+        plural="runs under control",
+        creation=Creation(
+            name="ask_control",
+            body=ControlRequest,
+            require=runnable,
+            summary="Run a program under control",
+            about="Queue a job that runs a program on the virtual machine under force control.",
+        ),
+        shown=Shown(summary="Show the result", about="Show the result of a finished run."),
+        downloads=(
+            Download(
+                path="samples",
+                file=SAMPLES,
+                summary="Download the run as Parquet",
+                about="Download the samples of a run, one row per revolution.",
+            ),
+        ),
+        status=RUN_STATUS,
+        has_series=True,
+    ),
+    Resource(
+        kind=JobKind.TRIAL,
+        tag="control",
+        plural="trial cuts",
+        creation=Creation(
+            name="ask_trial",
+            body=TrialBody,
+            require=startable,
+            summary="Begin a trial cut",
+            about="Queue a trial: a constant cut whose inputs can be changed while it goes on.",
+            extra={"requestBody": USUAL},
+        ),
+        shown=Shown(summary="Show the result", about="Show the result of a finished run."),
+        report="",
+        status=RUN_STATUS,
+        has_series=True,
+    ),
+    Resource(
+        kind=JobKind.SIMULATION,
+        tag="simulations",
+        plural="simulations",
+        creation=Creation(
+            name="ask",
+            body=SimulationRequest,
+            require=runnable,
+            summary="Simulate a program",
+            about="Queue a simulation job; watch its events, then read its result.",
+        ),
+        shown=Shown(
+            summary="Show the result of a simulation",
+            about="Show time, energy, peaks and removal of the run and of each workingstep.",
+            view=SimulationView,
+        ),
+        downloads=(
+            Download(
+                path="samples",
+                file=SAMPLES,
+                summary="Download the samples as Parquet",
+                about="Download the samples as ``stepnc simulate -o run.parquet`` writes them.",
+            ),
+        ),
+        has_series=True,
+    ),
+    Resource(
+        kind=JobKind.FACTORY,
+        tag="factories",
+        plural="runs of shops",
+        creation=Creation(
+            name="ask_factory",
+            body=FactoryOrder,
+            require=producible,
+            summary="Run a shop",
+            about="Queue a job that runs a shop: live at a pace, or with replications and a "
+            "sweep.",
+        ),
+        shown=Shown(
+            summary="Show the figures of a shop",
+            about="Show the figures by level, the time in each state, and the cases of a "
+            "sweep.",
+        ),
+        downloads=(
+            Download(
+                path="figures",
+                file=FIGURES,
+                forms=(TableFormat.CSV,),
+                summary="Download the figures as CSV",
+                about="Download the figures of all levels, one row each.",
+            ),
+            Download(
+                path="samples",
+                file=f"{TABLES}/{STATES}",
+                thing="states",
+                summary="Download the states as Parquet",
+                about="Download the states of all machines, one row each, first replication.",
+            ),
+        ),
+        status="Show states of machines, buffers, products and processes; null before it "
+        "begins.",
+        has_series=True,
+    ),
+    Resource(
+        kind=JobKind.VERIFICATION,
+        tag="verifications",
+        plural="verifications",
+        creation=Creation(
+            name="ask",
+            body=StoredVerificationRequest,
+            require=verifiable,
+            summary="Verify logged positions",
+            about="Queue a job that compares the part that a log left with the programmed one."
+            "\n\nThe log is an uploaded one, the samples of a run, or the latest run of a "
+            "monitored machine.",
+        ),
+        shown=Shown(
+            summary="Show a verification",
+            about="Show deviations by workingstep, tolerance bands, and what the log can "
+            "resolve.",
+            view=VerificationView,
+        ),
+        downloads=(
+            Download(
+                path="places",
+                file=PLACES,
+                forms=CSV_OR_PARQUET,
+                name="places_file",
+                is_result=True,
+                summary="Download the deviations of places",
+                about="Download all places on walls, and others beyond their uncertainty.",
+            ),
+            Download(
+                path="log",
+                file=LOG,
+                thing="log of a monitored machine in verification",
+                saved_as="log",
+                summary="Download the log of a monitored machine",
+                about="Download the positions that were read from the agent of a monitored "
+                "machine.",
+            ),
+        ),
+    ),
+    Resource(
+        kind=JobKind.CYCLE_TIME,
+        tag="verifications",
+        plural="cycle times",
+        creation=Creation(
+            name="ask",
+            body=StoredCycleTimeRequest,
+            require=timeable,
+            summary="Estimate a cycle time",
+            about="Queue a job that estimates the time of a program by block; a log adds the "
+            "actual time.",
+        ),
+        shown=Shown(
+            summary="Show a cycle time",
+            about="Show times by workingstep and tool, the blocks that lose most, and hints.",
+            view=CycleTimeView,
+        ),
+    ),
+    Resource(
+        kind=JobKind.EVALUATION,
+        tag="knowledge",
+        plural="tables",
+        creation=Creation(
+            name="ask_evaluation",
+            body=EvaluationRequest,
+            require=selectable,
+            summary="Compute a table",
+            about="Queue a job that compares planned with actual values, feature by feature.",
+        ),
+        shown=Shown(
+            summary="Show a table",
+            about="Show the rows of a table with roughing and finishing values, grades and "
+            "remarks.",
+        ),
+        report="evaluation_report",
+        downloads=(
+            Download(
+                path="table",
+                file=TABLE,
+                forms=CSV_OR_PARQUET,
+                name="evaluation_file",
+                summary="Download a table as a file",
+                about="Download a table with one line for each side (roughing, finishing) of a "
+                "row.",
+            ),
+        ),
+    ),
+    Resource(
+        kind=JobKind.REVIEW,
+        tag="knowledge",
+        plural="reviews",
+        creation=Creation(
+            name="ask_review",
+            body=ReviewRequest,
+            require=selectable,
+            summary="Learn from outcomes",
+            about="Queue a job that proposes corrections, which a person may then accept.",
+        ),
+        shown=Shown(
+            summary="Show the result of a review",
+            about="Show each context with its factor on k_c, the objections to it, and the "
+            "action taken.",
+        ),
+        report="",
+    ),
+)

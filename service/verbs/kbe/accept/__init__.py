@@ -1,0 +1,1 @@
+"""Accept corrections, which the next plans apply."""

@@ -1,0 +1,5 @@
+"""Request of ``kbe accept``."""
+
+from service.verbs.kbe.places import DeciderFiles, DecisionRequest
+
+REQUEST, FILES = DecisionRequest, DeciderFiles

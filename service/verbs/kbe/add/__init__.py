@@ -1,0 +1,1 @@
+"""Add outcomes of real runs from a JSON file, as `export outcomes` writes it."""

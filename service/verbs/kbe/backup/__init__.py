@@ -1,0 +1,1 @@
+"""Copy the knowledge base to a new file."""

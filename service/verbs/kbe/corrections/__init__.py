@@ -1,0 +1,1 @@
+"""List corrections and their status."""

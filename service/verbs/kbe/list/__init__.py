@@ -1,0 +1,1 @@
+"""List outcomes, newest first."""

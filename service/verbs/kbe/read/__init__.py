@@ -1,0 +1,1 @@
+"""List the outcomes and corrections stored in a program file."""

@@ -1,0 +1,1 @@
+"""Fill an empty knowledge base from a backup."""

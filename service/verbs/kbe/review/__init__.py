@@ -1,0 +1,1 @@
+"""Learn factors on k_c from outcomes and propose new or changed corrections."""

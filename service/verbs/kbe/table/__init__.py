@@ -1,0 +1,1 @@
+"""Evaluate outcomes: planned, measured, deviations, grades, recommended actions."""

@@ -1,0 +1,1 @@
+"""Withdraw accepted corrections, or reject proposals."""

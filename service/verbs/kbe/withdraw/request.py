@@ -1,0 +1,5 @@
+"""Request of ``kbe withdraw``."""
+
+from service.verbs.kbe.places import DeciderFiles, DecisionRequest
+
+REQUEST, FILES = DecisionRequest, DeciderFiles

@@ -1,0 +1,1 @@
+"""Create a key; it is shown only once."""
