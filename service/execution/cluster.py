@@ -6,15 +6,15 @@ lost costs only its tasks, which Dask gives to another. A scheduler that is lost
 everything: the work is then submitted again by its owner.
 """
 
-from collections.abc import Iterator
-from concurrent.futures import BrokenExecutor, Executor
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import contextmanager, suppress
 from functools import partial
 from importlib.metadata import version
 from ipaddress import ip_address
 from pathlib import Path
 from platform import python_version
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import urlsplit
 
 from service.execution.executors import Pools
@@ -23,6 +23,9 @@ from stepnc_model.errors import StepNcError
 
 if TYPE_CHECKING:
     from distributed import Client
+    from distributed import Future as Task
+
+Result = TypeVar("Result")
 
 SCHEMES = ("tcp", "tls")
 
@@ -78,13 +81,41 @@ def cluster(address: str, *, patience: float = PATIENCE) -> Iterator[Executor]:
         raise _unanswered(address, error) from error
     try:
         _require_workers(client, address, patience=patience)
-        yield client.get_executor(pure=False)
+        yield _ClientExecutor(client)
     except (KilledWorker, CommClosedError, TimeoutError) as error:
         raise BrokenExecutor(_first_line(error)) from error
     finally:
         # A scheduler that is away does not answer to a farewell either.
         with suppress(OSError):
             client.close(timeout=patience)
+
+
+class _ClientExecutor(Executor):
+    """Executor over a Dask client.
+
+    Dask's own never ends a future, or ends it with an error of its own, when a worker dies
+    while the result is fetched from it.
+    """
+
+    def __init__(self, client: "Client") -> None:
+        self._client = client
+
+    def submit(
+        self, fn: Callable[..., Result], /, *args: object, **kwargs: object
+    ) -> Future[Result]:
+        """Submit a task that is run again for each call."""
+        task = self._client.submit(fn, *args, pure=False, **kwargs)
+        future: Future[Result] = Future()
+        self._client.loop.add_callback(_finish, task, future)
+        return future
+
+
+async def _finish(task: "Task[Result]", future: Future[Result]) -> None:
+    """End a future as its task ends; a task that is lost ends with a ``CancelledError``."""
+    try:
+        future.set_result(await task)
+    except Exception as error:
+        future.set_exception(error)
 
 
 def _require_workers(client: "Client", address: str, *, patience: float) -> None:

@@ -195,9 +195,6 @@ class AwayClient:
     def run(self, *_: object, **__: object) -> dict[str, object]:
         return {}
 
-    def get_executor(self, **_: object) -> "AwayClient":
-        return self
-
     def close(self, **_: object) -> None:
         raise TimeoutError
 
