@@ -12,6 +12,7 @@ from optimiser.problem import BoundSide, Limit, LimitName, Setting
 from optimiser.required import UncheckedLimit
 from optimiser.safety import USUAL_QUANTILE
 from optimiser.stability import ChatterRisk, Stability, risk_of
+from simulator.physics.surface_spread import LIKELY, RoughnessForecast
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Finding
@@ -66,8 +67,10 @@ class EvaluatedSetting:
     thrust: float
     """Axial force of a drill or of a mill plunging straight down, N; 0 when neither occurs."""
     roughness: float | None
-    """Roughness Ra, mm; ``None`` where it does not follow from the feed."""
+    """Ideal roughness Ra, mm; ``None`` where it does not follow from the feed."""
     loads: tuple[LimitLoad, ...]
+    surface: RoughnessForecast | None = None
+    """Ra that a finished surface is expected to have; None where nothing is known of it."""
     plunge_loads: tuple[LimitLoad, ...] = ()
     """Loads of the limits at the plunge feed, on ways down that have a feed of their own."""
     ramp_force: float = 0.0
@@ -143,6 +146,15 @@ class Advice:
     """Required limits that could not be looked at, or only by a stand-in."""
 
     @property
+    def roughness_probability(self) -> float | None:
+        """Probability that the surface keeps its roughness; None where it is not known."""
+        state = self.after or self.before
+        at = self.conditions
+        if state is None or state.surface is None or at is None or at.roughness is None:
+            return None
+        return state.surface.probability(at.roughness)
+
+    @property
     def chatter_risk(self) -> ChatterRisk | None:
         """Depth beyond the optimistic end of an estimate of the stable depth; None if not."""
         state = self.after or self.before
@@ -188,6 +200,17 @@ class Plan:
         """True if any workingstep has no feasible setting."""
         return any(advice.status is AdviceStatus.INFEASIBLE for advice in self.advices) or any(
             each.is_infeasible for each in self.refused
+        )
+
+    @property
+    def unlikely_surfaces(self) -> tuple[Advice, ...]:
+        """Advised workingsteps that are not likely to keep their roughness."""
+        return tuple(
+            advice
+            for advice in self.advices
+            if advice.status is AdviceStatus.ADVISED
+            and (chance := advice.roughness_probability) is not None
+            and chance < LIKELY - 1e-6
         )
 
     @property

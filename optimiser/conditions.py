@@ -190,6 +190,12 @@ class CuttingConditions:
     names no group: its source has no tool limits."""
     roughness: float | None
     """Roughness Ra that this surface must keep, mm; None: no requirement."""
+    roughness_quantile: float = 0.5
+    """Share of surfaces that must keep the roughness; half of them: the median keeps it."""
+    finishing_speed: float | None = None
+    """Cutting speed of a finished surface, mm/s; None: that of the cut."""
+    is_dry: bool = True
+    """Whether the cut has no coolant, or it is not known."""
     deflection: PermittedDeflection = PermittedDeflection()
     """Permitted deflection of an end mill from the tolerance or allowance of its wall."""
     force_factor: float = 1.0

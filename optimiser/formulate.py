@@ -30,7 +30,12 @@ from optimiser.loads import scaled, thrust
 from optimiser.modes import Free, Mode
 from optimiser.plunge_feed import plunge_limits
 from optimiser.problem import BoundSide, Cost, Limit, LimitName, Monomial, Problem, Setting
-from optimiser.roughness import roughness_limit, roughness_load
+from optimiser.roughness import (
+    LEAST_SHARE,
+    roughness_forecast,
+    roughness_limit,
+    roughness_load,
+)
 from optimiser.safety import USUAL_QUANTILE, require_quantile, safety_factor
 from optimiser.source import Source, along_paths
 from optimiser.speed_limits import held_speed, speed_range
@@ -60,6 +65,8 @@ class OptimisationTask:
     roughness: float | None = None
     """Roughness Ra for all finished surfaces in place of the file's, mm; None: as in the
     file."""
+    roughness_quantile: float = LEAST_SHARE
+    """Share of real surfaces that must keep their roughness."""
     tool_change: float = 0.0
     """Time to change a worn tool, s; 0: tool life does not count."""
     force_factors: Mapping[str, float] = field(default_factory=dict, hash=False)
@@ -157,7 +164,13 @@ def _stretches(
     low, high = speed_range(cut, at)
     if Free.SPEED not in task.free or not low < high < inf:
         return (speed,), (_between(cut, at, speed, speed),)
-    ends = stretch_ends(cut, at, max(low, LEAST_SPEED_RATIO * high), high)
+    least = max(low, LEAST_SPEED_RATIO * high)
+    if at.roughness is not None:
+        # The limit holds at the programmed speed: a slower surface is rougher.
+        least = min(max(least, speed), high)
+    if not least < high:
+        return (speed,), (_between(cut, at, speed, speed),)
+    ends = stretch_ends(cut, at, least, high)
     return ends, tuple(_between(cut, at, slow, fast) for slow, fast in pairwise(ends))
 
 
@@ -211,6 +224,7 @@ def state_of(
         for each in (cut, cut.floor)
         if each is not None and (load := roughness_load(each)) is not None
     ]
+    surface = roughness_forecast(cut, at, feed=setting.feed, speed=setting.speed)
     return EvaluatedSetting(
         setting=setting,
         feed=setting.feed * cut.tool.teeth * setting.speed,
@@ -224,6 +238,7 @@ def state_of(
         plunge_power=_greatest(power_load, plunges, at, setting.speed),
         thrust=_greatest(_thrust_load, along, at, setting.speed),
         roughness=max(roughness, default=None),
+        surface=surface if cut.is_finishing else None,
         loads=limit_loads(exact.limits_at(problem, setting.speed), point),
         plunge_loads=_plunge_loads(cut, at, setting),
     )

@@ -34,7 +34,7 @@ from optimiser.plunge_feed import plunge_fault, plunge_findings
 from optimiser.problem import Problem
 from optimiser.reasons import passed_limits, plunge_reason, reason_of
 from optimiser.required import unchecked_limits, why_impossible, why_thread_impossible
-from optimiser.roughness import LAND_SHARE, required_roughness, roughness_load
+from optimiser.roughness import LAND_SHARE, is_dry, required_roughness, roughness_load
 from optimiser.source import CutSource, WiperCutSource, why_elsewhere
 from optimiser.speed_limits import why_thread_too_fast, why_too_fast
 from optimiser.stability import RISK, estimate_texts, stability_of
@@ -429,6 +429,8 @@ def _conditions(
             cutting_material=cutting_material,
             grade=grade,
             roughness=asked,
+            roughness_quantile=task.roughness_quantile,
+            is_dry=is_dry(program, step),
             deflection=deflection,
             force_factor=factor,
             centre_cutting=task.centre_cutting.get(cut.tool.id, cut.tool.centre_cutting),

@@ -1,23 +1,35 @@
 """Roughness that a feed leaves, and the feed limit of a required roughness.
 
-Surface roughness that a program requires.
+A limit keeps the Ra of a share of real surfaces (:mod:`simulator.physics.surface_spread`), not
+the ideal one. Where even the least feed would not keep it, nothing is promised: the feed stays
+within the program's and within the ideal.
 
-It is read from ISO 14649-10 ``surface_texture_parameter`` on ``machined_surface``. The standard
-does not fix the unit; roughness is customarily given in micrometres, so µm is assumed.
+The required roughness is read from ISO 14649-10 ``surface_texture_parameter`` on
+``machined_surface``. The standard does not fix the unit; roughness is customarily given in
+micrometres, so µm is assumed.
 """
 
 from collections.abc import Iterator
 from dataclasses import replace
+from math import pi
 
 from optimiser.conditions import CuttingConditions
-from optimiser.cut import Cut, Texture
+from optimiser.cut import Cut, CutKind, Texture
 from optimiser.problem import Limit, LimitName, Monomial
+from optimiser.speed_limits import held_speed
 from simulator.physics.surface import RA_FLOOR, RZ_PER_RA, corner_coefficient, wall_coefficient
+from simulator.physics.surface_spread import (
+    RoughnessForecast,
+    SurfaceSpread,
+    forecast,
+    unmeasured_spread,
+)
+from simulator.spec import ToolKind
 from stepnc_model.entities.enums import BottomOrSide
 from stepnc_model.entities.milling import PlaneMilling, SideMilling
 from stepnc_model.entities.profiles import SurfaceTextureParameter
 from stepnc_model.program import Program, ResolvedWorkingstep
-from stepnc_model.units import UM_PER_MM, mm_from_um
+from stepnc_model.units import UM_PER_MM, mm_from_um, um_from_mm
 
 LAND_SHARE = 0.8
 """Greatest feed per revolution over the parallel land of a face mill's inserts.
@@ -48,11 +60,135 @@ def surface_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
             step=0.1,
         )
     elif roughness_load(replace(cut, parallel_land=0.0)) is not None:
-        yield roughness_limit(replace(cut, parallel_land=0.0), at.roughness)
+        yield from _kept_roughness(replace(cut, parallel_land=0.0), at, at.roughness)
 
 
 IDEAL = "ideal, not measured"
-"""What every planned Ra is: the trace of feed and corner, which no measurement calibrates."""
+"""Basis of a roughness that is the trace of feed and corner alone."""
+
+LEAST_SHARE, GREATEST_SHARE = 0.5, 0.99
+"""Range of the share of surfaces that a plan may promise to keep a roughness."""
+
+OWN_MEASUREMENTS = "Ra measured on own cuts: stepnc calibrate --table CUTS --material NAME"
+"""Datum that brings a promise."""
+
+GREATEST_TRACE = 10.0
+"""Feed over the corner radius beyond which no feed is looked for."""
+
+
+def _kept_roughness(cut: Cut, at: CuttingConditions, roughness: float) -> Iterator[Limit]:
+    """Limits that keep an Ra, mm, at the planned share of surfaces."""
+    ideal = roughness_limit(cut, roughness)
+    if at.machine.only_stated_limits:
+        yield ideal
+        return
+    outside = _outside(cut)
+    if outside:
+        yield replace(ideal, datum=OWN_MEASUREMENTS, origin=outside)
+        return
+    speed, share = _surface_speed(cut, at), at.roughness_quantile
+
+    def kept(feed: float) -> float:
+        return _forecast(cut, at, feed, speed).quantile(share)
+
+    floor = kept(0.0)
+    if floor >= roughness:
+        yield ideal
+        yield _not_promised(cut, at, floor)
+        return
+    low, high = 0.0, GREATEST_TRACE * max(cut.corner_radius, cut.diameter, 1.0)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if kept(middle) < roughness else (low, middle)
+    # Exact at the floor and at the bound, and between them where the median is kept.
+    yield Limit(
+        name=LimitName.ROUGHNESS,
+        load=Monomial(
+            coefficient=(roughness - floor) / low**2, offset=floor, feed_exponent=2.0
+        ),
+        bound=roughness,
+        unit="µm",
+        scale=UM_PER_MM,
+        label=f"roughness Ra of {100.0 * share:g} % of surfaces ({basis_of(at)})",
+    )
+
+
+def _not_promised(cut: Cut, at: CuttingConditions, floor: float) -> Limit:
+    """Programmed feed in place of a roughness that no feed is sure to keep."""
+    return Limit(
+        name=LimitName.PROGRAMMED_FEED,
+        load=Monomial(coefficient=1.0, feed_exponent=1.0),
+        bound=cut.programmed.feed,
+        unit="mm",
+        step=0.01,
+        label="programmed feed (roughness not promised)",
+        origin=(
+            f"Ra not promised before this shop has measured: {100.0 * at.roughness_quantile:g} "
+            f"% of surfaces keep no less than {um_from_mm(floor):.2g} µm at any feed"
+        ),
+        datum=OWN_MEASUREMENTS,
+        stands_for=LimitName.ROUGHNESS,
+    )
+
+
+def basis_of(at: CuttingConditions) -> str:
+    """Words on what an expected Ra rests on."""
+    count = at.material.surface.count if at.material.surface is not None else 0
+    return f"from {count} measured" if count else "spread of published studies, not measured"
+
+
+def roughness_forecast(
+    cut: Cut, at: CuttingConditions, *, feed: float, speed: float
+) -> RoughnessForecast | None:
+    """Ra that a feed per tooth, mm, leaves at a spindle speed, rev/s.
+
+    None where the feed does not determine it, where no study covers the tool, and on a machine
+    whose source states the law of Ra.
+    """
+    if at.machine.only_stated_limits or roughness_load(cut) is None or _outside(cut):
+        return None
+    return _forecast(cut, at, feed, pi * cut.diameter * speed)
+
+
+def _forecast(
+    cut: Cut, at: CuttingConditions, feed: float, cutting_speed: float
+) -> RoughnessForecast:
+    return forecast(
+        _spread(at),
+        _trace_coefficient(cut) * feed**2,
+        cutting_speed=cutting_speed,
+        is_dry=at.is_dry,
+        teeth=cut.tool.teeth if cut.kind is CutKind.MILLING else 1,
+    )
+
+
+def _spread(at: CuttingConditions) -> SurfaceSpread:
+    return at.material.surface or unmeasured_spread(at.material.iso_group)
+
+
+def _surface_speed(cut: Cut, at: CuttingConditions) -> float:
+    """Cutting speed at which a roughness is kept, mm/s: the floor falls as it rises."""
+    if at.finishing_speed is not None:
+        return at.finishing_speed
+    return pi * cut.diameter * held_speed(cut, at)
+
+
+def is_dry(program: Program, step: ResolvedWorkingstep) -> bool:
+    """True unless the machine functions of a workingstep switch a coolant on."""
+    functions = program.get(step.functions_ref) if step.functions_ref is not None else None
+    return not any(
+        getattr(functions, name, None)
+        for name in ("coolant", "mist", "through_spindle_coolant")
+    )
+
+
+def _outside(cut: Cut) -> str:
+    """Reason why no study covers the surface of a cut; empty if one does."""
+    if cut.tool.has_wiper:
+        return "no published study of wiper inserts is known"
+    if cut.tool_kind is ToolKind.BORING_BAR:
+        return "no published study of boring bars is known"
+    return ""
 
 
 def roughness_limit(cut: Cut, roughness: float) -> Limit:
@@ -79,15 +215,19 @@ def roughness_load(cut: Cut) -> Monomial | None:
     """
     if cut.texture is Texture.NONE or cut.parallel_land > 0.0:
         return None
-    if cut.texture is Texture.WALL:
-        coefficient = wall_coefficient(cut.diameter)
-    elif cut.corner_radius > 0.0:
-        marked_by = cut.tool.teeth if cut.texture is Texture.CORNER_PER_REVOLUTION else 1
-        smoothed = WIPER_FEED**2 if cut.tool.has_wiper else 1.0
-        coefficient = marked_by**2 * corner_coefficient(cut.corner_radius) / smoothed
-    else:
+    if cut.texture is not Texture.WALL and not cut.corner_radius > 0.0:
         return None
+    marked_by = cut.tool.teeth if cut.texture is Texture.CORNER_PER_REVOLUTION else 1
+    coefficient = marked_by**2 * _trace_coefficient(cut)
     return Monomial(coefficient=coefficient, offset=RA_FLOOR, feed_exponent=2.0)
+
+
+def _trace_coefficient(cut: Cut) -> float:
+    """Ideal Ra over the square of the feed per tooth, 1/mm."""
+    if cut.texture is Texture.WALL:
+        return wall_coefficient(cut.diameter)
+    smoothed = WIPER_FEED**2 if cut.tool.has_wiper else 1.0
+    return corner_coefficient(cut.corner_radius) / smoothed
 
 
 def required_roughness(program: Program, step: ResolvedWorkingstep) -> float | None:

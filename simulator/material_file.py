@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
+from simulator.physics.surface_spread import NAMES, SurfaceSpread
 from simulator.physics.turning import BACK_SHARE, FEED_SHARE
 from simulator.spec import (
     CuttingMaterial,
@@ -228,6 +229,23 @@ class LearnedLaw(FileTable, frozen=True, kw_only=True):
     count: int
     range: dict[str, tuple[float, ...]]
 
+    @property
+    def surface(self) -> SurfaceSpread:
+        """Law of Ra, in the order of its parameters."""
+        if self.names != NAMES:
+            raise KeyFault("names", f"must be {', '.join(NAMES)}")
+        sd = self.prior_sd
+        return SurfaceSpread(
+            mean=self.mean,
+            covariance=tuple(
+                tuple(value * one * two for value, two in zip(row, sd, strict=True))
+                for row, one in zip(self.covariance, sd, strict=True)
+            ),
+            sigma=self.sigma,
+            degrees=self.degrees,
+            count=self.count,
+        )
+
 
 class CalibrationTable(FileTable, frozen=True, kw_only=True):
     """The ``[calibration]`` table: measured rows, and what was known before them.
@@ -309,6 +327,7 @@ def read_material(path: Path) -> WorkMaterial:
     sides = _sides(file)
     spread, modulus = kienzle.spread, file.youngs_modulus_n_mm2
     condition = () if file.condition is None else (f"condition: {file.condition}",)
+    learned = None if file.calibration is None else file.calibration.roughness
     return WorkMaterial(
         name=path.stem,
         title=file.title,
@@ -329,6 +348,7 @@ def read_material(path: Path) -> WorkMaterial:
         back_force=sides.back,
         spread=USUAL_SPREAD[group] if spread is None else spread,
         youngs_modulus=LEAST_MODULUS[group] if modulus is None else modulus,
+        surface=None if learned is None else learned.surface,
     )
 
 

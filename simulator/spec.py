@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from math import inf
 
+from simulator.physics.surface_spread import SurfaceSpread
 from simulator.planner_settings import USUAL, PlannerSettings
 from simulator.work_holding import Holding
 
@@ -350,6 +351,8 @@ class WorkMaterial:
     """Relative spread of k_c: σ of ln k_c is ln(1 + spread); ``None``: k_c is exact."""
     youngs_modulus: float | None = None
     """Young's modulus, N/mm², for the bending of bars; ``None``: unknown."""
+    surface: SurfaceSpread | None = None
+    """Law of Ra that own measurements taught; ``None``: the spread between studies."""
 
 
 class ToolKind(StrEnum):

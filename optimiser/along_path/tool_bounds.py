@@ -16,7 +16,7 @@ from optimiser.errors import Infeasible
 from optimiser.limits import depth_at_shoulder
 from optimiser.optimise import DEFAULT_QUALITY
 from optimiser.plunge_feed import permitted_plunge
-from optimiser.problem import BoundSide, LimitName, Setting
+from optimiser.problem import BoundSide, Limit, LimitName, Setting
 from optimiser.roughness import surface_limits
 from optimiser.safety import safety_factor
 from optimiser.speed_limits import SourcedBound, cutting_speed_window
@@ -45,6 +45,8 @@ class KnownOfJob:
 
     force_factor: float = 1.0
     """Accepted correction of k_c for the tool."""
+    roughness_quantile: float = 0.5
+    """Share of surfaces that must keep the roughness."""
     safety_factor: float | None = None
     """k_c at the planned quantile over its accepted correction; None: by the material."""
     holding: Holding | None = None
@@ -104,7 +106,11 @@ def bounds_of_tool(  # noqa: PLR0913 (a tool, its machine and material, and what
         safety_factor=customary if job.safety_factor is None else job.safety_factor,
         holding=None if machine.only_stated_limits else job.holding,
         grip=job.grip,
+        roughness_quantile=job.roughness_quantile,
     )
+    # The blocks tell speed and coolant: until then the surface that is hardest to keep, dry and
+    # at the least speed.
+    at = replace(at, finishing_speed=cutting_speed_window(at)[0] or 0.0)
     surface = _surface_feed(cut, at)
     return CutBounds(
         cut=cut,
@@ -112,7 +118,7 @@ def bounds_of_tool(  # noqa: PLR0913 (a tool, its machine and material, and what
         fixed=() if surface is None else ((CapName.ROUGHNESS, surface),),
         plunge=permitted_plunge(cut, at),
         deepest=depth_at_shoulder(cut, at),
-        keeps_programmed=is_unsourced(cut, at),
+        keeps_programmed=is_unsourced(cut, at) or not _is_promised(cut, at),
         is_held_along=at.holding is not None,
     )
 
@@ -265,13 +271,23 @@ def _tool(tool: TableTool, shape: Cutter | Insert) -> Tool:
     )
 
 
+def _surfaces(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
+    """Limits of all surfaces that a tool may leave."""
+    for texture in TEXTURES.get(cut.tool_kind, ()):
+        yield from surface_limits(replace(cut, texture=texture), at)
+
+
+def _is_promised(cut: Cut, at: CuttingConditions) -> bool:
+    """True unless the roughness of a surface stands on the programmed feed alone."""
+    return all(limit.stands_for is None for limit in _surfaces(cut, at))
+
+
 def _surface_feed(cut: Cut, at: CuttingConditions) -> float | None:
     """Greatest feed per tooth that keeps the roughness of all surfaces, mm; None: any."""
     feeds = [
         limit.feed_at_bound(1.0, 1.0)
-        for texture in TEXTURES.get(cut.tool_kind, ())
-        for limit in surface_limits(replace(cut, texture=texture), at)
-        if limit.sense is BoundSide.AT_MOST
+        for limit in _surfaces(cut, at)
+        if limit.sense is BoundSide.AT_MOST and limit.stands_for is None
     ]
     least = min(feeds, default=None)
     if least is not None and least <= 0.0:

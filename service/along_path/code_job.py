@@ -57,7 +57,9 @@ def job_of(code: CodePaths, request: AdviceRequest, *, knowledge: str) -> CodeJo
     grip = None
     if isinstance(holding, Chuck):
         grip = grip_of_bar(holding, raw_stock_of(request.stock).bounds)
-    others = KnownOfJob(holding=holding, grip=grip)
+    others = KnownOfJob(
+        holding=holding, grip=grip, roughness_quantile=request.roughness_quantile
+    )
     factors = _factors(code, request, knowledge)
     return CodeJob(
         corrections={

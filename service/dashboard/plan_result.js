@@ -79,8 +79,9 @@ function showSteps(found) {
     `${found.mode}, ${MODES[found.mode]}`].join(" · ");
   const infeasible = count("infeasible");
   const unchecked = steps.reduce((sum, step) => sum + (step.status === "advised" ? step.unchecked?.length ?? 0 : 0), 0);
+  const unlikely = found.unlikely_surfaces ?? [];
   fill(byId("figures"), times("Machining time", before, after, "big"),
-    saving(infeasible ? "Time, where feasible" : "Time", before, after, infeasible > 0 || unchecked > 0),
+    saving(infeasible ? "Time, where feasible" : "Time", before, after, infeasible > 0 || unchecked > 0 || unlikely.length > 0),
     el("div", { class: "figure" }, el("div", { class: "name" }, "Workingsteps advised"),
       el("div", {}, el("span", { class: "value" }, `${count("advised")} of ${steps.length}`),
         count("untouched") ? el("span", { class: "unit" }, `${count("untouched")} untouched`) : null)),
@@ -95,6 +96,8 @@ function showSteps(found) {
     `${infeasible} workingstep${infeasible > 1 ? "s have" : " has"} no feasible feed: the table says why. They stay as programmed, also in the NC code; times compare the others.`) : null,
   unchecked ? el("div", { class: "banner warn", role: "alert" },
     `Not fully checked: ${unchecked} required limit${unchecked > 1 ? "s" : ""} could not be looked at. The reasons name what to give.`) : null,
+  unlikely.length ? el("div", { class: "banner warn", role: "alert" },
+    `Roughness is not promised in ${unlikely.join(", ")}: it is kept with less than 90 % probability. Measure own surfaces, or plan with a greater roughness quantile.`) : null,
   found.is_written ? null : el("div", { class: "banner warn" }, "No optimised program was written, because nothing would change."),
   findingsList(found.findings, "of the plan"));
   byId("download-program").disabled = !found.is_written;

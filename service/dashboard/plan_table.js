@@ -164,6 +164,9 @@ function facts(step) {
     ["Motor power, kW", number(step.motor_power_kw)],
     ["Cutting force, N", number(step.cutting_force_n)],
     step.roughness_ra_um ? [`Roughness Ra, µm (${step.roughness_basis})`, number(step.roughness_ra_um)] : null,
+    step.roughness_expected_um ? ["Roughness Ra expected, µm", number(step.roughness_expected_um)] : null,
+    step.roughness_probability === null || step.roughness_probability === undefined ? null
+      : ["Probability of keeping the required Ra", `${Math.round(100 * step.roughness_probability)} %`],
     ["Energy, kJ", step.energy_j === null ? "–" : number(step.energy_j / 1000, 4)],
     ["Operation", words(step.operation)],
     ["Tool", step.tool],

@@ -8,6 +8,7 @@ from annotated_types import Interval, Len, MaxLen
 
 from optimiser.greatest_rise import USUAL_RISE
 from optimiser.modes import Free, Mode
+from optimiser.roughness import GREATEST_SHARE, LEAST_SHARE
 from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE
 from service.requests.fields import About
 from service.requests.given import Name, ProgramRequest
@@ -51,6 +52,15 @@ class AdviceRequest(ProgramRequest):
             group="limits", flag="--roughness", metavar="UM",
         ),
     ] = None  # fmt: skip
+    roughness_quantile: Annotated[
+        float,
+        Interval(ge=LEAST_SHARE, le=GREATEST_SHARE),
+        About(
+            "share of real surfaces that must keep their Ra; 0.5: half of them",
+            name="roughness quantile", group="limits", flag="--roughness-quantile",
+            metavar="Q",
+        ),
+    ] = LEAST_SHARE  # fmt: skip
     free: Annotated[
         tuple[Free, ...],
         Len(1, 3),

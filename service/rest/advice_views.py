@@ -106,6 +106,12 @@ class AdvisedView(View):
     roughness_basis: str | None = Field(
         default=None, description="what the roughness is: ideal, not measured"
     )
+    roughness_expected_um: float | None = Field(
+        default=None, description="Ra that half of real surfaces keep; null: nothing is known"
+    )
+    roughness_probability: float | None = Field(
+        default=None, description="probability that the surface keeps its required Ra"
+    )
     refused_passes: list[RefusedPassesView] = Field(
         default=[], description="numbers of passes that would leave other stock than programmed"
     )
@@ -294,6 +300,10 @@ class AdviceView(View):
     workingsteps: list[AdvisedView]
     is_checked: bool = Field(
         default=True, description="whether every required limit could be looked at"
+    )
+    unlikely_surfaces: list[str] = Field(
+        default=[],
+        description="workingsteps that keep their Ra with less than 90 % probability",
     )
     total_time_s: BeforeAfterView
     findings: list[FindingView]

@@ -2,15 +2,14 @@
 
 ``ln k_c = ln k₀ − m·ln(h/h₀)`` at h₀ = 0.2 mm, because k_c1.1 is an extrapolation whose error
 goes with that of m; tool, chip breaker, edge and coolant move k₀ and m a little.
-``ln Ra = ln(c·Ra_ideal + R₀·(v/150)^−γ·e^(δ·dry))``, v in m/min held to 60 to 250: a floor that
-the feed does not explain. ``ln T = ln T₀ − (1/n)·ln(v/v₀) − x·ln(f/f₀) − y·ln(a/a₀)``.
+Ra has the law of :mod:`simulator.physics.surface_spread`.
+``ln T = ln T₀ − (1/n)·ln(v/v₀) − x·ln(f/f₀) − y·ln(a/a₀)``.
 
 References
 ----------
 .. [1] O. Kienzle, VDI-Z 94, 1952: k_c = k_c1.1·h^−m_c. Priors of k₀ and m: spread over 34
    materials and between catalogues (Mitsubishi Materials, cutting power).
-.. [2] Priors of c, R₀, γ, δ: spread between published studies of turning and end milling.
-.. [3] ISO 3685: tool life in turning. Priors of x and y are customary.
+.. [2] ISO 3685: tool life in turning. Priors of x and y are customary.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,27 +24,27 @@ from simulator.calibration.cut_table import CutRow
 from simulator.calibration.log_model import Curve, Prior, Readings
 from simulator.motion.segments import Floats
 from simulator.physics.surface import RA_FLOOR, corner_coefficient
+from simulator.physics.surface_spread import (
+    HELD_SPEED,
+    NAMES,
+    REFERENCE_SPEED,
+    unmeasured_spread,
+)
 from simulator.spec import Taylor, WorkMaterial
 from stepnc_model.units import m_min_from_speed, rad_from_deg, um_from_mm
 
 REFERENCE_CHIP = 0.2  # mm
 REFERENCE_FEED = 0.2  # mm, of tool life
 REFERENCE_DEPTH = 2.0  # mm, of tool life and of forces whose depth is not known
-REFERENCE_SPEED = 150.0  # m/min, of roughness
-HELD_SPEED = (60.0, 250.0)  # m/min
 
 SPREAD_OF_CATALOGUE = 0.30  # sd of ln k₀; catalogues differ by 20 to 70 % for one steel
 SPREAD_OF_HARDENED = 0.6  # sd of ln k₀ in ISO group H, whose m_c is a guess
 EXPONENT = {True: (0.23, 0.05), False: (0.20, 0.08)}  # m, turning and milling
 BETWEEN_TOOLS = (0.08, 0.05)  # sd of ln k₀ and of m between chip breakers on one steel
-FORCE_SCATTER, RA_SCATTER, LIFE_SCATTER = 0.03, 0.22, 0.35  # sd of ln of one reading
+FORCE_SCATTER, LIFE_SCATTER = 0.03, 0.35  # sd of ln of one reading
 GROWTH = 0.05  # sd of ln k_c for each e-fold of h outside the measured range
 WEAR_FORCE = (500.0, 300.0)  # N/mm², force over the worn land
 UNKNOWN_DEPTH = 1.0  # sd of ln a_p where a table gives none
-RA_SHARE = (0.7, 0.40)  # c: median, sd of ln
-RA_LEVEL = (0.7, 0.65)  # R₀, µm at 150 m/min and wet: median, sd of ln
-RA_SPEED = {True: (0.8, 0.4), False: (0.0, 0.2)}  # γ; no built-up edge in groups N and K
-RA_DRY = (0.45, 0.2)  # δ
 RA_WEAR = (2.0, 0.5)  # of Ra for each mm of flank wear, and its relative sd
 LIFE_LEVEL = 1.0  # sd of ln T₀
 SLOPE = {"hss": (0.125, 0.03), "carbide": (0.25, 0.05), "ceramic": (0.6, 0.1)}  # n
@@ -228,20 +227,14 @@ class RoughnessLaw:
     @property
     def prior(self) -> Prior:
         """A shop that was not measured."""
-        speed = RA_SPEED[self.material.iso_group not in {"N", "K"}]
-        # Of k teeth in contact, k even in 1 … z: see _contact.
-        mean, sd = np.array([
-            (log(RA_SHARE[0]), RA_SHARE[1]),
-            (log(RA_LEVEL[0]), RA_LEVEL[1]),
-            speed,
-            RA_DRY,
-            (0.0, 1.0),
-            (0.43, 0.38),
-        ]).T
+        known = unmeasured_spread(self.material.iso_group)
         return Prior(
-            names=("ln c", "ln R0", "gamma", "delta", "wear", "contact"), mean=mean, sd=sd,
-            sigma=RA_SCATTER, degrees=5.6,
-        )  # fmt: skip
+            names=NAMES,
+            mean=np.array(known.mean),
+            sd=np.sqrt(np.diag(known.covariance)),
+            sigma=known.sigma,
+            degrees=known.degrees,
+        )
 
     def readings(self, rows: Sequence[CutRow]) -> Readings:
         """Logarithm of Ra."""

@@ -14,6 +14,7 @@ from optimiser.cut import CutKind
 from optimiser.required import UncheckedLimit
 from optimiser.roughness import IDEAL
 from service.rendering.columns import Column, record, records
+from simulator.physics.surface_spread import LIKELY
 from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.given import SetAttribute
@@ -38,7 +39,23 @@ UNCHECKED: tuple[Column[UncheckedLimit], ...] = (
 
 
 def unchecked_words(plan: Plan) -> str:
-    """State how many required limits could not be looked at; empty if none."""
+    """State which limits of a plan are in doubt; empty if none.
+
+    Required ones that could not be looked at, and roughness that is not likely to be kept.
+    """
+    return _unchecked(plan) + _unlikely(plan)
+
+
+def _unlikely(plan: Plan) -> str:
+    """State how many surfaces may be rougher than required; empty if none."""
+    count = len(plan.unlikely_surfaces)
+    if not count:
+        return ""
+    keep = "surface keeps its" if count == 1 else "surfaces keep their"
+    return f"; {count} {keep} Ra with less than {100.0 * LIKELY:g} % probability"
+
+
+def _unchecked(plan: Plan) -> str:
     if not plan.unchecked:
         return ""
     steps = len({advice.workingstep.ref for advice, _ in plan.unchecked})
@@ -178,6 +195,10 @@ def advice_record(advice: Advice) -> dict[str, Any]:
         "cutting_force_n": shown.cutting_force if shown else None,
         "roughness_ra_um": um_from_mm(shown.roughness) if shown and shown.roughness else None,
         "roughness_basis": IDEAL if shown and shown.roughness else None,
+        "roughness_expected_um": um_from_mm(shown.surface.median)
+        if shown and shown.surface
+        else None,
+        "roughness_probability": advice.roughness_probability,
         "energy_j": shown.energy if shown else None,
         "time_s": {
             "before": before.time if before else None,

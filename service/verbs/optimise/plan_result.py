@@ -13,7 +13,7 @@ from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, Plan
 from optimiser.modes import Mode
 from optimiser.problem import LimitName
 from optimiser.reasons import slower_than_programmed
-from optimiser.roughness import IDEAL
+from optimiser.roughness import IDEAL, basis_of
 from optimiser.stability import Basis
 from service.exit_codes import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED, OK
 from service.rendering.columns import Cell, Change, Column, finding_record
@@ -250,6 +250,10 @@ def _head(plan: Plan) -> Iterator[Item]:
         foot={"workingstep": "total", "time s": total},
     )  # fmt: skip
     yield Fact(key="is_checked", value=not plan.unchecked)
+    yield Fact(
+        key="unlikely_surfaces",
+        value=[advice.workingstep.id for advice in plan.unlikely_surfaces],
+    )
     yield Fact(key="total_time_s", value={"before": plan.time_before, "after": plan.time_after})
     yield Fact(key="slower_than_programmed", value=list(slower))
     yield Fact(
@@ -366,6 +370,7 @@ def _reason(advice: Advice) -> str:
         and advice.cut.is_finishing
     ):
         text += f"; leaves Ra {um_from_mm(advice.after.roughness):.3g} µm ({IDEAL})"
+        text += _expected(advice)
     if advice.cut is not None:
         text += "".join(f"; {each.words}" for each in advice.cut.refused_passes[:1])
     deepest = advice.deepest_first_time
@@ -376,6 +381,18 @@ def _reason(advice: Advice) -> str:
     if advice.unchecked:
         text += "; unchecked: " + "; ".join(limit.words for limit in advice.unchecked)
     return text + _stability_words(advice, advice.after)
+
+
+def _expected(advice: Advice) -> str:
+    """Median and probability of a finished surface; empty where nothing is known of it."""
+    state, at = advice.after, advice.conditions
+    if state is None or state.surface is None or at is None:
+        return ""
+    text = f", {um_from_mm(state.surface.median):.3g} µm expected ({basis_of(at)})"
+    chance = advice.roughness_probability
+    if chance is None or at.roughness is None:
+        return text
+    return f"{text}, keeps Ra {um_from_mm(at.roughness):g} µm with {100.0 * chance:.0f} %"
 
 
 def _stability_words(advice: Advice, state: EvaluatedSetting) -> str:

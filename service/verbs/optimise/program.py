@@ -335,6 +335,7 @@ def _task(
         mode=request.mode,
         free=frozenset(request.free),
         roughness=None if roughness is None else mm_from_um(roughness),
+        roughness_quantile=request.roughness_quantile,
         tool_change=request.tool_change_s,
         wipers=frozenset(tool.id for tool in tools if tool.has_wiper),
         front=request.has_pareto,
