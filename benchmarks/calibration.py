@@ -16,6 +16,11 @@ import numpy as np
 
 import stepnc
 from simulator.calibration.cut_fit import CutPrediction
+from simulator.library import load_material
+from simulator.physics.surface import RA_FLOOR, corner_coefficient
+from simulator.physics.surface_spread import forecast, unmeasured_spread
+from simulator.spec import WorkMaterial
+from stepnc_model.units import mm_from_um, speed_from_m_min
 
 DATA = Path(__file__).parents[2] / "shared" / "data"
 MEASURED = DATA / "measured"
@@ -55,6 +60,78 @@ def main(arguments: Sequence[str] | None = None) -> None:
             _print(list(trials))
         except FileNotFoundError:
             print(f"{name}: skipped, it is not in {DATA}")
+    try:
+        _print_surfaces(list(_roughness(count)))
+    except FileNotFoundError:
+        print(f"ra_1045_hindawi.csv: skipped, it is not in {DATA}")
+
+
+SHARES = (0.5, 0.8, 0.9)
+
+
+def _print_surfaces(trials: Sequence[Trial]) -> None:
+    """Print the share of measured surfaces that are rougher than a plan promises."""
+    table = [row for trial in trials for row in (*trial.fit, *trial.test)]
+    # Each column of the table has trials of the same rows.
+    surfaces = [dict(each) for each in {tuple(row.items()): None for row in table}]
+    print(f"\n{'promise for a surface of AISI 1045':<52}{'surfaces':>9}{'rougher':>9}")
+    start = load_material(STEEL)
+    ideal = [_measured(row) > _ideal(row) + RA_FLOOR for row in surfaces]
+    _print_share("ideal + 0.2 µm", ideal)
+    for share in SHARES:
+        found = [_measured(row) > _promised(start, row, share) for row in surfaces]
+        _print_share(f"not measured, {100.0 * share:g} % of surfaces", found)
+    for share in SHARES:
+        found = [
+            _measured(row) > _promised(material, row, share)
+            for trial in trials
+            for material in [learned(trial)]
+            for row in trial.test
+        ]
+        _print_share(f"five own surfaces, {100.0 * share:g} % of surfaces", found)
+    ratios = [
+        _promised(material, row, SHARES[-1]) / _promised(material, row, SHARES[0])
+        for trial in trials
+        for material in [learned(trial)]
+        for row in trial.test
+    ]
+    print(f"after five own surfaces the 90 % promise is {np.mean(ratios):.2f} × the median")
+
+
+def _print_share(name: str, are_rougher: Sequence[bool]) -> None:
+    print(f"{name:<52}{len(are_rougher):>9}{np.mean(are_rougher):>9.1%}")
+
+
+def _ideal(row: Row) -> float:
+    return (
+        corner_coefficient(float(str(row["nose_radius_mm"]))) * float(str(row["feed_mm"])) ** 2
+    )
+
+
+def _measured(row: Row) -> float:
+    return mm_from_um(float(str(row["ra_um"])))
+
+
+def _promised(material: WorkMaterial, row: Row, share: float) -> float:
+    """Ra that a share of surfaces keeps, mm."""
+    found = forecast(
+        material.surface or unmeasured_spread(material.iso_group),
+        _ideal(row),
+        cutting_speed=speed_from_m_min(float(str(row["cutting_speed_m_min"]))),
+        is_dry=row["coolant"] == "dry",
+    )
+    return found.quantile(share)
+
+
+def learned(trial: Trial) -> WorkMaterial:
+    """Material with what the fitted rows teach, as the command writes it."""
+    with TemporaryDirectory() as folder:
+        fit, model = Path(folder) / "fit.csv", Path(folder) / "model.toml"
+        _write(fit, trial.fit)
+        stepnc.calibrate(
+            table=str(fit), material=trial.material, output=str(model), anyway=True
+        )
+        return load_material(str(model))
 
 
 def _print(trials: Sequence[Trial]) -> None:

@@ -479,6 +479,7 @@ def optimise(
     machine: str | Path = ...,
     material: str | Path = ...,
     roughness_um: float | None = ...,
+    roughness_quantile: float = ...,
     free: Literal['feed', 'depth', 'speed'] | Iterable[Literal['feed', 'depth', 'speed']] = ...,
     workingsteps: str | Path | Iterable[str | Path] = ...,
     profile: Literal['optimisation', 'standard'] = ...,

@@ -103,8 +103,7 @@ def test_surface_that_the_feed_does_not_describe_has_no_roughness() -> None:
 
 def test_turned_roughness_of_print_allows_the_feed_of_print() -> None:
     """Ra 1.6 µm and a nose of 0.8 mm: 0.1998 mm without the floor of 0.2 µm."""
-    at = conditions(ToolKind.TURNING, roughness=1.6e-3 + 0.2e-3)
-    limit = named(limits_of(TURNED, at), LimitName.ROUGHNESS)
+    limit = roughness_limit(TURNED, 1.6e-3 + 0.2e-3)
     assert limit.feed_at_bound(1.0, 10.0) == pytest.approx(0.1998, abs=5e-5)
 
 
@@ -129,7 +128,8 @@ def test_finer_than_careful_milling_leaves_the_corner_counts_despite_a_land() ->
     cut = replace(
         CUT, texture=Texture.CORNER_PER_REVOLUTION, corner_radius=0.8, parallel_land=1.4
     )
-    (limit,) = surface_limits(cut, replace(CARBIDE, roughness=RA_FLOOR / 2.0))
+    limit, programmed = surface_limits(cut, replace(CARBIDE, roughness=RA_FLOOR / 2.0))
+    assert programmed.stands_for is LimitName.ROUGHNESS
     assert limit.unit == "µm"
     assert limit.feed_at_bound(1.0, 1.0) == 0.0
 
