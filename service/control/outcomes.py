@@ -11,7 +11,7 @@ from controller.record import RunRecord
 from optimiser.advice import Advice, EvaluatedSetting
 from optimiser.cut import Cut, CutKind
 from optimiser.region import region_of
-from optimiser.roughness import roughness_load
+from optimiser.roughness import roughness_forecast, roughness_load
 from service.control.planned import PlannedWorkingstep
 from service.control.run import ControlRun
 from service.records import immersion
@@ -80,7 +80,7 @@ def _outcome(
     cut, setting, record = step.cut, step.state.setting, step.record
     material, tool = run.material.material, step.advice.tool.id
     per_tooth = record.feed / (cut.tool.teeth * setting.speed)
-    roughness = None if run.recorded else _roughness(cut, per_tooth)
+    roughness = None if run.recorded else _roughness(step, per_tooth)
     return ProcessOutcome(
         context=Context(machine=run.machine.name, material=material.name, tool=tool),
         program=run.program.name,
@@ -95,7 +95,7 @@ def _outcome(
         immersion=_immersion(cut),
         strategy=_strategy(run.program, step.advice.workingstep),
         roughness=EvaluatedQuantity(
-            predicted=step.state.roughness,
+            predicted=_roughness(step, setting.feed),
             measured=None if roughness is None else roughness * error,
         ),
         time=EvaluatedQuantity(predicted=step.planned.time, measured=record.time),
@@ -112,12 +112,14 @@ def _outcome(
     )
 
 
-def _roughness(cut: Cut, feed_per_tooth: float) -> float | None:
-    """Roughness Ra left by a feed per tooth, in mm; None if the feed does not set it."""
-    load = roughness_load(cut)
-    if load is None or not cut.is_finishing:
+def _roughness(step: _CutStep, feed_per_tooth: float) -> float | None:
+    """Expected Ra of a finished surface, mm; ideal where no study tells; None if unknown."""
+    load, at = roughness_load(step.cut), step.advice.conditions
+    if load is None or at is None or not step.cut.is_finishing:
         return None
-    return load.value(feed_per_tooth, 1.0, 1.0)
+    speed = step.state.setting.speed
+    found = roughness_forecast(step.cut, at, feed=feed_per_tooth, speed=speed)
+    return load.value(feed_per_tooth, 1.0, 1.0) if found is None else found.median
 
 
 def _immersion(cut: Cut) -> FaceMillingImmersion | None:
