@@ -10,6 +10,7 @@ from optimiser.holding import HoldingLoad
 from optimiser.modes import Mode
 from optimiser.problem import BoundSide, Limit, LimitName, Setting
 from optimiser.required import UncheckedLimit
+from optimiser.roughness import LEAST_SHARE
 from optimiser.safety import USUAL_QUANTILE
 from optimiser.stability import ChatterRisk, Stability, risk_of
 from simulator.physics.surface_spread import LIKELY, RoughnessForecast
@@ -187,6 +188,8 @@ class Plan:
     findings: tuple[Finding, ...]
     safety: float = USUAL_QUANTILE
     """Quantile of k_c at which the loads keep their bounds."""
+    roughness_quantile: float = LEAST_SHARE
+    """Share of real surfaces that keep their roughness."""
     refused: tuple[RefusedWorkingstep, ...] = ()
     """Workingsteps that were left as they are, if the plan keeps going."""
 

@@ -131,6 +131,7 @@ def optimise_program(
         advices=tuple(advices),
         findings=tuple(findings),
         safety=task.safety,
+        roughness_quantile=task.roughness_quantile,
         refused=tuple(refused),
     )
 

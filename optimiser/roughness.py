@@ -109,7 +109,7 @@ def _kept_roughness(cut: Cut, at: CuttingConditions, roughness: float) -> Iterat
         bound=roughness,
         unit="µm",
         scale=UM_PER_MM,
-        label=f"roughness Ra of {100.0 * share:g} % of surfaces ({basis_of(at)})",
+        label=f"roughness Ra of {100.0 * share:g} % of surfaces",
     )
 
 

@@ -207,7 +207,7 @@ class ProgramAdvice(OptimiseResult):
         return rendered(
             "plan.html.jinja",
             plan=plan,
-            mode=mode_words(plan.mode),
+            mode=mode_words(plan),
             columns=PAGE,
             unchecked=unchecked_words(plan).removeprefix("; "),
             change=f"{after / before - 1.0:+.0%}" if before else "",
@@ -228,7 +228,7 @@ def _head(plan: Plan) -> Iterator[Item]:
     for text in slower:
         yield TextLine(text=text, colour=RED)
     yield TextLine(
-        text=f"{plan.program}: mode {mode_words(plan.mode)}, machine {plan.machine.name} "
+        text=f"{plan.program}: mode {mode_words(plan)}, machine {plan.machine.name} "
         f"({plan.machine.title}), material {material.title}{unchecked_words(plan)}"
     )
     yield Fact(key="program", value=plan.program)
@@ -312,9 +312,13 @@ def _confirmation_items(confirmation: "Confirmation") -> Iterator[Item]:
         yield TextLine(text=f"not as planned: {text}", colour=RED)
 
 
-def mode_words(mode: Mode) -> str:
+def mode_words(plan: Plan) -> str:
     """Name of a mode; of QC with what its roughness is."""
-    return f"{mode.value} (Ra is {IDEAL})" if mode is Mode.QC else mode.value
+    if plan.mode is not Mode.QC:
+        return plan.mode.value
+    if plan.machine.only_stated_limits:
+        return f"{plan.mode.value} (Ra is {IDEAL})"
+    return f"{plan.mode.value} (Ra of {100.0 * plan.roughness_quantile:g} % of surfaces)"
 
 
 def _safety(plan: Plan) -> str:
