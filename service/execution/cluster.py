@@ -14,6 +14,7 @@ from importlib.metadata import version
 from ipaddress import ip_address
 from pathlib import Path
 from platform import python_version
+from traceback import walk_tb
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
@@ -81,10 +82,28 @@ def cluster(address: str, *, patience: float = PATIENCE) -> Iterator[Executor]:
         yield client.get_executor(pure=False)
     except (KilledWorker, CommClosedError, TimeoutError) as error:
         raise BrokenExecutor(_first_line(error)) from error
+    except (AttributeError, TypeError, ValueError) as error:
+        if _is_of_lost_result(error):
+            raise BrokenExecutor("a worker was lost with its result") from error
+        raise
     finally:
         # A scheduler that is away does not answer to a farewell either.
         with suppress(OSError):
             client.close(timeout=patience)
+
+
+def _is_of_lost_result(error: BaseException) -> bool:
+    """True for an error that Dask's executor itself raises.
+
+    It awaits a result and then reads the state of its task. If the worker was lost in between,
+    it unpacks the result as if it were an error.
+    """
+    from distributed import cfexecutor  # noqa: PLC0415
+
+    files = [frame.f_code.co_filename for frame, _ in walk_tb(error.__traceback__)]
+    # An error of a task that is not written in Python ends there as well.
+    is_unpacking = "unpack" in str(error) or "with_traceback" in str(error)
+    return is_unpacking and files[-1:] == [cfexecutor.__file__]
 
 
 def _require_workers(client: "Client", address: str, *, patience: float) -> None:

@@ -1,15 +1,18 @@
 """A Dask cluster as an executor: real schedulers and workers, killed at any moment."""
 
+import asyncio
+import math
 import shutil
 import subprocess
 import threading
 from collections.abc import Iterator
-from concurrent.futures import BrokenExecutor
+from concurrent.futures import BrokenExecutor, Future
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
+from distributed.cfexecutor import _cascade_future
 
 from benchmarks.local_cluster import LocalCluster, free_port, running_cluster
 from service.execution import cluster as cluster_module
@@ -71,6 +74,33 @@ def test_a_scheduler_that_forgot_everything_is_asked_again(tmp_path: Path) -> No
                 made.start_worker()
     assert len(found) == len(tasks)
     assert told
+
+
+class LostFuture:
+    """Dask's future of a task whose worker is lost once its result has come."""
+
+    status = "pending"
+
+    async def _result(self, *, raiseit: bool) -> tuple[float, ...]:
+        return (1.0, 2.0, 3.0, 4.0)
+
+
+def test_a_worker_that_is_lost_with_its_result_breaks_the_executor(
+    shared: LocalCluster,
+) -> None:
+    future: Future[object] = Future()
+    asyncio.run(cascaded(future))
+    with pytest.raises(BrokenExecutor, match="lost with its result"), cluster(shared.address):
+        future.result()
+
+
+async def cascaded(future: Future[object]) -> None:
+    await _cascade_future(LostFuture(), future)
+
+
+def test_an_error_of_a_task_is_its_own(shared: LocalCluster) -> None:
+    with pytest.raises(ValueError, match="math domain error"), cluster(shared.address) as pool:
+        pool.submit(math.sqrt, -1.0).result()
 
 
 def test_a_cluster_that_does_not_answer_is_named() -> None:
