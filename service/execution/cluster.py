@@ -144,7 +144,7 @@ def versions() -> dict[str, str]:
     }
 
 
-def _require_versions(address: str, found: dict[str, object]) -> None:
+def _require_versions(address: str, versions_of: dict[str, object]) -> None:
     """Refuse workers of other versions: they may not understand what they are sent.
 
     Raises
@@ -153,7 +153,7 @@ def _require_versions(address: str, found: dict[str, object]) -> None:
         With the worker, both versions and what to do.
     """
     own = versions()
-    for worker, theirs in found.items():
+    for worker, theirs in versions_of.items():
         if isinstance(theirs, OSError):
             # It has just ended; others do its work.
             continue
