@@ -291,7 +291,7 @@ def _keeps_bounds(step: ConfirmedStep) -> bool:
 
 def _time(step: ConfirmedStep) -> float:
     """Time of a workingstep on the virtual machine, s."""
-    return next(figure.found for figure in step.figures if figure.key == "time_s")
+    return next(figure.simulated for figure in step.figures if figure.key == "time_s")
 
 
 def planned(

@@ -129,7 +129,7 @@ def summary(found: list[Confirmation]) -> str:
 
 def is_compared(figure: Figure) -> bool:
     """True if plan or run have anything of a quantity."""
-    return figure.promised > 0.0 or figure.found > 0.0
+    return figure.promised > 0.0 or figure.simulated > 0.0
 
 
 def off(figure: Figure) -> float:
@@ -162,8 +162,8 @@ def _print(name: str, confirmation: Confirmation, *, has_rows: bool) -> None:
 
 def _told(figure: Figure) -> str:
     if figure.ratio is None:
-        return "" if figure.found == 0.0 else f"0 -> {figure.found:.4g}"
-    return f"{figure.promised:.4g} -> {figure.found:.4g} ({figure.ratio:.3f})"
+        return "" if figure.simulated == 0.0 else f"0 -> {figure.simulated:.4g}"
+    return f"{figure.promised:.4g} -> {figure.simulated:.4g} ({figure.ratio:.3f})"
 
 
 if __name__ == "__main__":

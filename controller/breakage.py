@@ -41,7 +41,7 @@ from controller.tooth_shares import ToothShares, force_ratio, shares_of
 EVIDENCE = 10.0
 """Gain of ln(likelihood) that two revolutions together need to indicate a lost tooth."""
 
-EACH = 2.0
+LEAST_GAIN = 2.0
 """Gain of ln(likelihood) that each of the two revolutions needs; one alone is not enough."""
 
 TRUST = 2.0
@@ -189,7 +189,7 @@ def _suspects(turns: Sequence[_Turn], known: Offsets) -> list[int]:
             suspects = [tooth for tooth in suspects if turn.without[tooth] < bound]
         if not suspects:
             break
-        least = judged(known, turn.shares).log_likelihood + EACH
+        least = judged(known, turn.shares).log_likelihood + LEAST_GAIN
         alone = {each: judged(known, turn.shares, lost=each) for each in suspects}
         suspects = [each for each in suspects if alone[each].log_likelihood >= least]
     return suspects

@@ -168,10 +168,10 @@ def begun(state: LoopState, reading: Reading, steps: Sequence[LoopStep]) -> Loop
     if state.phase not in {Phase.HELD, Phase.STOPPED}:
         state = _opened(state)
     if step.reference.workingstep:
-        state = told(state, EventKind.WORKINGSTEP, introduction(settings, step.reference))
+        state = with_event(state, EventKind.WORKINGSTEP, introduction(settings, step.reference))
         if step.reference.inhibition:
             text = f"feed left as it is: {step.reference.inhibition}"
-            state = told(state, EventKind.INHIBITED, text)
+            state = with_event(state, EventKind.INHIBITED, text)
     return state
 
 
@@ -297,7 +297,7 @@ def _held(state: LoopState, reading: Reading, load: float) -> LoopState:
     text = f"tooth force {load:.4g} N exceeds {bound:.4g} N: feed held"
     hold, holds = FeedHold(override=reading.override, force=load), state.holds + 1
     held = _into(state._replace(hold=hold, holds=holds, law=None), Phase.HELD, 0.0)
-    held = told(held, EventKind.HOLD, text)
+    held = with_event(held, EventKind.HOLD, text)
     if holds > state.settings.band.holds:
         often = f"held {counted(int(holds), 'time')} in quick succession"
         return _stopped(held, f"{often}: {state.monitor.cause}")
@@ -324,7 +324,7 @@ def _waited(state: LoopState, hold: FeedHold, reading: Reading, load: float) -> 
         hold=None,
         greatest=0.0,
     )
-    return told(resumed, EventKind.RESUME, f"override {100.0 * override:.4g} %")
+    return with_event(resumed, EventKind.RESUME, f"override {100.0 * override:.4g} %")
 
 
 def _decided(
@@ -387,7 +387,7 @@ def _blinded(state: LoopState) -> LoopState:
     if state.phase is not Phase.BLIND:
         safe = 100.0 * state.settings.band.safe
         text = f"no force for {state.without_force:.2g} s: override limited to {safe:.4g} %"
-        state = told(state, EventKind.SILENCE, text)
+        state = with_event(state, EventKind.SILENCE, text)
     return _into(state._replace(law=None), Phase.BLIND, state.safe)
 
 
@@ -485,7 +485,7 @@ def with_bounds(state: LoopState, *, cap: float) -> LoopState:
 
 def _stopped(state: LoopState, why: str) -> LoopState:
     """Stop the program permanently, with the reason."""
-    return told(_into(state, Phase.STOPPED, 0.0), EventKind.STOP, why)
+    return with_event(_into(state, Phase.STOPPED, 0.0), EventKind.STOP, why)
 
 
 def _into(state: LoopState, phase: Phase, override: float) -> LoopState:
@@ -494,7 +494,7 @@ def _into(state: LoopState, phase: Phase, override: float) -> LoopState:
     return state._replace(phase=phase, allowed=allowed_)
 
 
-def told(state: LoopState, kind: EventKind, text: str) -> LoopState:
+def with_event(state: LoopState, kind: EventKind, text: str) -> LoopState:
     """Add an event."""
     event = LoopEvent(time=state.time, kind=kind, text=text)
     return state._replace(events=(*state.events, event))

@@ -212,7 +212,7 @@ class Monitor(NamedTuple):
         return _inspected(self._replace(events=()), revolution, expected, keep.exponent)
 
 
-def _told(monitor: Monitor, kind: EventKind, time: float, text: str) -> Monitor:
+def _with_event(monitor: Monitor, kind: EventKind, time: float, text: str) -> Monitor:
     event = LoopEvent(time=time, kind=kind, text=text)
     return monitor._replace(events=(*monitor.events, event))
 
@@ -237,7 +237,7 @@ def _warned(monitor: Monitor, revolution: Revolution, set_point: float) -> Monit
             f"{over.seconds:.3g} s: {force:.4g} N, limit {ABOVE:g} times"
         )
     monitor = monitor._replace(level=level, since=now)
-    return _told(monitor, _KINDS[level], now, text)
+    return _with_event(monitor, _KINDS[level], now, text)
 
 
 def _compared(monitor: Monitor, revolution: Revolution, set_point: float) -> Monitor:
@@ -264,7 +264,7 @@ def _reached(monitor: Monitor, revolution: Revolution, keep: WorkingstepBounds) 
         f"the set point of {keep.set_point:.4g} N cannot be reached within the band"
     )
     monitor = monitor._replace(at_floor=-1)
-    return _told(monitor, EventKind.UNREACHABLE, revolution.time, text)
+    return _with_event(monitor, EventKind.UNREACHABLE, revolution.time, text)
 
 
 def _inspected(
@@ -277,7 +277,7 @@ def _inspected(
     if breakage.broken is None or before.is_broken:
         return monitor
     text = f"tooth {breakage.broken + 1} of {revolution.teeth} takes no chip: "
-    return _told(monitor, EventKind.BREAKAGE, revolution.time, text + breakage.reason)
+    return _with_event(monitor, EventKind.BREAKAGE, revolution.time, text + breakage.reason)
 
 
 def wear_words(life: ToolLife) -> str:
@@ -298,12 +298,12 @@ def _lived(monitor: Monitor, now: float, ratios: Ratios) -> Monitor:
         percent = 100.0 * expm1(life.changes[-1])
         way = "harder or deeper cut" if percent > 0.0 else "softer or shallower cut"
         text = f"force {percent:+.0f} % relative to the expected force: {way}"
-        monitor = _told(monitor._replace(changed=now), EventKind.HARDNESS, now, text)
+        monitor = _with_event(monitor._replace(changed=now), EventKind.HARDNESS, now, text)
     if life.is_worn_out and tool not in monitor.worn:
         text = (
             f"tool '{tool}': {wear_words(life)} by {life.basis}; its life ends at "
             f"{LIFE_CRITERION:g} mm: change the tool"
         )
         monitor = monitor._replace(worn=monitor.worn | {tool})
-        monitor = _told(monitor, EventKind.WEAR, now, text)
+        monitor = _with_event(monitor, EventKind.WEAR, now, text)
     return monitor

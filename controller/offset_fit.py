@@ -83,7 +83,7 @@ def misfits(shares: ToothShares, mean: Floats, *, scale: float) -> Floats:
     space = _space_for(shares)
     space.take(shares, mean)
     space.misfits(scale)()
-    return _checked(space.found.copy(), space.found)
+    return _checked(space.square_misfits.copy(), space.square_misfits)
 
 
 def fitted(
@@ -123,13 +123,13 @@ def fitted(
     return _checked(Fit(*(each.copy() for each in space.fit)), space.fit.figures)
 
 
-Found = TypeVar("Found", Floats, Fit)
+Fitted = TypeVar("Fitted", Floats, Fit)
 
 
-def _checked(found: Found, figures: Floats) -> Found:
+def _checked(result: Fitted, figures: Floats) -> Fitted:
     if not figures[0] < inf:
         raise np.linalg.LinAlgError("the covariance of offsets or shares is singular")
-    return found
+    return result
 
 
 def _space_for(shares: ToothShares) -> "_Space":
@@ -165,7 +165,7 @@ class _Space:
         )
         self.measured = np.empty(teeth), np.empty(teeth), np.empty((teeth, teeth))
         self.mean, self.covariance = np.empty(teeth), np.empty((teeth, teeth))
-        self.found = np.empty(teeth + 1)
+        self.square_misfits = np.empty(teeth + 1)
         self.fit = Fit(np.empty(teeth), np.empty((teeth, teeth)), np.empty(2))
         self._scratch = _scratch(teeth)
         self._shares: ToothShares | None = None
@@ -184,8 +184,8 @@ class _Space:
         taken[...], expected[...], noise[...] = shares.taken, shares.expected, shares.noise
 
     def _misfits(self, scale: float) -> BoundKernel:
-        asked = self.mean, self.found
-        return _misfits.bound(self.periods, self.measured, asked, scale, self._scratch)
+        offsets = self.mean, self.square_misfits
+        return _misfits.bound(self.periods, self.measured, offsets, scale, self._scratch)
 
     def _search(self, settings: tuple[float, float, int]) -> BoundKernel:
         known = self.mean, self.covariance, _starts(len(self.mean))
@@ -214,13 +214,13 @@ def _scratch(teeth: int) -> _Scratch:
 def _misfits(
     at: Periods,
     measured: tuple[Floats, Floats, Floats],
-    asked: tuple[Floats, Floats],
+    offsets: tuple[Floats, Floats],
     scale: float,
     scratch: _Scratch,
 ) -> None:
     """Kernel of :func:`misfits`."""
     taken, expected = measured[0], measured[1]
-    mean, found = asked
+    mean, misfits = offsets
     guess, error, precision = scratch.rows[4], scratch.rows[1], scratch.squares[0]
     for each in range(mean.shape[0]):
         scratch.rows[5, each] = mean[each]
@@ -231,7 +231,7 @@ def _misfits(
         shares_into(at, expected, guess, error)
         for each in range(mean.shape[0]):
             error[each] = taken[each] - error[each]
-        found[lost + 1] = _square(error, precision)
+        misfits[lost + 1] = _square(error, precision)
 
 
 @entry
@@ -240,7 +240,7 @@ def _search(
     measured: tuple[Floats, Floats, Floats],
     known: tuple[Floats, Floats, Floats],
     settings: tuple[float, float, int],
-    found: Fit,
+    fit: Fit,
     scratch: _Scratch,
 ) -> None:
     """Kernel of :func:`fitted`; an infinite misfit tells of a singular covariance."""
@@ -250,17 +250,17 @@ def _search(
     _copy(measured[2], scratch.squares[7])
     for each in range(start.shape[0]):
         start[each] = known[0][each]
-    _fit(at, measured, known, lost, found, scratch)
-    if found.figures[0] > plain:
+    _fit(at, measured, known, lost, fit, scratch)
+    if fit.figures[0] > plain:
         _best_start(at, measured, known, lost, scratch)
         _fit(at, measured, known, lost, again, scratch)
-        if again.figures[0] < found.figures[0]:
+        if again.figures[0] < fit.figures[0]:
             for each in range(start.shape[0]):
-                found.mean[each] = again.mean[each]
+                fit.mean[each] = again.mean[each]
     for each in range(start.shape[0]):
-        start[each] = found.mean[each]
+        start[each] = fit.mean[each]
     _scale(at, measured, (scale, lost), scratch)
-    _fit(at, measured, known, lost, found, scratch)
+    _fit(at, measured, known, lost, fit, scratch)
 
 
 @kernel
@@ -330,12 +330,12 @@ def _fit(
     measured: tuple[Floats, Floats, Floats],
     known: tuple[Floats, Floats, Floats],
     lost: int,
-    found: Fit,
+    fit: Fit,
     scratch: _Scratch,
 ) -> None:
     """One search from ``rows[5]``; the covariance of the shares is in ``squares[7]``."""
     taken, mean, covariance = measured[0], known[0], known[1]
-    best, shown, spread = found.mean, scratch.shown, scratch.squares[6]
+    best, shown, spread = fit.mean, scratch.shown, scratch.squares[6]
     now, error, away = scratch.rows[0], scratch.rows[1], scratch.rows[2]
     precision, certainty = scratch.squares[0], scratch.squares[1]
     teeth, least = mean.shape[0], inf
@@ -358,13 +358,13 @@ def _fit(
         least = misfit
         for each in range(teeth):
             best[each] = now[each]
-        found.figures[1] = _linearise(covariance, scratch)
+        fit.figures[1] = _linearise(covariance, scratch)
         if _step(mean, best, scratch) < NEAR:
             for each in range(teeth):
                 best[each] = now[each]
             break
-    found.figures[0] = least
-    _learn(covariance, found, scratch)
+    fit.figures[0] = least
+    _learn(covariance, fit, scratch)
 
 
 @kernel
@@ -416,18 +416,16 @@ def _step(mean: Floats, best: Floats, scratch: _Scratch) -> float:
 
 
 @kernel
-def _learn(covariance: Floats, found: Fit, scratch: _Scratch) -> None:
+def _learn(covariance: Floats, fit: Fit, scratch: _Scratch) -> None:
     """Write the covariance after the revolution."""
     slope, product, gain = scratch.squares[2], scratch.squares[3], scratch.squares[5]
     # H·P anew, and not the transpose of P·H': rounding leaves P not quite symmetric, and an
     # asymmetry would grow from revolution to revolution.
     _times(slope, covariance, product)
-    _times(gain, product, found.covariance)
+    _times(gain, product, fit.covariance)
     for each in range(slope.shape[0]):
         for other in range(slope.shape[0]):
-            found.covariance[each, other] = (
-                covariance[each, other] - found.covariance[each, other]
-            )
+            fit.covariance[each, other] = covariance[each, other] - fit.covariance[each, other]
 
 
 @kernel

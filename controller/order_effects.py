@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from controller.equivalent import equivalent
 from controller.loop_settings import LoopStep
-from controller.loop_state import LoopState, told, with_bounds
+from controller.loop_state import LoopState, with_bounds, with_event
 from controller.orders import CriterionTo, EventKind, MotorPowerTo, Order
 from controller.preview import Preview
 
@@ -36,4 +36,4 @@ def obeyed(
             settings = replace(settings, is_on=order.is_on)
             text = "ON" if order.is_on else "OFF: the programmed feed runs"
     state = state._replace(settings=settings, preview=preview, law=None)
-    return told(with_bounds(state, cap=state.keep.cap), EventKind.ORDER, text)
+    return with_event(with_bounds(state, cap=state.keep.cap), EventKind.ORDER, text)

@@ -5,7 +5,7 @@ Pure functions of a state and a reading, as those of :mod:`controller.loop_state
 
 from controller import overload
 from controller.following import Following, followed
-from controller.loop_state import LoopState, told
+from controller.loop_state import LoopState, with_event
 from controller.orders import EventKind
 from controller.phase import Phase
 from controller.signal import Revolution
@@ -27,9 +27,9 @@ def supervised(state: LoopState, reading: Reading) -> LoopState:
             f"{100.0 * state.override:.3g} % commanded, {100.0 * reading.override:.3g} % run "
             f"for {now.astray:.3g} s: the override has no effect"
         )
-        return told(state, EventKind.ASTRAY, text)
+        return with_event(state, EventKind.ASTRAY, text)
     if before.is_astray and not now.is_astray:
-        return told(state, EventKind.FOLLOWED, f"again, after {before.astray:.3g} s")
+        return with_event(state, EventKind.FOLLOWED, f"again, after {before.astray:.3g} s")
     return state
 
 
@@ -47,4 +47,4 @@ def resolved(state: LoopState, reading: Reading, revolution: Revolution) -> Loop
             f"{ms_from_seconds(tooth):.3g} ms: forces are means over a turn or more, broken "
             "teeth are not looked for, and an overload is noticed no sooner than a reading"
         )
-    return told(state, EventKind.AVERAGED, text)
+    return with_event(state, EventKind.AVERAGED, text)

@@ -374,7 +374,7 @@ def migrate(engine: Engine, place: StoreLocation, *, is_new_allowed: bool) -> No
         When the database is not a knowledge base, or new although that is not allowed.
     """
     with reading(engine, place) as connection:
-        found = _found(connection, place, is_new_allowed=is_new_allowed)
+        found = _schema_version(connection, place, is_new_allowed=is_new_allowed)
     if found == VERSION:
         return
     if place.file and not found:
@@ -384,17 +384,19 @@ def migrate(engine: Engine, place: StoreLocation, *, is_new_allowed: bool) -> No
             connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": LOCK})
             _require_unicode(connection, place)
         # Another program may have upgraded it in the meantime.
-        if _found(connection, place, is_new_allowed=is_new_allowed) != VERSION:
+        if _schema_version(connection, place, is_new_allowed=is_new_allowed) != VERSION:
             _upgrade(connection)
 
 
-def _found(connection: Connection, place: StoreLocation, *, is_new_allowed: bool) -> str:
+def _schema_version(
+    connection: Connection, place: StoreLocation, *, is_new_allowed: bool
+) -> str:
     """Version of the schema found; empty if there are no tables yet."""
     tables = inspect(connection).get_table_names()
     if VERSION_TABLE in tables:
         found = connection.execute(select(_version.c.version_num)).scalars().all()
         if found and max(found) > VERSION:
-            raise StoreTooNew(place.shown, found=max(found), known=VERSION)
+            raise StoreTooNew(place.shown, actual=max(found), known=VERSION)
         if len(found) > 1 or not set(found) <= _known_versions():
             versions = ", ".join(map(str, found))
             raise StoreDamaged(place.shown, reason=f"unknown schema version {versions}")

@@ -9,7 +9,7 @@
     ├── StoreReadOnly                   the store may be read, but not written
     ├── StoreBusy                       other programs lock the store for too long
     ├── StoreFull                       the disk is full
-    ├── StoreTooNew(found, known)       a newer program made the store
+    ├── StoreTooNew(actual, known)      a newer program made the store
     ├── StoreNotEmpty(rows)             a backup can only be restored into an empty store
     ├── OutcomeDiffers(run, workingstep, column, recorded, value)
     │                                   an outcome was recorded before with other values
@@ -103,13 +103,13 @@ class StoreFull(KnowledgeError):
 class StoreTooNew(KnowledgeError):
     """The store was made by a newer program version."""
 
-    def __init__(self, place: str, *, found: str, known: str) -> None:
+    def __init__(self, place: str, *, actual: str, known: str) -> None:
         super().__init__(
-            f"has schema {found}, this program knows up to {known}; "
+            f"has schema {actual}, this program knows up to {known}; "
             "install the newer stepnc-optimiser",
             place=place,
         )
-        self.found = found
+        self.actual = actual
         self.known = known
 
 

@@ -60,7 +60,7 @@ def holding_findings(
     for setup, held in by_setup.items():
         if holding_of(program, held[0].workingstep.setup, machine) is None:
             of = f"'{setup_id(program, held[0].workingstep.setup)}'" if setup else "the program"
-            text = f"no [[holding]] table for {of}: {_asked(program, held)}"
+            text = f"no [[holding]] table for {of}: {_greatest_loads(program, held)}"
             ref = setup if setup is not None else held[0].workingstep.ref
             found.append(program.finding(Severity.NOTE, text, ref))
     return found
@@ -77,7 +77,7 @@ def _unknown_setups(program: Program, machine: Machine) -> Iterator[Finding]:
             yield Finding(severity=Severity.WARNING, message=text)
 
 
-def _asked(program: Program, held: Sequence[Advice]) -> str:
+def _greatest_loads(program: Program, held: Sequence[Advice]) -> str:
     """Describe the greatest work-holding loads of a setup and their workingsteps."""
     first = held[0]
     if first.cut is None or not first.cut.kind.is_turned:
@@ -91,7 +91,7 @@ def _asked(program: Program, held: Sequence[Advice]) -> str:
     grip = grip_of(program, first.workingstep, None)
     return (
         f"the chuck must hold {torque}{moment and ' and ' + moment}"
-        f"{'' if grip is None else '; ' + _told(grip)}"
+        f"{'' if grip is None else '; ' + _jaw_position(grip)}"
     )
 
 
@@ -106,7 +106,7 @@ def _greatest(held: Sequence[Advice], of: Callable[[HoldingLoad], float], unit: 
     return f"{value:.4g} {unit} ({name})" if value > 0.0 else ""
 
 
-def _told(grip: BarGrip) -> str:
+def _jaw_position(grip: BarGrip) -> str:
     """Describe the position of the chuck's jaws as stated by the program."""
     centre = ", with a tailstock" if grip.has_tailstock else ""
     return (

@@ -87,7 +87,7 @@ def assumed_stock(program: Program, setup: Ref[Setup] | None) -> Stock | None:
     x1, y1 = (max(box.high[axis] for box in boxes) for axis in range(2))
     around = _Edges(x0, y0, x1, y1)
     for path in paths:
-        around = _beside(program, path, around)
+        around = _clear_edges(program, path, around)
     top = max(tops, default=low)
     if top - low < LEAST_HEIGHT:
         top = max(box.high[2] for box in boxes)
@@ -140,7 +140,7 @@ class _Edges:
         return max(0.0, self.x1 - self.x0) * max(0.0, self.y1 - self.y0)
 
 
-def _beside(program: Program, path: ToolPath, edges: _Edges) -> _Edges:
+def _clear_edges(program: Program, path: ToolPath, edges: _Edges) -> _Edges:
     """Edges that leave out the tool where a path comes down within its radius of an edge."""
     begin = next(iter(_starts(path)), None)
     if begin is None or path.tool_ref is None:

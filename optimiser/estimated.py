@@ -328,7 +328,7 @@ class Estimates:
     def leave_out(self, step: ResolvedWorkingstep) -> None:
         """Do nothing: estimated workingsteps do not affect each other."""
 
-    def each(
+    def map_workingsteps(
         self, steps: Sequence[ResolvedWorkingstep], do: Callable[[ResolvedWorkingstep], Result]
     ) -> Iterator[Result]:
         """Run a function on each workingstep, one after the other, and yield the results."""

@@ -228,7 +228,7 @@ class MeasuredCuts:
             return
         self._leave(step, met_by(self.program, step, run, stock))
 
-    def each(
+    def map_workingsteps(
         self, steps: Sequence[ResolvedWorkingstep], do: Callable[[ResolvedWorkingstep], Result]
     ) -> Iterator[Result]:
         """Results of workingsteps in their order; on a mill two processes are used."""

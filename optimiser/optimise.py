@@ -109,7 +109,7 @@ def optimise_program(
             cuts.leave_out(step)
             return _refused(step, error), []
 
-    for advice, found in cuts.each(program.workingsteps[: last + 1], do):
+    for advice, found in cuts.map_workingsteps(program.workingsteps[: last + 1], do):
         if advice is None:
             continue
         if isinstance(advice, RefusedWorkingstep):
@@ -218,16 +218,16 @@ def advise(
 
 
 def _chosen(
-    program: Program, untouched: Advice, cut: Cut, problem: Problem, asked: AdviceContext
+    program: Program, untouched: Advice, cut: Cut, problem: Problem, context: AdviceContext
 ) -> tuple[Advice, list[Finding]]:
     """Advice on a cut with a feed: locked, solved, or without a solution."""
     step, conditions = untouched.workingstep, untouched.programmed
     if conditions.inhibition:
         reason = f"{conditions.inhibition}: the program locks this feed"
-        advice = _kept(untouched, reason, why_too_fast(cut, asked.at))
+        advice = _kept(untouched, reason, why_too_fast(cut, context.at))
         return advice, [_lock(program, step, conditions), *_too_fast(program, advice)]
     try:
-        return _solved(program, untouched, cut, problem, asked)
+        return _solved(program, untouched, cut, problem, context)
     except Infeasible as conflict:
         reason = str(conflict)
         return replace(untouched, status=AdviceStatus.INFEASIBLE, reason=reason, after=None), []
@@ -337,11 +337,11 @@ def _in_air(state: EvaluatedSetting) -> EvaluatedSetting:
 
 
 def _solved(
-    program: Program, untouched: Advice, cut: Cut, problem: Problem, asked: AdviceContext
+    program: Program, untouched: Advice, cut: Cut, problem: Problem, context: AdviceContext
 ) -> tuple[Advice, list[Finding]]:
     """Advice from the best setting of a workingstep, with warnings."""
-    at, task = asked.at, asked.task
-    told = best_of(cut, problem, asked)
+    at, task = context.at, context.task
+    told = best_of(cut, problem, context)
     solution = told.optimum.solution
     after = state_of(told.cut, told.problem, at, solution.setting)
     saving = cost_of_safety = free_speed = 0.0

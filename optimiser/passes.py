@@ -93,8 +93,8 @@ class PassCountSearch:
     """Search for the best number of passes of a workingstep (mutable state)."""
 
     cut: Cut
-    asked: AdviceContext
-    found: dict[int, PassCountOptimum] = field(default_factory=dict)
+    context: AdviceContext
+    optima: dict[int, PassCountOptimum] = field(default_factory=dict)
     """Best setting for each feasible number of passes that was tried."""
     bounds: dict[int, PassCountBounds] = field(default_factory=dict)
     """Bounds from each path that was tried, also from infeasible ones."""
@@ -104,33 +104,33 @@ class PassCountSearch:
     @property
     def least(self) -> float:
         """Least cost so far, s or J; infinite without a feasible number of passes."""
-        return min((self.cost(each) for each in self.found.values()), default=inf)
+        return min((self.cost(each) for each in self.optima.values()), default=inf)
 
-    def chosen(self, given: int) -> int:
+    def chosen(self, programmed: int) -> int:
         """Number of passes to take: the given one, or the fewest near the least cost."""
         bound = self.least / (1.0 - WORTH)
-        near = {n for n, each in self.found.items() if self.cost(each) <= bound}
-        return given if given in near else min(near)
+        near = {n for n, each in self.optima.items() if self.cost(each) <= bound}
+        return programmed if programmed in near else min(near)
 
-    def cost(self, each: PassCountOptimum) -> float:
+    def cost(self, optimum: PassCountOptimum) -> float:
         """Cost of a number of passes along its own path, s or J."""
-        cost = exact.cost_function(each.problem, self.asked.task.mode)
-        return cost(each.optimum.solution.setting)
+        cost = exact.cost_function(optimum.problem, self.context.task.mode)
+        return cost(optimum.optimum.solution.setting)
 
     def try_passes(self, problem: Problem, passes: int) -> Problem:
         """Try a number of passes along its path, and return the problem of that path."""
-        asked = self.asked
+        asked = self.context
         cut = _along_path(self.cut, problem, passes, asked)
         problem = problem_of(cut, asked.at, asked.task)
         self.bounds[passes] = bounds_of(cut, asked.at, asked.task, passes=passes)
         try:
-            self.found[passes] = _best_in(cut, problem, passes, asked)
+            self.optima[passes] = _best_in(cut, problem, passes, asked)
         except Infeasible as conflict:
             if problem.passes[0] == problem.passes[1]:
                 raise
             self.conflict = _both(self.conflict, conflict)
             return problem
-        return self.found[passes].problem
+        return self.optima[passes].problem
 
     @property
     def is_alike(self) -> bool:
@@ -149,7 +149,7 @@ class PassCountSearch:
         """True if bounds, also along its path, tell that a number of passes is no better."""
         if self.is_bounded(passes):
             return True
-        depth, asked = problem.depth_at(passes), self.asked
+        depth, asked = problem.depth_at(passes), self.context
 
         def timed(cut: Cut, setting: Setting) -> Cut:
             return asked.cuts.timed(asked.step, cut, replace(setting, depth=depth))
@@ -165,7 +165,7 @@ class PassCountSearch:
         return self.least * (1.0 - TIE)
 
 
-def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimum:
+def best_of(cut: Cut, problem: Problem, context: AdviceContext) -> PassCountOptimum:
     """Find the best number of passes, each evaluated along its own path.
 
     Raises
@@ -173,7 +173,7 @@ def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimu
     Infeasible
         When no number of passes that was tried keeps all limits.
     """
-    search = PassCountSearch(cut=cut, asked=asked)
+    search = PassCountSearch(cut=cut, context=context)
     given = problem.programmed.passes
     last = search.try_passes(problem, given)
     untried: list[int] = []
@@ -185,14 +185,14 @@ def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimu
             deepest = min(deepest, last.deepest())
         last = _until_feasible(search, last)
         untried = _try_in_order(search, problem, deepest)
-    if not search.found:
+    if not search.optima:
         raise _infeasible_as_tooled(search, last)
     chosen = search.chosen(given)
-    best = search.found[chosen]
+    best = search.optima[chosen]
     if chosen != given:
         _require_sensible(best, given)
     # The next workingstep finds the stock as this path leaves it.
-    cut = asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)
+    cut = context.cuts.at(context.step, best.cut, best.optimum.solution.setting)
     return replace(_with_deepest(best, search), cut=cut, untried=tuple(untried))
 
 
@@ -215,9 +215,9 @@ def _until_feasible(search: PassCountSearch, problem: Problem) -> Problem:
 
     Returns the problem of the last path.
     """
-    while not search.found and len(search.bounds) < UNTIL_FEASIBLE:
+    while not search.optima and len(search.bounds) < UNTIL_FEASIBLE:
         try:
-            passes = _optimum(problem, search.asked.task).solution.setting.passes
+            passes = _optimum(problem, search.context.task).solution.setting.passes
         except Infeasible:
             return problem
         if passes in search.bounds:
@@ -230,7 +230,7 @@ def _infeasible_as_tooled(search: PassCountSearch, problem: Problem) -> Infeasib
     """Error that names the limits that conflict in any number of passes, and what helps."""
     conflict = search.conflict or exact.conflict(problem)
     try:
-        _optimum(problem, search.asked.task)
+        _optimum(problem, search.context.task)
     except Infeasible as thinnest:
         # It tells of the thinnest passes, where the feed may be greatest.
         conflict = thinnest
@@ -269,7 +269,7 @@ def _in_order(search: PassCountSearch, problem: Problem, deepest: int) -> list[i
     if deepest not in search.bounds:
         return []
     bounds, is_alike = search.bounds[deepest], search.is_alike
-    or_more = least_cost(bounds.shortest(is_alike=is_alike), search.asked.task.mode)
+    or_more = least_cost(bounds.shortest(is_alike=is_alike), search.context.task.mode)
     likely = {}
     for passes in range(deepest, problem.passes[1] + 1):
         if or_more(passes) > search.worthwhile:
@@ -280,11 +280,11 @@ def _in_order(search: PassCountSearch, problem: Problem, deepest: int) -> list[i
     )
 
 
-def _require_sensible(best: PassCountOptimum, given: int) -> None:
+def _require_sensible(best: PassCountOptimum, programmed: int) -> None:
     """Refuse passes that are as thin as they may be while a force still sets the feed."""
     solution = best.optimum.solution
     setting = solution.setting
-    is_thinnest = setting.passes > given and setting.depth < THIN * LEAST_DEPTH
+    is_thinnest = setting.passes > programmed and setting.depth < THIN * LEAST_DEPTH
     if not is_thinnest or solution.active not in SCALES_WITH_FORCE:
         return
     raise Infeasible(
@@ -297,27 +297,29 @@ def _require_sensible(best: PassCountOptimum, given: int) -> None:
 
 def _with_deepest(best: PassCountOptimum, search: PassCountSearch) -> PassCountOptimum:
     """Optimum with the time of the fewest feasible passes that were tried."""
-    fewest = search.found[min(search.found)].optimum.solution.time
+    fewest = search.optima[min(search.optima)].optimum.solution.time
     solution = best.optimum.solution
     solution = replace(solution, deepest_first_time=max(solution.time, fewest))
     return replace(best, optimum=replace(best.optimum, solution=solution))
 
 
-def _along_path(cut: Cut, problem: Problem, passes: int, asked: AdviceContext) -> Cut:
+def _along_path(cut: Cut, problem: Problem, passes: int, context: AdviceContext) -> Cut:
     """Cut along the path in a number of passes, at the programmed feed."""
     given = cut.programmed
     depth = given.depth if passes == given.passes else problem.depth_at(passes)
-    return asked.cuts.at(asked.step, cut, replace(given, passes=passes, depth=depth))
+    return context.cuts.at(context.step, cut, replace(given, passes=passes, depth=depth))
 
 
-def _best_in(cut: Cut, problem: Problem, passes: int, asked: AdviceContext) -> PassCountOptimum:
+def _best_in(
+    cut: Cut, problem: Problem, passes: int, context: AdviceContext
+) -> PassCountOptimum:
     """Best setting for a number of passes: first the limits, then the time at that feed."""
-    task = asked.task
+    task = context.task
     _require_candidate(cut, passes)
-    found = _with_plunge(cut, passes, asked)
+    found = _with_plunge(cut, passes, context)
     optimum, cut, plunging = found.optimum, found.cut, found.setting
     setting = optimum.solution.setting
-    problem = _held(problem_of(cut, asked.at, task), found.held)
+    problem = _held(problem_of(cut, context.at, task), found.held)
     again = optimum if task.tool_change else _with_passes(problem, passes, task)
     if task.tool_change or again.solution.setting != setting:
         again = replace(optimum, solution=exact.settled(problem, setting))
@@ -336,45 +338,45 @@ class _Plunging:
     """Limit on the feed of the pass that the end of a ramp sets; None where it sets none."""
 
 
-def _with_plunge(cut: Cut, passes: int, asked: AdviceContext) -> _Plunging:
+def _with_plunge(cut: Cut, passes: int, context: AdviceContext) -> _Plunging:
     """Optimum for a number of passes with the best plunge feed, where feeds are free."""
-    task = asked.task
+    task = context.task
     if Free.FEED not in task.free:
-        optimum = _with_passes(problem_of(cut, asked.at, task), passes, task)
+        optimum = _with_passes(problem_of(cut, context.at, task), passes, task)
         setting = replace(optimum.solution.setting, plunge_feed=cut.programmed.plunge_feed)
-        cut = asked.cuts.at(asked.step, cut, setting)
+        cut = context.cuts.at(context.step, cut, setting)
         return _Plunging(optimum=optimum, cut=cut, setting=setting)
-    plunging, found = _plunging(cut, passes, asked)
+    plunging, found = _plunging(cut, passes, context)
     for _ in range(UNTIL_FEASIBLE):
         if found.excess <= 1.0 + CLOSE or found.limit is None:
             break
         held = at_foot(found.limit, plunging.setting.feed / found.excess)
-        plunging, found = _plunging(cut, passes, asked, held)
+        plunging, found = _plunging(cut, passes, context, held)
     if found.balanced_feed is None or found.limit is None:
         return plunging
     held = at_foot(found.limit, found.balanced_feed)
-    slower, of_slower = _plunging(cut, passes, asked, held)
-    is_less = _time(slower, asked) < _time(plunging, asked)
+    slower, of_slower = _plunging(cut, passes, context, held)
+    is_less = _time(slower, context) < _time(plunging, context)
     return slower if is_less and of_slower.excess <= 1.0 + CLOSE else plunging
 
 
 def _plunging(
-    cut: Cut, passes: int, asked: AdviceContext, held: Limit | None = None
+    cut: Cut, passes: int, context: AdviceContext, held: Limit | None = None
 ) -> tuple[_Plunging, PlungeOptimum]:
     """Optimum of the passes below a limit, with the best plunge feed before it."""
-    at, task = asked.at, asked.task
-    timed = partial(asked.cuts.at, asked.step)
+    at, task = context.at, context.task
+    timed = partial(context.cuts.at, context.step)
     for _ in range(UNTIL_FEASIBLE):
         optimum = _with_passes(_held(problem_of(cut, at, task), held), passes, task)
         found = best_plunge(cut, at, optimum.solution.setting, timed)
-        if _keeps(found.cut, optimum.solution.setting, asked):
+        if _keeps(found.cut, optimum.solution.setting, context):
             break
         cut = found.cut
     plunging = _Plunging(optimum=optimum, cut=found.cut, setting=found.setting, held=held)
     return plunging, found
 
 
-def _keeps(cut: Cut, setting: Setting, asked: AdviceContext) -> bool:
+def _keeps(cut: Cut, setting: Setting, context: AdviceContext) -> bool:
     """True if a turned cut keeps the greatest loads also as timed at its setting.
 
     A spindle that follows the radius is late by another share at another speed or feed, so that
@@ -382,7 +384,7 @@ def _keeps(cut: Cut, setting: Setting, asked: AdviceContext) -> bool:
     """
     if not cut.kind.is_turned:
         return True
-    problem = problem_of(cut, asked.at, asked.task)
+    problem = problem_of(cut, context.at, context.task)
     return all(
         limit.load.value(setting.feed, setting.depth, setting.speed)
         <= (1.0 + CLOSE) * limit.bound_at(setting.speed)
@@ -391,10 +393,10 @@ def _keeps(cut: Cut, setting: Setting, asked: AdviceContext) -> bool:
     )
 
 
-def _time(plunging: _Plunging, asked: AdviceContext) -> float:
+def _time(plunging: _Plunging, context: AdviceContext) -> float:
     """Time or energy of a setting along its own path."""
-    problem = problem_of(plunging.cut, asked.at, asked.task)
-    return exact.cost_function(problem, asked.task.mode)(plunging.setting)
+    problem = problem_of(plunging.cut, context.at, context.task)
+    return exact.cost_function(problem, context.task.mode)(plunging.setting)
 
 
 def _held(problem: Problem, limit: Limit | None) -> Problem:

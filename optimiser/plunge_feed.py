@@ -330,16 +330,16 @@ def _tried(
     return PlungeOptimum(cut=cut, setting=setting, excess=excess, limit=limit)
 
 
-def _next(before: PlungeOptimum | None, found: PlungeOptimum) -> float:
+def _next(before: PlungeOptimum | None, optimum: PlungeOptimum) -> float:
     """Plunge feed at which the excess is 1 by the secant; without one, the allowed feed."""
-    feed = found.setting.plunge_feed or 0.0
+    feed = optimum.setting.plunge_feed or 0.0
     if before is not None and before.setting.plunge_feed is not None:
         way = before.setting.plunge_feed - feed
-        rise = (before.excess - found.excess) / way
+        rise = (before.excess - optimum.excess) / way
         if rise > 0.0:
             # A little below, so that the last step is not spent on rounding.
-            return feed + (1.0 - 0.5 * CLOSE - found.excess) / rise
-    return feed / found.excess
+            return feed + (1.0 - 0.5 * CLOSE - optimum.excess) / rise
+    return feed / optimum.excess
 
 
 def at_foot(limit: Limit, feed: float) -> Limit:

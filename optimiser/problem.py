@@ -186,7 +186,7 @@ class Limit:
         """Bound without the safety factor at one spindle speed, canonical unit."""
         return self.safety_factor * self.bound_at(speed)
 
-    def told(self, load: float, digits: int = USUAL_DIGITS) -> str:
+    def load_text(self, load: float, digits: int = USUAL_DIGITS) -> str:
         """Text of a nominal load with its unit and safety factor."""
         words = f" ({self.safety_words})" if self.safety_words else ""
         return f"{load * self.scale:.{digits}g} {self.unit}{words}"
@@ -198,7 +198,7 @@ class Limit:
             return ""
         return f"× {self.safety_factor:.4g} for the spread of k_c"
 
-    def told_bound(self, speed: float, digits: int = USUAL_DIGITS) -> str:
+    def bound_text(self, speed: float, digits: int = USUAL_DIGITS) -> str:
         """Text of the bound of a limit, with its unit."""
         return f"{self.full_bound_at(speed) * self.scale:.{digits}g} {self.unit}"
 

@@ -48,8 +48,8 @@ def _reached(load: LimitLoad, speed: float) -> str:
     limit = load.limit
     origin = limit.origin or SOURCES.get(limit.name, "")
     return (
-        f"{limit.words} {limit.told(load.value)} reaches its bound of "
-        f"{limit.told_bound(speed)}{f', {origin}' if origin else ''}"
+        f"{limit.words} {limit.load_text(load.value)} reaches its bound of "
+        f"{limit.bound_text(speed)}{f', {origin}' if origin else ''}"
     )
 
 
@@ -69,7 +69,8 @@ def passed_limits(program: Program, advice: Advice) -> list[Finding]:
     found = {}
     for load in _passed_loads(advice.before):
         when = "as programmed and as advised" if _kind(load) in still else "as programmed"
-        text = f"{when}: {exact.told(load.limit, load.value, advice.before.setting.speed)}"
+        speed = advice.before.setting.speed
+        text = f"{when}: {exact.violation_text(load.limit, load.value, speed)}"
         text += _brought_within(load.limit, advice)
         ref = advice.workingstep.technology_ref
         found[_kind(load)] = program.finding(Severity.WARNING, text, ref)
@@ -176,6 +177,6 @@ def broken_words(load: LimitLoad) -> str:
     is_stable = limit.name is LimitName.STABILITY
     verb = "is above the stable" if is_stable else "exceeds its bound of"
     return (
-        f"{limit.words} {limit.told(load.value)} {verb} {bound} "
+        f"{limit.words} {limit.load_text(load.value)} {verb} {bound} "
         f"by {-100.0 * load.margin:.3g} %{origin}"
     )

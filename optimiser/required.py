@@ -143,7 +143,8 @@ def _why_not_reamed(cut: Cut, at: CuttingConditions) -> str:
     """Allowance that a reamer cannot take off; empty if it can, or if it is too small."""
     for limit in allowance_limits(cut, at):
         if limit.sense is BoundSide.AT_MOST and not limit.holds(1.0, 1.0, 1.0):
-            return f"{exact.told(limit, limit.load.value(1.0, 1.0, 1.0), 1.0)} {limit.origin}"
+            load = limit.load.value(1.0, 1.0, 1.0)
+            return f"{exact.violation_text(limit, load, 1.0)} {limit.origin}"
     return ""
 
 

@@ -49,7 +49,7 @@ class CutSource(Protocol):
         """Pass over a workingstep that is not optimised but will run."""
         ...
 
-    def each(
+    def map_workingsteps(
         self, steps: Sequence[ResolvedWorkingstep], do: Callable[[ResolvedWorkingstep], Result]
     ) -> Iterator[Result]:
         """Run a function that requests cuts on each workingstep, and yield results in order."""
@@ -72,7 +72,7 @@ class WiperCutSource:
 
     def __init__(self, cuts: CutSource, wipers: frozenset[str]) -> None:
         self.leave_out = cuts.leave_out
-        self.each = cuts.each
+        self.map_workingsteps = cuts.map_workingsteps
         self._cuts = cuts
         self._wipers = wipers
 

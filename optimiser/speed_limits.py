@@ -16,7 +16,7 @@ from optimiser.chip_load import borrowed_datum
 from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut
 from optimiser.problem import BoundSide, Limit, LimitName, Monomial
-from optimiser.workingstep import told
+from optimiser.workingstep import violation_text
 from simulator.library import find_window
 from simulator.physics.holding import usable_speed
 from simulator.spec import CuttingMaterial, Machine, ToolKind, WorkMaterial
@@ -37,13 +37,13 @@ class SourcedBound:
     datum: str = ""
 
 
-def borrowed_bound(bound: float, given: float, at: CuttingConditions) -> SourcedBound:
+def borrowed_bound(bound: float, programmed: float, at: CuttingConditions) -> SourcedBound:
     """Bound by a window of the tool: one of another group does not slow a program down."""
     if at.grade is None or not at.grade.borrowed:
         return SourcedBound(bound=bound)
-    above = "as programmed, above " if given > bound else ""
+    above = "as programmed, above " if programmed > bound else ""
     origin = f"{above}{at.grade.borrowed}"
-    return SourcedBound(bound=max(bound, given), origin=origin, datum=borrowed_datum(at))
+    return SourcedBound(bound=max(bound, programmed), origin=origin, datum=borrowed_datum(at))
 
 
 M_MIN, RPM = m_min_from_speed(1.0), rpm_from_rev_s(1.0)
@@ -149,7 +149,11 @@ def why_too_fast(cut: Cut, at: CuttingConditions) -> str:
     """Text naming the limit that the programmed speed exceeds; empty if it exceeds none."""
     speed = cut.programmed.speed
     passed = min(_passed_speeds(cut, at), key=_greatest_speed, default=None)
-    return "" if passed is None else told(passed, passed.load.value(1.0, 1.0, speed), speed)
+    return (
+        ""
+        if passed is None
+        else violation_text(passed, passed.load.value(1.0, 1.0, speed), speed)
+    )
 
 
 def why_no_speed(cut: Cut, at: CuttingConditions) -> str:
@@ -160,7 +164,7 @@ def why_no_speed(cut: Cut, at: CuttingConditions) -> str:
         return ""
     limits = [each for each in speed_limits(cut, at) if each.sense is BoundSide.AT_MOST]
     passed = min(limits, key=_greatest_speed)
-    words = told(passed, passed.load.value(1.0, 1.0, least), least)
+    words = violation_text(passed, passed.load.value(1.0, 1.0, least), least)
     return f"{words} at the least speed of the spindle, {rpm_from_rev_s(least):.4g} rpm"
 
 

@@ -170,11 +170,15 @@ class ChatterRisk:
         return f"{self.depth:.3g} mm, stable {self.stable:.2g}"
 
 
-def risk_of(found: Stability, depth: float) -> ChatterRisk | None:
+def risk_of(stability: Stability, depth: float) -> ChatterRisk | None:
     """Risk of chatter at a depth in mm; None within the band, or without an estimate."""
-    if found.basis is not Basis.ESTIMATED or found.band is None or depth <= found.band[1]:
+    if (
+        stability.basis is not Basis.ESTIMATED
+        or stability.band is None
+        or depth <= stability.band[1]
+    ):
         return None
-    return ChatterRisk(depth=depth, stable=found.band[1])
+    return ChatterRisk(depth=depth, stable=stability.band[1])
 
 
 def stability_limits(cut: Cut, at: CuttingConditions) -> tuple[Limit, ...]:
@@ -212,16 +216,18 @@ def stability_of(cut: Cut, at: CuttingConditions) -> Stability | None:
     return _estimated(cut, at, at.grade)
 
 
-def estimate_texts(told: Iterable[tuple[Tool, Stability, float]]) -> Iterator[tuple[str, str]]:
+def estimate_texts(
+    estimates: Iterable[tuple[Tool, Stability, float]],
+) -> Iterator[tuple[str, str]]:
     """Id of each tool without measured modes, with the estimate for its hardest cut.
 
     Parameters
     ----------
-    told : iterable of (Tool, Stability, float)
+    estimates : iterable of (Tool, Stability, float)
         Tool, stability and depth of the passes in mm of each workingstep.
     """
     hardest: dict[str, tuple[Stability, float]] = {}
-    for tool, found, depth in told:
+    for tool, found, depth in estimates:
         if found.basis is not Basis.ESTIMATED or found.least is None:
             continue
         before = hardest.get(tool.id)

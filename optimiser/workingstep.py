@@ -202,7 +202,7 @@ def conflict(problem: Problem) -> Infeasible:
             )
             load = limit.load.value(1.0, depth, speed)
             return Infeasible(
-                f"{told(limit, load, speed)}, and {why}{_elsewhere(limit, load)}",
+                f"{violation_text(limit, load, speed)}, and {why}{_elsewhere(limit, load)}",
                 limits=(limit.name,),
             )
     cap = min(caps, key=lambda limit: limit.feed_at_bound(depth, speed))
@@ -215,13 +215,13 @@ def conflict(problem: Problem) -> Infeasible:
     if highest <= 0.0:
         rest = cap.load.value(0.0, depth, speed)
         return Infeasible(
-            f"{told(cap, rest, speed)}, however small the feed", limits=(cap.name,)
+            f"{violation_text(cap, rest, speed)}, however small the feed", limits=(cap.name,)
         )
     return Infeasible(
         f"{cap.words} allows a feed of at most {highest:.4g} mm/tooth"
-        f" ({cap.sense} {cap.told_bound(speed)}{_with_safety(cap)}),"
+        f" ({cap.sense} {cap.bound_text(speed)}{_with_safety(cap)}),"
         f" {floor.words} needs at least {lowest:.4g} mm/tooth"
-        f" ({floor.sense} {floor.told_bound(speed)}),"
+        f" ({floor.sense} {floor.bound_text(speed)}),"
         f" at a depth of {depth:.4g} mm in {counted(passes, 'pass', 'passes')}",
         limits=(cap.name, floor.name),
     )
@@ -256,23 +256,24 @@ def _elsewhere(limit: Limit, load: float) -> str:
     )
 
 
-def told(limit: Limit, load: float, speed: float) -> str:
+def violation_text(limit: Limit, load: float, speed: float) -> str:
     """Sentence on one violated limit: 'axial depth 6 mm exceeds 5 mm'."""
     if limit.curve is not None:
         return (
-            f"{limit.words} allows {limit.told_bound(speed)} "
-            f"at {rpm_from_rev_s(speed):.0f} rpm, not {limit.told(load)}"
+            f"{limit.words} allows {limit.bound_text(speed)} "
+            f"at {rpm_from_rev_s(speed):.0f} rpm, not {limit.load_text(load)}"
         )
     verb = "exceeds" if limit.sense is BoundSide.AT_MOST else "is below"
     digits = next(
         (
             digits
             for digits in range(USUAL_DIGITS, MOST_DIGITS)
-            if limit.told(load, digits) != limit.told_bound(speed, digits)
+            if limit.load_text(load, digits) != limit.bound_text(speed, digits)
         ),
         MOST_DIGITS,
     )
-    return f"{limit.words} {limit.told(load, digits)} {verb} {limit.told_bound(speed, digits)}"
+    bound = limit.bound_text(speed, digits)
+    return f"{limit.words} {limit.load_text(load, digits)} {verb} {bound}"
 
 
 def widened(problem: Problem, name: LimitName, *, by_factor: float) -> Problem:

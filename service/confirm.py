@@ -67,7 +67,7 @@ class ConfirmedTotals:
 
 
 def confirmed_totals(
-    plan: Plan, given: Program, advised: Program, *, tell: Tell = silent
+    plan: Plan, program: Program, advised: Program, *, tell: Tell = silent
 ) -> tuple[ConfirmedTotals, ...]:
     """Totals of all workingsteps of an advised program, in order of execution.
 
@@ -88,7 +88,7 @@ def confirmed_totals(
         for advice in plan.advices
         if advice.cut is not None
     }
-    beside = _GivenRun(given, machine, material)
+    beside = _GivenRun(program, machine, material)
     prepared = prepared_program(advised, machine, material, tell=tell)
     virtual = machine_of(SimulationRequest(), prepared)
     left: list[StockDifference | None] = []
@@ -213,14 +213,14 @@ CM3 = 1e-3
 
 
 def confirm(
-    plan: Plan, given: Program, advised: Program, *, tell: Tell = silent
+    plan: Plan, program: Program, advised: Program, *, tell: Tell = silent
 ) -> Confirmation:
     """Run a program on the virtual machine and compare the result with its plan.
 
     Parameters
     ----------
     plan : Plan
-    given : Program
+    program : Program
         Program as given, whose remaining stock the advised program must leave.
     advised : Program
         Program that contains the advice of the plan.
@@ -232,7 +232,7 @@ def confirm(
     StepNcError
         When the machine cannot run the program.
     """
-    totals = confirmed_totals(plan, given, advised, tell=tell)
+    totals = confirmed_totals(plan, program, advised, tell=tell)
     steps = []
     for advice in plan.advices:
         state = advice.after or advice.before
@@ -269,13 +269,13 @@ def _figures(
         key="time_s",
         heading="time s",
         promised=state.time,
-        found=total.duration - total.way_time,
+        simulated=total.duration - total.way_time,
     )
     yield Figure(
         key="cutting_force_n",
         heading="force N",
         promised=max(reached.force * state.cutting_force, sloped.force * state.ramp_force),
-        found=total.force.value,
+        simulated=total.force.value,
         at_quantile=None if worse is None else worse.force.value,
         bound=inf if state.thrust else _bound(state, LimitName.CUTTING_FORCE),
     )
@@ -284,7 +284,7 @@ def _figures(
         key="thrust_n",
         heading="thrust N",
         promised=state.thrust * (reached.force if is_drill else down),
-        found=total.thrust.value,
+        simulated=total.thrust.value,
         at_quantile=None if worse is None else worse.thrust.value,
         bound=_bound(state, LimitName.CUTTING_FORCE),
     )
@@ -295,7 +295,7 @@ def _figures(
         key="deflection_um",
         heading="bent µm",
         promised=UM_PER_MM * max(bent, default=0.0),
-        found=UM_PER_MM * total.deflection.value if bent else 0.0,
+        simulated=UM_PER_MM * total.deflection.value if bent else 0.0,
         at_quantile=None if worse is None or not bent else UM_PER_MM * worse.deflection.value,
         bound=UM_PER_MM * _bound(state, LimitName.TOOL_DEFLECTION),
     )
@@ -303,7 +303,7 @@ def _figures(
         key="torque_nm",
         heading="torque N·m",
         promised=nm_from_nmm(_torque(cut, state, reached, efficiency * drive)),
-        found=nm_from_nmm(total.torque.value),
+        simulated=nm_from_nmm(total.torque.value),
         at_quantile=None if worse is None else nm_from_nmm(worse.torque.value),
         bound=nm_from_nmm(_bound(state, LimitName.SPINDLE_TORQUE)),
     )
@@ -311,7 +311,7 @@ def _figures(
         key="cutting_power_w",
         heading="cut W",
         promised=efficiency * drive,
-        found=total.cutting_power.value,
+        simulated=total.cutting_power.value,
         at_quantile=None if worse is None else worse.cutting_power.value,
         bound=efficiency * _bound(state, LimitName.MOTOR_POWER),
     )
@@ -319,14 +319,14 @@ def _figures(
         key="drive_power_w",
         heading="drive W",
         promised=_drive_power(cut, state, drive, machine) if total.drive_power.value else drive,
-        found=total.drive_power.value,
+        simulated=total.drive_power.value,
         at_quantile=None if worse is None else worse.drive_power.value,
     )
     yield Figure(
         key="volume_cm3",
         heading="volume cm³",
         promised=CM3 * (cut.volume or 0.0) if cut is not None else 0.0,
-        found=CM3 * totals.volume,
+        simulated=CM3 * totals.volume,
     )
 
 

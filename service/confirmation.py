@@ -18,7 +18,7 @@ class Figure:
     """Key in JSON, including the unit."""
     heading: str
     promised: float
-    found: float
+    simulated: float
     """Value found with the nominal k_c."""
     bound: float = inf
     at_quantile: float | None = None
@@ -27,12 +27,12 @@ class Figure:
     @property
     def ratio(self) -> float | None:
         """Ratio of found to predicted value; None when the predicted value is zero."""
-        return self.found / self.promised if self.promised > 0.0 else None
+        return self.simulated / self.promised if self.promised > 0.0 else None
 
     @property
     def greatest(self) -> float:
         """Value that must keep the bound: that at the quantile."""
-        return self.found if self.at_quantile is None else self.at_quantile
+        return self.simulated if self.at_quantile is None else self.at_quantile
 
     @property
     def is_passed(self) -> bool:

@@ -120,7 +120,7 @@ def is_same(one: Path, other: Path) -> bool:
         raise StepNcError(f"{str(one)!r} or {str(other)!r} is not a valid file name") from error
 
 
-def beside(path: Path, suffix: str) -> Path:
+def sibling(path: Path, suffix: str) -> Path:
     """Return the path of the file with the same name and another extension.
 
     Raises

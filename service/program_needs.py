@@ -117,7 +117,7 @@ def needs_of(
     words = [
         f"stepnc {_verb(request)}",
         quote(file),
-        *_given(request),
+        *_options_of(request),
         *([f"--tools {quote(tools)}"] if tools else []),
         *([f"--material {quote(material)}"] if material else []),
         *options,
@@ -133,7 +133,7 @@ def _verb(request: ProgramRequest) -> str:
     return "simulate" if isinstance(request, RunRequest) else "optimise"
 
 
-def _given(request: ProgramRequest) -> Iterator[str]:
+def _options_of(request: ProgramRequest) -> Iterator[str]:
     """Options of the request that say something of the program, as they were typed."""
     plain = ProgramRequest()
     if request.units != plain.units:

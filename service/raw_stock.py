@@ -50,17 +50,17 @@ class GivenStock:
     """File it was read from; empty for numbers."""
 
 
-def file_of_stock(given: RawPart) -> Path | None:
+def file_of_stock(part: RawPart) -> Path | None:
     """Path of the file that a stock is read from; None for numbers."""
-    return given.path if isinstance(given, StockFile) else None
+    return part.path if isinstance(part, StockFile) else None
 
 
-def raw_stock_of(given: RawPart) -> GivenStock:
+def raw_stock_of(part: RawPart) -> GivenStock:
     """Read a raw part.
 
     Parameters
     ----------
-    given : str or StockFile
+    part : str or StockFile
         Numbers in mm: ``x0,y0,z0,x1,y1,z1`` of a box, ``diameter,z0,z1`` of a bar about zero,
         ``diameter,length`` of a bar that ends at z = 0, or ``x,y,diameter,z0,z1`` of an upright
         bar elsewhere; a text is never a path. Or an STL file in mm, a STEP file with a solid,
@@ -71,13 +71,13 @@ def raw_stock_of(given: RawPart) -> GivenStock:
     StepNcError
         When the numbers or the file are invalid, or the size is not that of a stock.
     """
-    if not isinstance(given, StockFile):
-        return GivenStock(bounds=stock_in(given))
-    path = given.path
+    if not isinstance(part, StockFile):
+        return GivenStock(bounds=stock_in(part))
+    path = part.path
     if path.suffix.lower() == KEPT_SUFFIX:
         bounds, kept = kept_stock(read_bytes(path, most=MOST_BYTES), str(path))
         return GivenStock(bounds=bounds, kept=kept, name=str(path))
-    triangles = read_part(path, solid=given.solid, tolerance=USUAL_TOLERANCE).triangles
+    triangles = read_part(path, solid=part.solid, tolerance=USUAL_TOLERANCE).triangles
     raw = GivenStock(bounds=bounds_of(triangles), triangles=triangles, name=str(path))
     _require_size(raw)
     return raw
@@ -139,8 +139,8 @@ def raw_triangles(program: Program, setup: Ref[Setup] | None) -> Floats | None:
     bodies = program.bodies
     if not isinstance(bodies, ProgramBodies):
         return None
-    if bodies.given is not None:
-        return bodies.given
+    if bodies.user_triangles is not None:
+        return bodies.user_triangles
     body = raw_body(program)
     if body is None or drawn_stock(program, setup) is None:
         return None
@@ -173,7 +173,7 @@ def body_map(
     return turning_stock_of(mesh) if is_turning else milling_stock_of(mesh, cell=cell)
 
 
-def given_stock(given: RawPart) -> GivenStock:
+def user_stock(part: RawPart) -> GivenStock:
     """Read a raw part that was not cut before: numbers, a mesh or a solid.
 
     Raises
@@ -181,7 +181,7 @@ def given_stock(given: RawPart) -> GivenStock:
     StepNcError
         As :func:`raw_stock_of`; when it is a stock that an earlier run kept.
     """
-    raw = raw_stock_of(given)
+    raw = raw_stock_of(part)
     if raw.kept is not None:
         raise StepNcError(
             f"{raw.name}: a kept stock serves NC code only: name numbers, an STL file or a "

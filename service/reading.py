@@ -43,7 +43,7 @@ def read_program(
     return program
 
 
-def read_given(
+def read_completed(
     path: Path,
     request: ProgramRequest,
     *,
@@ -75,11 +75,11 @@ def read_given(
         When the file or something that is given is not valid.
     """
     program = read_program(path, units=request.units, stock=request.stock, name=name, tell=tell)
-    program.tools = () if tools is None else given_tools(tools)
-    return completed(program, given_data(request))
+    program.tools = () if tools is None else user_tools(tools)
+    return completed(program, user_data(request))
 
 
-def given_data(request: ProgramRequest) -> GivenData:
+def user_data(request: ProgramRequest) -> GivenData:
     """Data that a file lacks, from the words of a request."""
     return GivenData(
         values=request.given,
@@ -88,11 +88,11 @@ def given_data(request: ProgramRequest) -> GivenData:
     )
 
 
-def given_tools(library: "ToolLibrary") -> tuple[GivenTool, ...]:
+def user_tools(library: "ToolLibrary") -> tuple[GivenTool, ...]:
     """Tools of a table, for a program that only names them."""
-    from simulator.given_tool import given_tool  # noqa: PLC0415 (numpy)
+    from simulator.given_tool import user_tool  # noqa: PLC0415 (numpy)
 
-    return tuple(given_tool(tool) for tool in library.tools)
+    return tuple(user_tool(tool) for tool in library.tools)
 
 
 def tool_library(path: Path | None, unit: "FileUnit | None" = None) -> "ToolLibrary | None":
@@ -132,13 +132,13 @@ def program_in(
     return Program(file, units=profile, name=name, stock=bounds, bodies=bodies)
 
 
-def read_stock(given: RawPart) -> "GivenStock | None":
+def read_stock(part: RawPart) -> "GivenStock | None":
     """Read a raw part, in numbers or from a file; None for an empty text."""
-    if not given:
+    if not part:
         return None
-    from service.raw_stock import given_stock  # noqa: PLC0415 (numpy)
+    from service.raw_stock import user_stock  # noqa: PLC0415 (numpy)
 
-    return given_stock(given)
+    return user_stock(part)
 
 
 def unit_profile(name: str) -> UnitProfile:

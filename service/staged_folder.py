@@ -59,9 +59,9 @@ def _locked(stage: Path) -> Iterator[None]:
         os.close(handle)
 
 
-def _remove_stale(beside: Path, prefix: str, tell: Tell) -> None:
+def _remove_stale(place: Path, prefix: str, tell: Tell) -> None:
     """Remove what killed runs have left."""
-    for each in sorted(beside.iterdir()):
+    for each in sorted(place.iterdir()):
         if not each.name.startswith(prefix) or not each.is_dir():
             continue
         with suppress(BlockingIOError):

@@ -18,7 +18,7 @@ BODIES = {
 }
 
 
-def given_tool(tool: TableTool) -> GivenTool:
+def user_tool(tool: TableTool) -> GivenTool:
     """Tool of a table as data for a file that only names it.
 
     Parameters

@@ -252,7 +252,7 @@ def _spindle(element: MachineElement) -> Spindle:
 
 def _drive(element: MachineElement) -> tuple[AxisDrive | None, tuple[str, ...]]:
     """Feed drive of every axis, or none and the remark that says why."""
-    given, absent = _given(element, DRIVE)
+    given, absent = _present_values(element, DRIVE)
     if absent:
         return None, (f"Without {absent} the feed drives are unknown: axes draw no power.",)
     drive = AxisDrive(
@@ -272,7 +272,9 @@ def _drive(element: MachineElement) -> tuple[AxisDrive | None, tuple[str, ...]]:
     return drive, ()
 
 
-def _given(element: MachineElement, keys: tuple[str, ...]) -> tuple[dict[str, float], str]:
+def _present_values(
+    element: MachineElement, keys: tuple[str, ...]
+) -> tuple[dict[str, float], str]:
     """Values of the keys that are given, and the printed names of those that are absent."""
     printed = dict(
         zip(element.__struct_fields__, element.__struct_encode_fields__, strict=True)
@@ -283,7 +285,7 @@ def _given(element: MachineElement, keys: tuple[str, ...]) -> tuple[dict[str, fl
 
 def _handling(element: MachineElement, name: str) -> tuple[Handling | None, tuple[str, ...]]:
     """Handling states, or none and the remark that says why."""
-    given, absent = _given(element, STATES)
+    given, absent = _present_values(element, STATES)
     if absent:
         return None, (f"Without {absent} the times between parts are unknown.",)
     states = [

@@ -161,7 +161,7 @@ def require_together(table: FileTable, *keys: str) -> None:
         raise KeyFault(absent[0], f"missing; expected together with {given}")
 
 
-def given_keys(table: FileTable) -> list[str]:
+def changed_keys(table: FileTable) -> list[str]:
     """Keys of a table whose value is not the default."""
     fields = msgspec.structs.fields(table)
     return [each.name for each in fields if getattr(table, each.name) != each.default]

@@ -34,7 +34,7 @@ from simulator.spec import CuttingMaterial, ToolGrade, ToolKind, WorkMaterial
 from simulator.toml_file import (
     FileTable,
     KeyFault,
-    given_keys,
+    changed_keys,
     quantity,
     read_toml,
     require_together,
@@ -176,7 +176,7 @@ class ToolRow(SpeedWindow, frozen=True, kw_only=True):
     def _require_keys_of_its_kind(self) -> None:
         """Refuse dimensions of an insert on a cutter, and of a cutter on an insert."""
         others = CUTTER_KEYS if self.kind in TURNED else INSERT_KEYS
-        for key in others.intersection(given_keys(self)):
+        for key in others.intersection(changed_keys(self)):
             known = sorted(set(self.__struct_fields__) - others)
             message = f"unknown key of kind {self.kind}; known here: {', '.join(known)}"
             raise KeyFault(key, message)

@@ -309,11 +309,11 @@ def _edit(
 
 
 def _speed_number(
-    program: Program, step: ResolvedWorkingstep, told: Programmed, speed: float
+    program: Program, step: ResolvedWorkingstep, state: Programmed, speed: float
 ) -> float:
     """Number of the file's speed attribute for a signed spindle speed in rev/s."""
-    if told.speed.quantity is ProgrammedQuantity.SPINDLE_SPEED:
-        return speed / abs(told.speed.scale)
+    if state.speed.quantity is ProgrammedQuantity.SPINDLE_SPEED:
+        return speed / abs(state.speed.scale)
     diameter = tool_of(program, step.tool_ref).diameter
     if diameter <= 0.0:
         message = "the cutting speed is constant: the spindle follows the radius"
@@ -321,7 +321,7 @@ def _speed_number(
     if speed > 0.0:
         message = "a cutting speed has no direction: the spindle cannot be reversed"
         raise program.error(message, step.technology_ref)
-    return told.speed_number(-speed, diameter)
+    return state.speed_number(-speed, diameter)
 
 
 def with_tool_diameter(program: Program, diameter: float) -> Program:

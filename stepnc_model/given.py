@@ -79,7 +79,7 @@ class SetAttribute:
     """What stands there for the instance that was referred to before."""
     value_origin: Converted | None = None
     """What stands there for an instance of the file that is referred to now."""
-    only_beside: str = ""
+    withdrawn_with: str = ""
     """Attribute of ``ref`` that must be withdrawn too; empty: this one stands alone."""
 
 
@@ -88,7 +88,7 @@ class Completed:
     """Program with the data that were given."""
 
     program: Program
-    given: tuple[SetAttribute, ...]
+    attributes: tuple[SetAttribute, ...]
 
 
 def completed(program: Program, data: GivenData) -> Completed:
@@ -110,7 +110,7 @@ def completed(program: Program, data: GivenData) -> Completed:
         If an instance, an attribute, a tool or a value is not valid.
     """
     if not data:
-        return Completed(program=program, given=())
+        return Completed(program=program, attributes=())
     draft = Draft(program)
     given = [_set(draft, text) for text in data.values]
     given += [each for text in data.teeth for each in _teeth(draft, text)]
@@ -121,25 +121,25 @@ def completed(program: Program, data: GivenData) -> Completed:
         feeds = list(_feeds(draft, data.feed))
         found = _changed(draft, feeds)
         given += feeds
-    return Completed(program=found, given=tuple(given))
+    return Completed(program=found, attributes=tuple(given))
 
 
-def _changed(draft: Draft, given: Sequence[SetAttribute]) -> Program:
+def _changed(draft: Draft, attributes: Sequence[SetAttribute]) -> Program:
     """Program read again with what was set; refused if an attribute cannot hold its value."""
-    if not given:
+    if not attributes:
         return draft.program
-    found = _read(draft.program, draft.edits.apply(), given)
-    for each in given:
+    found = _read(draft.program, draft.edits.apply(), attributes)
+    for each in attributes:
         _require_taken(found.model, each)
     return found
 
 
-def _read(program: Program, data: bytes, given: Sequence[SetAttribute]) -> Program:
+def _read(program: Program, data: bytes, attributes: Sequence[SetAttribute]) -> Program:
     """Program with changed text; one of AP238 stays one."""
     file = Part21File.from_bytes(data, name=program.name)
     if isinstance(program.file, AimView):
         view = program.file
-        settled = {(view.label(int(each.ref)), each.attribute) for each in given}
+        settled = {(view.label(int(each.ref)), each.attribute) for each in attributes}
         file = view.changed(file, settled)
     return program.changed(file)
 
@@ -343,7 +343,7 @@ def _feeds(draft: Draft, feed: GivenFeed) -> Iterator[SetAttribute]:
         is_divided = not is_turning and feed.unit is FeedUnit.MM_PER_REVOLUTION
         edges = _teeth_of(program, ref, steps) if is_divided else 1
         if technology.feedrate is not None:
-            yield replace(_put(draft, ref, "feedrate", None), only_beside=per_edge)
+            yield replace(_put(draft, ref, "feedrate", None), withdrawn_with=per_edge)
         yield _put(draft, ref, per_edge, Real(feed.value / edges))
 
 
@@ -384,10 +384,10 @@ def _teeth_of(program: Program, ref: Ref[Entity], steps: Sequence[ResolvedWorkin
     return counts.pop()
 
 
-def _require_taken(model: Model, given: SetAttribute) -> None:
+def _require_taken(model: Model, attribute: SetAttribute) -> None:
     """Refuse a value that the attribute cannot hold."""
     for finding in model.findings():
-        label = model.file.label(int(given.ref))
-        is_here = finding.entity == label and finding.attribute == given.attribute
+        label = model.file.label(int(attribute.ref))
+        is_here = finding.entity == label and finding.attribute == attribute.attribute
         if is_here and finding.severity is Severity.ERROR:
-            raise SchemaError(finding.message, entity=label, attribute=given.attribute)
+            raise SchemaError(finding.message, entity=label, attribute=attribute.attribute)

@@ -160,18 +160,18 @@ def _tables() -> dict[str, Any]:
     return tomllib.loads(TABLES.read_text(encoding="utf-8"))
 
 
-def _read(given: Entity | None, size: float) -> Tolerance:
+def _read(entity: Entity | None, size: float) -> Tolerance:
     """Tolerance of a length by its nominal size; ValueError if it cannot be read."""
-    if isinstance(given, PlusMinusValue):
-        return _plus_minus(given)
-    if isinstance(given, LimitsAndFits):
-        return _fit(given, size)
+    if isinstance(entity, PlusMinusValue):
+        return _plus_minus(entity)
+    if isinstance(entity, LimitsAndFits):
+        return _fit(entity, size)
     raise ValueError("this kind of tolerance is not supported")
 
 
-def _plus_minus(given: PlusMinusValue) -> Tolerance:
+def _plus_minus(limits: PlusMinusValue) -> Tolerance:
     """Tolerance given by upper and lower limits."""
-    upper, lower = given.upper_limit, given.lower_limit
+    upper, lower = limits.upper_limit, limits.lower_limit
     if not _are_numbers(upper, lower):
         raise ValueError("the upper or lower limit is missing")
     if upper < 0.0 or lower < 0.0:
@@ -184,10 +184,10 @@ def _plus_minus(given: PlusMinusValue) -> Tolerance:
     return Tolerance(half_width=0.5 * (upper + lower), code=code)
 
 
-def _fit(given: LimitsAndFits, size: float) -> Tolerance:
+def _fit(limits: LimitsAndFits, size: float) -> Tolerance:
     """Tolerance given by its grade; the deviation only shifts the zone."""
-    grade, letters = _grade(given.grade)
-    for written in (given.deviation, letters):
+    grade, letters = _grade(limits.grade)
+    for written in (limits.deviation, letters):
         if isinstance(written, str) and written and written.upper() not in LETTERS:
             raise ValueError(f"'{written}' is not a fundamental deviation of ISO 286-1")
     if not _are_numbers(size):

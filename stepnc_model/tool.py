@@ -109,7 +109,7 @@ def is_described(program: Program, ref: Ref[Entity]) -> bool:
     return any(each.is_named(tool.its_id) for each in program.tools)
 
 
-def given_for(program: Program, ref: Ref[Entity]) -> GivenTool | None:
+def user_tool_for(program: Program, ref: Ref[Entity]) -> GivenTool | None:
     """Tool of the user's that stands for one of which the file has only the name."""
     tool = program.get(ref)
     if not isinstance(tool, MillingCuttingTool) or body_of(program, ref) is not None:
@@ -145,7 +145,7 @@ def _rotating(program: Program, ref: Ref[Entity], tool: MillingCuttingTool) -> T
             f"the tool has no tool body: --tools gives a table with tool '{tool.its_id}'", ref
         )
     if given is not None and body_of(program, ref) is None:
-        return _given(given, tool.its_id)
+        return _completed_tool(given, tool.its_id)
     body = program.get(tool.its_tool_body)
     if not isinstance(body, MillingToolBody) or body.dimension is None:
         raise program.error("the tool body has no dimension", tool.its_tool_body, "dimension")
@@ -184,21 +184,23 @@ def _rotating(program: Program, ref: Ref[Entity], tool: MillingCuttingTool) -> T
     )
 
 
-def _given(given: GivenTool, id: str) -> Tool:
+def _completed_tool(user_tool: GivenTool, id: str) -> Tool:
     """Tool that the file only names."""
     return Tool(
         id=id,
-        keyword=given.body,
-        edge_material=(given.edge_material, id),
-        diameter=given.diameter,
-        teeth=given.teeth,
-        corner_radius=given.corner_radius or None,
-        cutting_edge_length=given.edge_length,
-        cutting_edge_angle=given.insert.cutting_edge_angle if given.insert else RIGHT_ANGLE,
-        width=given.insert.width if given.insert else None,
-        overhang=given.overhang,
-        point_angle=given.point_angle,
-        centre_cutting=CENTRE_CUTTING.get(given.body),
+        keyword=user_tool.body,
+        edge_material=(user_tool.edge_material, id),
+        diameter=user_tool.diameter,
+        teeth=user_tool.teeth,
+        corner_radius=user_tool.corner_radius or None,
+        cutting_edge_length=user_tool.edge_length,
+        cutting_edge_angle=user_tool.insert.cutting_edge_angle
+        if user_tool.insert
+        else RIGHT_ANGLE,
+        width=user_tool.insert.width if user_tool.insert else None,
+        overhang=user_tool.overhang,
+        point_angle=user_tool.point_angle,
+        centre_cutting=CENTRE_CUTTING.get(user_tool.body),
     )
 
 

@@ -18,7 +18,7 @@ from stepnc_model.part21.values import Ref, Value
 from stepnc_model.program import Program
 
 
-def without_given(program: Program, whole: Completed) -> bytes:
+def without_user_data(program: Program, whole: Completed) -> bytes:
     """Bytes of a program with given data withdrawn, where they were not changed since.
 
     What was copied for a workingstep, such as a technology that others use too, is without
@@ -35,7 +35,7 @@ def without_given(program: Program, whole: Completed) -> bytes:
     -------
     bytes
     """
-    given = (*whole.given, *_of_copies(program, whole))
+    given = (*whole.attributes, *_of_copies(program, whole))
     if isinstance(program.file, AimView):
         old = whole.program.file
         before = old.source if isinstance(old, AimView) else old
@@ -63,7 +63,7 @@ def _of_copies(program: Program, whole: Completed) -> Iterator[SetAttribute]:
             one, other = getattr(old, name), getattr(step, name)
             if one is None or _is_alike(program, other, whole.program, one):
                 continue
-            for each in whole.given:
+            for each in whole.attributes:
                 if each.ref == one and (int(other), each.attribute) not in seen:
                     seen.add((int(other), each.attribute))
                     yield replace(each, ref=other, origin=origin_in(program, other))
@@ -77,18 +77,18 @@ def _is_alike(program: Program, ref: Ref[Any], before: Program, old: Ref[Any]) -
     return (now.origin, now.keyword) == (then.origin, then.keyword)
 
 
-def _together(given: Sequence[SetAttribute], one: SetAttribute) -> Iterator[SetAttribute]:
+def _together(attributes: Sequence[SetAttribute], one: SetAttribute) -> Iterator[SetAttribute]:
     """Set attribute, with the one beside which alone it is withdrawn."""
     yield one
-    for other in given:
-        if other.ref == one.ref and other.attribute == one.only_beside:
+    for other in attributes:
+        if other.ref == one.ref and other.attribute == one.withdrawn_with:
             yield other
 
 
-def _is_kept(program: Program, given: SetAttribute) -> bool:
+def _is_kept(program: Program, attribute: SetAttribute) -> bool:
     """True if an attribute still has the value that was given."""
-    place = program.model.position(given.ref, given.attribute)
-    return program.file.parameters(int(given.ref))[place] == given.value
+    place = program.model.position(attribute.ref, attribute.attribute)
+    return program.file.parameters(int(attribute.ref))[place] == attribute.value
 
 
 class _AimWithdrawal:
@@ -100,33 +100,33 @@ class _AimWithdrawal:
         self._view = view
         self._remembered: list[Converted] = []
 
-    def withdraw(self, given: SetAttribute) -> None:
+    def withdraw(self, attribute: SetAttribute) -> None:
         """Withdraw one attribute, if it still has the value that was given."""
         view = self._view
-        number = None if given.origin is None else view.number_of(given.origin)
+        number = None if attribute.origin is None else view.number_of(attribute.origin)
         if number is None:
             return
         ref: Ref[object] = Ref(number)
-        place = self._draft.program.model.position(ref, given.attribute)
+        place = self._draft.program.model.position(ref, attribute.attribute)
         value = view.parameters(number)[place]
-        if not self._is_kept(value, given):
+        if not self._is_kept(value, attribute):
             return
-        self._draft.put(ref, given.attribute, self._before(given))
-        if given.added and isinstance(value, Ref):
+        self._draft.put(ref, attribute.attribute, self._before(attribute))
+        if attribute.added and isinstance(value, Ref):
             self._draft.remove(tuple(_below(view, value)))
 
-    def _is_kept(self, value: Value, given: SetAttribute) -> bool:
+    def _is_kept(self, value: Value, attribute: SetAttribute) -> bool:
         """True if a value is the one that was given."""
-        if not isinstance(value, Ref) or not isinstance(given.value, Ref):
-            return _is_same(value, given.value)
-        origin = given.value_origin
+        if not isinstance(value, Ref) or not isinstance(attribute.value, Ref):
+            return _is_same(value, attribute.value)
+        origin = attribute.value_origin
         return origin is None or self._view.number_of(origin) == int(value)
 
-    def _before(self, given: SetAttribute) -> Value:
+    def _before(self, attribute: SetAttribute) -> Value:
         """Previous value, under the number that it has now."""
-        origin = given.before_origin
+        origin = attribute.before_origin
         if origin is None:
-            return given.before
+            return attribute.before
         number = self._view.number_of(origin)
         if number is None:
             # Nothing leads to it any more, so that the program as it is does not have it.

@@ -105,17 +105,18 @@ def pytest_collection_modifyitems(
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
     """More workers than cores: tests wait for processes, the slow ones half of their time."""
     cores = os.cpu_count() or 1
-    return 2 * cores if config.getoption("markexpr") == "slow" else (3 * cores + 1) // 2
+    # One more that waits for LinuxCNC, which runs by the clock.
+    return 2 * cores + 1 if config.getoption("markexpr") == "slow" else (3 * cores + 1) // 2
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Keep together what shares something, unless ``--dist`` asks for another way."""
+    """Keep together what shares something, longest first; ``--dist`` asks for another way."""
     if config.getoption("dist") != "load":
         return None
-    from tests.distribution import scheduler  # noqa: PLC0415 (there may be no xdist)
+    from tests.distribution import LongestFirst  # noqa: PLC0415 (there may be no xdist)
 
-    return scheduler(config, log)
+    return LongestFirst(config, log)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

@@ -1,18 +1,40 @@
-"""Which tests of a run by several workers go to the same one.
+"""Which tests of a run by several workers go to the same one, and which begin first.
 
 What takes long and is shared, such as a server or a plan, is made by one worker only then.
 """
 
 from typing import Any
 
-import pytest
 from xdist.scheduler import LoadFileScheduling
 
 ONE_SERVER = ("tests/service/rest/", "tests/service/jobs/", "tests/service/dashboard/")
 """folders whose files share a server and what it has done"""
 
-OWN_SERVERS = ("test_serve.py", "test_runner.py")
+OWN_SERVERS = (
+    "test_runner.py",
+    "test_serve.py",
+    "test_serve_database.py",
+    "test_serve_store.py",
+    "test_two_hosts.py",
+)
 """files there that start their own"""
+
+LONGEST = (
+    # A real control runs by the clock, and leaves the cores to the other workers.
+    "tests/simulator/linuxcnc/test_samples.py",
+    "tests/simulator/linuxcnc/test_bench.py",
+    "tests/service/rest/",
+    "tests/service/rest/test_serve_database.py",
+    "tests/service/rest/test_serve.py",
+    "tests/service/jobs/test_two_hosts.py",
+    "tests/service/rest/test_serve_store.py",
+    "tests/docs/test_service_page.py",
+    "tests/properties/test_pocket_paths.py",
+    "tests/benchmarks/test_spiral.py",
+    "tests/service/test_every_missing_instance.py",
+    "tests/service/along_path/test_output.py",
+)
+"""groups that take most of a minute or more though their tests are few, the longest first"""
 
 
 def group_of(nodeid: str) -> str:
@@ -25,8 +47,19 @@ def group_of(nodeid: str) -> str:
     return file
 
 
-def scheduler(config: pytest.Config, log: Any) -> Any:
-    """That of ``--dist loadfile``, with these groups."""
-    made = LoadFileScheduling(config, log)
-    made._split_scope = group_of
-    return made
+class LongestFirst(LoadFileScheduling):  # type: ignore[misc]
+    """Scheduler of ``--dist loadfile`` with these groups.
+
+    It hands out the groups with most tests first. One with few but long tests would begin last,
+    and all other workers would wait for it.
+    """
+
+    def _split_scope(self, nodeid: str) -> str:
+        return group_of(nodeid)
+
+    def _assign_work_unit(self, node: Any) -> None:
+        for group in LONGEST:
+            if group in self.workqueue:
+                self.workqueue.move_to_end(group, last=False)
+                break
+        super()._assign_work_unit(node)

@@ -102,7 +102,7 @@ def _commands(ends: Floats, segment: Ints, caps: Caps, run: Ints) -> Commands:
         caps=caps,
         run=run[segment],
         greatest_locked=np.zeros(0),
-        given_window=0.0,
+        programmed_window=0.0,
     )
 
 

@@ -41,12 +41,12 @@ def held_feeds(
         Mean tangential force at a feed per tooth of 1 mm, with its margin.
     """
     if isinstance(at.holding, Clamp) and cut.kind is CutKind.MILLING:
-        yield from _clamped(cut, at, at.holding, stations, force)
+        yield from _held_feeds(cut, at, at.holding, stations, force)
     elif isinstance(at.holding, Chuck) and cut.kind is not CutKind.MILLING:
         yield _gripped(cut, at, stations, spindle)
 
 
-def _clamped(
+def _held_feeds(
     cut: Cut, at: CuttingConditions, clamp: Clamp, stations: Stations, force: Floats
 ) -> Iterator[Floats]:
     """Feeds at which a vice or clamps hold a mill's force, across the spindle and upwards."""

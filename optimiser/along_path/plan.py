@@ -171,7 +171,7 @@ class FeedPlanner:
             most = max(most, float(pieces.programmed.max(initial=0.0)) / machine.greatest)
         self._excess[name] = max(most, self._excess.get(name, 0.0))
         given = self._given_windows.get(name, 0.0)
-        self._given_windows[name] = given + commands.given_window
+        self._given_windows[name] = given + commands.programmed_window
         worst, known = most_broken(stretch, machine), self._broken.get(name)
         if worst is not None and (known is None or worst.ratio > known.ratio):
             self._broken[name] = worst

@@ -67,7 +67,7 @@ class Commands:
     """Number of the run of each place, (K,); -1 on rapids."""
     greatest_locked: Floats
     """Greatest feed of each run that may not be chosen, (R,), mm/s; 0: none."""
-    given_window: float
+    programmed_window: float
     """Time in which the control's filter settles after all runs as programmed, s."""
 
 
@@ -139,7 +139,7 @@ def commands_of(stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds) 
         found.append(run.fastest())
         runs.append(np.full(len(found[-1].ends), len(locked)))
         locked.append(run.greatest_locked)
-        given += run.given.window
+        given += run.smoothing.window
     found = found or [_Smoothed(ends=np.zeros(0), caps=unbounded(0), time=0.0)]
     ends = np.concatenate([part.ends for part in found])
     middle = ends - 0.5 * np.diff(ends, prepend=0.0)
@@ -152,7 +152,7 @@ def commands_of(stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds) 
         ),
         run=np.concatenate(runs or [np.zeros(0, dtype=np.int64)]),
         greatest_locked=np.array(locked),
-        given_window=given,
+        programmed_window=given,
     )
 
 
@@ -238,11 +238,13 @@ class _FeedRun:
         self.corner_sines = sine[bent]
         self.bends = segments.bend
         # A plan rounds no corner more than the program does, or than the tolerance.
-        self.given = smoothing_of(machine.control, machine.limits, float(segments.speed.max()))
+        self.smoothing = smoothing_of(
+            machine.control, machine.limits, float(segments.speed.max())
+        )
         slower = np.minimum(moving.speed[1:], moving.speed[:-1])[bent]
-        rounding = self.given.corner_gain * slower * self.corner_sines
+        rounding = self.smoothing.corner_gain * slower * self.corner_sines
         self.corner_tolerance = np.maximum(rounding, machine.tolerance)
-        shrinking = self.given.arc_gain * segments.speed**2 * self.bends
+        shrinking = self.smoothing.arc_gain * segments.speed**2 * self.bends
         self.arc_tolerance = np.maximum(shrinking, machine.tolerance)
 
     def fastest(self) -> _Smoothed:
@@ -251,7 +253,7 @@ class _FeedRun:
         top = float(known.max(initial=float(self.segments.speed.max())))
         low = max(SLOWEST * top, self.greatest_locked)
         best = self._smoothed(top)
-        if self.given.window == 0.0:
+        if self.smoothing.window == 0.0:
             return best
         as_given = self._smoothed(float(self.segments.speed.max()))
         if as_given.time < best.time:

@@ -123,20 +123,20 @@ def bounds_of_tool(  # noqa: PLR0913 (a tool, its machine and material, and what
     )
 
 
-def bounds_of_all(found: Sequence[CutBounds]) -> CutBounds:
+def bounds_of_all(bounds: Sequence[CutBounds]) -> CutBounds:
     """Bounds of a tool of which something is guessed.
 
     Parameters
     ----------
-    found : sequence of CutBounds
+    bounds : sequence of CutBounds
         Bounds of each tool that it may be, the one with the fewest teeth first: its feed of
         plunges is the least.
     """
     return replace(
-        found[0],
-        plausible=tuple(found[1:]),
-        plunge=min((each.plunge for each in found if each.plunge is not None), default=None),
-        keeps_programmed=any(each.keeps_programmed for each in found),
+        bounds[0],
+        plausible=tuple(bounds[1:]),
+        plunge=min((each.plunge for each in bounds if each.plunge is not None), default=None),
+        keeps_programmed=any(each.keeps_programmed for each in bounds),
     )
 
 

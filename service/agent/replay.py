@@ -133,7 +133,7 @@ def _table(path: Path, model: DeviceModel, tell: Tell) -> RecordedRun:
     return RecordedRun(devices=model, duration=duration, read=read)
 
 
-def _span(path: Path, model: DeviceModel, found: Mapping[str, int]) -> tuple[float, float]:
+def _span(path: Path, model: DeviceModel, items: Mapping[str, int]) -> tuple[float, float]:
     """Return the first time of a table and its duration, in s, after all rows were read once.
 
     Raises
@@ -142,7 +142,7 @@ def _span(path: Path, model: DeviceModel, found: Mapping[str, int]) -> tuple[flo
         When there are no rows, or times do not ascend.
     """
     begin, last, row = nan, -inf, 1
-    for batch in batches(path, _kinds(model, found)):
+    for batch in batches(path, _kinds(model, items)):
         times: Floats = batch.column(0).to_numpy(zero_copy_only=False)
         begin = float(times[0]) if row == 1 else begin
         # Also true of a time that is missing.
@@ -201,11 +201,11 @@ def _cells(column: pa.Array) -> list[Value]:
     return [each if np.isfinite(each) else None for each in numbers.tolist()]
 
 
-def _kinds(model: DeviceModel, found: Mapping[str, int]) -> dict[str, pa.DataType]:
+def _kinds(model: DeviceModel, items: Mapping[str, int]) -> dict[str, pa.DataType]:
     """Return the types of the time and of the other columns: texts of events, else numbers."""
     kinds = {
         name: pa.float64() if model.items[item].category == "SAMPLE" else pa.string()
-        for name, item in found.items()
+        for name, item in items.items()
     }
     return {TIME: pa.float64(), **kinds}
 
@@ -289,8 +289,8 @@ class NothingKnown(StepNcError):
     """No value of a log belongs to a data item of the device model."""
 
 
-def _require_some(path: Path, found: Sequence[object], names: Sequence[str]) -> None:
-    if not found:
+def _require_some(path: Path, values: Sequence[object], names: Sequence[str]) -> None:
+    if not values:
         raise NothingKnown(
             f"{path}: nothing in it belongs to a data item of the device model "
             f"({_listed(names) or 'the file is empty'})"

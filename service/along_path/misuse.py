@@ -52,12 +52,12 @@ class MisuseWatch:
     """Whether mills that do not cut over centre may plunge into solid material."""
     lines: set[int] = field(default_factory=set)
     """Lines whose feeds stay."""
-    found: dict[tuple[int, MisuseKind], dict[int, float]] = field(default_factory=dict)
+    misuses: dict[tuple[int, MisuseKind], dict[int, float]] = field(default_factory=dict)
     """Lines with the greatest width that was removed, mm, by tool and kind."""
 
     def of_written(self) -> "MisuseWatch":
         """Watch over code that was written from this program."""
-        return replace(self, lines=set(), found={})
+        return replace(self, lines=set(), misuses={})
 
     def watched(self, stretch: PathStretch, number: int) -> PathStretch:
         """Note what a tool is not made for; return the stretch without choice of its feed."""
@@ -86,7 +86,7 @@ class MisuseWatch:
         if not len(rows):
             return
         for block in meets(segments, rows, tool.shape, 0.0).tolist():
-            known = self.found.setdefault((number, MisuseKind.SIDEWAYS), {})
+            known = self.misuses.setdefault((number, MisuseKind.SIDEWAYS), {})
             known[block] = 0.0
 
     def as_kept(self, stretch: PathStretch, lines: Ints) -> PathStretch:
@@ -108,7 +108,7 @@ class MisuseWatch:
         met = stretch.met
         blocks = stretch.segments.block[met.segment[rows]].tolist()
         if blocks:
-            known = self.found.setdefault((tool.number, kind), {})
+            known = self.misuses.setdefault((tool.number, kind), {})
             for block, width in zip(
                 blocks, (2.0 * met.axial_depth[rows]).tolist(), strict=True
             ):
@@ -117,7 +117,7 @@ class MisuseWatch:
 
     def findings(self) -> Iterator[Finding]:
         """Yield what was noted, by tool and kind."""
-        for (number, kind), lines in self.found.items():
+        for (number, kind), lines in self.misuses.items():
             tool = self.tools[number]
             where = spans(np.array(sorted(lines)))
             severity, text = Severity.WARNING, ""

@@ -29,13 +29,15 @@ class ProgramBodies:
     ----------
     tell : callable
         Takes the reason why a raw part is not known.
-    given : (T, 3, 3) array, mm
+    user_triangles : (T, 3, 3) array, mm
         Triangles of a raw part that the user gives, in coordinates of every setup; None: the
         program's own counts.
     """
 
-    def __init__(self, tell: Callable[[str], None], given: "Floats | None" = None) -> None:
-        self.given = given
+    def __init__(
+        self, tell: Callable[[str], None], user_triangles: "Floats | None" = None
+    ) -> None:
+        self.user_triangles = user_triangles
         self._tell = tell
         self._raw: dict[int, Floats | None] = {}
 

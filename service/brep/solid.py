@@ -154,7 +154,7 @@ def solid_triangles(place: SolidPlace, *, tolerance: float) -> Floats:
     )
     if found.chosen < 0:
         raise _not_one(place, found, taken, names)
-    _require_true(place.name, found, sag)
+    _check_watertight(place.name, found, sag)
     return found.triangles
 
 
@@ -197,29 +197,33 @@ def _choice(place: SolidPlace, taken: Exchange, names: dict[int, str]) -> Choice
 
 
 def _not_one(
-    place: SolidPlace, found: Tessellation, taken: Exchange, names: dict[int, str]
+    place: SolidPlace, tessellation: Tessellation, taken: Exchange, names: dict[int, str]
 ) -> StepNcError:
     """Error of a file without a solid, with several, or without the one that was named."""
-    if not len(found.number):
-        shells = f"; {found.shells} open shells or surfaces" if found.shells else ""
+    if not len(tessellation.number):
+        shells = (
+            f"; {tessellation.shells} open shells or surfaces" if tessellation.shells else ""
+        )
         return StepNcError(
             f"{place.name}: no closed solid (such as MANIFOLD_SOLID_BREP){shells}"
         )
     rows = []
-    for row, number in enumerate(found.number.tolist()[:MOST_NAMED]):
-        size = " x ".join(f"{each:.4g}" for each in (found.high[row] - found.low[row]).tolist())
+    for row, number in enumerate(tessellation.number.tolist()[:MOST_NAMED]):
+        size = " x ".join(
+            f"{each:.4g}" for each in (tessellation.high[row] - tessellation.low[row]).tolist()
+        )
         id = f" (#{taken.ids[number - 1]})" if number else ""
         rows.append(f"{row + 1} '{names.get(number, '')}'{id} of {size} mm")
-    more = len(found.number) - len(rows)
+    more = len(tessellation.number) - len(rows)
     listed = ", ".join(rows) + (f", and {more} more" if more > 0 else "")
-    count = len(found.number)
+    count = len(tessellation.number)
     what = f"no solid '{place.solid}', or several" if place.solid else f"{count} solids"
     return StepNcError(f"{place.name}: {what}: choose one by its place or name: {listed}")
 
 
-def _require_true(name: str, found: Tessellation, sag: float) -> None:
+def _check_watertight(name: str, tessellation: Tessellation, sag: float) -> None:
     """Refuse triangles that are not closed, or have another volume than the solid."""
-    triangles = found.triangles
+    triangles = tessellation.triangles
     edges = edges_of(triangles)
     if edges.open or edges.unlike:
         raise StepNcError(
@@ -228,8 +232,8 @@ def _require_true(name: str, found: Tessellation, sag: float) -> None:
         )
     normal = np.cross(triangles[:, 1], triangles[:, 2])
     volume = float(np.einsum("ij,ij->i", triangles[:, 0], normal).sum()) / 6.0
-    exact = float(found.volume[found.chosen])
-    bound = sag * float(found.area[found.chosen]) + ROUNDING * abs(exact)
+    exact = float(tessellation.volume[tessellation.chosen])
+    bound = sag * float(tessellation.area[tessellation.chosen]) + ROUNDING * abs(exact)
     if not exact > 0.0 or abs(volume - exact) > bound:
         raise StepNcError(
             f"{name}: its triangles have {volume:.6g} mm³, the solid {exact:.6g} mm³; they may "

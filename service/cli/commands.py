@@ -58,9 +58,9 @@ def output_names(parser: argparse.ArgumentParser) -> tuple[str, ...]:
     return tuple(each.dest for each in parser._actions if each.type is output_path)
 
 
-def add_verbs(commands: Commands, found: Iterable[Verb]) -> None:
+def add_verbs(commands: Commands, verbs: Iterable[Verb]) -> None:
     """Add verbs to the commands, those of a group below the command of its name."""
-    for group, members in groupby(found, key=lambda verb: verb.group):
+    for group, members in groupby(verbs, key=lambda verb: verb.group):
         below = list(members)
         if below[0].folder == group:
             add_verb(commands, below[0])
@@ -132,7 +132,7 @@ def _run_verb(verb: Verb, options: argparse.Namespace) -> int:
         raise StepNcError("give --format or --json, not both")
     typed = {name: value for name, value in vars(options).items() if value or value == 0}
     given = {name: value for name, value in typed.items() if value is not False}
-    result = ran(verb, request, files, given=given, tell=tell)
+    result = ran(verb, request, files, named=given, tell=tell)
     if isinstance(result, ServedResult):
         if options.json:
             tell("--json has no effect: what is served says nothing at its end")

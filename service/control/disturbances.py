@@ -107,15 +107,17 @@ def time_of(word: str) -> float | None:
     return _split(word)[1].time
 
 
-def _with(found: Disturbances, text: str, hardness: Callable[[str], float]) -> Disturbances:
+def _with(
+    disturbances: Disturbances, text: str, hardness: Callable[[str], float]
+) -> Disturbances:
     what, word = _split(text)
     if what in _FROM_START:
         if word.time is not None:
             raise StepNcError(f"disturbance '{text}': it holds from the start; remove '@…'")
-        return _FROM_START[what](found, word)
+        return _FROM_START[what](disturbances, word)
     if what in _ORDERS:
         order = TimedOrder(time=_time(word), order=_ORDERS[what](word))
-        return replace(found, orders=(*found.orders, order))
+        return replace(disturbances, orders=(*disturbances.orders, order))
     if what == "material":
         change = HiddenChange(
             time=_time(word), what=HiddenQuantity.HARDNESS, value=hardness(word.value)
@@ -126,8 +128,8 @@ def _with(found: Disturbances, text: str, hardness: Callable[[str], float]) -> D
     else:
         known = ", ".join(sorted({*_FROM_START, *_ORDERS, *_CHANGES, "material"}))
         raise StepNcError(f"disturbance '{text}': unknown kind '{what}'; known: {known}")
-    hidden = replace(found.hidden, changes=(*found.hidden.changes, change))
-    return replace(found, hidden=hidden)
+    hidden = replace(disturbances.hidden, changes=(*disturbances.hidden.changes, change))
+    return replace(disturbances, hidden=hidden)
 
 
 def _split(text: str) -> tuple[str, _Word]:
@@ -222,25 +224,25 @@ def _switch(word: _Word) -> Order:
 
 
 def _hidden(name: str, read: Callable[[_Word], float]) -> Callable[..., Disturbances]:
-    def with_it(found: Disturbances, word: _Word) -> Disturbances:
+    def with_it(disturbances: Disturbances, word: _Word) -> Disturbances:
         change: dict[str, Any] = {name: read(word)}
-        return replace(found, hidden=replace(found.hidden, **change))
+        return replace(disturbances, hidden=replace(disturbances.hidden, **change))
 
     return with_it
 
 
 def _bench(name: str, read: Callable[[_Word], float]) -> Callable[..., Disturbances]:
-    def with_it(found: Disturbances, word: _Word) -> Disturbances:
+    def with_it(disturbances: Disturbances, word: _Word) -> Disturbances:
         change: dict[str, Any] = {name: read(word)}
-        return replace(found, bench=replace(found.bench, **change))
+        return replace(disturbances, bench=replace(disturbances.bench, **change))
 
     return with_it
 
 
 def _instrument(name: str, read: Callable[[_Word], float]) -> Callable[..., Disturbances]:
-    def with_it(found: Disturbances, word: _Word) -> Disturbances:
-        dynamometer = replace(found.bench.dynamometer, **{name: read(word)})
-        return replace(found, bench=replace(found.bench, dynamometer=dynamometer))
+    def with_it(disturbances: Disturbances, word: _Word) -> Disturbances:
+        dynamometer = replace(disturbances.bench.dynamometer, **{name: read(word)})
+        return replace(disturbances, bench=replace(disturbances.bench, dynamometer=dynamometer))
 
     return with_it
 

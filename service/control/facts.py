@@ -165,7 +165,7 @@ _ADDED = (
 )  # fmt: skip
 
 
-def exceeded(run: ControlRun, found: Sequence[ControlRow]) -> tuple[str, ...]:
+def exceeded(run: ControlRun, rows: Sequence[ControlRow]) -> tuple[str, ...]:
     """Return a sentence for each fault of the run; none for a good run."""
     ends = {EventKind.STOP: "stopped", EventKind.LOST: "lost"}
     stops = [event for event in run.events if event.kind in ends]
@@ -174,18 +174,18 @@ def exceeded(run: ControlRun, found: Sequence[ControlRow]) -> tuple[str, ...]:
         *(
             f"{row.name}: {row.record.over_time:.3g} s of {row.record.cutting_time:.3g} s with "
             f"chips above {EXCESS_RATIO:g} times the set point of {row.record.set_point:.4g} N"
-            for row in found
+            for row in rows
             if row.has_stayed_over
         ),
         *(
             f"{row.name}: {row.record.longest_over.seconds:.3g} s without a break above the "
             f"set point, at most {row.record.longest_over.most:.3g} times"
-            for row in found
+            for row in rows
             if row.record.longest_over.is_lasting
         ),
         *(
             f"{row.name}: the override was not followed for {row.record.astray:.3g} s"
-            for row in found
+            for row in rows
             if row.record.astray > 0.0
         ),
         *(
@@ -196,7 +196,7 @@ def exceeded(run: ControlRun, found: Sequence[ControlRow]) -> tuple[str, ...]:
         *(
             f"{row.name}: no force for {row.blind:.3g} s of {row.record.time:.3g} s: run at "
             "the safe override"
-            for row in found
+            for row in rows
             if row.blind > BLIND * row.record.time
         ),
     )

@@ -72,14 +72,14 @@ FAR = 1.5
 
 
 def control_figure(
-    run: ControlRun, found: Sequence[ControlRow], trace: BucketedRun
+    run: ControlRun, rows: Sequence[ControlRow], trace: BucketedRun
 ) -> go.Figure:
     """Figure of workingsteps, events, feed, force, removal rate, override and more over time.
 
     Parameters
     ----------
     run : ControlRun
-    found : sequence of ControlRow
+    rows : sequence of ControlRow
         Rows of the workingsteps of the run.
     trace : BucketedRun
         Signals of the same run.
@@ -89,7 +89,7 @@ def control_figure(
     plotly.graph_objects.Figure
     """
     stretches = [
-        TimeSpan(name=row.name, begin=row.begin, duration=row.record.time) for row in found
+        TimeSpan(name=row.name, begin=row.begin, duration=row.record.time) for row in rows
     ]
     panels = Panels(trace)
     panels.strip(stretches)

@@ -25,7 +25,7 @@ PROGRAMMED = "the programmed feed, by mode QC"
 PROGRAMMED_LEAST = "the programmed feed, at which the edge rubs"
 FREE = "the programmed feed, as nothing bounds the force"
 OFF = "the programmed feed, as control is off"
-ASKED = "force asked for"
+FORCE_ORDER = "force asked for"
 STRENGTH = "strength of the tool"
 RUBBING = "no feed keeps the roughness"
 
@@ -59,7 +59,7 @@ class OverrideLimits:
         if aimed(force, self.reference) < force * (1.0 - NEAR):
             return STRENGTH
         if settings.set_point is not None:
-            return ASKED
+            return FORCE_ORDER
         bound = self.reference.bound(power_factor=settings.power_factor)
         return "" if bound is None else bound.words
 

@@ -133,10 +133,10 @@ def control(
         with trace:
             for cycle in session.cycles(looking):
                 for event in cycle.events:
-                    tell(_told(event))
+                    tell(_event_line(event))
                 ticker(lambda: _progress(session))
             if session.is_lost:
-                tell(_told(session.events[-1]))
+                tell(_event_line(session.events[-1]))
     finally:
         if trace.file is not None and trace.file.place is not None:
             tell(f"written: {trace.file.place} ({counted(trace.rows, 'row')})")
@@ -395,7 +395,7 @@ def _key(machine: Machine, match: MaterialMatch, advice: Advice) -> CutKey:
     return key_of(machine.name, match.material.name, advice)
 
 
-def _told(event: LoopEvent) -> str:
+def _event_line(event: LoopEvent) -> str:
     return f"{event.time:9.2f} s  {event.kind.value}: {event.text}"
 
 

@@ -117,7 +117,7 @@ class DatasetSource:
             for row, program in enumerate(self.programs):
                 for machine in self.machines:
                     material = self.materials[row, 0]
-                    _cycle(_told(program, ends), machine, material, ends, tell)
+                    _cycle(_with_row_settings(program, ends), machine, material, ends, tell)
 
     def rows(self, first: int, last: int) -> list[DatasetRow]:
         """Rows from number ``first``, counted from 0, to before ``last``.
@@ -137,7 +137,7 @@ class DatasetSource:
         StepNcError
             When the program cannot take them.
         """
-        return _told(self.programs[row.program], row.settings)
+        return _with_row_settings(self.programs[row.program], row.settings)
 
     def _made(self, row: DesignRow) -> DatasetRow:
         machine, settings = self.machines[row.machine], row.settings
@@ -169,7 +169,7 @@ class DatasetSource:
         )
 
 
-def _told(program: Program, settings: RowSettings) -> Program:
+def _with_row_settings(program: Program, settings: RowSettings) -> Program:
     """Program with settings of a row."""
     try:
         diameter = settings.tool_diameter

@@ -6,7 +6,7 @@ lost costs only its tasks, which Dask gives to another. A scheduler that is lost
 everything: the work is then submitted again by its owner.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Awaitable, Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import contextmanager, suppress
 from functools import partial
@@ -23,7 +23,6 @@ from stepnc_model.errors import StepNcError
 
 if TYPE_CHECKING:
     from distributed import Client
-    from distributed import Future as Task
 
 Result = TypeVar("Result")
 
@@ -110,7 +109,7 @@ class _ClientExecutor(Executor):
         return future
 
 
-async def _finish(task: "Task[Result]", future: Future[Result]) -> None:
+async def _finish(task: Awaitable[Result], future: Future[Result]) -> None:
     """End a future as its task ends; a task that is lost ends with a ``CancelledError``."""
     try:
         future.set_result(await task)

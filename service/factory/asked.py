@@ -162,7 +162,7 @@ def sample_shops() -> dict[str, Path]:
     return {file.stem: file for file in sorted((EXAMPLES / "shops").glob("*.toml"))}
 
 
-def asked_source(data_folder: DataFolder, order: FactoryOrder) -> ShopSource:
+def source_of_order(data_folder: DataFolder, order: FactoryOrder) -> ShopSource:
     """Shop of an order.
 
     Raises
@@ -219,7 +219,7 @@ def _sample(file: Path) -> ShopSource:
     return ShopSource(name=file.name, read=read)
 
 
-def require_asked(source: ShopSource, order: FactoryOrder) -> Shop:
+def checked_shop(source: ShopSource, order: FactoryOrder) -> Shop:
     """Check an order before a job is queued, and return its shop.
 
     A live run counts from its beginning, unless the order has a warm-up.

@@ -247,7 +247,7 @@ class ShopEventKind(StrEnum):
     OVER = "over"
 
 
-TOLD = {
+EVENT_OF_STATE = {
     MachineState.FAILED: (ShopEventKind.FAILED, "failed"),
     MachineState.REPAIR: (ShopEventKind.REPAIR, "is being repaired"),
     MachineState.MAINTENANCE: (ShopEventKind.MAINTENANCE, "is being maintained"),
@@ -426,8 +426,8 @@ class LiveShop:
         self._changes.append((self.time, index, STATES.index(state)))
         if self._before[index] is MachineState.REPAIR:
             self._say(ShopEventKind.REPAIRED, f"{name} is repaired: {state.value}")
-        elif state in TOLD:
-            kind, words = TOLD[state]
+        elif state in EVENT_OF_STATE:
+            kind, words = EVENT_OF_STATE[state]
             self._say(kind, f"{name} {words}")
         self._before[index] = state
 

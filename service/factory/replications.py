@@ -22,7 +22,7 @@ SLICES = 500
 MOST_AT_ONCE = 20_000
 """Most parts that one run may make at one time."""
 
-Told = Callable[[float], None]
+ProgressShare = Callable[[float], None]
 """Function that is told the share of a run that is done."""
 
 
@@ -68,7 +68,7 @@ def run_shop(
     streams: Streams,
     *,
     listeners: Listeners,
-    told: Told = lambda _: None,
+    progress: ProgressShare = lambda _: None,
 ) -> ShopRun:
     """Run a shop once.
 
@@ -81,7 +81,7 @@ def run_shop(
     try:
         for part in range(1, SLICES + 1):
             floor.run(shop.duration * part / SLICES)
-            told(part / SLICES)
+            progress(part / SLICES)
             if floor.is_finished:
                 break
     finally:

@@ -203,7 +203,7 @@ def _first(
     if most_parts < inf:
         listeners = listeners.plus(Listeners(count=(PartBound(most_parts).count,)))
 
-    def told(share: float) -> None:
+    def progress(share: float) -> None:
         ticker(lambda: f"{bar(share)}  {share * hours:.0f} of {hours:g} h")
 
     tables = None
@@ -217,7 +217,9 @@ def _first(
             files = Listeners(part=(tables.part,), state=(states.state,))
             # Tables first: what a bound refuses was made.
             listeners = files.plus(listeners)
-        run = run_shop(shop, plan, Streams(seed=request.seed), listeners=listeners, told=told)
+        run = run_shop(
+            shop, plan, Streams(seed=request.seed), listeners=listeners, progress=progress
+        )
     return FirstReplication(
         run=run,
         states=shown.rows,

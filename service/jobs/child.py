@@ -176,18 +176,18 @@ def _memory() -> str:
 
 
 @contextmanager
-def _cancellable(asked: list[int]) -> Iterator[None]:
+def _cancellable(signals: list[int]) -> Iterator[None]:
     """Raise Cancelled where the runner asks the job to end, and only within this block.
 
     Parameters
     ----------
-    asked : list of int
+    signals : list of int
         Gets the number of each signal that has asked for it.
     """
     others = sys.unraisablehook
 
     def cancel(number: int, frame: FrameType | None) -> None:
-        asked.append(number)
+        signals.append(number)
         _cancel(number, frame)
 
     sys.unraisablehook = partial(_cancel_again, others)

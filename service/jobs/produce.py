@@ -8,9 +8,9 @@ from typing import Any
 from service.factory.asked import (
     MOST_PARTS,
     ShopSource,
-    asked_source,
-    require_asked,
+    checked_shop,
     require_small,
+    source_of_order,
 )
 from service.factory.cycles import PartCycles
 from service.factory.live import LiveShop
@@ -50,7 +50,7 @@ def run(task: RunningJob) -> None:
         When the shop or a program is invalid, or its machines wait for each other.
     """
     order = task.request(FactoryOrder)
-    source = asked_source(task.data_folder, order)
+    source = source_of_order(task.data_folder, order)
     if order.pace:
         result = _live(task, order, source)
     else:
@@ -70,7 +70,7 @@ def run(task: RunningJob) -> None:
             most_parts=MOST_PARTS,
             require=require_small,
         )
-    shown = ShopResult(found=result)
+    shown = ShopResult(factory=result)
     task.keep_report(shown.page())
     write_atomically(task.folder / FIGURES, shown.csv().encode())
     task.keep(shown.record())
@@ -78,7 +78,7 @@ def run(task: RunningJob) -> None:
 
 def _live(task: RunningJob, order: FactoryOrder, source: ShopSource) -> FactoryResult:
     """Run a shop at a pace, and obey orders."""
-    shop = require_asked(source, order)
+    shop = checked_shop(source, order)
     task.progress(0.0, "running the programs of the shop")
     plan = machining_plan(shop, PartCycles(tell=task.tell), place=source.name)
     folder = task.folder / TABLES

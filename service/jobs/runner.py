@@ -81,7 +81,7 @@ class Running:
     job: Job
     process: ForkServerProcess
     began_at: float = field(default_factory=time.monotonic)
-    asked_at: float | None = None
+    cancel_time: float | None = None
     """Time when the job was asked to end, in s; None if it was not."""
     is_overdue: bool = False
     over_since: float | None = None
@@ -180,16 +180,16 @@ class Runner:
         return jobs.running(self.data_folder, runner=self.name)
 
     @staticmethod
-    def _follow(each: Running, now: Job | None) -> None:
+    def _follow(running: Running, now: Job | None) -> None:
         """End the process of a job that was cancelled, or taken over by another runner."""
-        if now is not None and now.attempt == each.job.attempt:
+        if now is not None and now.attempt == running.job.attempt:
             if now.is_cancelling:
-                _ask_to_end(each)
-        elif each.over_since is None:
+                _ask_to_end(running)
+        elif running.over_since is None:
             # Most often it has just ended by itself.
-            each.over_since = time.monotonic()
-        elif time.monotonic() - each.over_since > GRACE:
-            _ask_to_end(each)
+            running.over_since = time.monotonic()
+        elif time.monotonic() - running.over_since > GRACE:
+            _ask_to_end(running)
 
     def _has_room(self, *, is_paced: bool) -> bool:
         """True if one more paced, or one more other job may start."""
@@ -235,14 +235,14 @@ class Runner:
                 each.is_overdue = True
                 each.process.kill()
 
-    def _ended(self, each: Running) -> None:
+    def _ended(self, running: Running) -> None:
         """Record the end of a process; a job whose process reported no end counts as lost."""
-        job, code = each.job, each.process.exitcode
-        each.process.close()
+        job, code = running.job, running.process.exitcode
+        running.process.close()
         clear(self.data_folder.attempt_folder(job.id, job.attempt), UNFINISHED)
-        if each.asked_at is not None:
+        if running.cancel_time is not None:
             end = SilentEnd(job=job, state=JobState.CANCELLED, problem=None)
-        elif each.is_overdue:
+        elif running.is_overdue:
             end = SilentEnd(job=job, state=JobState.FAILED, problem=_too_long(job))
         elif code == -signal.SIGXCPU:
             problem = plain_problem(
@@ -286,13 +286,13 @@ def _too_long(job: Job) -> dict[str, Any]:
     return plain_problem(422, "Too long", detail)
 
 
-def _ask_to_end(each: Running) -> None:
+def _ask_to_end(running: Running) -> None:
     now = time.monotonic()
-    if each.asked_at is None:
-        each.asked_at = now
-        each.process.terminate()
-    elif now - each.asked_at > GRACE:
-        each.process.kill()
+    if running.cancel_time is None:
+        running.cancel_time = now
+        running.process.terminate()
+    elif now - running.cancel_time > GRACE:
+        running.process.kill()
 
 
 def _why(code: int | None, memory: int) -> str:

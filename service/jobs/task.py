@@ -113,13 +113,13 @@ class RunningJob:
         else:
             self.tell(named)
 
-    def named(self, found: Any) -> Any:
+    def named(self, record: Any) -> Any:
         """Return a record with the owners' names of files."""
-        if isinstance(found, str):
-            return with_names(found, self.names)
-        if isinstance(found, Mapping):
-            return {key: self.named(value) for key, value in found.items()}
-        return [*map(self.named, found)] if isinstance(found, list | tuple) else found
+        if isinstance(record, str):
+            return with_names(record, self.names)
+        if isinstance(record, Mapping):
+            return {key: self.named(value) for key, value in record.items()}
+        return [*map(self.named, record)] if isinstance(record, list | tuple) else record
 
     def progress(self, share: float, message: str) -> None:
         """Record the progress of the job; a failed report is not repeated."""

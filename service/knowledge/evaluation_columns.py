@@ -66,9 +66,9 @@ def screen_columns(rows: Sequence[EvaluationRow]) -> tuple[Column[EvaluationLine
     return tuple(each for each in COLUMNS if each.key != "program" or len(programs) > 1)
 
 
-def factor(found: FactorInterval) -> str:
+def factor(interval: FactorInterval) -> str:
     """Return the centre and interval of a k_c factor as text."""
-    return f"{found.centre:.2f} ({found.low:.2f}–{found.high:.2f})"
+    return f"{interval.centre:.2f} ({interval.low:.2f}–{interval.high:.2f})"
 
 
 def deviation(seen: DeviationStatistics | Spread) -> str | None:

@@ -100,17 +100,17 @@ def narrowed_to(context: Context, selection: Selection) -> Selection | None:
 
 def _reviewed(
     store: Store,
-    found: LearnedFactor,
+    factor: LearnedFactor,
     latest: StoredCorrection | None,
     *,
     acceptance: Acceptance,
 ) -> Reviewed:
     """Propose a learned factor; accept it if requested and there are no objections."""
-    accepted = store.accepted(found.context)
-    proposed = found.correction
+    accepted = store.accepted(factor.context)
+    proposed = factor.correction
     if proposed is None:
         return Reviewed(
-            learned=found,
+            learned=factor,
             change=ReviewResult.NOTHING_TO_LEARN,
             entry=None,
             accepted=accepted,
@@ -130,7 +130,7 @@ def _reviewed(
         )
         change = ReviewResult.ACCEPTED
     return Reviewed(
-        learned=found, change=change, entry=entry, accepted=accepted, objections=against
+        learned=factor, change=change, entry=entry, accepted=accepted, objections=against
     )
 
 

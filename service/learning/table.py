@@ -296,11 +296,13 @@ def with_recorded(table: pa.Table, target: str, *, folder: Path) -> pa.Table:
     if target not in RECORDED:
         raise StepNcError(f"recordings do not tell {target}, only {', '.join(RECORDED)}")
     column = RECORDED.index(target)
-    values = [_told(folder / str(name))[column] for name in table[RECORDING].to_pylist()]
+    values = [
+        _recorded_totals(folder / str(name))[column] for name in table[RECORDING].to_pylist()
+    ]
     return table.append_column(target, pa.array(values, pa.float64()))
 
 
-def _told(path: Path) -> Floats:
+def _recorded_totals(path: Path) -> Floats:
     """Time, energy, mean and greatest power of a recording, as ``RECORDED``."""
     names = headings(path)
     for needed in (TIME, POWER):

@@ -219,12 +219,12 @@ def _joined(parts: Sequence[TravelledPath]) -> TravelledPath:
     })
 
 
-def _greatest(found: Sequence[Deviation]) -> Deviation:
+def _greatest(deviations: Sequence[Deviation]) -> Deviation:
     """Return the largest of each deviation."""
     return Deviation(
-        length=max(each.length for each in found),
-        feed=max(each.feed for each in found),
-        force=max(each.force for each in found),
+        length=max(each.length for each in deviations),
+        feed=max(each.feed for each in deviations),
+        force=max(each.force for each in deviations),
     )
 
 

@@ -26,17 +26,17 @@ def all_findings(program: Program) -> tuple[Finding, ...]:
     return findings + numbers + (tolerance_findings(program) if is_sound else ())
 
 
-def tell_check(program: Program, told: tuple[Finding, ...], tell: Tell) -> None:
+def tell_check(program: Program, reported: tuple[Finding, ...], tell: Tell) -> None:
     """Tell the warnings and errors that ``check`` gives besides those told already.
 
     NC code runs without the file, so nobody asks ``check`` about it any more.
     """
     for finding in all_findings(program):
-        if finding.severity is not Severity.NOTE and finding not in told:
+        if finding.severity is not Severity.NOTE and finding not in reported:
             tell(str(finding))
 
 
-def tell_remarks(found: tuple[Finding, ...], tell: Tell) -> None:
+def tell_remarks(findings: tuple[Finding, ...], tell: Tell) -> None:
     """Tell each warning once."""
-    for finding in found:
+    for finding in findings:
         tell(str(finding))

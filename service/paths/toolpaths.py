@@ -33,7 +33,7 @@ class Paths:
     items: tuple[ToolPath | Function, ...]
     faults: tuple[SchemaError, ...]
     """Reasons why some executables were left out."""
-    told: tuple[Finding, ...] = ()
+    reported: tuple[Finding, ...] = ()
     """Warnings about the program that were told already."""
 
     @property
@@ -64,14 +64,14 @@ class Paths:
     def findings(self) -> tuple[Finding, ...]:
         """Assumptions made for the tool paths."""
         of_paths = tuple(finding for path in self.paths for finding in path.findings)
-        return (*of_paths, *(each for each in self.told if each not in of_paths))
+        return (*of_paths, *(each for each in self.reported if each not in of_paths))
 
 
 def with_remarks(paths: Paths, tell: Tell) -> Paths:
     """Tell the warnings about a program, and keep them with its paths."""
     told = paths.remarks
     tell_remarks(told, tell)
-    return replace(paths, told=told)
+    return replace(paths, reported=told)
 
 
 def paths_of(
@@ -119,7 +119,7 @@ def paths_for_code(program: Program, *, keep_going: bool = False, tell: Tell = s
     if error is not None and not keep_going:
         raise error
     paths = with_remarks(paths_of(program, keep_going=keep_going, tell=tell), tell)
-    tell_check(program, paths.told, tell)
+    tell_check(program, paths.reported, tell)
     return with_feeds(paths, keep_going=keep_going, tell=tell)
 
 

@@ -228,12 +228,12 @@ class RunFinder:
     last: KeptRows | None = None
     """Run that has ended: the latest whole one, or else the latest."""
 
-    def take(self, each: ClientObservation, *, is_first: bool) -> None:
+    def take(self, observation: ClientObservation, *, is_first: bool) -> None:
         """Take an observation; the first ones hold since before the agent's oldest."""
-        self._add(self.maker.rows([each]))
-        if each.id != self.execution:
+        self._add(self.maker.rows([observation]))
+        if observation.id != self.execution:
             return
-        is_running = each.value in RUNNING
+        is_running = observation.value in RUNNING
         if is_running and self.current is None:
             self.current = KeptRows(is_begun=not is_first)
         elif not is_running and self.current is not None:

@@ -80,7 +80,7 @@ def bad(texts: Iterable[str]) -> list[tuple[str, str]]:
     return [("bad", text) for text in texts]
 
 
-def findings(found: Sequence[Finding]) -> list[tuple[str, str]]:
+def findings(items: Sequence[Finding]) -> list[tuple[str, str]]:
     """Return CSS class and text of each finding, without duplicates."""
-    unique = {str(each): each.severity.value for each in found}
+    unique = {str(each): each.severity.value for each in items}
     return [(kind, text) for text, kind in unique.items()]

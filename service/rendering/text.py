@@ -97,10 +97,10 @@ def print_line(text: str, colour: str = "") -> None:
 
 
 def finding_lines(
-    findings: Sequence[Finding], *, told: Sequence[Finding] = ()
+    findings: Sequence[Finding], *, reported: Sequence[Finding] = ()
 ) -> Iterator[tuple[str, str]]:
     """Yield findings with their colours: without duplicates and what was told, errors first."""
-    said = {str(finding) for finding in told}
+    said = {str(finding) for finding in reported}
     order = list(Severity)[::-1]
     ranked = sorted(findings, key=lambda finding: order.index(finding.severity))
     unique = {str(finding): COLOURS[finding.severity] for finding in ranked}

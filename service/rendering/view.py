@@ -25,7 +25,7 @@ class TextLine:
     text: str
     colour: str = ""
     """ANSI colour on terminals."""
-    is_told: bool = False
+    is_reported: bool = False
     """True if it was told while the work was done; shown where messages were not."""
     is_wrapped: bool = False
     """True for a sentence that goes on in the next line where the terminal ends."""
@@ -82,8 +82,8 @@ class Table:
 class Findings:
     """Errors, warnings and notes."""
 
-    found: Sequence[Finding]
-    told: Sequence[Finding] = ()
+    findings: Sequence[Finding]
+    reported: Sequence[Finding] = ()
     """Those that were told while the work was done."""
     key: str = "findings"
 
@@ -97,24 +97,26 @@ class ResultView:
 
     items: Sequence[Item] = field(default=())
 
-    def lines(self, *, width: int, is_told: bool = True) -> Iterator[tuple[str, str]]:
+    def lines(self, *, width: int, is_reported: bool = True) -> Iterator[tuple[str, str]]:
         """Yield lines of text with their ANSI colours.
 
         Parameters
         ----------
         width : int
             Characters per line.
-        is_told : bool
+        is_reported : bool
             Whether messages were shown while the work was done, and are left out.
         """
         for item in self.items:
             match item:
-                case TextLine() if not (item.is_told and is_told):
+                case TextLine() if not (item.is_reported and is_reported):
                     yield from ((line, item.colour) for line in item.lines(width))
                 case Table() if item.is_shown:
                     yield from _table_lines(item, width)
                 case Findings():
-                    yield from finding_lines(item.found, told=item.told if is_told else ())
+                    yield from finding_lines(
+                        item.findings, reported=item.reported if is_reported else ()
+                    )
 
     def record(self) -> dict[str, Any]:
         """Return the JSON object."""
@@ -132,7 +134,7 @@ class ResultView:
                     if item.total is not None:
                         found[item.total_key] = record(item.columns, item.total)
                 case Findings() if item.key:
-                    found[item.key] = [finding_record(each) for each in item.found]
+                    found[item.key] = [finding_record(each) for each in item.findings]
         return found
 
     def table(self, key: str = "") -> Table:
@@ -158,17 +160,19 @@ class ResultView:
                     parts.append(f"<p>{escape(item.text)}</p>")
                 case Table() if item.is_shown and item.rows:
                     parts.append(_html_table(item))
-                case Findings() if item.found:
-                    parts.append(_html_findings(item.found))
+                case Findings() if item.findings:
+                    parts.append(_html_findings(item.findings))
         return "\n".join(parts)
 
 
-def _html_findings(found: Sequence[Finding]) -> str:
+def _html_findings(findings: Sequence[Finding]) -> str:
     """Return findings folded under their numbers; open where one is an error."""
-    counts = Counter(each.severity for each in found)
+    counts = Counter(each.severity for each in findings)
     summary = ", ".join(f"{severity}: {counts[severity]}" for severity in counts)
     is_open = " open" if Severity.ERROR in counts else ""
-    texts = "".join(f"<p><small>{escape(text)}</small></p>" for text, _ in finding_lines(found))
+    texts = "".join(
+        f"<p><small>{escape(text)}</small></p>" for text, _ in finding_lines(findings)
+    )
     return f"<details{is_open}><summary>{summary}</summary>{texts}</details>"
 
 

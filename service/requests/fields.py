@@ -330,7 +330,7 @@ def require_bounds(request: Request) -> None:
         With name, value, bound and unit of the first value out of bounds; or with options of
         which not exactly one is given.
     """
-    _require_one_of_each_set(request)
+    _require_one_option_of_set(request)
     for field in fields_of(type(request)):
         value = getattr(request, field.name)
         if value is None:
@@ -349,7 +349,7 @@ def _require_within(value: Any, bound: Any, field: RequestField) -> None:
         raise StepNcError(f"{field.label} {shown}{unit}: it must be {words}{unit}")
 
 
-def _require_one_of_each_set(request: Request) -> None:
+def _require_one_option_of_set(request: Request) -> None:
     ways: dict[str, list[RequestField]] = {}
     for field in fields_of(type(request)):
         if field.about.one_of:

@@ -94,10 +94,10 @@ def require_served(request: Request, kind: ProgramKind) -> None:
         With the name of the first such value, and the reason.
     """
     flags = {each.name: each.about.flag for each in fields_of(type(request))}
-    require_options_served(given_values(request), kind, flags=flags)
+    require_options_served(changed_values(request), kind, flags=flags)
 
 
-def given_values(request: Request) -> dict[str, object]:
+def changed_values(request: Request) -> dict[str, object]:
     """Values of a request that are not the default ones, by the names of their fields."""
     return {
         each.name: getattr(request, each.name)
@@ -107,13 +107,13 @@ def given_values(request: Request) -> dict[str, object]:
 
 
 def require_options_served(
-    given: Mapping[str, object], kind: ProgramKind, *, flags: Mapping[str, str]
+    values: Mapping[str, object], kind: ProgramKind, *, flags: Mapping[str, str]
 ) -> None:
     """Refuse options that a kind of program cannot use.
 
     Parameters
     ----------
-    given : mapping
+    values : mapping
         Values by the names of the options; those that were not given are absent.
     kind : ProgramKind
     flags : mapping
@@ -124,14 +124,14 @@ def require_options_served(
     StepNcError
         With the name of the first such option, and the reason.
     """
-    for name, serves in _refused(given, kind):
+    for name, serves in _refused(values, kind):
         shown = flags.get(name) or name
         other = "NC code" if kind is NC_CODE else "a STEP-NC program"
         raise StepNcError(f"{shown} cannot be used with {other}: {serves.why}")
 
 
-def _refused(given: Mapping[str, object], kind: ProgramKind) -> Iterator[tuple[str, Serves]]:
-    for name, value in given.items():
+def _refused(values: Mapping[str, object], kind: ProgramKind) -> Iterator[tuple[str, Serves]]:
+    for name, value in values.items():
         serves = SERVES.get(name)
         if serves is not None and serves.kind is not kind and serves.is_concerned(value):
             yield name, serves

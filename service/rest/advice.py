@@ -170,7 +170,7 @@ def _missing(data_folder: DataFolder, id: str) -> Exception:
     return Conflict(f"advice '{id}' has {job.state.value}: its job says why")
 
 
-async def found_advice(request: Request, id: str) -> CachedAdvice:
+async def cached_advice(request: Request, id: str) -> CachedAdvice:
     """Return a result; in most cases from the cache, without a thread."""
     cache: AdviceCache = request.app.state.advice
     data_folder = data_folder_of(request)
@@ -187,7 +187,7 @@ async def found_advice(request: Request, id: str) -> CachedAdvice:
 )
 async def advised(request: Request, id: str, workingstep: str) -> Response:
     """Show the advice for a workingstep, by its id or its instance number without ``#``."""
-    parts = (await found_advice(request, id)).workingsteps
+    parts = (await cached_advice(request, id)).workingsteps
     found = parts.get(workingstep) or parts.get(f"#{workingstep}")
     if found is None:
         raise NotFound("workingstep", workingstep)
@@ -219,7 +219,7 @@ async def advice(request: Request, id: Id) -> Response:
 
     Advice on NC code has the parts of the program by tool, with feeds along their paths.
     """
-    return (await found_advice(request, id)).whole.reply(request)
+    return (await cached_advice(request, id)).whole.reply(request)
 
 
 @ROUTES.get(
@@ -233,7 +233,7 @@ async def optimised(request: Request, data_folder: InDataFolder, id: Id) -> Resp
 
     NC code that was rewritten is at ``nc``.
     """
-    result = (await found_advice(request, id)).result
+    result = (await cached_advice(request, id)).result
     if _is_code(result):
         raise NotFound("optimised STEP-NC program (the advice is on NC code)", id)
     name = _name(result, ".stpnc")
@@ -251,7 +251,7 @@ async def optimised(request: Request, data_folder: InDataFolder, id: Id) -> Resp
 )
 async def nc_code(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download NC code for the control that was named in the request, or the rewritten code."""
-    result = (await found_advice(request, id)).result
+    result = (await cached_advice(request, id)).result
     control = result["nc_control"]
     if control is None:
         raise NotFound("NC code (ask for advice with nc_control)", id)
@@ -271,7 +271,7 @@ async def nc_code(request: Request, data_folder: InDataFolder, id: Id) -> Respon
 )
 async def feeds(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Download the feeds of the changed blocks and their parts, with the active limits."""
-    result = (await found_advice(request, id)).result
+    result = (await cached_advice(request, id)).result
     _require_along(result, id)
     name = f"{Path(programs.shown_name(result['program'])).stem}.feeds.csv"
     file = await result_file(data_folder, id, FEEDS)
@@ -284,7 +284,7 @@ async def curves(request: Request, data_folder: InDataFolder, id: Id) -> Respons
 
     Each stretch of a curve has the minimum and the maximum within it.
     """
-    result = (await found_advice(request, id)).result
+    result = (await cached_advice(request, id)).result
     _require_along(result, id)
     file = await result_file(data_folder, id, CURVES)
     try:

@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import Field
 
-from service.rest.advice import found_advice
+from service.rest.advice import cached_advice
 from service.rest.bodies import Id
 from service.rest.replies import json_reply
 from service.rest.views import View
@@ -65,7 +65,7 @@ class ComparedPlansView(View):
 async def compare_advice(request: Request, wanted: Wanted) -> Response:
     """Compare advice on one program by workingstep, as ``stepnc compare`` does."""
     plans = [
-        plan_of((await found_advice(request, id)).result, f"advice '{id}'") for id in wanted
+        plan_of((await cached_advice(request, id)).result, f"advice '{id}'") for id in wanted
     ]
     return json_reply(request, comparison(plans, _names(plans, wanted)).record())
 

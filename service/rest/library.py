@@ -82,15 +82,15 @@ def routes_of(section: LibrarySection) -> APIRouter:
     return routes
 
 
-def _view(found: LibraryEntry | LibraryListing) -> dict[str, object]:
-    if isinstance(found, LibraryEntry):
-        title, problem = found.entry.title, ""
+def _view(entry: LibraryEntry | LibraryListing) -> dict[str, object]:
+    if isinstance(entry, LibraryEntry):
+        title, problem = entry.entry.title, ""
     else:
-        title, problem = found.title, found.problem
+        title, problem = entry.title, entry.problem
     return {
-        "name": found.name,
+        "name": entry.name,
         "title": title,
-        "is_own": found.is_own,
+        "is_own": entry.is_own,
         "problem": problem or None,
     }
 

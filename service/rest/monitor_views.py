@@ -56,18 +56,18 @@ def _run_view(run: ObservedRun) -> dict[str, Any]:
     }
 
 
-def comparison_view(found: Comparison) -> dict[str, Any]:
+def comparison_view(comparison: Comparison) -> dict[str, Any]:
     """Return a comparison as the last fields of a ``ComparisonView``."""
     return {
-        "workingsteps": [_step_view(step) for step in found.steps],
-        "done": _step_view(found.done),
+        "workingsteps": [_step_view(step) for step in comparison.steps],
+        "done": _step_view(comparison.done),
         "parts": [
             {
                 "begin_s": _known(part.begin),
                 "end_s": _known(part.end),
                 "shift_s": _known(part.shift),
             }
-            for part in found.parts
+            for part in comparison.parts
         ],
     }
 

@@ -17,19 +17,19 @@ from starlette.concurrency import run_in_threadpool
 from kbe.rows import utc
 from optimiser.source import why_elsewhere
 from service.errors import NotFound, Unreadable
-from service.factory.asked import asked_source, require_asked
+from service.factory.asked import checked_shop, source_of_order
 from service.files import read_bytes
 from service.monitor.monitor import MonitorSet
 from service.numbers import numbers_in, tool_numbers_in
 from service.program_kind import ProgramKind
-from service.reading import read_given, selected
+from service.reading import read_completed, selected
 from service.recording.logged_run import DOCUMENTS
 from service.recording.table import TABLES
 from service.requests.factory import FactoryOrder
 from service.requests.fields import loaded
 from service.requests.given import GIVEN, ProgramRequest, StockFile
 from service.requests.knowledge import SelectionRequest
-from service.requests.serves import OF_PATHS, given_values, require_options_served
+from service.requests.serves import OF_PATHS, changed_values, require_options_served
 from service.requests.stored_advice import StoredAdviceRequest
 from service.rest.checks import reading_in_turn
 from service.rest.context import data_folder_of, idempotency_of, key_of
@@ -72,12 +72,12 @@ Require = Callable[[DataFolder, JobRequest], None]
 """Check that refuses a request with the error that its job would raise."""
 
 
-def nothing(_data_folder: DataFolder, _asked: JobRequest) -> None:
+def nothing(_data_folder: DataFolder, _order: JobRequest) -> None:
     """Accept every request without a check."""
 
 
 async def queued(
-    request: Request, asked: JobRequest, key: str | None, *, require: Require
+    request: Request, order: JobRequest, key: str | None, *, require: Require
 ) -> Response:
     """Queue a job and reply 202 with its location.
 
@@ -86,18 +86,18 @@ async def queued(
     StepNcError
         When the job could not start; a repeated idempotency key returns the existing job.
     """
-    asked = replace(asked, key=key_of(request).id)
+    order = replace(order, key=key_of(request).id)
     data_folder = data_folder_of(request)
-    words = repr(sorted(asked.request.items())).encode()
+    words = repr(sorted(order.request.items())).encode()
     idempotency = idempotency_of(request, key, words)
 
     def add() -> Job:
         with data_folder.database.reading() as connection:
             is_new = made_before(connection, idempotency) is None
         if is_new:
-            _require_files(data_folder, asked.request)
-            require(data_folder, asked)
-        return jobs.add(data_folder, asked, idempotency=idempotency)
+            _require_files(data_folder, order.request)
+            require(data_folder, order)
+        return jobs.add(data_folder, order, idempotency=idempotency)
 
     job = await run_in_threadpool(add)
     headers = {"location": f"/v1/jobs/{job.id}", "retry-after": "1"}
@@ -179,7 +179,7 @@ def _require_files(data_folder: DataFolder, words: Mapping[str, Any]) -> None:
         raise Unreadable("stock_solid has no effect without stock_id")
 
 
-def runnable(data_folder: DataFolder, asked: JobRequest) -> None:
+def runnable(data_folder: DataFolder, order: JobRequest) -> None:
     """Check that program, machine and material exist, and that the program is STEP-NC.
 
     Raises
@@ -191,24 +191,24 @@ def runnable(data_folder: DataFolder, asked: JobRequest) -> None:
     UnknownMachine, UnknownMaterial, LibraryError
         When the job would raise the same error.
     """
-    if not asked.program:
+    if not order.program:
         raise Unreadable("name either a program_id or an advice_id")
-    programs.require_kind(data_folder, asked.program, ProgramKind.STEP_NC)
-    if not asked.source:
-        programs.require_file(data_folder, asked.program)
-    words = asked.request
+    programs.require_kind(data_folder, order.program, ProgramKind.STEP_NC)
+    if not order.source:
+        programs.require_file(data_folder, order.program)
+    words = order.request
     library.require(data_folder, machine=words["machine"], material=words.get("material", ""))
-    if not asked.source and (words["machine"] or words.get("workingsteps")):
-        _require_possible(data_folder, asked)
+    if not order.source and (words["machine"] or words.get("workingsteps")):
+        _require_possible(data_folder, order)
 
 
-def _require_possible(data_folder: DataFolder, asked: JobRequest) -> None:
+def _require_possible(data_folder: DataFolder, order: JobRequest) -> None:
     """Refuse an unknown workingstep, and a machine that can run none of the workingsteps."""
-    words = asked.request
+    words = order.request
     with reading_in_turn():
-        file = data_folder.fetched(data_folder.program_file(asked.program))
+        file = data_folder.fetched(data_folder.program_file(order.program))
         given = loaded(ProgramRequest, {name: words[name] for name in GIVEN if name in words})
-        program = read_given(file, given).program
+        program = read_completed(file, given).program
         steps = selected(program, tuple(words.get("workingsteps", ())))
         if not words["machine"]:
             return
@@ -218,29 +218,29 @@ def _require_possible(data_folder: DataFolder, asked: JobRequest) -> None:
         raise StepNcError(f"no workingstep can be run on this machine: {reasons[0]}")
 
 
-def advisable(data_folder: DataFolder, asked: JobRequest) -> None:
+def advisable(data_folder: DataFolder, order: JobRequest) -> None:
     """Check that all that advice needs is given and valid."""
-    words = asked.request
-    kind = programs.get(data_folder, asked.program).kind
-    named = given_values(loaded(StoredAdviceRequest, words))
+    words = order.request
+    kind = programs.get(data_folder, order.program).kind
+    named = changed_values(loaded(StoredAdviceRequest, words))
     require_options_served(named, kind, flags={})
     if kind is ProgramKind.STEP_NC:
         for name in OF_PATHS:
             if name in named and not words["is_along_path"]:
                 raise StepNcError(f"{name} has no effect without is_along_path")
-        runnable(data_folder, asked)
+        runnable(data_folder, order)
         return
-    programs.require_file(data_folder, asked.program)
+    programs.require_file(data_folder, order.program)
     if words["dialect"] == Dialect.CANONICAL:
         raise StepNcError("dialect canonical: canonical commands are no NC code")
     if missing := _missing(words, OF_CODE):
-        _require_setup(data_folder, asked, missing)
+        _require_setup(data_folder, order, missing)
     library.require(data_folder, machine=words["machine"], material=words["material"])
     tool_numbers_in(tuple(words["finish"]))
     tool_numbers_in(tuple(words["keep"]))
 
 
-def _require_setup(data_folder: DataFolder, asked: JobRequest, missing: list[str]) -> None:
+def _require_setup(data_folder: DataFolder, order: JobRequest, missing: list[str]) -> None:
     """Refuse NC code that does not tell itself what a request leaves out.
 
     Raises
@@ -250,14 +250,14 @@ def _require_setup(data_folder: DataFolder, asked: JobRequest, missing: list[str
     """
     from service.simulation.code_setup import GivenSetup, code_setup  # noqa: PLC0415 (numpy)
 
-    words = asked.request
-    stored = programs.get(data_folder, asked.program)
+    words = order.request
+    stored = programs.get(data_folder, order.program)
     tools, stock = words["tools_id"], words["stock"]
     if words["stock_id"]:
         place = files.require_file(data_folder, words["stock_id"], FileKind.STOCK)
         stock = StockFile(path=place)
     with reading_in_turn():
-        data = read_bytes(data_folder.fetched(data_folder.program_file(asked.program)))
+        data = read_bytes(data_folder.fetched(data_folder.program_file(order.program)))
         dialect = Dialect(words["dialect"]) if words["dialect"] else None
         given = GivenSetup(
             file=Path(stored.name),
@@ -274,23 +274,23 @@ def _require_setup(data_folder: DataFolder, asked: JobRequest, missing: list[str
         )
 
 
-def timeable(data_folder: DataFolder, asked: JobRequest) -> None:
+def timeable(data_folder: DataFolder, order: JobRequest) -> None:
     """Check that the program can be run, and that the log has a form that is read."""
-    runnable(data_folder, asked)
-    if asked.request["log_id"] is not None:
-        name = files.get(data_folder, asked.request["log_id"]).name
+    runnable(data_folder, order)
+    if order.request["log_id"] is not None:
+        name = files.get(data_folder, order.request["log_id"]).name
         if Path(name).suffix.lower() not in TABLES | DOCUMENTS:
             known = ", ".join(sorted(TABLES | DOCUMENTS))
             raise StepNcError(f"{name}: the cycle time is read from a log in {known}")
 
 
-def verifiable(data_folder: DataFolder, asked: JobRequest) -> None:
+def verifiable(data_folder: DataFolder, order: JobRequest) -> None:
     """Check that there is a log, a program or what stands for it, and that zero is valid."""
-    words = asked.request
+    words = order.request
     if not any(words[name] for name in LOGS):
         raise Unreadable(f"name one of {', '.join(LOGS)}")
-    if asked.program:
-        runnable(data_folder, asked)
+    if order.program:
+        runnable(data_folder, order)
     elif _missing(words, WITHOUT_PROGRAM):
         wanted = ", ".join(WITHOUT_PROGRAM)
         raise Unreadable(f"name a program_id or an advice_id; or all of {wanted}")
@@ -305,20 +305,20 @@ def _missing(words: Mapping[str, Any], names: tuple[str, ...]) -> list[str]:
     return [name for name in names if not words[name] and not words.get(IN_PLACE.get(name, ""))]
 
 
-def producible(data_folder: DataFolder, asked: JobRequest) -> None:
+def producible(data_folder: DataFolder, order: JobRequest) -> None:
     """Check that a shop, its programs and its machines can be read."""
-    wanted = loaded(FactoryOrder, asked.request)
-    require_asked(asked_source(data_folder, wanted), wanted)
+    wanted = loaded(FactoryOrder, order.request)
+    checked_shop(source_of_order(data_folder, wanted), wanted)
 
 
-def startable(_data_folder: DataFolder, asked: JobRequest) -> None:
+def startable(_data_folder: DataFolder, order: JobRequest) -> None:
     """Check that the inputs of a trial cut are within their bounds."""
-    changed(Inputs(), **asked.request["inputs"])
+    changed(Inputs(), **order.request["inputs"])
 
 
-def selectable(_data_folder: DataFolder, asked: JobRequest) -> None:
+def selectable(_data_folder: DataFolder, order: JobRequest) -> None:
     """Check the times between which outcomes are selected."""
-    wanted = loaded(SelectionRequest, {name: asked.request[name] for name in MOMENTS})
+    wanted = loaded(SelectionRequest, {name: order.request[name] for name in MOMENTS})
     require_moments(since=wanted.since, until=wanted.until)
 
 

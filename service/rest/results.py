@@ -157,20 +157,20 @@ async def window_reply(  # noqa: PLR0913 (each is a parameter of the request)
     return json_reply(request, _window(found, series, is_growing=is_growing))
 
 
-def _window(found: Window, series: Series, *, is_growing: bool) -> dict[str, Any]:
+def _window(window: Window, series: Series, *, is_growing: bool) -> dict[str, Any]:
     return {
-        "begin_s": found.time,
-        "end_s": found.end,
+        "begin_s": window.time,
+        "end_s": window.end,
         "signals": {
             name: {
-                "low": np.ascontiguousarray(found.low[:, place]),
-                "mean": np.ascontiguousarray(found.mean[:, place]),
-                "high": np.ascontiguousarray(found.high[:, place]),
+                "low": np.ascontiguousarray(window.low[:, place]),
+                "mean": np.ascontiguousarray(window.mean[:, place]),
+                "high": np.ascontiguousarray(window.high[:, place]),
             }
-            for place, name in enumerate(found.names)
+            for place, name in enumerate(window.names)
         },
-        "rows": found.rows,
-        "is_reduced": found.is_reduced,
+        "rows": window.rows,
+        "is_reduced": window.is_reduced,
         "is_growing": is_growing,
         "columns": [name for name in series.columns if name != TIME],
     }
@@ -213,13 +213,13 @@ async def stream_reply(request: Request, job: Job) -> Response:
     return messages_reply(request, hub_of(request).watch(job.id))
 
 
-def messages_reply(request: Request, found: AsyncIterator[bytes]) -> Response:
+def messages_reply(request: Request, stream: AsyncIterator[bytes]) -> Response:
     """Reply with messages as a stream, if there is room for one more."""
     hub_of(request).require_room()
 
     async def messages() -> AsyncIterator[bytes]:
         yield b"retry: 2000\n\n"
-        async for message in found:
+        async for message in stream:
             yield message
 
     headers = {"cache-control": "no-store", "x-accel-buffering": "no"}

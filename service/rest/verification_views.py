@@ -187,14 +187,14 @@ def file_view(stored: StoredFile) -> dict[str, Any]:
     }
 
 
-def map_view(found: SurfaceMap) -> dict[str, Any]:
+def map_view(surface_map: SurfaceMap) -> dict[str, Any]:
     """Return a map as a :class:`SurfaceMapView`."""
     return {
-        "is_turned": found.is_turned,
-        "places": len(found.columns["block"]),
-        "left_out": found.left_out,
-        "left_out_beyond_mm": round(found.left_out_beyond, 4),
-        "workingsteps": found.workingsteps,
-        "kinds": found.kinds,
-        **{name: np.ascontiguousarray(values) for name, values in found.columns.items()},
+        "is_turned": surface_map.is_turned,
+        "places": len(surface_map.columns["block"]),
+        "left_out": surface_map.left_out,
+        "left_out_beyond_mm": round(surface_map.left_out_beyond, 4),
+        "workingsteps": surface_map.workingsteps,
+        "kinds": surface_map.kinds,
+        **{name: np.ascontiguousarray(values) for name, values in surface_map.columns.items()},
     }

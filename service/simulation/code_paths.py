@@ -166,7 +166,7 @@ class CodePaths:
     def findings(self) -> tuple[Finding, ...]:
         """Lines whose feeds stay as they are, and why."""
         kept = self._findings(self._is_kept, "the feeds of {} stay as programmed: {}")
-        return (*kept, *self.beside)
+        return (*kept, *self.contour_remarks)
 
     @property
     def left_out(self) -> tuple[Finding, ...]:
@@ -176,9 +176,9 @@ class CodePaths:
         return tuple(self._findings(is_left, "{} left out of the run: {}"))
 
     @property
-    def beside(self) -> tuple[Finding, ...]:
+    def contour_remarks(self) -> tuple[Finding, ...]:
         """Lines at which the tool goes beside a compensated contour."""
-        return tuple(self._beside())
+        return tuple(self._contour_remarks())
 
     def _radius(self, setting: ModalSetting) -> float | None:
         """Radius by which a contour is offset, mm; None if it is not known."""
@@ -194,7 +194,7 @@ class CodePaths:
             return None
         return 0.5 * shape.diameter + setting.radius_wear
 
-    def _beside(self) -> Iterator[Finding]:
+    def _contour_remarks(self) -> Iterator[Finding]:
         moves, text = self.program.moves, self.program.text
         is_beside = (moves.flags & int(MoveFlag.BESIDE)) != 0
         rows = np.flatnonzero(is_beside & np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC)))

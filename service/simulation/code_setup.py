@@ -109,13 +109,13 @@ class CodeSetup:
         return in_guessed_stock(faults if self.is_stock_guessed else ())
 
 
-def code_setup(program: NcProgram, given: GivenSetup) -> CodeSetup:
+def code_setup(program: NcProgram, known: GivenSetup) -> CodeSetup:
     """Find tools and stock of NC code.
 
     Parameters
     ----------
     program : NcProgram
-    given : GivenSetup
+    known : GivenSetup
 
     Raises
     ------
@@ -123,31 +123,31 @@ def code_setup(program: NcProgram, given: GivenSetup) -> CodeSetup:
         When the tool table cannot be read, the setup file is of a program in another unit or
         with another zero, or no tool meets the stock.
     """
-    given = _with_file(program, given)
+    known = _with_file(program, known)
     described = CodeTools()
     if program.machine is MachineType.MILL:
-        described = tools_of_code(program, name=given.file.name)
-    library, guesses = _tools(given, described)
-    found = _stock(program, library, given)
-    missing = (*_missing_tools(program, library, given), *_missing(program, given, found))
+        described = tools_of_code(program, name=known.file.name)
+    library, guesses = _tools(known, described)
+    found = _stock(program, library, known)
+    missing = (*_missing_tools(program, library, known), *_missing(program, known, found))
     setup = replace(
         found,
-        material=given.material,
-        machine=given.machine or default_machine(program),
+        material=known.material,
+        machine=known.machine or default_machine(program),
         rows=described.rows,
         guesses=guesses,
         lines=described.lines,
         uses=dict(_uses(program, library)) if guesses else {},
         missing=missing,
-        command=_command(program, given, found, lacks_tools=not library.tools),
+        command=_command(program, known, found, lacks_tools=not library.tools),
     )
     return replace(
         setup,
         findings=(
-            *_on_file(given.file_of_setup),
+            *_on_file(known.file_of_setup),
             *setup.findings,
             *placed(program, setup.stock, library),
-            *_notes(program, given, setup),
+            *_notes(program, known, setup),
         ),
     )
 
@@ -157,17 +157,17 @@ def default_machine(program: NcProgram) -> str:
     return DEFAULT_LATHE if program.machine is MachineType.LATHE else DEFAULT_MILL
 
 
-def _with_file(program: NcProgram, given: GivenSetup) -> GivenSetup:
+def _with_file(program: NcProgram, known: GivenSetup) -> GivenSetup:
     """Take what the user does not give from the setup file, if there is one."""
-    file = given.file_of_setup
+    file = known.file_of_setup
     if not isinstance(file, SetupFile):
-        return given
+        return known
     _require_same(program, file)
     return replace(
-        given,
-        tools=given.tools or file.table,
-        material=given.material or file.material,
-        machine=given.machine or file.machine,
+        known,
+        tools=known.tools or file.table,
+        material=known.material or file.material,
+        machine=known.machine or file.machine,
     )
 
 
@@ -197,12 +197,12 @@ def _require_same(program: NcProgram, file: SetupFile) -> None:
 
 
 def _tools(
-    given: GivenSetup, described: CodeTools
+    known: GivenSetup, described: CodeTools
 ) -> tuple[ToolLibrary, Mapping[int, ToolGuess]]:
     """Tools of a table, of the setup file, or of comments, and what is guessed about them."""
-    file = given.file_of_setup
-    if given.tools is not None:
-        library = read_tools(given.tools, unit=given.unit)
+    file = known.file_of_setup
+    if known.tools is not None:
+        library = read_tools(known.tools, unit=known.unit)
         contradictions = against_table(described, library.by_number)
         return replace(library, findings=(*library.findings, *contradictions)), {}
     if isinstance(file, SetupFile) and file.tools:
@@ -213,11 +213,11 @@ def _tools(
     return library, described.guesses
 
 
-def _stock(program: NcProgram, library: ToolLibrary, given: GivenSetup) -> CodeSetup:
+def _stock(program: NcProgram, library: ToolLibrary, known: GivenSetup) -> CodeSetup:
     """Stock as given, as the program states it, or around its cutting moves."""
-    if given.stock:
-        return CodeSetup(library=library, stock=given.stock)
-    file = given.file_of_setup
+    if known.stock:
+        return CodeSetup(library=library, stock=known.stock)
+    file = known.file_of_setup
     if isinstance(file, SetupFile) and file.stock:
         return CodeSetup(
             library=library, stock=file.stock, is_stock_guessed=file.is_stock_guessed
@@ -305,9 +305,9 @@ def numbers_of(stock: Stock) -> str:
 
 
 def _missing_tools(
-    program: NcProgram, library: ToolLibrary, given: GivenSetup
+    program: NcProgram, library: ToolLibrary, known: GivenSetup
 ) -> Iterator[str]:
-    if given.tools is not None or library.tools:
+    if known.tools is not None or library.tools:
         return
     moves = program.moves
     cutting = np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC))
@@ -316,39 +316,39 @@ def _missing_tools(
     yield f"tools (no comment gives a diameter{which})"
 
 
-def _missing(program: NcProgram, given: GivenSetup, setup: CodeSetup) -> Iterator[str]:
+def _missing(program: NcProgram, known: GivenSetup, setup: CodeSetup) -> Iterator[str]:
     can_guess = program.machine is MachineType.MILL and not setup.library.tools
     if not setup.stock and not can_guess:
         yield "stock (the code states none)"
-    if not given.material:
+    if not known.material:
         yield "material (`stepnc materials`)"
 
 
 def _command(
-    program: NcProgram, given: GivenSetup, setup: CodeSetup, *, lacks_tools: bool
+    program: NcProgram, known: GivenSetup, setup: CodeSetup, *, lacks_tools: bool
 ) -> str:
     """Command that optimises the program, with names in capitals for what is missing."""
     is_lathe = program.machine is MachineType.LATHE
-    words = ["stepnc optimise", quote(given.file.name)]
-    if given.tools is not None:
-        words.append(f"--tools {quote(str(given.tools))}")
+    words = ["stepnc optimise", quote(known.file.name)]
+    if known.tools is not None:
+        words.append(f"--tools {quote(str(known.tools))}")
     elif lacks_tools:
         words.append("--tools TABLE")
-    if isinstance(given.stock, StockFile):
-        words.append(f"--stock {quote(str(given.stock.path))}")
-    elif given.stock:
-        words.append(f"--stock={given.stock}")
+    if isinstance(known.stock, StockFile):
+        words.append(f"--stock {quote(str(known.stock.path))}")
+    elif known.stock:
+        words.append(f"--stock={known.stock}")
     # A guessed stock is not named: it would come back as a given one.
     elif not setup.stock and (is_lathe or setup.library.tools):
         words.append(f"--stock={BAR if is_lathe else BOX}")
     words += [
-        f"--material {quote(given.material) if given.material else 'MATERIAL'}",
-        f"--machine {quote(given.machine or default_machine(program))}",
+        f"--material {quote(known.material) if known.material else 'MATERIAL'}",
+        f"--machine {quote(known.machine or default_machine(program))}",
     ]
     return " ".join(words)
 
 
-def _notes(program: NcProgram, given: GivenSetup, setup: CodeSetup) -> Iterator[Finding]:
+def _notes(program: NcProgram, known: GivenSetup, setup: CodeSetup) -> Iterator[Finding]:
     """Say what guesses mean, and which machine is taken where none was named either."""
     if setup.guesses:
         yield Finding(
@@ -357,7 +357,7 @@ def _notes(program: NcProgram, given: GivenSetup, setup: CodeSetup) -> Iterator[
             "the tools; a tool table (--tools) or a setup file (`stepnc setup`) says which "
             "they have",
         )
-    if not given.machine and (setup.guesses or setup.is_stock_guessed):
+    if not known.machine and (setup.guesses or setup.is_stock_guessed):
         yield Finding(
             severity=Severity.NOTE,
             message=f"no machine is named: {setup.machine} is taken; name yours with --machine",

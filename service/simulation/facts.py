@@ -61,12 +61,12 @@ def ratio(part: float, whole: float) -> float:
     return part / whole if whole else 0.0
 
 
-def exceeded(simulation: Simulation, found: Sequence[SimulationRow]) -> tuple[str, ...]:
+def exceeded(simulation: Simulation, rows: Sequence[SimulationRow]) -> tuple[str, ...]:
     """Return a sentence for each workingstep that exceeded a limit."""
     bounds = overload_bounds(simulation.machine)
     return tuple(
         f"{row.name}: {row.total.overload_time:.3g} s above {bounds}"
-        for row in found
+        for row in rows
         if row.total.overload_time > 0.0
     )
 

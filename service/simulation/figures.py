@@ -38,12 +38,12 @@ ROOM = 1.15
 """Ratio of the upper end of the feed panel to the largest programmed feed."""
 
 
-def run_figure(found: Sequence[SimulationRow], trace: BucketedRun) -> go.Figure:
+def run_figure(rows: Sequence[SimulationRow], trace: BucketedRun) -> go.Figure:
     """Figure of workingsteps, powers, feed, spindle speed, force and removal rate over time.
 
     Parameters
     ----------
-    found : sequence of SimulationRow
+    rows : sequence of SimulationRow
         Rows of the workingsteps of the run.
     trace : BucketedRun
 
@@ -52,7 +52,7 @@ def run_figure(found: Sequence[SimulationRow], trace: BucketedRun) -> go.Figure:
     plotly.graph_objects.Figure
     """
     stretches = [
-        TimeSpan(name=row.name, begin=row.begin, duration=row.total.duration) for row in found
+        TimeSpan(name=row.name, begin=row.begin, duration=row.total.duration) for row in rows
     ]
     panels = Panels(trace)
     panels.strip(stretches)

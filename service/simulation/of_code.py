@@ -16,7 +16,7 @@ import numpy as np
 
 from service.chosen import load_material_named, machine_for, material_for
 from service.files import read_bytes
-from service.reading import one_of, read_given
+from service.reading import one_of, read_completed
 from service.requests.given import RawPart
 from service.requests.runs import RunRequest
 from service.simulation.code_paths import CodePaths
@@ -225,7 +225,7 @@ def _fault(paths: CodePaths) -> str | None:
 def _prepared(paths: CodePaths) -> PreparedRun:
     """Prepare code without the moves that cannot be run."""
     code = paths.program
-    findings = (*code.findings, *paths.left_out, *paths.beside)
+    findings = (*code.findings, *paths.left_out, *paths.contour_remarks)
     if code.hints and code.dialect is not _dialect_by_suffix(Path(paths.name)):
         text = f"read as code for {code.dialect.value}, guessed from {', '.join(code.hints)}"
         findings = (Finding(severity=Severity.NOTE, message=text), *findings)
@@ -234,7 +234,7 @@ def _prepared(paths: CodePaths) -> PreparedRun:
 
 def _code_of_program(request: CodeRequest, file: Path, run: RunRequest) -> PreparedRun:
     """Prepare NC code made from a program; tools are numbered in the order of their use."""
-    program = read_given(file, run).program
+    program = read_completed(file, run).program
     match = material_for(run.material, program)
     machine = machine_for(run.machine, program)
     used = dict.fromkeys(step.tool_ref for step in program.workingsteps)

@@ -73,13 +73,14 @@ def placed(program: NcProgram, stock: RawPart, library: ToolLibrary) -> Iterator
         raise StepNcError(
             f"no tool meets the stock: it reaches from {_point(box[0])} to {_point(box[1])} "
             f"mm, the cutting moves from {_point(low)} to {_point(high)} mm; is its zero that "
-            f"of {frame_of_stock(program)}{_asked(factor)}?"
+            f"of {frame_of_stock(program)}{_unit_question(factor)}?"
         )
     if factor != 1.0:
         yield Finding(
             severity=Severity.WARNING,
             message=f"the stock of {_point(box[1] - box[0])} mm and the cutting moves, which "
-            f"go over {_point(high - low)} mm, differ as inches and mm do{_asked(factor)}?",
+            f"go over {_point(high - low)} mm, differ as inches and mm do"
+            f"{_unit_question(factor)}?",
         )
 
 
@@ -111,7 +112,7 @@ def _other_unit(
     return 1.0
 
 
-def _asked(factor: float) -> str:
+def _unit_question(factor: float) -> str:
     """Question after the unit of a stock."""
     if factor == 1.0:
         return ""

@@ -133,7 +133,7 @@ class Simulation:
     totals: tuple[tuple[str, Total], ...]
     """Totals by workingstep in order of execution; the first is for the time before them."""
     findings: tuple[Finding, ...]
-    told: tuple[Finding, ...] = ()
+    reported: tuple[Finding, ...] = ()
     """Those of the findings that were told while it ran."""
     collisions: tuple[Finding, ...] = ()
     """Those of the findings that tell of rapids through material."""
@@ -207,7 +207,7 @@ def simulate(
             *met,
             *untouched(prepared, virtual, run),
         ),
-        told=prepared.remarks,
+        reported=prepared.remarks,
         collisions=tuple(each for each in met if each.severity is Severity.ERROR),
         tools=virtual.setup.tools or {},
         samples=0 if run.file is None else run.file.rows,

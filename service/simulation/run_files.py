@@ -126,12 +126,12 @@ def placed_run(files: CodeOfRun, request: N) -> PlacedRun[N]:
 
 
 def _with_setup(
-    given: CodeRequest, request: N, named: Path | None, places: RunFiles
+    code: CodeRequest, request: N, named: Path | None, places: RunFiles
 ) -> PlacedRun[N]:
     """Add what the setup file, or the code itself, says of tools, stock, material, machine."""
     from service.simulation.code_run import code_of_run  # noqa: PLC0415 (numpy)
 
-    found = code_of_run(given, material=request.material, machine=request.machine, named=named)
+    found = code_of_run(code, material=request.material, machine=request.machine, named=named)
     return PlacedRun(
         files=replace(places, code=found.code),
         request=replace(request, material=found.material, machine=found.machine),

@@ -15,7 +15,7 @@ from service.raw_stock import (
     raw_triangles,
     stock_map,
 )
-from service.reading import read_given
+from service.reading import read_completed
 from service.requests.runs import RunRequest
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import loaded_tool
@@ -117,7 +117,7 @@ def from_program(
     StepNcError
         When a name is invalid, or the program cannot be prepared.
     """
-    program = read_given(file, request, name=name, tools=tools, tell=tell).program
+    program = read_completed(file, request, name=name, tools=tools, tell=tell).program
     if not keep_going:
         needs_of(program, request, file=name or str(file)).require_whole()
     match = material_for(request.material, program)

@@ -9,7 +9,7 @@ from service.simulation.code_setup import CodeSetup, GivenSetup
 from service.simulation.placement import frame_of_stock
 from service.simulation.setup_file import Guessed
 from simulator.plausible_tools import ToolGuess
-from simulator.toml_file import given_keys
+from simulator.toml_file import changed_keys
 from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_table import ToolRow
 from simulator.usual_teeth import usual_teeth
@@ -53,28 +53,28 @@ class SetupDraft:
     text: str
 
 
-def setup_draft(program: NcProgram, given: GivenSetup, setup: CodeSetup) -> SetupDraft:
+def setup_draft(program: NcProgram, known: GivenSetup, setup: CodeSetup) -> SetupDraft:
     """Draft the setup of a program.
 
     Parameters
     ----------
     program : NcProgram
-    given : GivenSetup
+    known : GivenSetup
     setup : CodeSetup
         What was found for it.
     """
-    general = tuple(_general(program, given))
-    stock = _stock_row(given, setup)
-    tools = tuple(_tools(given, setup))
+    general = tuple(_general(program, known))
+    stock = _stock_row(known, setup)
+    tools = tuple(_tools(known, setup))
     rows = (*general, stock, *(row for _, rows in tools for row in rows))
-    lines = [HEAD.format(name=given.file.name), _key("program", given.file.name)]
+    lines = [HEAD.format(name=known.file.name), _key("program", known.file.name)]
     lines += [_key(row.name, row.value, row) for row in general]
-    if given.tools is not None:
-        lines.append(_key("tools", str(given.tools.resolve())))
+    if known.tools is not None:
+        lines.append(_key("tools", str(known.tools.resolve())))
     lines += ["", *_stock_lines(setup, stock)]
     for table, of_tool in tools:
         lines += ["", "[[tool]]", *_commented(table, of_tool)]
-    if not tools and given.tools is None:
+    if not tools and known.tools is None:
         lines += ["", *NO_TOOL]
     return SetupDraft(rows=rows, text="\n".join(lines) + "\n")
 
@@ -89,7 +89,7 @@ NO_TOOL = (
 )
 
 
-def _general(program: NcProgram, given: GivenSetup) -> Iterator[DraftRow]:
+def _general(program: NcProgram, setup: GivenSetup) -> Iterator[DraftRow]:
     """Unit, zero, material and machine."""
     unit = FileUnit.INCH if program.unit > 1.0 else FileUnit.MM
     is_assumed = any(each.message.startswith(NO_UNIT) for each in program.findings)
@@ -106,21 +106,21 @@ def _general(program: NcProgram, given: GivenSetup) -> Iterator[DraftRow]:
         source="frame of the first cut, in which the stock stands",
     )
     for name, value, verb in (
-        ("material", given.material, "materials"),
-        ("machine", given.machine, "machines"),
+        ("material", setup.material, "materials"),
+        ("machine", setup.machine, "machines"),
     ):
         source = "as you named it" if value else f"never guessed: see `stepnc {verb}`"
         sure = Sureness.GIVEN if value else Sureness.MISSING
         yield DraftRow(name=name, value=value, sure=sure, source=source)
 
 
-def _stock_row(given: GivenSetup, setup: CodeSetup) -> DraftRow:
+def _stock_row(known: GivenSetup, setup: CodeSetup) -> DraftRow:
     stock = setup.stock
     value = str(stock.path) if isinstance(stock, StockFile) else stock
     if not value:
         source = "the code states none, and no tool is known around whose cuts it could be"
         return DraftRow(name="stock", value="", sure=Sureness.MISSING, source=source)
-    if given.stock:
+    if known.stock:
         sure, source = Sureness.GIVEN, "as you named it"
     elif setup.is_stock_guessed:
         sure, source = Sureness.GUESSED, "box around the cutting moves, rather too large"
@@ -145,9 +145,9 @@ def _stock_lines(setup: CodeSetup, row: DraftRow) -> Iterator[str]:
         yield "guessed = true"
 
 
-def _tools(given: GivenSetup, setup: CodeSetup) -> Iterator[tuple[list[str], list[DraftRow]]]:
+def _tools(known: GivenSetup, setup: CodeSetup) -> Iterator[tuple[list[str], list[DraftRow]]]:
     """Lines of each tool of the comments, and its values."""
-    if given.tools is not None:
+    if known.tools is not None:
         return
     for number, row in setup.rows.items():
         guess = setup.guesses.get(number, ToolGuess())
@@ -157,7 +157,7 @@ def _tools(given: GivenSetup, setup: CodeSetup) -> Iterator[tuple[list[str], lis
 
 def _tool_lines(row: ToolRow, guess: ToolGuess) -> Iterator[str]:
     """Keys of a tool, and which of them are guesses."""
-    for key in dict.fromkeys((*given_keys(row), Guessed.EDGE.value)):
+    for key in dict.fromkeys((*changed_keys(row), Guessed.EDGE.value)):
         value = getattr(row, key)
         yield f'{key} = "{value}"' if isinstance(value, str) else f"{key} = {value:.9g}"
     guessed = list(_guessed(row, guess))

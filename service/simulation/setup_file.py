@@ -99,12 +99,12 @@ class SetupFile:
     is_stock_guessed: bool = False
 
 
-def place_beside(program: Path) -> Path:
+def setup_place(program: Path) -> Path:
     """Return the place of a program's setup file.
 
     Examples
     --------
-    >>> place_beside(Path("jobs/part.nc")).name
+    >>> setup_place(Path("jobs/part.nc")).name
     'part.setup.toml'
     """
     return program.with_name(f"{program.stem}{SUFFIX}")
@@ -122,7 +122,7 @@ def setup_of(program: Path, named: Path | None) -> SetupFile | Finding | None:
     """
     if named is not None:
         return read_setup(named)
-    place = place_beside(program)
+    place = setup_place(program)
     if not place.is_file():
         return None
     found = read_setup(place)

@@ -117,7 +117,7 @@ class FileDatabase:
             # A full disk lets nobody write, but what is of this version can be read.
             if not file.is_file() or not self._is_current():
                 raise
-        self._inode = self._found()
+        self._inode = self._file_identity()
 
     @contextmanager
     def reading(self) -> Iterator[FileConnection]:
@@ -191,7 +191,7 @@ class FileDatabase:
             known.close()
             self._local.connection = None
 
-    def _found(self) -> tuple[int, int]:
+    def _file_identity(self) -> tuple[int, int]:
         """Identity (device and inode) of the current database file."""
         try:
             found = os.stat(self.file)
@@ -201,7 +201,7 @@ class FileDatabase:
 
     @contextmanager
     def _answering(self) -> Iterator[None]:
-        if self._inode is not None and self._found() != self._inode:
+        if self._inode is not None and self._file_identity() != self._inode:
             raise Unavailable(f"{self.file.name}: the file was replaced by another one")
         try:
             yield

@@ -133,7 +133,7 @@ class JobRequest:
 
 
 def add(
-    data_folder: DataFolder, asked: JobRequest, *, idempotency: IdempotencyKey | None = None
+    data_folder: DataFolder, order: JobRequest, *, idempotency: IdempotencyKey | None = None
 ) -> Job:
     """Queue a job.
 
@@ -148,16 +148,16 @@ def add(
     with data_folder.database.writing() as connection:
         kept = made_before(connection, idempotency)
         if kept is None:
-            _require_room(connection, asked)
-            _require_program(connection, asked.program)
-            _require_files(connection, asked.request)
+            _require_room(connection, order)
+            _require_program(connection, order.program)
+            _require_files(connection, order.request)
             connection.execute(
                 "INSERT INTO jobs "
                 "(id, kind, state, request, program, source, owner, created, key) "
                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
                 (
-                    id, asked.kind.value, JobState.QUEUED.value, json.dumps(asked.request),
-                    asked.program, asked.source, asked.owner, time.time(), asked.key,
+                    id, order.kind.value, JobState.QUEUED.value, json.dumps(order.request),
+                    order.program, order.source, order.owner, time.time(), order.key,
                 ),
             )  # fmt: skip
             remember(connection, idempotency, id)
@@ -344,10 +344,10 @@ def abandoned(data_folder: DataFolder, *, lease: float) -> tuple[Job, ...]:
     return tuple(_job(row) for row in rows)
 
 
-def recover(data_folder: DataFolder, found: Sequence[Job]) -> None:
+def recover(data_folder: DataFolder, jobs: Sequence[Job]) -> None:
     """Queue or fail jobs of a runner that is gone; each by the first who comes."""
     most = MOST_ATTEMPTS_SHARED if data_folder.database.is_shared else MOST_ATTEMPTS
-    for job in found:
+    for job in jobs:
         if job.is_cancelling:
             finish(data_folder, job, JobState.CANCELLED)
         elif job.is_live:
@@ -387,15 +387,15 @@ def _changed(connection: Connection, job: Job, columns: str, values: Sequence[ob
     )
 
 
-def _require_room(connection: Connection, asked: JobRequest) -> None:
+def _require_room(connection: Connection, order: JobRequest) -> None:
     """Require room in the queue, and in the part of it that one API key may fill."""
     row = connection.execute(
         "SELECT count(*) AS waiting, "
         "count(*) FILTER (WHERE key = ? AND (key <> '' OR owner = ?)) AS own "
         "FROM jobs WHERE state = 'queued'",
-        (asked.key, asked.owner),
+        (order.key, order.owner),
     ).fetchone()
-    is_alone = asked.owner == LOCAL and not asked.key
+    is_alone = order.owner == LOCAL and not order.key
     share = MOST_WAITING if is_alone else max(MOST_WAITING // OWNERS, 1)
     if row["waiting"] >= MOST_WAITING or row["own"] >= share:
         raise TooMany(60.0)

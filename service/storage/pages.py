@@ -44,7 +44,7 @@ class PageCursor:
         return self.cursor or "~"
 
 
-def page_of(found: Sequence[T], ids: Sequence[str], *, limit: int) -> Page[T]:
+def page_of(entries: Sequence[T], ids: Sequence[str], *, limit: int) -> Page[T]:
     """Build a page from entries of which one more than the limit was queried."""
-    has_more = len(found) > limit
-    return Page(items=tuple(found[:limit]), cursor=ids[limit - 1] if has_more else None)
+    has_more = len(entries) > limit
+    return Page(items=tuple(entries[:limit]), cursor=ids[limit - 1] if has_more else None)

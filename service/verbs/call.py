@@ -155,7 +155,7 @@ def call(
     require_bounds(request)
     files = _built(verb.files, of_files, given)
     require_bounds(files)
-    return ran(verb, request, files, given=given, tell=tell)
+    return ran(verb, request, files, named=given, tell=tell)
 
 
 def ran(
@@ -163,7 +163,7 @@ def ran(
     request: Request,
     files: Request,
     *,
-    given: Mapping[str, object],
+    named: Mapping[str, object],
     tell: Tell,
 ) -> Result:
     """Run a verb with its request and files, and write its result where a file is named.
@@ -172,7 +172,7 @@ def ran(
     ----------
     verb : Verb
     request, files : Request
-    given : mapping
+    named : mapping
         Values that the caller named, by their fields; those that do not serve the kind of
         program are refused, even if they are the usual ones.
     tell : callable
@@ -183,7 +183,7 @@ def ran(
     StepNcError
         When a value does not serve the program; and as the verb.
     """
-    _require_given_served((*fields_of(verb.files), *fields_of(verb.request)), files, given)
+    _require_served((*fields_of(verb.files), *fields_of(verb.request)), files, named)
     if isinstance(files, OutputFiles):
         files.require_format()
     result = verb.run(request, files, tell=tell)
@@ -200,8 +200,8 @@ def ran(
     return result
 
 
-def _require_given_served(
-    fields: Sequence[RequestField], files: Request, given: Mapping[str, object]
+def _require_served(
+    fields: Sequence[RequestField], files: Request, named: Mapping[str, object]
 ) -> None:
     """Refuse values that the kind of program cannot use."""
     flags = {each.name: each.about.flag for each in fields}
@@ -211,17 +211,17 @@ def _require_given_served(
             from service.program_kind import ProgramKind, kind_of_file  # noqa: PLC0415 (help)
 
             kind = ProgramKind.STEP_NC if program.is_dir() else kind_of_file(program)
-            require_options_served(given, kind, flags=flags)
+            require_options_served(named, kind, flags=flags)
 
 
 def _built(
-    kind: type[Request], fields: Iterable[RequestField], given: Mapping[str, object]
+    kind: type[Request], fields: Iterable[RequestField], named: Mapping[str, object]
 ) -> Request:
     """Build a request or files from the values that belong to them."""
     values = {}
     for field in fields:
-        if field.name in given:
-            values[field.name] = value_of(field, given[field.name])
+        if field.name in named:
+            values[field.name] = value_of(field, named[field.name])
         elif field.default is MISSING:
             raise TypeError(f"the argument '{field.name}' is missing: {field.about.text}")
     return kind(**values)

@@ -149,7 +149,7 @@ class Result:
         return file_columns(found.columns), file_rows(found.columns, found.rows)
 
     def __str__(self) -> str:
-        return "\n".join(text for text, _ in self.view().lines(width=WIDE, is_told=False))
+        return "\n".join(text for text, _ in self.view().lines(width=WIDE, is_reported=False))
 
     def _repr_html_(self) -> str:
         """Return what notebooks show."""
@@ -174,7 +174,7 @@ class DoneResult(Result):
             Fact(key=name, value=str(value) if isinstance(value, Path) else value)
             for name, value in values.items()
         )
-        return ResultView([*facts, TextLine(text=self.said, is_told=True)])
+        return ResultView([*facts, TextLine(text=self.said, is_reported=True)])
 
 
 class ServedResult(Result):

@@ -222,7 +222,7 @@ def _milled(
     raw = program.raw
     part = programmed_part(program.path, program.stock, cell=cell, raw=raw)
     left = LoggedPart(part, program.stock, _rotating(program.cutters), raw=raw)
-    for piece in _told(file, left, tell):
+    for piece in _with_progress(file, left, tell):
         left.add(piece)
     places = surface_places(part, left)
     return ComparedParts(
@@ -248,7 +248,7 @@ def _turned(
     part = turned_part(program.path, program.stock, cell=cell, raw=raw)
     required = _required_profile(program, cell)
     left = LoggedBar(part.bar, program.stock, program.cutters, raw=raw)
-    for piece in _told(file, left, tell):
+    for piece in _with_progress(file, left, tell):
         left.add(piece)
     places = turned_places(part, left)
     return ComparedParts(
@@ -283,7 +283,7 @@ def _milled_required(
         mesh.triangles, setup.stock, cell=cell, most_sag=mesh.sag, raw=setup.raw
     )
     left = LoggedPart(part, setup.stock, _rotating(setup.cutters), raw=setup.raw)
-    for piece in _told(file, left, tell):
+    for piece in _with_progress(file, left, tell):
         left.add(piece)
     places = required_places(part, left)
     found = ComparedParts(
@@ -315,7 +315,7 @@ def _turned_required(
         np.minimum(part.bar.outer, raw.outer, out=part.bar.outer)
         np.maximum(part.bar.inner, raw.inner, out=part.bar.inner)
     left = LoggedBar(part.bar, setup.stock, setup.cutters, raw=raw)
-    for piece in _told(file, left, tell):
+    for piece in _with_progress(file, left, tell):
         left.add(piece)
     places = required_turned_places(part, left)
     found = ComparedParts(
@@ -351,7 +351,9 @@ def _open_notes(count: int) -> Iterator[str]:
         )
 
 
-def _told(file: LogFile, left: LoggedPart | LoggedBar, tell: Tell) -> Iterator[LoggedSamples]:
+def _with_progress(
+    file: LogFile, left: LoggedPart | LoggedBar, tell: Tell
+) -> Iterator[LoggedSamples]:
     """Yield the pieces of a log, and tell how far it was taken."""
     for piece in file.pieces():
         yield piece
@@ -373,21 +375,21 @@ def _usual(*places: NearestSamples) -> float:
 
 
 def _require_cut(
-    found: ComparedParts, file: LogFile, wanted: Floats, *, axes: list[int]
+    parts: ComparedParts, file: LogFile, wanted: Floats, *, axes: list[int]
 ) -> None:
     """Refuse a log that removes nothing, or goes too short a way for what is to be removed.
 
     Parameters
     ----------
-    found : ComparedParts
+    parts : ComparedParts
     file : LogFile
     wanted : (A,) array, mm
         Extent of what is to be removed along some axes, less the widest tool.
     axes : list of int
     """
-    if not found.volumes.logged > LEAST_VOLUME:
+    if not parts.volumes.logged > LEAST_VOLUME:
         raise StepNcError(f"{file.name}: the positions {NEVER}")
-    span = found.facts.span[axes]
+    span = parts.facts.span[axes]
     if (span * MOST_SHORT < wanted).all():
         shown = " × ".join(f"{each:.3g}" for each in span.tolist())
         needed = " × ".join(f"{each:.3g}" for each in wanted.tolist())

@@ -125,42 +125,44 @@ class LogResolution:
     """At square corners."""
 
 
-def surface_deviations(found: Verification) -> Iterator[SurfaceDeviation]:
+def surface_deviations(verification: Verification) -> Iterator[SurfaceDeviation]:
     """Yield the greatest deviations by workingstep, walls before floors."""
-    places = found.places
-    for index in range(-1, len(found.steps)):
+    places = verification.places
+    for index in range(-1, len(verification.steps)):
         for is_wall in (True, False):
             rows = (places.workingstep == index) & (places.is_wall == is_wall)
             if rows.any():
-                yield _surface(found, index, is_wall, rows)
+                yield _surface(verification, index, is_wall, rows)
 
 
-def _surface(found: Verification, index: int, is_wall: bool, rows: Bools) -> SurfaceDeviation:
-    places, nominal = found.places[rows], found.nominal[rows]
+def _surface(
+    verification: Verification, index: int, is_wall: bool, rows: Bools
+) -> SurfaceDeviation:
+    places, nominal = verification.places[rows], verification.nominal[rows]
     against = (places.deviation + nominal)[np.isfinite(nominal)]
     whole = float(places.area.sum())
-    step = found.steps[index] if index >= 0 else None
+    step = verification.steps[index] if index >= 0 else None
     return SurfaceDeviation(
         workingstep=step.workingstep if step else RAW,
         feature=step.feature if step else "",
         tool=step.tool if step else 0,
-        kind=_kind(found, is_wall),
-        gouge=_spot(found, places, -1.0),
-        excess=_spot(found, places, 1.0),
+        kind=_kind(verification, is_wall),
+        gouge=_spot(verification, places, -1.0),
+        excess=_spot(verification, places, 1.0),
         area=whole,
         nominal=(float(against.min()), float(against.max())) if len(against) else None,
-        bent=found.bent.get(step.workingstep) if step and is_wall else None,
+        bent=verification.bent.get(step.workingstep) if step and is_wall else None,
         beyond=float(places.area[places.is_beyond].sum()) / whole,
     )
 
 
-def _kind(found: Verification, is_wall: bool) -> SurfaceKind:
-    if found.is_turned:
+def _kind(verification: Verification, is_wall: bool) -> SurfaceKind:
+    if verification.is_turned:
         return SurfaceKind.FACE if is_wall else SurfaceKind.DIAMETER
     return SurfaceKind.WALL if is_wall else SurfaceKind.FLOOR
 
 
-def _spot(found: Verification, places: SurfacePlaces, sign: float) -> DeviationSpot:
+def _spot(verification: Verification, places: SurfacePlaces, sign: float) -> DeviationSpot:
     """Deviation of a sign with the greatest least size, or the nearest to its uncertainty."""
     size = np.maximum(sign * places.deviation, 0.0)
     least = np.where(size > 0.0, places.least, -places.uncertainty)
@@ -174,13 +176,13 @@ def _spot(found: Verification, places: SurfacePlaces, sign: float) -> DeviationS
         position=(x, y, z),
         block=int(places.block[row]),
         time=float(places.time[row]),
-        cut_by=found.steps[by].workingstep if by >= 0 else "",
+        cut_by=verification.steps[by].workingstep if by >= 0 else "",
     )
 
 
-def tolerance_bands(found: Verification) -> tuple[ToleranceBand, ...]:
+def tolerance_bands(verification: Verification) -> tuple[ToleranceBand, ...]:
     """Shares of the surface within bands of the deviation, by area."""
-    places = found.places
+    places = verification.places
     whole, size = float(places.area.sum()), np.abs(places.deviation)
     return tuple(
         ToleranceBand(width=width, share=float(places.area[size <= width].sum()) / whole)
@@ -188,17 +190,17 @@ def tolerance_bands(found: Verification) -> tuple[ToleranceBand, ...]:
     )
 
 
-def log_resolution(found: Verification) -> LogResolution:
+def log_resolution(verification: Verification) -> LogResolution:
     """Resolution of the log, from its usual step, its rounding and the limit of the method."""
-    facts = found.facts
+    facts = verification.facts
     rounding = rounding_uncertainty(facts) + EXACT
-    radius = inf if found.path is None else smallest_arc(found.path)
+    radius = inf if verification.path is None else smallest_arc(verification.path)
     return LogResolution(
-        step=found.step,
+        step=verification.step,
         straight=rounding,
-        arc=rounding + arc_uncertainty(found.step, radius),
+        arc=rounding + arc_uncertainty(verification.step, radius),
         radius=radius,
-        corner=rounding + corner_uncertainty(found.step),
+        corner=rounding + corner_uncertainty(verification.step),
     )
 
 
@@ -242,7 +244,7 @@ class SurfaceMap:
     """Greatest amount by which a deviation among them exceeds its uncertainty, mm; 0: none."""
 
 
-def write_surface(path: Path, found: Verification) -> None:
+def write_surface(path: Path, verification: Verification) -> None:
     """Write all places of a verification as Parquet.
 
     Raises
@@ -250,7 +252,7 @@ def write_surface(path: Path, found: Verification) -> None:
     WriteError
         When the disk refuses.
     """
-    places = found.places
+    places = verification.places
     numbers = (
         *places.position.T, places.deviation, places.uncertainty, places.least, places.time,
     )  # fmt: skip
@@ -259,16 +261,18 @@ def write_surface(path: Path, found: Verification) -> None:
         for name, values in zip(NUMBERS, numbers, strict=True)
     }
     columns["block"] = pa.array(places.block.astype(np.int32))
-    names = [*(step.workingstep for step in found.steps), RAW]
+    names = [*(step.workingstep for step in verification.steps), RAW]
     steps = np.where(places.workingstep < 0, len(names) - 1, places.workingstep)
     columns["workingstep"] = _words(steps, names)
     kinds = (
         (SurfaceKind.DIAMETER, SurfaceKind.FACE)
-        if found.is_turned
+        if verification.is_turned
         else (SurfaceKind.FLOOR, SurfaceKind.WALL)
     )
     columns["kind"] = _words(places.is_wall.astype(np.int64), [kind.value for kind in kinds])
-    table = pa.table(columns).replace_schema_metadata({TURNED: str(int(found.is_turned))})
+    table = pa.table(columns).replace_schema_metadata({
+        TURNED: str(int(verification.is_turned))
+    })
     sink = pa.BufferOutputStream()
     parquet.write_table(table, sink, compression="zstd")
     write_atomically(path, sink.getvalue())

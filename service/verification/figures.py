@@ -28,29 +28,29 @@ ROOM = 2.0
 """End of the colour scale, as a multiple of the tolerance, if no deviation is greater."""
 
 
-def plan_figure(found: Verification) -> go.Figure:
+def plan_figure(verification: Verification) -> go.Figure:
     """Figure of the surface seen along the tool, or of the profile of a turned part."""
-    places, limit = found.places, _limit(found)
+    places, limit = verification.places, _limit(verification)
     figure = go.Figure()
-    if found.is_turned:
+    if verification.is_turned:
         rows = _chosen(places, MOST_IN_PLAN)
-        figure.add_trace(_points(found, rows, limit, across=2, up=0))
+        figure.add_trace(_points(verification, rows, limit, across=2, up=0))
         figure.update_layout(xaxis_title="z, mm", yaxis_title="radius, mm")
     else:
         figure.add_trace(_floors(places[~places.is_wall], limit))
         walls = places[places.is_wall]
         rows = _chosen(walls, MOST_IN_PLAN)
-        figure.add_trace(_points(found, rows, limit, across=0, up=1, places=walls))
+        figure.add_trace(_points(verification, rows, limit, across=0, up=1, places=walls))
         figure.update_layout(xaxis_title="x, mm", yaxis_title="y, mm")
     figure.update_yaxes(scaleanchor="x")
     figure.update_layout(height=560, template="plotly_white", showlegend=False)
     return figure
 
 
-def space_figure(found: Verification) -> go.Figure:
+def space_figure(verification: Verification) -> go.Figure:
     """Figure of the surface in space; a turned profile goes around its axis."""
-    places, limit = found.places, _limit(found)
-    if found.is_turned:
+    places, limit = verification.places, _limit(verification)
+    if verification.is_turned:
         shown = places[_chosen(places, MOST_POINTS // ANGLES)]
         position, deviation = _turned_around(shown)
     else:
@@ -81,10 +81,10 @@ def _turned_around(places: SurfacePlaces) -> tuple[Floats, Floats]:
     return position.reshape(-1, 3), np.tile(places.deviation, ANGLES)
 
 
-def _limit(found: Verification) -> float:
+def _limit(verification: Verification) -> float:
     """End of the colour scale, mm."""
-    size = np.abs(found.places.deviation[found.places.is_beyond])
-    return float(max(size.max(initial=0.0), ROOM * found.tolerance))
+    size = np.abs(verification.places.deviation[verification.places.is_beyond])
+    return float(max(size.max(initial=0.0), ROOM * verification.tolerance))
 
 
 def _chosen(places: SurfacePlaces, most: int) -> Ints:
@@ -100,7 +100,7 @@ def _marker(deviation: Floats, limit: float, size: float) -> dict[str, object]:
 
 
 def _points(
-    found: Verification,
+    verification: Verification,
     rows: Ints,
     limit: float,
     *,
@@ -109,8 +109,8 @@ def _points(
     places: SurfacePlaces | None = None,
 ) -> go.Scatter:
     """Points in a plane, with the workingstep and block of each."""
-    shown = (found.places if places is None else places)[rows]
-    names = [step.workingstep for step in found.steps] + ["raw part"]
+    shown = (verification.places if places is None else places)[rows]
+    names = [step.workingstep for step in verification.steps] + ["raw part"]
     texts = [
         f"{names[step]}, block {block}, ± {uncertainty:.4f} mm"
         for step, block, uncertainty in zip(

@@ -175,7 +175,7 @@ class LogSteps:
 
     tools: frozenset[int]
     """Numbers of the tools of the table."""
-    found: dict[tuple[str, int], int] = field(default_factory=dict)
+    index_of: dict[tuple[str, int], int] = field(default_factory=dict)
     """Index by id of the workingstep, which may be empty, and number of the tool."""
 
     def indices(self, words: Sequence[str | None], index: Ints, tools: Ints) -> Ints:
@@ -186,7 +186,7 @@ class LogSteps:
         for pair in pairs.tolist():
             number, word = divmod(pair, count)
             key = (words[word] or "", number)
-            known.append(self.found.setdefault(key, len(self.found)))
+            known.append(self.index_of.setdefault(key, len(self.index_of)))
         return np.asarray(np.array(known, dtype=np.int64)[row])
 
     def numbers(self, _words: Sequence[str | None], _index: Ints) -> Ints | None:
@@ -206,7 +206,7 @@ class LogFile:
     """Machine whose data items a document has."""
     zero: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Position of the program's zero on the axes, mm."""
-    is_zero_given: bool = False
+    is_zero_stated: bool = False
     """Whether the user states the zero, so that the log's own is not used."""
     rows: int = 0
     equal_times: int = 0
@@ -245,9 +245,9 @@ class LogFile:
     @property
     def zero_source(self) -> str:
         """Source of the zero, if the log states it."""
-        if self._has_work_positions and not self.is_zero_given:
+        if self._has_work_positions and not self.is_zero_stated:
             return "the tip of the tool in work coordinates, as PATH_POSITION tells it"
-        if self._has_offsets and not self.is_zero_given:
+        if self._has_offsets and not self.is_zero_stated:
             length = f" and {LENGTH}" if LENGTH in self._names else ""
             return f"positions of the axes less work_offset_x_mm, _y_mm, _z_mm{length}"
         return ""
@@ -255,7 +255,7 @@ class LogFile:
     @property
     def _positions(self) -> tuple[str, ...]:
         """Columns of the positions; a lathe without Y stays at 0."""
-        if self._has_work_positions and not self.is_zero_given:
+        if self._has_work_positions and not self.is_zero_stated:
             return WORK_POSITIONS
         axes = None if self.machine is None else {axis.name for axis in self.machine.axes}
         if axes is None or not axes:

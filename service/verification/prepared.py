@@ -9,8 +9,8 @@ from service.brep.bodies import body_triangles
 from service.chosen import machine_for, material_for
 from service.part_file import PartMesh, read_part
 from service.progress import Tell, silent
-from service.raw_stock import given_stock, placed_triangles, raw_triangles
-from service.reading import read_given, tool_library
+from service.raw_stock import placed_triangles, raw_triangles, user_stock
+from service.reading import read_completed, tool_library
 from service.requests.verification import VerificationRequest
 from service.simulation.setup import PreparedRun, prepared_program
 from service.verification.log import ProgramNames
@@ -124,7 +124,7 @@ def prepared(
     StepNcError
         When the program cannot be run, has several setups, or has no stock.
     """
-    read = read_given(program, request, tools=tool_library(tools), tell=tell).program
+    read = read_completed(program, request, tools=tool_library(tools), tell=tell).program
     match = material_for(request.material, read)
     tell(f"material: {match.reason}")
     run = prepared_program(read, machine_for(request.machine, read), match, tell=tell)
@@ -181,7 +181,7 @@ def required_setup(
     if not any(isinstance(tool.shape, kind) for tool in table):
         what = "turns" if kind is Insert else "rotates"
         raise StepNcError(f"{tools}: no tool {what}: {machine.name} needs one")
-    raw = given_stock(request.stock)
+    raw = user_stock(request.stock)
     return RequiredSetup(
         name=required.path.name,
         machine=machine,

@@ -195,7 +195,7 @@ def verified(
     """
     file = LogFile(
         path=log, name=name, names=program.names, machine=program.machine,
-        is_zero_given=bool(request.zero),
+        is_zero_stated=bool(request.zero),
     )  # fmt: skip
     file.zero, findings = _zero(request.zero, file, program)
     try:
@@ -262,10 +262,10 @@ def verified_without_program(
     steps = LogSteps(tools=frozenset(setup.cutters))
     file = LogFile(
         path=log, name=name, names=steps, machine=setup.machine,
-        is_zero_given=bool(request.zero),
+        is_zero_stated=bool(request.zero),
     )  # fmt: skip
     if request.zero:
-        file.zero = _given_zero(request.zero)
+        file.zero = _zero_in(request.zero)
     try:
         found = compared_with_required(setup, file, request.cell_mm, tell)
     except ValueError as error:
@@ -278,7 +278,7 @@ def verified_without_program(
         step=found.step,
         steps=tuple(
             StepName(workingstep=word or f"T{tool}", feature="", tool=tool)
-            for word, tool in steps.found
+            for word, tool in steps.index_of
         ),
         path=None,
         places=found.places,
@@ -295,7 +295,7 @@ def verified_without_program(
     )
 
 
-def _given_zero(text: str) -> tuple[float, float, float]:
+def _zero_in(text: str) -> tuple[float, float, float]:
     x, y, z = numbers_in(text, "zero", counts=(3,))
     return x, y, z
 
@@ -306,7 +306,7 @@ def _zero(
     """Find where the program's zero is, and check that the log is of this program."""
     findings: list[Finding] = []
     if text and text != FIT:
-        file.zero = _given_zero(text)
+        file.zero = _zero_in(text)
     survey = np.concatenate(thinned(file.pieces(), most=SURVEYED))
     points = np.concatenate(program.path.chords)
     _require_millimetres(file, survey, points)

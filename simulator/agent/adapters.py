@@ -139,13 +139,13 @@ async def listen_to(address: AdapterAddress, intake: AdapterIntake) -> None:
 
 
 async def _listen_once(
-    address: AdapterAddress, intake: AdapterIntake, told: set[int], clock: AdapterClock
+    address: AdapterAddress, intake: AdapterIntake, reported: set[int], clock: AdapterClock
 ) -> None:
     reader, writer = await asyncio.open_connection(address.host, address.port)
     agent, heartbeat = intake.agent, USUAL_HEARTBEAT
     pinger = asyncio.create_task(_ping(writer, lambda: heartbeat))
     try:
-        _begin(agent, told)
+        _begin(agent, reported)
         rest = b""
         while True:
             # An adapter that answers no ping for two heartbeats is lost.
@@ -158,10 +158,10 @@ async def _listen_once(
             for each in lines:
                 text = each.decode("utf-8", "replace").strip()
                 if text.startswith("* PONG"):
-                    heartbeat = _asked_heartbeat(text, heartbeat)
+                    heartbeat = _requested_heartbeat(text, heartbeat)
                 elif not text.startswith("*"):
                     found += read_line(text, agent.model, agent.clock)
-            told.update(each.item for each in found)
+            reported.update(each.item for each in found)
             skew = clock.skew([each.time for each in found], agent.clock())
             if skew is not None:
                 intake.tell(_skewed(address, skew))
@@ -181,12 +181,12 @@ def _skewed(address: AdapterAddress, seconds: float) -> str:
     )
 
 
-def _begin(agent: Agent, told: set[int]) -> None:
+def _begin(agent: Agent, reported: set[int]) -> None:
     """An adapter that is connected makes its device available."""
     for number, item in enumerate(agent.model.items):
         of = agent.model.devices[agent.model.components[item.component].device]
         if item.type == "AVAILABILITY" and not of.is_agent:
-            told.add(number)
+            reported.add(number)
             agent.tell({item.id: "AVAILABLE"})
 
 
@@ -198,7 +198,7 @@ async def _ping(writer: asyncio.StreamWriter, heartbeat: Callable[[], float]) ->
         await asyncio.sleep(heartbeat())
 
 
-def _asked_heartbeat(text: str, before: float) -> float:
+def _requested_heartbeat(text: str, before: float) -> float:
     word = text.removeprefix("* PONG").strip()
     return min(max(int(word) / 1000.0, 0.1), 3600.0) if word.isdecimal() else before
 

@@ -327,7 +327,7 @@ class Agent:
             item = self.model.items[at]
             if item.type == ("ASSET_REMOVED" if asset.is_removed else "ASSET_CHANGED"):
                 told[item.id] = AssetReference(id=asset.id, type=asset.type)
-            elif item.type == "ASSET_CHANGED" and self._is_told(at, asset):
+            elif item.type == "ASSET_CHANGED" and self._names_asset(at, asset):
                 told[item.id] = None
         self.tell(told, time=self.stamp())
 
@@ -352,7 +352,7 @@ class Agent:
         key = (query.chosen, query.start, query.end, query.count, buffer.next)
         kept = self._kept(key)
         if kept is None:
-            sequences, following = self._found(query)
+            sequences, following = self._sequence_numbers(query)
             items, _ = buffer.take(sequences)
             body = self.writer.observations(
                 (item, buffer.rendered(sequence, self._rendered))
@@ -417,16 +417,16 @@ class Agent:
             raise RequestRefused(404, *faults)
         return self._asset_document(found)
 
-    def _asset_document(self, found: Sequence[Asset]) -> bytes:
+    def _asset_document(self, assets: Sequence[Asset]) -> bytes:
         texts = [
             f'<{each.type} removed="true"{each.text[len(each.type) + 1 :]}'
             if each.is_removed
             else each.text
-            for each in found
+            for each in assets
         ]
         return self.writer.assets(texts, count=len(self.assets))
 
-    def _found(self, query: StreamQuery) -> tuple[Ints, int]:
+    def _sequence_numbers(self, query: StreamQuery) -> tuple[Ints, int]:
         """Sequence numbers of a query in ascending order, and the one that follows."""
         buffer = self.buffer
         if query.count < 0:
@@ -455,7 +455,7 @@ class Agent:
     def _rendered(self, item: int, time: int, sequence: int, value: Value) -> bytes:
         return self.writer.observation(item, time, sequence, value)
 
-    def _is_told(self, item: int, asset: Asset) -> bool:
+    def _names_asset(self, item: int, asset: Asset) -> bool:
         """True if a data item names an asset."""
         held = self.buffer.state[item]
         value = held[0].value if held else None

@@ -71,7 +71,7 @@ class MqttPublisher:
     """by device, sequence number of the first observation that no broker has confirmed"""
     _assets: dict[str, Asset] = field(init=False, default_factory=dict)
     _confirmed: dict[int, "asyncio.Future[None]"] = field(init=False, default_factory=dict)
-    _is_fault_told: bool = field(init=False, default=False)
+    _is_fault_reported: bool = field(init=False, default=False)
     _is_over: bool = field(init=False, default=False)
 
     def __post_init__(self) -> None:
@@ -203,7 +203,7 @@ class MqttPublisher:
             return
         self._lost.clear()
         self._connected.set()
-        self._is_fault_told = False
+        self._is_fault_reported = False
         self.tell(f"MQTT: published to {self.host}:{self.port}, topics MTConnect/#")
 
     def _end(self, reason: str) -> None:
@@ -222,9 +222,9 @@ class MqttPublisher:
 
     def _tell_fault(self, message: str) -> None:
         """Tell the first fault since the last connection."""
-        if not self._is_fault_told:
+        if not self._is_fault_reported:
             self.tell(f"MQTT broker {self.host}:{self.port}: {message}")
-        self._is_fault_told = True
+        self._is_fault_reported = True
 
     def _leave(self) -> None:
         """Say that the agent is gone, and end the connection."""

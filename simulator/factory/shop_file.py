@@ -61,7 +61,7 @@ def read_shop(
     """
     beside = path.parent
 
-    def machine_beside(word: str) -> Machine:
+    def machine_near(word: str) -> Machine:
         file = beside / word
         return machine_named(str(file) if Path(word).suffix and file.is_file() else word)
 
@@ -69,7 +69,7 @@ def read_shop(
         content_of(read_text(path), path),
         path,
         changes=changes,
-        machine_named=machine_beside,
+        machine_named=machine_near,
         program_named=lambda word: str(beside / word),
     )
 

@@ -13,7 +13,7 @@ from hashlib import sha256
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 
-BESIDE = Path(__file__).parent / "__pycache__"
+PACKAGE_CACHE = Path(__file__).parent / "__pycache__"
 
 KEPT = 8
 """Number of files kept per kernel: for other arguments, processors and versions."""
@@ -42,7 +42,7 @@ def save(name: str, key: str, code: bytes) -> None:
 
 
 def _folders() -> Iterator[Path]:
-    yield BESIDE
+    yield PACKAGE_CACHE
     with suppress(RuntimeError):
         cache = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
         yield Path(cache) / "stepnc-optimiser"

@@ -51,12 +51,12 @@ def _place(hit: Collision) -> str:
 
 
 def _first(
-    told: list[tuple[Collision, str]], kind: str, severity: Severity = Severity.WARNING
+    hits: list[tuple[Collision, str]], kind: str, severity: Severity = Severity.WARNING
 ) -> list[Finding]:
     findings = [
-        Finding(severity=severity, message=text, line=hit.block) for hit, text in told[:MOST]
+        Finding(severity=severity, message=text, line=hit.block) for hit, text in hits[:MOST]
     ]
-    if len(told) > MOST:
-        more = f"{len(told) - MOST} more {kind}"
+    if len(hits) > MOST:
+        more = f"{len(hits) - MOST} more {kind}"
         findings.append(Finding(severity=severity, message=more))
     return findings

@@ -201,27 +201,27 @@ def _motion(
     moves: Segments,
     last: Ints,
     plan: MovePlan,
-    found: Joints,
+    joints: Joints,
     planner: LinuxCncPlanner,
 ) -> "PlannedMotion":
     """Pieces of the path, and the speed along them."""
     count = len(moves)
-    has_blend = np.append(found.length > 0.0, False)
+    has_blend = np.append(joints.length > 0.0, False)
     # A move, then the blend after it where there is one.
     move = np.repeat(np.arange(count), 1 + has_blend)
     is_blend = np.append(False, move[1:] == move[:-1])
-    before, after = np.append(0.0, found.trim), np.append(found.trim, 0.0)
+    before, after = np.append(0.0, joints.trim), np.append(joints.trim, 0.0)
     shortened = np.maximum(moves.length - before - after, 0.0)
-    acceleration = plan.acceleration * plan.along * (1.0 - found.reduction)
-    acceleration *= np.where(found.is_halved, 0.5, 1.0)
-    if planner.is_drained and planner.mode.tolerance > 0.0 and not found.is_halved[-1]:
+    acceleration = plan.acceleration * plan.along * (1.0 - joints.reduction)
+    acceleration *= np.where(joints.is_halved, 0.5, 1.0)
+    if planner.is_drained and planner.mode.tolerance > 0.0 and not joints.is_halved[-1]:
         acceleration[-1] *= 0.5
     cap = np.minimum(plan.wanted, plan.fastest)
-    length = np.where(is_blend, np.append(found.length, 0.0)[move], shortened[move])
-    top = np.where(is_blend, np.append(found.speed, 0.0)[move], cap[move])
-    grip = np.where(is_blend, np.append(found.acceleration, 0.0)[move], acceleration[move])
+    length = np.where(is_blend, np.append(joints.length, 0.0)[move], shortened[move])
+    top = np.where(is_blend, np.append(joints.speed, 0.0)[move], cap[move])
+    grip = np.where(is_blend, np.append(joints.acceleration, 0.0)[move], acceleration[move])
     # The speed of a blend is that of its piece, so that its ends are tangent.
-    joint = np.where(found.length > 0.0, np.inf, found.speed)
+    joint = np.where(joints.length > 0.0, np.inf, joints.speed)
     corner = np.full(len(move) - 1, np.inf)
     ends = np.flatnonzero(np.diff(move))
     corner[ends] = np.where(is_blend[ends], np.inf, joint)
@@ -232,7 +232,7 @@ def _motion(
         segments=segments,
         moves=moves,
         last=last,
-        joints=found,
+        joints=joints,
         move=move,
         is_blend=is_blend,
         profile=profiled(

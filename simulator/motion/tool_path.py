@@ -174,7 +174,7 @@ class _MoveRow(NamedTuple):
 
     start: Point
     move: Move
-    found: ModalState | None
+    state: ModalState | None
     """Modal state of a feed move; None for a rapid."""
 
 
@@ -293,11 +293,11 @@ class _Collector:
         self.at = path.start
         self.feed: Feed | None = None
         """Feed of the last cut."""
-        self.found: ModalState | None = None
+        self.state: ModalState | None = None
         """Modal state for this feed."""
         self.speed: float | None = None
         """Commanded spindle speed, rev/s, signed; None: not set, or constant surface speed."""
-        self.asked: Spin | None = None
+        self.spin: Spin | None = None
         """Spindle command of the current technology."""
         self.rows: list[_MoveRow] = []
         self.moves: list[Move] = []
@@ -325,8 +325,8 @@ class _Collector:
                 case SpindleSpeedChange(technology=technology):
                     self._take(self.look_up(Feed(technology=technology)))
                 case SpindleCommand():
-                    self._turn(self.asked, step)
-        if self.is_spindle_awaited and all(row.found is None for row in self.rows):
+                    self._turn(self.spin, step)
+        if self.is_spindle_awaited and all(row.state is None for row in self.rows):
             # Only a feed waits for the spindle, and no feed follows.
             self.legs[-1] = replace(self.legs[-1], wait=0.0)
         self._close(0.0)
@@ -345,11 +345,11 @@ class _Collector:
         found = None
         if move.feed is not None:
             # Most moves have the same feed object as the previous one.
-            if move.feed is not self.feed or self.found is None:
-                self.feed, self.found = move.feed, self.look_up(move.feed)
-            found = self.found
+            if move.feed is not self.feed or self.state is None:
+                self.feed, self.state = move.feed, self.look_up(move.feed)
+            found = self.state
             self._take(found)
-        if isinstance(self.asked, SurfaceSpeed):
+        if isinstance(self.spin, SurfaceSpeed):
             self._follow(move)
         self.rows.append(_MoveRow(self.at, move, found))
         self.at = move.end
@@ -370,31 +370,31 @@ class _Collector:
             self._close(0.0, is_awaited=True)
         self.followed = there
 
-    def _take(self, found: ModalState) -> None:
+    def _take(self, state: ModalState) -> None:
         """Apply the spindle command of a technology."""
-        if found.spindle is not None and found.spindle != self.asked:
-            self._turn(found.spindle, SpindleCommand.START)
+        if state.spindle is not None and state.spindle != self.spin:
+            self._turn(state.spindle, SpindleCommand.START)
 
-    def _turn(self, asked: Spin | None, command: SpindleCommand) -> None:
+    def _turn(self, spin: Spin | None, command: SpindleCommand) -> None:
         """Change the spindle speed and close the leg if the next feed must wait for it."""
-        wanted = None if isinstance(asked, SurfaceSpeed) else self._signed(asked, command)
+        wanted = None if isinstance(spin, SurfaceSpeed) else self._signed(spin, command)
         wait = 0.0
         if wanted is not None and self.speed is not None:
             wait = abs(wanted - self.speed) / self.ramp
-        if wait > 0.0 or any(row.found is not None for row in self.rows):
+        if wait > 0.0 or any(row.state is not None for row in self.rows):
             self._close(wait)
             self.is_spindle_awaited = True
-        self.asked, self.speed = asked, wanted
+        self.spin, self.speed = spin, wanted
         self.followed = self.target = None
 
-    def _signed(self, asked: Spin | None, command: SpindleCommand) -> float:
+    def _signed(self, spin: Spin | None, command: SpindleCommand) -> float:
         """Signed spindle speed after a command, rev/s, positive clockwise."""
-        if not isinstance(asked, SpindleOn):
+        if not isinstance(spin, SpindleOn):
             return 0.0
         sign = {SpindleCommand.START: 1.0, SpindleCommand.REVERSE: -1.0}.get(command, 0.0)
-        if asked.sense is not SpindleDirection.CLOCKWISE:
+        if spin.sense is not SpindleDirection.CLOCKWISE:
             sign = -sign
-        return sign * min(asked.speed, self.fastest)
+        return sign * min(spin.speed, self.fastest)
 
     def _seconds(self, dwell: Dwell) -> float:
         if dwell.seconds is not None:
@@ -406,23 +406,23 @@ class _Collector:
 
     def _speeds(self, x: Floats) -> Floats:
         """Spindle speed where the radius is |x|, (N,), rev/s."""
-        if not isinstance(self.asked, SurfaceSpeed):
+        if not isinstance(self.spin, SurfaceSpeed):
             return np.full(len(x), abs(self.speed or 0.0))
-        most = min(self.fastest, self.asked.limit or inf)
+        most = min(self.fastest, self.spin.limit or inf)
         around = 2.0 * pi * np.abs(x)
         at_most = np.full(len(x), most)
         speeds: Floats = np.minimum(
-            np.divide(self.asked.speed, around, out=at_most, where=around > 0.0), most
+            np.divide(self.spin.speed, around, out=at_most, where=around > 0.0), most
         )
         return speeds
 
     def _close(self, wait: float, *, is_awaited: bool = False) -> None:
         """Close a leg with the moves so far, and state whether a feed waits for its ramp."""
         segments, spindle = self._timed()
-        if self.is_clockwise is None and any(row.found is not None for row in self.rows):
+        if self.is_clockwise is None and any(row.state is not None for row in self.rows):
             self.is_clockwise = self._turns_clockwise()
         first = self.legs[-1].last if self.legs else 0
-        ramp, is_fed = None, bool(self.rows) and self.rows[-1].found is not None
+        ramp, is_fed = None, bool(self.rows) and self.rows[-1].state is not None
         if self.target is not None:
             ramp = SpindleRamp(speed=self.target, acceleration=self.ramp, is_awaited=is_awaited)
         ends_at = float(spindle[-1]) if is_fed else None
@@ -434,48 +434,48 @@ class _Collector:
         self.rows = []
 
     def _turns_clockwise(self) -> bool:
-        if isinstance(self.asked, SurfaceSpeed):
-            return self.asked.sense is SpindleDirection.CLOCKWISE
+        if isinstance(self.spin, SurfaceSpeed):
+            return self.spin.sense is SpindleDirection.CLOCKWISE
         return (self.speed or 0.0) >= 0.0
 
     def _timed(self) -> tuple[Segments, Floats]:
         """Segments of the collected rows with their feeds, and spindle speeds."""
         segments = self.shape.segments(self.rows, len(self.moves))
-        if isinstance(self.asked, SurfaceSpeed):
-            least = self.asked.speed / (2.0 * pi * min(self.fastest, self.asked.limit or inf))
+        if isinstance(self.spin, SurfaceSpeed):
+            least = self.spin.speed / (2.0 * pi * min(self.fastest, self.spin.limit or inf))
             segments = in_pieces(segments, least)
         spindle = self._speeds(np.zeros(len(segments)))
-        if isinstance(self.asked, SurfaceSpeed):
+        if isinstance(self.spin, SurfaceSpeed):
             rows = np.arange(len(segments))
             spindle = self._speeds(segments.position(rows, 0.5 * segments.length)[:, 0])
-            found = [self.rows[of].found for of in segments.block - len(self.moves)]
+            found = [self.rows[of].state for of in segments.block - len(self.moves)]
             spindle = behind(spindle, segments.length, _advance(found), ramp=self.ramp)
         speed = segments.speed.copy()
         for row, of in enumerate(segments.block - len(self.moves)):
-            found = self.rows[of].found
+            found = self.rows[of].state
             if found is not None:
                 speed[row] = self._feed(self.rows[of], found, float(spindle[row]))
         return replace(segments, speed=speed), spindle
 
-    def _feed(self, row: _MoveRow, found: ModalState, spindle: float) -> float:
+    def _feed(self, row: _MoveRow, state: ModalState, spindle: float) -> float:
         """Speed along the path, mm/s."""
-        if found.lead is not None:
-            speed = synchronised(row.start, row.move.end, found.lead) * spindle
-        elif found.rate is None:
+        if state.lead is not None:
+            speed = synchronised(row.start, row.move.end, state.lead) * spindle
+        elif state.rate is None:
             speed = 0.0
-        elif found.rate.mode is RateMode.PER_REVOLUTION:
-            speed = found.rate.value * spindle
+        elif state.rate.mode is RateMode.PER_REVOLUTION:
+            speed = state.rate.value * spindle
         else:
-            speed = found.rate.value
+            speed = state.rate.value
         if not 0.0 < speed < inf:
-            why = found.note or f"{speed:g} mm/s"
+            why = state.note or f"{speed:g} mm/s"
             raise PostError(f"'{self.path.id}': a cut without feed: {why}")
         return speed
 
 
-def _advance(found: Sequence[ModalState | None]) -> Floats:
+def _advance(states: Sequence[ModalState | None]) -> Floats:
     """Feeds per revolution, (N,), mm; 0 for rapids and for feeds per time."""
-    rates = [None if each is None else each.rate for each in found]
+    rates = [None if each is None else each.rate for each in states]
     return np.array([
         rate.value if rate is not None and rate.mode is RateMode.PER_REVOLUTION else 0.0
         for rate in rates
@@ -492,7 +492,7 @@ def _segments(rows: Sequence[_MoveRow], *, first: int) -> Segments:
         start=np.array([row.start for row in rows], dtype=np.float64).reshape(-1, 3),
         end=np.array([row.move.end for row in rows], dtype=np.float64).reshape(-1, 3),
         speed=np.full(len(rows), inf),
-        is_rapid=np.array([row.found is None for row in rows], dtype=np.bool_),
+        is_rapid=np.array([row.state is None for row in rows], dtype=np.bool_),
         centre=np.array(centre, dtype=np.float64).reshape(-1, 3),
         turn=np.array(turn, dtype=np.float64),
         normal=np.array(normal, dtype=np.int64),

@@ -154,7 +154,7 @@ class Acquisition:
 
 @entry
 def _show(
-    asked: Floats,
+    state: Floats,
     lagged: tuple[Floats, Floats],
     drawn: Floats,
     errors: tuple[float, float],
@@ -162,14 +162,14 @@ def _show(
 ) -> None:
     """Kernel of :meth:`Acquisition.shown`: a dozen calls of numpy for a few samples."""
     (late, kept), (step, missing) = lagged, errors
-    held, shift, begin = asked[1], asked[2], int(asked[0])
+    held, shift, begin = state[1], state[2], int(state[0])
     for each in range(values.shape[0]):
         late[each] += kept[each] * held
-        asked[1] = late[each]
+        state[1] = late[each]
         value = late[each] * drawn[0, begin + each] + (drawn[1, begin + each] + shift)
         if step > 0.0:
             value = np.rint(value / step) * step
-        is_lost = asked[3] > 0.0 or drawn[2, begin + each] < missing
+        is_lost = state[3] > 0.0 or drawn[2, begin + each] < missing
         values[each] = nan if is_lost else value
 
 

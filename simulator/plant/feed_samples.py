@@ -124,20 +124,20 @@ class FeedSamples:
 
 @entry
 def _go(
-    asked: Floats,
+    motion: Floats,
     lagged: tuple[Floats, Floats],
     until: Floats,
-    found: tuple[Floats, Floats, Ints],
+    samples: tuple[Floats, Floats, Ints],
 ) -> None:
     """Kernel of :meth:`FeedSamples.go`."""
-    (steps, gone), (ways, overrides, rows) = lagged, found
-    last, row, before = until.shape[0] - 1, max(int(asked[4]) - 1, 0), 0.0
+    (steps, gone), (ways, overrides, rows) = lagged, samples
+    last, row, before = until.shape[0] - 1, max(int(motion[4]) - 1, 0), 0.0
     for each in range(ways.shape[0]):
-        ways[each] = asked[1] * steps[each] + asked[2] * gone[each]
-        overrides[each] = (ways[each] - before) * asked[3]
+        ways[each] = motion[1] * steps[each] + motion[2] * gone[each]
+        overrides[each] = (ways[each] - before) * motion[3]
         before = ways[each]
         # The axes only go on: the search goes on from the cell of the sample before.
-        while row < last and until[row] < asked[0] + ways[each]:
+        while row < last and until[row] < motion[0] + ways[each]:
             row += 1
         rows[each] = row
 

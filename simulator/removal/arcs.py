@@ -291,14 +291,14 @@ def free_by_outline(room: Intervals, count: int, circle: ToolCircle, grid: Heigh
             onward = circle.radius * sin(middle)
             x = circle.x + onward * circle.ahead_x - across * circle.ahead_y
             y = circle.y + onward * circle.ahead_y + across * circle.ahead_x
-            if is_beside(grid, x, y):
+            if is_outside(grid, x, y):
                 count = add_free(room, count, low, high)
         low = high
     return count
 
 
 @kernel
-def is_beside(grid: HeightGrid, x: float, y: float) -> bool:
+def is_outside(grid: HeightGrid, x: float, y: float) -> bool:
     """True if a point lies outside the outline of the raw stock."""
     across = (x - grid.x) / (grid.heights.shape[0] * grid.dx)
     along = (y - grid.y) / (grid.heights.shape[1] * grid.dy)

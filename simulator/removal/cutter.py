@@ -37,7 +37,7 @@ from stepnc_model.entities.turning_tools import (
 )
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
-from stepnc_model.tool import Tool, given_for, tool_of
+from stepnc_model.tool import Tool, tool_of, user_tool_for
 from stepnc_model.units import rad_from_deg
 
 
@@ -291,7 +291,7 @@ def shape_of(program: Program, ref: Ref[Entity]) -> Cutter | Insert | None:
     tool, entity = tool_of(program, ref), program.get(ref)
     if tool_kind(tool) in THREADS or isinstance(entity, KnurlingTool):
         return None
-    given = given_for(program, ref)
+    given = user_tool_for(program, ref)
     if given is not None and given.insert is not None:
         return Insert(
             nose_radius=given.corner_radius,

@@ -194,29 +194,29 @@ class MillingStock:
         self._note(segments, found, first)
         return parts
 
-    def _note(self, segments: Segments, found: Floats, first: int) -> None:
+    def _note(self, segments: Segments, findings: Floats, first: int) -> None:
         """Record the collisions found in a chunk of rows."""
-        rapids = np.flatnonzero((found[:, VOLUME] > 0.0) & segments.is_rapid)
+        rapids = np.flatnonzero((findings[:, VOLUME] > 0.0) & segments.is_rapid)
         for row in rapids[: MOST - len(self.collisions)]:
-            spot = tuple(found[row, [SPOT_X, SPOT_Y, SPOT_Z]].tolist())
+            spot = tuple(findings[row, [SPOT_X, SPOT_Y, SPOT_Z]].tolist())
             self.collisions.append(
                 Collision(
                     segment=first + int(row),
                     block=int(segments.block[row]),
-                    depth=float(found[row, DEPTH]),
+                    depth=float(findings[row, DEPTH]),
                     position=spot,
-                    volume=float(found[row, VOLUME]),
+                    volume=float(findings[row, VOLUME]),
                 )
             )
         for column, kept in ((HOLDER, self.holder_collisions), (SHANK, self.shank_collisions)):
-            for row in np.flatnonzero(found[:, column] > 0.0)[: MOST - len(kept)]:
+            for row in np.flatnonzero(findings[:, column] > 0.0)[: MOST - len(kept)]:
                 where = [HOLDER_X, HOLDER_Y] if column == HOLDER else [SPOT_X, SPOT_Y]
-                x, y = found[row, where].tolist()
+                x, y = findings[row, where].tolist()
                 kept.append(
                     Collision(
                         segment=first + int(row),
                         block=int(segments.block[row]),
-                        depth=float(found[row, column]),
+                        depth=float(findings[row, column]),
                         position=(x, y, float(segments.end[row, 2])),
                     )
                 )

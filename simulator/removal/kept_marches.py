@@ -39,7 +39,7 @@ class KeptMarch:
 
     lines: Floats
     """Lines of its stations, with rows counted from the first of the group."""
-    found: Floats
+    findings: Floats
     """Findings of its rows."""
     cells: NDArray[np.uint8]
     """Bits of the cells of its box, row by row: 1 where it lowered the stock."""
@@ -55,7 +55,7 @@ class KeptMarch:
     @property
     def size(self) -> int:
         """Memory, bytes."""
-        arrays = self.lines, self.found, self.cells, self.heights, self.owner, self.records
+        arrays = self.lines, self.findings, self.cells, self.heights, self.owner, self.records
         return sum(each.nbytes for each in arrays)
 
 
@@ -69,7 +69,7 @@ class KeptMarches:
         self._kept: dict[bytes, KeptMarch] = {}
 
     def marched(
-        self, task: RemovalTask, segments: Segments, rows: Floats, out: Floats, found: Floats
+        self, task: RemovalTask, segments: Segments, rows: Floats, out: Floats, findings: Floats
     ) -> list[Floats]:
         """Cut row after row like :func:`simulator.removal.march.marched`.
 
@@ -81,7 +81,7 @@ class KeptMarches:
             Their rows.
         out : (L, COLUMNS) array
             Room for lines.
-        found : (N, FINDINGS) array
+        findings : (N, FINDINGS) array
             Findings, accumulated in place.
 
         Returns
@@ -92,32 +92,32 @@ class KeptMarches:
         parts: list[Floats] = []
         for begin, end in pairwise(_group_ends(rows)):
             group = segments[begin:end]
-            lines = self._group(task, group, rows[begin:end], out, found[begin:end]).copy()
+            lines = self._group(task, group, rows[begin:end], out, findings[begin:end]).copy()
             lines[:, 0] += begin
             parts.append(lines)
         return parts
 
     def _group(
-        self, task: RemovalTask, segments: Segments, rows: Floats, out: Floats, found: Floats
+        self, task: RemovalTask, segments: Segments, rows: Floats, out: Floats, findings: Floats
     ) -> Floats:
         """Cut a group of rows, or read again what it meets."""
         reach = _reach(task)
         box = box_of(task.grid, segments, reach)
         # What is cut far apart takes less time to march than its box takes to read.
         if _cells(box) > int(row_boxes(task.grid, segments, reach).sum()):
-            return marched(task, rows, segments.length, out, found)
+            return marched(task, rows, segments.length, out, findings)
         before = _Before(task, rows, box)
         kept = self._kept.get(before.digest)
         if kept is None:
-            kept = before.after(marched(task, rows, segments.length, out, found), found)
+            kept = before.after(marched(task, rows, segments.length, out, findings), findings)
             if before.remembers(len(kept.records)) and kept.size <= self._most:
                 self._most -= kept.size
                 self._kept[before.digest] = kept
         elif before.remembers(len(kept.records)):
             self.again += len(rows)
-            before.put(kept, found)
+            before.put(kept, findings)
         else:
-            return marched(task, rows, segments.length, out, found)
+            return marched(task, rows, segments.length, out, findings)
         return kept.lines
 
 
@@ -155,14 +155,14 @@ class _Before:
         """True if the outlines that a group may use are remembered while it makes moves."""
         return self.oldest + moves <= FORGETTING
 
-    def after(self, lines: Floats, found: Floats) -> KeptMarch:
+    def after(self, lines: Floats, findings: Floats) -> KeptMarch:
         """Engagements and changed cells of the march."""
         heights, owner = self.grid.heights[self.box], self.grid.owner[self.box]
         cells = heights != self.heights
         made = int(self.past.next[0]) - self.next
         return KeptMarch(
             lines=lines,
-            found=found.copy(),
+            findings=findings.copy(),
             cells=np.packbits(cells),
             heights=heights[cells],
             owner=(owner[cells] - np.int32(self.next)).astype(np.int16),
@@ -170,7 +170,7 @@ class _Before:
             last=self.past.last.copy(),
         )
 
-    def put(self, kept: KeptMarch, found: Floats) -> None:
+    def put(self, kept: KeptMarch, findings: Floats) -> None:
         """Leave the stock as the march left it, with its findings."""
         bits = np.unpackbits(kept.cells, count=self.heights.size)
         cells = bits.view(np.bool_).reshape(self.heights.shape)
@@ -180,7 +180,7 @@ class _Before:
         self.past.records[(self.next + np.arange(made)) % FORGETTING] = kept.records
         self.past.next[0] += made
         self.past.last[:] = kept.last
-        found[:] = kept.found
+        findings[:] = kept.findings
 
 
 def _group_ends(rows: Floats) -> list[int]:

@@ -88,7 +88,12 @@ Span = tuple[float, float]
 
 @entry
 def march(
-    task: RemovalTask, rows: Floats, lengths: Floats, out: Floats, found: Floats, reached: Ints
+    task: RemovalTask,
+    rows: Floats,
+    lengths: Floats,
+    out: Floats,
+    findings: Floats,
+    reached: Ints,
 ) -> None:
     """Cut row after row until there is no room for more stations.
 
@@ -100,20 +105,20 @@ def march(
     lengths : (N,) array, mm
     out : (L, COLUMNS) array
         Lines written, from the first one on; L at least ``ROOM_FOR_ROW``.
-    found : (N, FINDINGS) array
+    findings : (N, FINDINGS) array
         Findings, accumulated in place.
     reached : (2,) array of int
         Index of the first row; updated to the next row and the number of stations written.
     """
     count, row = int(np.int64(0)), reached[0]
     while row < len(rows) and count + ROOM_FOR_ROW <= len(out):
-        count = _row(task, (rows[row], lengths[row], row), out, count, found[row])
+        count = _row(task, (rows[row], lengths[row], row), out, count, findings[row])
         row += 1
     reached[0], reached[1] = row, count
 
 
 def marched(
-    task: RemovalTask, rows: Floats, lengths: Floats, out: Floats, found: Floats
+    task: RemovalTask, rows: Floats, lengths: Floats, out: Floats, findings: Floats
 ) -> Floats:
     """Cut row after row to the last one, and return the lines of all stations.
 
@@ -122,23 +127,23 @@ def marched(
     parts: list[Floats] = []
     reached = np.zeros(2, dtype=np.int64)
     while reached[0] < len(rows):
-        march(task, rows, lengths, out, found, reached)
+        march(task, rows, lengths, out, findings, reached)
         parts.append(out[: reached[1]].copy())
     return np.concatenate(parts) if parts else np.empty((0, COLUMNS))
 
 
 @kernel
-def _row(task: RemovalTask, segment: Segment, out: Floats, count: int, found: Floats) -> int:
+def _row(task: RemovalTask, segment: Segment, out: Floats, count: int, findings: Floats) -> int:
     """Cut one row and return the number of stations so far."""
     row, length, index = segment
     if length <= 0.0:
         return _air(out, count, index, 0.0, 0.0)
     if row[11] == 0.0 and hypot(row[3] - row[0], row[4] - row[1]) < STEEP * length:
-        return _sink(task, segment, out, count, found)
+        return _sink(task, segment, out, count, findings)
     parts = max(1, ceil(abs(row[11]) / (0.5 * pi) - 1e-9))
     for part in range(parts):
         span = (part / parts, (part + 1) / parts)
-        count = _mill(task, segment, span, out, count, found)
+        count = _mill(task, segment, span, out, count, findings)
     return count
 
 
@@ -158,7 +163,9 @@ def _air(out: Floats, count: int, index: int, station: float, length: float) -> 
 
 
 @kernel
-def _sink(task: RemovalTask, segment: Segment, out: Floats, count: int, found: Floats) -> int:
+def _sink(
+    task: RemovalTask, segment: Segment, out: Floats, count: int, findings: Floats
+) -> int:
     """Cut a plunge by stretches, or what a retracting tool meets; return the station count."""
     row, length, index = segment
     grid = task.grid
@@ -178,7 +185,7 @@ def _sink(task: RemovalTask, segment: Segment, out: Floats, count: int, found: F
         bored = max(bored, hole(grid, task.past, middle))
         if abs(inner - bored) <= LIP_ERROR * profile.radius + max(grid.dx, grid.dy):
             inner = bored
-        volume, depth = _cut(task, row, span, found)
+        volume, depth = _cut(task, row, span, findings)
         long = length / stretches
         if volume <= 0.0:
             count = _air(out, count, index, span[1] * length, long)
@@ -217,7 +224,7 @@ def _sink(task: RemovalTask, segment: Segment, out: Floats, count: int, found: F
 
 @kernel
 def _mill(
-    task: RemovalTask, segment: Segment, span: Span, out: Floats, count: int, found: Floats
+    task: RemovalTask, segment: Segment, span: Span, out: Floats, count: int, findings: Floats
 ) -> int:
     """Sample the engagement along a part, cut it, and share its volume among stretches."""
     row, length, index = segment
@@ -226,7 +233,7 @@ def _mill(
         _leave(task.past)
         return _air(out, count, index, span[1] * length, (span[1] - span[0]) * length)
     count = _stations(task, segment, span, out, count)
-    volume, _ = _cut(task, row, span, found)
+    volume, _ = _cut(task, row, span, findings)
     return _shared(task, out, begin, count, volume)
 
 
@@ -315,7 +322,7 @@ def _differs(task: RemovalTask, left: Floats, right: Floats, long: float) -> boo
 
 
 @kernel
-def _cut(task: RemovalTask, row: Floats, span: Span, found: Floats) -> tuple[float, float]:
+def _cut(task: RemovalTask, row: Floats, span: Span, findings: Floats) -> tuple[float, float]:
     """Cut a part of a row and record the findings; return volume and greatest depth."""
     grid, past = task.grid, task.past
     start, end = place(row, span[0]), place(row, span[1])
@@ -330,7 +337,7 @@ def _cut(task: RemovalTask, row: Floats, span: Span, found: Floats) -> tuple[flo
             int(np.int64(MEASURE)),
             start[0] > inf,
         )
-        found[SHANK] = max(found[SHANK], lost[1])
+        findings[SHANK] = max(findings[SHANK], lost[1])
     last = past.last
     goes_on = last[0] == start[0] and last[1] == start[1] and last[2] == start[2]
     volume, depth, x, y = carve_part(grid, task.tool.profile, row, span, past.next[0], goes_on)
@@ -344,12 +351,12 @@ def _cut(task: RemovalTask, row: Floats, span: Span, found: Floats) -> tuple[flo
         record[11] = (span[1] - span[0]) * row[11]
         copy(task.how.shape, record, 13)
         past.next[0] += 1
-        found[VOLUME] += volume
-        if depth > found[DEPTH]:
-            found[DEPTH], found[SPOT_X], found[SPOT_Y] = depth, x, y
+        findings[VOLUME] += volume
+        if depth > findings[DEPTH]:
+            findings[DEPTH], findings[SPOT_X], findings[SPOT_Y] = depth, x, y
             column = min(int((x - grid.x) / grid.dx), grid.heights.shape[0] - 1)
             line = min(int((y - grid.y) / grid.dy), grid.heights.shape[1] - 1)
-            found[SPOT_Z] = grid.heights[column, line]
+            findings[SPOT_Z] = grid.heights[column, line]
     if low + task.how.overhang < grid.top:
         lost = carve_part(
             grid,
@@ -359,8 +366,8 @@ def _cut(task: RemovalTask, row: Floats, span: Span, found: Floats) -> tuple[flo
             int(np.int64(MEASURE)),
             start[0] > inf,
         )
-        if lost[1] > found[HOLDER]:
-            found[HOLDER], found[HOLDER_X], found[HOLDER_Y] = lost[1], lost[2], lost[3]
+        if lost[1] > findings[HOLDER]:
+            findings[HOLDER], findings[HOLDER_X], findings[HOLDER_Y] = lost[1], lost[2], lost[3]
     return volume, depth
 
 

@@ -20,8 +20,8 @@ from simulator.tool_files.placed_row import (
     PlacedRow,
     ToolRows,
     assumed,
-    edge_given,
-    given_length,
+    edge_values,
+    file_length,
     left_out,
     placed_row,
 )
@@ -126,7 +126,7 @@ def _bit(content: Mapping[str, Any], path: Path, *, number: FileValue) -> ToolRo
         "kind": FileValue(value=kind.value, place="shape"),
     }
     given |= _dimensions(parameters, shape)
-    edge = edge_given(parameters.get("Material", ""), "parameter.Material")
+    edge = edge_values(parameters.get("Material", ""), "parameter.Material")
     notes = [] if edge else ["no edge material is known: it is taken for carbide"]
     findings = tuple(assumed(f"{path.name} '{name}'", note) for note in notes)
     row = placed_row(given | edge, path)
@@ -189,11 +189,11 @@ def _length(value: object, place: str) -> FileValue:
     """Length in mm; what is none stays as it is, to be refused."""
     found = _QUANTITY.match(value) if isinstance(value, str) else None
     if found is None:
-        return given_length(value, place, FileUnit.MM)
+        return file_length(value, place, FileUnit.MM)
     unit = UNITS.get(found[2].lower())
     if unit is None:
         return FileValue(value=value, place=place)
-    return given_length(float(found[1]), place, unit)
+    return file_length(float(found[1]), place, unit)
 
 
 def _size(parameters: Mapping[str, Any], key: str) -> float:

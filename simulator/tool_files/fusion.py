@@ -21,8 +21,8 @@ from simulator.tool_files.placed_row import (
     PlacedRow,
     ToolRows,
     assumed,
-    edge_given,
-    given_length,
+    edge_values,
+    file_length,
     left_out,
     placed_row,
 )
@@ -85,7 +85,7 @@ def _tool(
     given: Values = {"kind": FileValue(value=kind.value, place=f"{place}.type")}
     if tool.get("description"):
         given["id"] = FileValue(value=tool["description"], place=f"{place}.description")
-    edge = edge_given(tool.get("BMC", ""), f"{place}.BMC")
+    edge = edge_values(tool.get("BMC", ""), f"{place}.BMC")
     if not edge:
         notes.append(f"edge material {shown(tool.get('BMC'))} is taken for carbide")
     given |= edge
@@ -119,7 +119,7 @@ def _cutter(
 
     def take(key: str, symbol: str) -> None:
         if geometry.get(symbol):
-            given[key] = given_length(geometry[symbol], f"{at}.{symbol}", unit)
+            given[key] = file_length(geometry[symbol], f"{at}.{symbol}", unit)
 
     take("diameter_mm", "DC")
     take("edge_length_mm", "LCF")
@@ -136,7 +136,7 @@ def _cutter(
     if name == "chamfer mill":
         return given | _chamfer(geometry, unit, at)
     if name == "ball end mill" and isinstance(geometry.get("DC"), int | float):
-        radius = given_length(0.5 * geometry["DC"], f"{at}.DC", unit)
+        radius = file_length(0.5 * geometry["DC"], f"{at}.DC", unit)
         return given | {"corner_radius_mm": radius}
     take("corner_radius_mm", "RE")
     if name == "tapered mill" and geometry.get("TA"):
@@ -151,7 +151,7 @@ def _chamfer(geometry: Mapping[str, Any], unit: FileUnit, at: str) -> Values:
         return {}
     if tip:
         return {
-            "diameter_mm": given_length(tip, f"{at}.tip-diameter", unit),
+            "diameter_mm": file_length(tip, f"{at}.tip-diameter", unit),
             "taper_angle_deg": FileValue(value=angle, place=f"{at}.TA"),
         }
     return {"point_angle_deg": FileValue(value=2.0 * angle, place=f"{at}.TA")}
@@ -174,8 +174,8 @@ def _holder(
     own = UNITS.get(str(holder.get("unit")), unit)
     at = f"{place}.holder.segments[0].lower-diameter"
     return {
-        "holder_diameter_mm": given_length(width, at, own),
-        "overhang_mm": given_length(geometry["LB"], f"{place}.geometry.LB", unit),
+        "holder_diameter_mm": file_length(width, at, own),
+        "overhang_mm": file_length(geometry["LB"], f"{place}.geometry.LB", unit),
     }
 
 
@@ -191,10 +191,10 @@ def _insert(
     given: Values = {}
     at = f"{place}.geometry"
     if geometry.get("RE"):
-        given["nose_radius_mm"] = given_length(geometry["RE"], f"{at}.RE", unit)
+        given["nose_radius_mm"] = file_length(geometry["RE"], f"{at}.RE", unit)
     for symbol in ("tool_grooveWidth", "tool_insertWidth"):
         if geometry.get(symbol) and str(tool.get("type")).endswith("grooving"):
-            given["width_mm"] = given_length(geometry[symbol], f"{at}.{symbol}", unit)
+            given["width_mm"] = file_length(geometry[symbol], f"{at}.{symbol}", unit)
             break
     hand = HANDS.get(str(holder.get("HAND")).upper())
     if hand is not None:

@@ -20,8 +20,8 @@ from simulator.tool_files.placed_row import (
     PlacedRow,
     ToolRows,
     assumed,
-    edge_given,
-    given_length,
+    edge_values,
+    file_length,
     left_out,
     placed_row,
 )
@@ -138,7 +138,7 @@ def _cutter(tool: "Element", kind: ToolKind, path: Path, line: int) -> tuple[Val
     given |= _body(body, str(tool.get("type", "")).lower(), kind, unit)
     given |= _holder(tool, body, unit)
     material = _attributes(tool, "material").get("name", "")
-    edge = edge_given(material, "material.name")
+    edge = edge_values(material, "material.name")
     notes = [] if edge else [f"edge material '{material}' is taken for carbide"]
     diameter, teeth = given.get("diameter_mm"), given.get("teeth")
     if diameter is not None and isinstance(diameter.value, float):
@@ -155,7 +155,7 @@ def _body(body: Mapping[str, str], name: str, kind: ToolKind, unit: FileUnit) ->
     def take(key: str, attribute: str) -> None:
         value = _number(body.get(attribute, "0"))
         if value != 0.0:
-            given[key] = given_length(value, f"body.{attribute}", unit)
+            given[key] = file_length(value, f"body.{attribute}", unit)
 
     take("diameter_mm", "diameter")
     take("edge_length_mm", "flute-length")
@@ -194,8 +194,8 @@ def _holder(tool: "Element", body: Mapping[str, str], unit: FileUnit) -> Values:
         return {}
     width = _number(str(section.get("diameter")))
     return {
-        "holder_diameter_mm": given_length(width, "holder.section.diameter", unit),
-        "overhang_mm": given_length(length, "body.body-length", unit),
+        "holder_diameter_mm": file_length(width, "holder.section.diameter", unit),
+        "overhang_mm": file_length(length, "body.body-length", unit),
     }
 
 

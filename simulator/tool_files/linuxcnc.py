@@ -26,7 +26,7 @@ from simulator.tool_files.placed_row import (
     PlacedRow,
     ToolRows,
     assumed,
-    given_length,
+    file_length,
     left_out,
     placed_row,
 )
@@ -118,10 +118,10 @@ def _words(code: str, path: Path, line: int) -> dict[str, float]:
         if letter not in words:
             message = "missing; every tool has a number T and a pocket P"
             raise LibraryError(message, path=str(path), key=letter, line=line)
-    return _given_words(words)
+    return _nonzero_words(words)
 
 
-def _given_words(words: dict[str, float]) -> dict[str, float]:
+def _nonzero_words(words: dict[str, float]) -> dict[str, float]:
     """Words without I0 J0 Q0, which editors write where nothing is given."""
     absent = {"Q"} if not words.get("Q") else set()
     if not words.get("I") and not words.get("J"):
@@ -196,7 +196,7 @@ def _cutter(
     given = {
         "number": FileValue(value=words["T"], place="T"),
         "kind": FileValue(value=kind.value, place="the remark"),
-        "diameter_mm": given_length(abs(words["D"]), "D", unit),
+        "diameter_mm": file_length(abs(words["D"]), "D", unit),
     }
     if remark:
         given["id"] = FileValue(value=remark, place="the remark")

@@ -36,7 +36,7 @@ class FileValue:
     """What the file says if its unit is another one, such as ``500 inch``."""
 
 
-def given_length(value: object, place: str, unit: FileUnit) -> FileValue:
+def file_length(value: object, place: str, unit: FileUnit) -> FileValue:
     """Length of a file in mm; what is no number stays as it is, to be refused."""
     if unit is FileUnit.MM or isinstance(value, bool) or not isinstance(value, int | float):
         return FileValue(value=value, place=place)
@@ -52,12 +52,12 @@ class PlacedRow:
     """Path to the tool in the file; empty if the line gives the place."""
     line: int = 0
     """Line of the file, counted from 1; 0 if there is none."""
-    given: Mapping[str, FileValue] = field(default_factory=dict)
+    values: Mapping[str, FileValue] = field(default_factory=dict)
     """Values by the keys of a tool row."""
 
     def error(self, message: str, path: Path, key: str) -> LibraryError:
         """Error at a key of this row, named as the file names it."""
-        given = self.given.get(key)
+        given = self.values.get(key)
         place = key if given is None else given.place
         if given is None and self.place:
             place = f"{self.place}.{key}"
@@ -73,13 +73,13 @@ class ToolRows:
 
 
 def placed_row(
-    given: Mapping[str, FileValue], path: Path, *, place: str = "", line: int = 0
+    values: Mapping[str, FileValue], path: Path, *, place: str = "", line: int = 0
 ) -> PlacedRow:
     """Check the values of a tool and make a row of them.
 
     Parameters
     ----------
-    given : mapping of str to FileValue
+    values : mapping of str to FileValue
         Values by the keys of a tool row.
     path : Path
         The file, for messages.
@@ -92,11 +92,11 @@ def placed_row(
     LibraryError
         With the place in the file, the value, the bound and the unit.
     """
-    content = {key: each.value for key, each in given.items()}
+    content = {key: each.value for key, each in values.items()}
     try:
         row = converted(content, ToolRow, path, line=line)
     except LibraryError as error:
-        at = given.get(error.key)
+        at = values.get(error.key)
         shown = error.key if at is None else at.place
         if at is None and place:
             shown = f"{place}: {error.key}" if error.key else place
@@ -104,10 +104,10 @@ def placed_row(
         if at is not None and at.written:
             message = f"{message} (the file says {at.written})"
         raise LibraryError(message, path=str(path), key=shown, line=line) from error
-    return PlacedRow(row=row, place=place, line=line, given=given)
+    return PlacedRow(row=row, place=place, line=line, values=values)
 
 
-def edge_given(name: object, place: str) -> dict[str, FileValue]:
+def edge_values(name: object, place: str) -> dict[str, FileValue]:
     """Cutting material of a name; nothing if the name is not one of an edge material."""
     material = EDGE_WORDS.get(str(name).strip().lower())
     if material is None:

@@ -198,16 +198,16 @@ def _diameter(text: str, unit: float) -> tuple[float | None, int]:
     return None, len(DIAMETERS)
 
 
-def _length(found: re.Match[str], unit: float) -> float:
+def _length(match: re.Match[str], unit: float) -> float:
     """Length of a match, mm; 0 for a fraction without a denominator."""
-    if found["top"]:
-        bottom = int(found["bottom"])
+    if match["top"]:
+        bottom = int(match["bottom"])
         return (
-            mm_from_inches(int(found["whole"] or 0) + int(found["top"]) / bottom)
+            mm_from_inches(int(match["whole"] or 0) + int(match["top"]) / bottom)
             if bottom
             else 0.0
         )
-    size, named = float(found["size"]), (found["unit"] or "").lower()
+    size, named = float(match["size"]), (match["unit"] or "").lower()
     if not named:
         return unit * size
     return size if named == "mm" else mm_from_inches(size)

@@ -30,7 +30,7 @@ from simulator.verification.path import SAGITTA, ProgrammedPath
 from simulator.verification.surface import EXACT, ProgrammedPart
 from simulator.verification.sweep import FAR
 
-BESIDE_WALLS = 0.5
+WALL_STRIP = 0.5
 """Width of the strip along walls where floors are not compared, mm: there a height says
 nothing about where the wall is."""
 
@@ -245,7 +245,7 @@ def floor_cells(
     logged : LoggedPart
     """
     distance = ndimage.distance_transform_edt(~is_wall, sampling=(grid.dx, grid.dy))
-    column, row = np.nonzero(is_compared & (distance > BESIDE_WALLS))
+    column, row = np.nonzero(is_compared & (distance > WALL_STRIP))
     lean = _lean(grid.heights, grid.dx, grid.dy)[column, row]
     deviation, is_lateral = _floor_deviation(grid, logged)
     width = max(grid.dx, grid.dy) + 0.5 * logged.facts.step

@@ -272,7 +272,7 @@ class LoggedBar:
         if cut.any():
             nose = shape.nose_radius if isinstance(shape, Insert) else 0.0
             square = _squares(part.samples.position, PIECE + nose)
-            step, bend = (_greatest_beside(each, square) for each in (part.step, part.bend))
+            step, bend = (_greatest_nearby(each, square) for each in (part.step, part.bend))
             part = replace(part, step=step, bend=bend)
             self._nearest.meet(cut, part, block[nearest_points(points, self.bar, cut, shape)])
             for faces, radius in (
@@ -316,11 +316,11 @@ def _boxes_around(position: Floats, way: Floats) -> Segments:
     return corners[np.arange(len(corners)) % BOX != BOX - 1]
 
 
-def _box_around(start: Floats, end: Floats, beyond: float, beside: float) -> list[Floats]:
+def _box_around(start: Floats, end: Floats, beyond: float, half_width: float) -> list[Floats]:
     """Corners of a box around a line, (3,) each, that lie beyond its ends and beside it, mm."""
     length = float(np.linalg.norm(end - start))
     one = (end - start) / length if length > 0.0 else np.array([1.0, 0.0, 0.0])
-    along, across = beyond * one, beside * np.array([-one[2], 0.0, one[0]])
+    along, across = beyond * one, half_width * np.array([-one[2], 0.0, one[0]])
     first = start - along + across
     return [first, end + along + across, end + along - across, start - along - across, first]
 
@@ -332,7 +332,7 @@ def _squares(position: Floats, reach: float) -> Ints:
     return np.asarray(np.unique(square, return_inverse=True)[1], dtype=np.int64)
 
 
-def _greatest_beside(values: Floats, square: Ints) -> Floats:
+def _greatest_nearby(values: Floats, square: Ints) -> Floats:
     """Greatest value in the stretch of each sample and beside it: an insert cuts there too."""
     greatest = np.zeros(int(square.max()) + 3)
     np.maximum.at(greatest, square + 1, values)

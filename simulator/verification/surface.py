@@ -171,9 +171,9 @@ def _neighbours(axis: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
     return ((first, whole), (last, whole)) if axis == 0 else ((whole, first), (whole, last))
 
 
-def _on_boundary(path: ProgrammedPath, found: WallCells, left: PartSweep) -> WallPoints:
+def _on_boundary(path: ProgrammedPath, cells: WallCells, left: PartSweep) -> WallPoints:
     """Move points to the exact boundary of the programmed sweep; drop those that miss it."""
-    targets, order = targets_at(found.points)
+    targets, order = targets_at(cells.points)
     _approached(path, targets, left)
     rows = np.concatenate([rows_between(points) for points in path.chords])
     is_met = targets.row >= 0
@@ -186,7 +186,7 @@ def _on_boundary(path: ProgrammedPath, found: WallCells, left: PartSweep) -> Wal
     points[:, :2] -= normal * away[:, None]
     moved, again = targets_at(points)
     _approached(path, moved, left)
-    axis, area = found.axis[order][is_met][again], found.area[order][is_met][again]
+    axis, area = cells.axis[order][is_met][again], cells.area[order][is_met][again]
     normal = normal[again]
     is_exact = (np.abs(moved.away) <= EXACT) & (reach[again] > 0.0)
     kept = np.flatnonzero(is_exact)

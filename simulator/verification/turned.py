@@ -294,20 +294,20 @@ def _side(part: TurnedPart, logged: LoggedBar, *, is_bore: bool) -> SurfacePlace
     )
 
 
-def _stations(part: TurnedPart, found: ProfileComparison, chord: Ints) -> Floats:
+def _stations(part: TurnedPart, comparison: ProfileComparison, chord: Ints) -> Floats:
     """Way along the path to places on one profile, (P,), mm.
 
     A face lies in one cell but along many chords, of those of the run that made it.
     """
-    path, station = part.path, part.station[found.points.cell].copy()
+    path, station = part.path, part.station[comparison.points.cell].copy()
     first = 0
     for points in path.chords:
         last = first + len(points) - 1
-        own = np.flatnonzero(found.points.is_face & (chord >= first) & (chord < last))
+        own = np.flatnonzero(comparison.points.is_face & (chord >= first) & (chord < last))
         if len(own):
             starts, pieces, rows, along = pieces_of(points, PIECE)
             middle = starts + 0.5 * pieces
-            near = cKDTree(middle[:, [0, 2]]).query(found.position[own][:, [0, 2]])[1]
+            near = cKDTree(middle[:, [0, 2]]).query(comparison.position[own][:, [0, 2]])[1]
             station[own] = path.chord_station[first + rows[near]] + along[near]
         first = last
     return station

@@ -81,11 +81,11 @@ def _next_string(data: bytes, position: int) -> int:
     return position if position < len(data) else -1
 
 
-def _mask(found: bytearray, data: bytes, start: int, end: int) -> None:
+def _mask(flags: bytearray, data: bytes, start: int, end: int) -> None:
     """Mask the apostrophes that directives between two offsets take."""
     for directive in _DIRECTIVE.finditer(data, start, end):
         if directive[0] == _TAKEN:
-            found[directive.end() - 1] |= MASK
+            flags[directive.end() - 1] |= MASK
 
 
 _ARITY = {"FILE_DESCRIPTION": 2, "FILE_NAME": 7, "FILE_SCHEMA": 1}
@@ -434,7 +434,7 @@ class Part21File:
             rule=_RULE,
         )
 
-    def _within(self, found: FindingList) -> "Iterator[tuple[SyntaxSlip, int | None]]":
+    def _within(self, findings: FindingList) -> "Iterator[tuple[SyntaxSlip, int | None]]":
         """Deviations within instances; an error that stops the parsing comes last."""
         for id in self._untidy:
             if not self.is_examined(id):
@@ -442,7 +442,7 @@ class Part21File:
             record, origin = self._read(id), self._body(id)
             for slip in (*record.slips, *filter(None, (record.error,))):
                 yield replace(slip, offset=origin + slip.offset), id
-            found.count(Severity.WARNING, record.unlisted)
+            findings.count(Severity.WARNING, record.unlisted)
 
     def _finding(self, slip: SyntaxSlip, label: str = "") -> Finding:
         """Convert a syntax deviation to a finding."""

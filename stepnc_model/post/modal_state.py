@@ -102,22 +102,22 @@ def conditions(
     )
 
 
-def _lathe_spindle(found: Programmed, feed: Feed) -> tuple[SpindleOn | SurfaceSpeed, float]:
+def _lathe_spindle(state: Programmed, feed: Feed) -> tuple[SpindleOn | SurfaceSpeed, float]:
     """Spindle of a lathe, and its speed if constant, else 0."""
     sense = (
         SpindleDirection.CLOCKWISE
-        if found.speed.scale > 0.0
+        if state.speed.scale > 0.0
         else SpindleDirection.COUNTERCLOCKWISE
     )
-    value = found.speed.value * feed.speed_ratio
-    if found.speed.quantity is ProgrammedQuantity.SPINDLE_SPEED:
+    value = state.speed.value * feed.speed_ratio
+    if state.speed.quantity is ProgrammedQuantity.SPINDLE_SPEED:
         return SpindleOn(speed=value, sense=sense), value
-    return SurfaceSpeed(speed=value, limit=found.max_spindle_speed, sense=sense), 0.0
+    return SurfaceSpeed(speed=value, limit=state.max_spindle_speed, sense=sense), 0.0
 
 
 def _mill_spindle(
     program: Program,
-    found: Programmed,
+    state: Programmed,
     feed: Feed,
     *,
     tool: Ref[Entity] | None,
@@ -126,41 +126,41 @@ def _mill_spindle(
     """Spindle of a mill, and a remark on an unusual direction."""
     hand = None if tool is None else hand_of(program, tool)
     is_left = hand is Hand.LEFT
-    if found.speed.quantity is ProgrammedQuantity.CUTTING_SPEED:
+    if state.speed.quantity is ProgrammedQuantity.CUTTING_SPEED:
         if cutter is None or cutter.diameter <= 0.0:
             message = "a cutting speed needs a tool with a diameter"
             raise PostError(f"{program.label(feed.technology)}: {message}")
         sense = SpindleDirection.COUNTERCLOCKWISE if is_left else SpindleDirection.CLOCKWISE
-        speed = found.spindle_speed(cutter.diameter) * feed.speed_ratio
+        speed = state.spindle_speed(cutter.diameter) * feed.speed_ratio
         return SpindleOn(speed=speed, sense=sense), ""
     sense = (
         SpindleDirection.CLOCKWISE
-        if found.speed.scale < 0.0
+        if state.speed.scale < 0.0
         else SpindleDirection.COUNTERCLOCKWISE
     )
     is_odd = hand is not None and is_left is not (sense is SpindleDirection.COUNTERCLOCKWISE)
     note = f"the file turns the spindle {sense} with a {hand} hand tool".lower()
-    speed = found.speed.value * feed.speed_ratio
+    speed = state.speed.value * feed.speed_ratio
     return SpindleOn(speed=speed, sense=sense), note if is_odd else ""
 
 
-def _rate(found: Programmed, feed: Feed, *, teeth: int, speed: float) -> Rate:
+def _rate(state: Programmed, feed: Feed, *, teeth: int, speed: float) -> Rate:
     """Feed of a move, per revolution or per minute as in the file."""
     if feed.velocity is not None:
         return Rate(value=feed.velocity)
     if feed.per_revolution is not None:
         return Rate(value=feed.per_revolution, mode=RateMode.PER_REVOLUTION)
-    value = found.feed.value * feed.ratio
-    if found.feed.quantity is ProgrammedQuantity.FEED_PER_TOOTH:
+    value = state.feed.value * feed.ratio
+    if state.feed.quantity is ProgrammedQuantity.FEED_PER_TOOTH:
         value *= teeth
-    if found.feed.quantity is ProgrammedQuantity.FEED:
+    if state.feed.quantity is ProgrammedQuantity.FEED:
         return Rate(value=value)
     return Rate(value=value, mode=RateMode.PER_REVOLUTION)
 
 
-def _lead(program: Program, found: Programmed, feed: Feed, speed: float) -> float:
+def _lead(program: Program, state: Programmed, feed: Feed, speed: float) -> float:
     """Lead of a synchronised move, mm per revolution."""
-    number: Number = found.feed
+    number: Number = state.feed
     if feed.per_revolution is not None:
         return feed.per_revolution
     if number.quantity is not ProgrammedQuantity.FEED:

@@ -328,15 +328,15 @@ class _Sequence:
         else:
             yield Circular(end=move.end, arc=move.arc, rate=rate)
 
-    def _rate(self, found: ModalState) -> Rate:
+    def _rate(self, state: ModalState) -> Rate:
         """Feed of a move, checked against what a control can run."""
-        if found.rate is None or not isfinite(found.rate.value) or found.rate.value <= 0.0:
-            raise PostError(f"a cut has no feed: {found.note or 'the feed is 0'}")
-        if found.rate.value > MOST[found.rate.mode]:
-            value, mode, most = found.rate.value, found.rate.mode, MOST[found.rate.mode]
+        if state.rate is None or not isfinite(state.rate.value) or state.rate.value <= 0.0:
+            raise PostError(f"a cut has no feed: {state.note or 'the feed is 0'}")
+        if state.rate.value > MOST[state.rate.mode]:
+            value, mode, most = state.rate.value, state.rate.mode, MOST[state.rate.mode]
             unit = "mm/s" if mode is RateMode.PER_MINUTE else "mm/rev"
             raise PostError(f"a feed of {value:g} {unit}: at most {most:g} {unit} allowed")
-        return found.rate
+        return state.rate
 
     def _constant(self, move: Move) -> Iterator[Block]:
         """Hold the spindle speed constant for a thread."""
@@ -374,14 +374,14 @@ class _Sequence:
         )
 
     def _tap(
-        self, cycle: CannedCycle, found: ModalState, at: tuple[float, float]
+        self, cycle: CannedCycle, state: ModalState, at: tuple[float, float]
     ) -> Iterator[Block]:
         spindle = self.programmed
         if not isinstance(spindle, SpindleOn):
             raise PostError("a rigid tap needs a constant spindle speed")
-        lead = found.lead
+        lead = state.lead
         if lead is None:
-            rate = self._rate(found)
+            rate = self._rate(state)
             is_timed = rate.mode is RateMode.PER_MINUTE
             lead = rate.value / spindle.speed if is_timed else rate.value
         self.at = (*at, cycle.retract_z)
@@ -404,14 +404,14 @@ class _Sequence:
             self._known[feed] = found
         return found
 
-    def _take(self, found: ModalState) -> Iterator[Block]:
+    def _take(self, state: ModalState) -> Iterator[Block]:
         """Blocks for a change of technology, such as a new spindle speed."""
-        if found.note and found.note not in self._notes:
-            self._notes.add(found.note)
-            yield Comment(text=found.note)
-        if found.spindle is not None and found.spindle != self.programmed:
-            self.programmed = found.spindle
-            yield from self._spindle(found.spindle)
+        if state.note and state.note not in self._notes:
+            self._notes.add(state.note)
+            yield Comment(text=state.note)
+        if state.spindle is not None and state.spindle != self.programmed:
+            self.programmed = state.spindle
+            yield from self._spindle(state.spindle)
 
     def _spindle(self, wanted: SpindleOn | SurfaceSpeed | SpindleOff) -> Iterator[Block]:
         if isinstance(wanted, SpindleOn) and wanted.speed > FASTEST:

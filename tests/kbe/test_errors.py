@@ -25,7 +25,7 @@ ALL = [
     (StoreReadOnly("a.db"), "allow"),
     (StoreBusy("a.db"), "try again"),
     (StoreFull("a.db"), "Free some space"),
-    (StoreTooNew("a.db", found="0009", known="0001"), "install the newer"),
+    (StoreTooNew("a.db", actual="0009", known="0001"), "install the newer"),
     (StoreNotEmpty("a.db", rows=3), "restore into a new file"),
     (
         OutcomeDiffers(
@@ -48,8 +48,8 @@ def test_error_names_its_place_and_what_to_do(error: KnowledgeError, advice: str
 
 
 def test_errors_carry_fields() -> None:
-    newer = StoreTooNew("a.db", found="0009", known="0001")
-    assert (newer.found, newer.known) == ("0009", "0001")
+    newer = StoreTooNew("a.db", actual="0009", known="0001")
+    assert (newer.actual, newer.known) == ("0009", "0001")
     assert StoreNotEmpty("a.db", rows=3).rows == 3
     assert UnknownCorrection("a.db", id=7).id == 7
     assert StoreDamaged("a.db", reason="malformed").reason == "malformed"

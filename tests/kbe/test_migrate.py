@@ -81,7 +81,7 @@ def test_newer_schema_is_left_alone(store: Store, url: str) -> None:
         connection.execute(text(f"UPDATE {VERSION_TABLE} SET version_num = '9999'"))
     with pytest.raises(StoreTooNew, match="install the newer") as caught:
         open_store(url)
-    assert caught.value.found == "9999"
+    assert caught.value.actual == "9999"
 
 
 def test_tables_of_another_program_are_left_alone(store: Store, url: str) -> None:

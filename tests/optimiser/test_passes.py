@@ -72,7 +72,7 @@ class Ways:
     def leave_out(self, step: ResolvedWorkingstep) -> None:
         raise NotImplementedError
 
-    def each(
+    def map_workingsteps(
         self, steps: Sequence[ResolvedWorkingstep], do: Callable[[ResolvedWorkingstep], Result]
     ) -> Iterator[Result]:
         raise NotImplementedError
@@ -206,7 +206,7 @@ def test_of_numbers_that_cost_nearly_the_same_the_fewest_are_taken() -> None:
     asked = AdviceContext(step=step, at=thin_chips(2000.0), task=fixed, cuts=Ways({}))
 
     def search(few: PassCountOptimum) -> PassCountSearch:
-        return PassCountSearch(cut=CUT, asked=asked, found={10: few, 12: many})
+        return PassCountSearch(cut=CUT, context=asked, optima={10: few, 12: many})
 
     near, far = found_in(1.003 * least), found_in(1.006 * least)
     assert search(near).chosen(4) == 10

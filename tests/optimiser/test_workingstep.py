@@ -29,7 +29,7 @@ from optimiser.workingstep import (
     limits_at,
     saving_of_one_more,
     solve,
-    told,
+    violation_text,
     widened,
 )
 
@@ -370,9 +370,9 @@ def test_a_floor_alone_does_not_limit_the_feed() -> None:
 
 
 def test_told_names_load_and_bound() -> None:
-    assert told(depth_limit(5.0), 6.0, 20.0) == "axial depth 6 mm exceeds 5 mm"
+    assert violation_text(depth_limit(5.0), 6.0, 20.0) == "axial depth 6 mm exceeds 5 mm"
     floor = feed_limit(0.01, BoundSide.AT_LEAST)
-    assert told(floor, 0.004, 20.0) == "chip thickness 0.004 mm is below 0.01 mm"
+    assert violation_text(floor, 0.004, 20.0) == "chip thickness 0.004 mm is below 0.01 mm"
 
 
 def test_widened_touches_one_limit_only() -> None:

@@ -68,7 +68,7 @@ def test_the_wheel_runs_in_an_environment_of_its_own(wheel: Path, tmp_path: Path
     run(*pip, "install", "--quiet", "--no-index", "--no-deps", str(wheel))
     caches = tmp_path / "caches"
     caches.mkdir()
-    (caches / "stepnc-optimiser").symlink_to(store.BESIDE)
+    (caches / "stepnc-optimiser").symlink_to(store.PACKAGE_CACHE)
     plain["XDG_CACHE_HOME"] = str(caches)
     borrowed = {"PYTHONPATH": sysconfig.get_path("purelib")}
     place = run(python, "-c", "import service; print(service.__file__)", **borrowed)

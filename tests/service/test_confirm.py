@@ -62,7 +62,7 @@ def confirmation(outcome: ProgramAdvice) -> Confirmation:
 def figure(
     *, promised: float = 100.0, found: float = 100.0, bound: float = inf, key: str = "time_s"
 ) -> Figure:
-    return Figure(key=key, heading="force N", promised=promised, found=found, bound=bound)
+    return Figure(key=key, heading="force N", promised=promised, simulated=found, bound=bound)
 
 
 def of(step: ConfirmedStep) -> dict[str, Figure]:
@@ -98,10 +98,10 @@ def test_the_run_keeps_what_the_plan_promised(confirmation: Confirmation) -> Non
     for step in confirmation.steps:
         for key, each in of(step).items():
             if each.promised == 0.0:
-                assert each.found == 0.0
+                assert each.simulated == 0.0
                 continue
             tolerance = 1e-3 if key == "time_s" else 0.01
-            assert each.found == pytest.approx(each.promised, rel=tolerance), (step.id, key)
+            assert each.simulated == pytest.approx(each.promised, rel=tolerance), (step.id, key)
 
 
 def test_figures_are_of_the_cuts_that_have_them(confirmation: Confirmation) -> None:
@@ -177,7 +177,7 @@ def test_a_bound_that_is_passed_is_said_and_is_the_exit_code(
 def test_bounds_are_compared_at_the_quantile(confirmation: Confirmation) -> None:
     """The slot keeps 25 µm at the quantile that is planned, and comes near them there."""
     slot = of(confirmation.steps[1])["deflection_um"]
-    assert slot.at_quantile == pytest.approx(slot.found * 1.2632, rel=1e-3)
+    assert slot.at_quantile == pytest.approx(slot.simulated * 1.2632, rel=1e-3)
     assert slot.at_quantile == pytest.approx(25.0, rel=0.01)
     nominal = figure(found=100.0, bound=110.0)
     assert not nominal.is_passed

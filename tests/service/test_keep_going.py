@@ -16,7 +16,7 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from stepnc_model.technology import programmed
 from stepnc_model.units import FeedUnit
-from stepnc_model.withdrawal import without_given
+from stepnc_model.withdrawal import without_user_data
 
 HEAD = [
     "ISO-10303-21;",
@@ -200,7 +200,7 @@ class TestGivenData:
             Program(Part21File.from_bytes(data)), GivenData(values=("#31.depth=12",))
         )
         assert whole.program.file.data != data
-        assert without_given(whole.program, whole) == data
+        assert without_user_data(whole.program, whole) == data
 
     def test_a_number_is_replaced_where_it_stands(self) -> None:
         """The plane is moved, the measure keeps its tolerance: no instance is added."""
@@ -212,7 +212,7 @@ class TestGivenData:
         )
         # Three holes share the plane and the measure: one gets its own.
         assert whole.program.file.data != changed
-        assert without_given(whole.program, whole) == data
+        assert without_user_data(whole.program, whole) == data
         one = data.replace(
             b"#30=ROUND_HOLE('GOOD',#6,(),#80,#91,#93", b"#30=ROUND_HOLE('GOOD',#6,(),#80,$,$"
         )
@@ -224,7 +224,7 @@ class TestGivenData:
         assert whole.program.file.data == one.replace(b"(0.,0.,-15.)", b"(0.,0.,-12.)").replace(
             b"MEASURE(10.,#95)", b"MEASURE(8.5,#95)"
         )
-        assert without_given(whole.program, whole) == one
+        assert without_user_data(whole.program, whole) == one
 
     @pytest.mark.parametrize(
         "broken",
@@ -239,9 +239,9 @@ class TestGivenData:
         data = program().replace(b"#91=PLANE('',#92);", broken)
         words = GivenData(values=("#31.depth=12",))
         whole = completed(Program(Part21File.from_bytes(data)), words)
-        (given,) = whole.given
+        (given,) = whole.attributes
         assert len(given.added) == 3
-        assert without_given(whole.program, whole) == data
+        assert without_user_data(whole.program, whole) == data
 
     def test_a_feed_is_given_to_those_that_have_none(self) -> None:
         whole = completed(

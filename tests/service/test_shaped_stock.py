@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from optimiser.clamped import ClampedStocks
-from service.raw_stock import body_map, given_stock
-from service.reading import given_data, read_program
+from service.raw_stock import body_map, user_stock
+from service.reading import read_program, user_data
 from service.requests.advice import AdviceRequest
 from service.requests.given import ProgramRequest, RawPart, StockFile
 from service.requests.runs import SimulationRequest
@@ -97,8 +97,8 @@ def test_given_data_keep_the_shape_of_a_stock(without_raw: Path, half_cut: Stock
     program = read_program(without_raw, units="iso", stock=half_cut)
     technology = program.workingsteps[0].technology_ref
     request = ProgramRequest(given=(f"{technology}.feedrate=0.005",))
-    whole = completed(program, given_data(request))
-    assert whole.given
+    whole = completed(program, user_data(request))
+    assert whole.attributes
     for each in (program, whole.program):
         cut = body_map(each, None, is_turning=False, cell=0.5)
         assert isinstance(cut, MillingStock)
@@ -124,4 +124,4 @@ def test_a_kept_stock_is_refused_for_a_program(tmp_path: Path) -> None:
     stock = MillingStock(Stock(low=(0.0, 0.0, -5.0), high=(9.0, 9.0, 0.0)), cell=0.5)
     path.write_bytes(stock_bytes(stock))
     with pytest.raises(StepNcError, match=r"kept.npz: a kept stock serves NC code only"):
-        given_stock(StockFile(path=path))
+        user_stock(StockFile(path=path))

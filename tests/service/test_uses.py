@@ -134,6 +134,13 @@ def test_each_remark_is_a_warning(text: str, tmp_path: Path) -> None:
     assert {each.severity for each in found} == {Severity.WARNING}
 
 
+def test_a_program_without_such_a_fault_has_none_of_them(tmp_path: Path) -> None:
+    path = tmp_path / "part.stpnc"
+    path.write_bytes(program())
+    messages = [each.message for each in check(path).remarks]
+    assert not [text for text in EXPECTED if any(text in message for message in messages)]
+
+
 def test_all_commands_give_the_same_warnings_once_on_stderr(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from simulator.given_tool import given_tool
+from simulator.given_tool import user_tool
 from simulator.tool_files.read import read_tools
 
 TABLE = """number,kind,diameter_mm,teeth,corner_radius_mm,edge_length_mm,cutting_material
@@ -31,7 +31,7 @@ def test_the_body_follows_from_kind_and_corner(
 ) -> None:
     table = tmp_path / "tools.csv"
     table.write_text(TABLE, encoding="utf-8")
-    found = given_tool(read_tools(table).by_number[number])
+    found = user_tool(read_tools(table).by_number[number])
     assert found is not None
     assert (found.body, found.edge_material) == (body, material)
     assert found.is_named(str(number))
@@ -42,7 +42,7 @@ def test_the_body_follows_from_kind_and_corner(
 def test_a_turning_insert_has_no_diameter(tmp_path: Path) -> None:
     table = tmp_path / "tools.csv"
     table.write_text("number,kind,nose_radius_mm\n1,turning,0.8\n", encoding="utf-8")
-    given = given_tool(read_tools(table).by_number[1])
+    given = user_tool(read_tools(table).by_number[1])
     assert (given.body, given.diameter, given.corner_radius) == (
         "GENERAL_TURNING_TOOL",
         0.0,

@@ -92,11 +92,11 @@ POINTS: tuple[Column[SpacingRow], ...] = (
 )  # fmt: skip
 
 
-def _interval(each: IntervalEstimate | None, factor: float, form: str) -> str:
-    if each is None:
+def _interval(estimate: IntervalEstimate | None, factor: float, form: str) -> str:
+    if estimate is None:
         return "0"
-    low, high = (format(factor * end, form) for end in (each.low, each.high))
-    return f"{format(factor * each.value, form)} ({low} to {high})"
+    low, high = (format(factor * end, form) for end in (estimate.low, estimate.high))
+    return f"{format(factor * estimate.value, form)} ({low} to {high})"
 
 
 FITS: tuple[Column[LineFit], ...] = (
@@ -178,7 +178,7 @@ class BlockFitResult(Result):
             *(TextLine(text=line) for line in self.statements()),
             Fact(key="acceleration_mm_s2", value=fit.acceleration),
             Fact(key="deviation_times_acceleration_mm2_s2", value=fit.corner),
-            Findings(found=self.findings),
+            Findings(findings=self.findings),
         ])
 
     def figures(self) -> "tuple[go.Figure]":
@@ -226,9 +226,9 @@ def _fit_record(fit: LineFit) -> dict[str, Any]:
     }
 
 
-def _record(each: IntervalEstimate, factor: float) -> dict[str, float]:
+def _record(estimate: IntervalEstimate, factor: float) -> dict[str, float]:
     return {
-        "value": factor * each.value,
-        "low": factor * each.low,
-        "high": factor * each.high,
+        "value": factor * estimate.value,
+        "low": factor * estimate.low,
+        "high": factor * estimate.high,
     }

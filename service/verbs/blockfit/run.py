@@ -191,13 +191,13 @@ def _nothing(
     files: BlockFitFiles,
     log: PositionLog,
     circles: Sequence[BlockCircle],
-    found: Sequence[CircleFeed | MissedCircle],
+    feeds: Sequence[CircleFeed | MissedCircle],
 ) -> str:
     """Probable reason why no circle was found."""
     in_mm = replace(log, position=mm_from_inches(1.0) * log.position)
     if any(isinstance(each, CircleFeed) for each in circle_feeds(in_mm, circles)):
         return f"{files.log}: its positions are in inches; they must be in mm"
-    reason = next((each.reason for each in found if isinstance(each, MissedCircle)), "")
+    reason = next((each.reason for each in feeds if isinstance(each, MissedCircle)), "")
     low, high = log.position.min(axis=0), log.position.max(axis=0)
     spans = ", ".join(
         f"{axis} {a:g} to {b:g}" for axis, a, b in zip("XYZ", low, high, strict=True)
@@ -218,11 +218,11 @@ def _missing(missed: MissedCircle) -> Finding:
     return Finding(severity=Severity.WARNING, message=text)
 
 
-def _point(found: CircleFeed) -> SpacingFeed:
-    circle = found.circle
+def _point(feed: CircleFeed) -> SpacingFeed:
+    circle = feed.circle
     return SpacingFeed(
         spacing=circle.spacing,
-        feed=found.feed,
+        feed=feed.feed,
         radius=circle.radius,
         commanded=circle.feed,
     )

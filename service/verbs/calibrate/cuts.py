@@ -39,7 +39,7 @@ from stepnc_model.units import m_min_from_speed, speed_from_m_min
 
 UNITS = {LawKind.FORCES: "N or N/mm²", LawKind.ROUGHNESS: "µm", LawKind.LIFE: "min"}
 
-MOST_TOLD = 20
+MOST_LISTED = 20
 """Rows with a reduced weight that are listed; the rest are counted."""
 
 
@@ -269,13 +269,13 @@ class CutsResult(Result):
             Table(key="predictions", columns=PREDICTED, rows=self.predicted,
                   is_shown=not self.is_fit),
             Table(key="skills", columns=SKILLS, rows=self.skills),
-            Findings(found=self.findings),
+            Findings(findings=self.findings),
         ])  # fmt: skip
 
 
-def _skills(found: Sequence[CutPrediction]) -> Iterator[CutSkill]:
+def _skills(predictions: Sequence[CutPrediction]) -> Iterator[CutSkill]:
     for quantity in LawKind:
-        skill = skill_of([each for each in found if each.quantity is quantity])
+        skill = skill_of([each for each in predictions if each.quantity is quantity])
         if skill is not None:
             yield skill
 
@@ -441,11 +441,11 @@ def _doubts(fit: FittedLaw) -> Iterator[Finding]:
     """Yield rows of reduced weight, and what the rows do not tell."""
     weights = fit.posterior.weights
     off = [(row, w) for row, w in zip(fit.rows, weights, strict=True) if w < 0.5]
-    for row, weight in off[:MOST_TOLD]:
+    for row, weight in off[:MOST_LISTED]:
         text = f"{fit.law.quantity.value}: lies off the others and counts {weight:.2f} times"
         yield Finding(severity=Severity.WARNING, message=text, line=row.line)
-    if len(off) > MOST_TOLD:
-        text = f"{len(off) - MOST_TOLD} more rows lie off the others"
+    if len(off) > MOST_LISTED:
+        text = f"{len(off) - MOST_LISTED} more rows lie off the others"
         yield Finding(severity=Severity.WARNING, message=text)
     if fit.law.quantity is LawKind.FORCES and any(
         row.number("axial_depth_mm") is None

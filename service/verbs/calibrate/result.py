@@ -177,7 +177,7 @@ class CalibrationResult(Result):
             *(TextLine(text=text) for text in PREDICTION),
             Table(key="held_out", columns=SKILLS, rows=held),
             *([] if self.kc_factor is None else [TextLine(text=_factor(self.kc_factor))]),
-            Findings(found=self.findings),
+            Findings(findings=self.findings),
         ])  # fmt: skip
 
 

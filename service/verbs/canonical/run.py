@@ -6,7 +6,7 @@ from service.files import read_bytes
 from service.paths.toolpaths import paths_for_code
 from service.program_kind import NO_TABLE, ProgramKind, kind_for
 from service.progress import Tell, silent
-from service.reading import read_given, tool_library
+from service.reading import read_completed, tool_library
 from service.requests.serves import require_served
 from service.verbs.canonical.request import CanonicalFiles, CanonicalRequest
 from service.verbs.canonical.result import CanonicalResult
@@ -46,7 +46,7 @@ def run(
 def _of_program(
     request: CanonicalRequest, files: CanonicalFiles, tell: Tell
 ) -> CanonicalResult:
-    program = read_given(
+    program = read_completed(
         files.file, request, tools=tool_library(files.tools), tell=tell
     ).program
     paths = paths_for_code(program, keep_going=request.keep_going, tell=tell)

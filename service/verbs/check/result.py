@@ -210,7 +210,7 @@ class ProgramContents(Result):
             ),
             Fact(key="missing", value=list(self.needs.missing) if self.needs else []),
             Fact(key="command", value=self.needs.command if self.needs else ""),
-            Findings(found=self.findings, told=self.remarks),
+            Findings(findings=self.findings, reported=self.remarks),
             *self._use_lines(),
             *(TextLine(text=line) for line in _need_lines(self.needs)),
         ])  # fmt: skip
@@ -272,7 +272,7 @@ class CodeContents(Result):
             Fact(key="missing", value=list(self.needs.missing)),
             Fact(key="command", value=self.needs.command),
             Fact(key="is_lossless", value=self.is_lossless),
-            Findings(found=self.findings),
+            Findings(findings=self.findings),
             TextLine(
                 text="rewriting without advice gives the file byte for byte"
                 if self.is_lossless

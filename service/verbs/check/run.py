@@ -11,7 +11,7 @@ from service.paths.toolpaths import Paths, paths_of
 from service.program_kind import ProgramKind, kind_for
 from service.program_needs import needs_of
 from service.progress import Tell, silent
-from service.reading import given_data, given_tools, program_in, read_stock, tool_library
+from service.reading import program_in, read_stock, tool_library, user_data, user_tools
 from service.requests.serves import require_served
 from service.simulation.code_setup import CodeSetup, GivenSetup, code_setup
 from service.simulation.spindle_hand import turned_against
@@ -80,8 +80,8 @@ def _program(
             findings=(*file.findings, fault),
         )
     library = tool_library(files.tools)
-    program.tools = () if library is None else given_tools(library)
-    program = completed(program, given_data(request)).program
+    program.tools = () if library is None else user_tools(library)
+    program = completed(program, user_data(request)).program
     kept = KeptPaths()
     made = _paths(program, kept)
     found = program_remarks(program, kept) if isinstance(made, StepNcError) else made.remarks

@@ -185,7 +185,7 @@ class ControlResult(Result):
                 for text in exceeded(run, found)
             ),
             Fact(key="left_out", value=list(run.faults)),
-            Findings(found=run.findings),
+            Findings(findings=run.findings),
         ])  # fmt: skip
 
     def figures(self) -> "list[go.Figure]":
@@ -262,9 +262,9 @@ def _summary(run: ControlRun) -> Iterator[Item]:
         yield Fact(key=key, value=value)
 
 
-def _sentences(run: ControlRun, found: Sequence[ControlRow]) -> Iterator[str]:
+def _sentences(run: ControlRun, rows: Sequence[ControlRow]) -> Iterator[str]:
     """Yield what held the override, what was saved, and what happened."""
-    for row in found:
+    for row in rows:
         if row.id is not None:
             yield f"  {row.name}: {row.why}"
     yield f"{saved(run)} at the programmed feed"

@@ -35,6 +35,6 @@ class ConvertResult(Result):
             Fact(key="written", value=str(self.written)),
             Fact(key="standard", value=self.form.value if is_standard else None),
             Fact(key="profile", value=None if is_standard else self.form.value),
-            Findings(found=self.findings, told=self.findings),
-            TextLine(text=self.said, is_told=True),
+            Findings(findings=self.findings, reported=self.findings),
+            TextLine(text=self.said, is_reported=True),
         ])

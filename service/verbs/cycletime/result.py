@@ -153,7 +153,7 @@ class CycleTimeResult(Result):
             ),
             Fact(key="hints", value=self.hints),
             *(TextLine(text=f"hint: {hint}") for hint in self.hints),
-            Findings(found=self.findings),
+            Findings(findings=self.findings),
         ])  # fmt: skip
 
     def figures(self) -> "tuple[go.Figure]":

@@ -12,7 +12,7 @@ from service.files import require_place, write_atomically, write_lines
 from service.paths.toolpaths import paths_of, with_feeds
 from service.program_kind import NO_TABLE, ProgramKind, kind_of_file
 from service.progress import Tell, silent
-from service.reading import read_given, tool_library
+from service.reading import read_completed, tool_library
 from service.recording.logged_run import LoggedRun, read_logged_run
 from service.requests.runs import RunRequest
 from service.requests.serves import require_served
@@ -83,7 +83,7 @@ class _Source:
             prepared = self.code()
             found = tuple(each for each in prepared.findings if each is not IDLE)
             return prepared.machine, prepared.blocks, found
-        program = read_given(
+        program = read_completed(
             self.files.file, request, tools=tool_library(self.files.tools), tell=tell
         ).program
         paths = with_feeds(paths_of(program, tell=tell), keep_going=False)

@@ -144,11 +144,11 @@ def _case_column(quantity: Quantity) -> Column[SweptCase]:
 class ShopResult(Result):
     """Result of ``factory``."""
 
-    found: FactoryResult
+    factory: FactoryResult
 
     def view(self) -> ResultView:
         """Return the figures of a shop by level, and the cases of a sweep."""
-        found = self.found
+        found = self.factory
         sweep: tuple[Item, ...] = ()
         if found.cases:
             cases = Table(columns=case_columns(found.cases), rows=found.cases)
@@ -186,7 +186,7 @@ class ShopResult(Result):
         stream = StringIO()
         rows = writer(stream, lineterminator="\n")
         rows.writerow(("level", "name", "figure", "mean", "half_width", "count"))
-        for each in self.found.measures:
+        for each in self.factory.measures:
             mean = "" if isnan(each.mean) else f"{each.mean:.10g}"
             half = f"{each.half_width:.10g}" if isfinite(each.half_width) else ""
             name = disarmed(each.name)
@@ -202,7 +202,7 @@ class ShopResult(Result):
             sweep_figure,
         )
 
-        found = self.found
+        found = self.factory
         sweep = [sweep_figure(found)] if found.cases else []
         return (gantt_figure(found), share_figure(found), power_figure(found), *sweep)
 
@@ -210,7 +210,7 @@ class ShopResult(Result):
         """Return a self-contained page with pictures."""
         from service.rendering.pages import plot, rendered  # noqa: PLC0415 (Jinja)
 
-        found = self.found
+        found = self.factory
         gantt, shares, power, *sweep = self.figures()
         return rendered(
             "factory.html.jinja",

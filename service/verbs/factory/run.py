@@ -9,7 +9,7 @@ from service.files import write_atomically
 from service.progress import Tell, silent
 from service.requests.factory import FactoryRequest, LiveFactoryRequest
 from service.requests.fields import fields_of
-from service.requests.serves import given_values
+from service.requests.serves import changed_values
 from service.verbs.factory.request import FactoryFiles
 from service.verbs.factory.result import ShopResult
 from service.verbs.result import ServedResult
@@ -43,12 +43,12 @@ def run(
         raise StepNcError("--report, --documents and --energy write files: name a folder, -o")
     pools = pools_of(files.cluster)
     found = ShopResult(
-        found=run_factory(files.shop, request, folder=folder, pools=pools, tell=tell)
+        factory=run_factory(files.shop, request, folder=folder, pools=pools, tell=tell)
     )
     if folder is not None:
-        tell(f"written: {folder} ({counted(found.found.parts_written, 'part')})")
+        tell(f"written: {folder} ({counted(found.factory.parts_written, 'part')})")
     if request.documents:
-        tell(f"MTConnect documents: {found.found.documents_written}")
+        tell(f"MTConnect documents: {found.factory.documents_written}")
     if folder is not None and files.has_report:
         write_atomically(folder / REPORT, found.page().encode())
         tell(f"report: {folder / REPORT}")
@@ -60,6 +60,6 @@ def _require_not_live(request: LiveFactoryRequest) -> None:
     flags = {each.name: each.about.flag for each in fields_of(LiveFactoryRequest)}
     for each in fields(FactoryRequest):
         flags.pop(each.name, None)
-    for name in given_values(request):
+    for name in changed_values(request):
         if name in flags:
             raise StepNcError(f"{flags[name]} needs --live")

@@ -32,10 +32,10 @@ def _scaled(quantity: EvaluatedQuantity, by: float) -> EvaluatedQuantity:
 
 def quantity_text(of: Quantity) -> Callable[[ProcessOutcome], str]:
     """Return a function for the planned, measured and deviating value of an outcome."""
-    return lambda outcome: told(of(outcome))
+    return lambda outcome: comparison_text(of(outcome))
 
 
-def told(quantity: EvaluatedQuantity) -> str:
+def comparison_text(quantity: EvaluatedQuantity) -> str:
     """Return the text of a cell: planned, measured and deviation."""
     values = (quantity.predicted, quantity.measured)
     if values == (None, None):

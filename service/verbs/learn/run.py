@@ -81,7 +81,7 @@ MOST_FACTOR = 5.0
 
 def write_outcome(
     path: Path,
-    found: ForceFactor,
+    factor: ForceFactor,
     *,
     program: Path,
     names: Mapping[str, Sequence[str]],
@@ -92,7 +92,7 @@ def write_outcome(
     Parameters
     ----------
     path : Path
-    found : ForceFactor
+    factor : ForceFactor
     program : Path
         Program of the runs, which mills with one tool.
     names : mapping
@@ -115,16 +115,18 @@ def write_outcome(
                 f"{', '.join(values)}"
             )
         one[column] = values[0]
-    if not 1.0 / MOST_FACTOR < found.factor < MOST_FACTOR:
+    if not 1.0 / MOST_FACTOR < factor.factor < MOST_FACTOR:
         raise StepNcError(
-            f"factor {found.factor:.3g} on k_c: it must be {1.0 / MOST_FACTOR:g} to "
+            f"factor {factor.factor:.3g} on k_c: it must be {1.0 / MOST_FACTOR:g} to "
             f"{MOST_FACTOR:g}"
         )
-    outcome = _outcome(found, program, run or f"learned-{uuid4().hex[:12]}", one)
+    outcome = _outcome(factor, program, run or f"learned-{uuid4().hex[:12]}", one)
     write_atomically(path, dump([plain(OUTCOME.row(outcome))]).encode())
 
 
-def _outcome(found: ForceFactor, path: Path, run: str, names: dict[str, str]) -> ProcessOutcome:
+def _outcome(
+    factor: ForceFactor, path: Path, run: str, names: dict[str, str]
+) -> ProcessOutcome:
     program = read_program(path, units="iso")
     steps = [
         each
@@ -142,7 +144,7 @@ def _outcome(found: ForceFactor, path: Path, run: str, names: dict[str, str]) ->
     nothing = EvaluatedQuantity()
     # The base of knowledge takes the readings of a ratio for correlated revolutions of one cut;
     # so the deviation of a reading is such that their mean has the error of the fit, or more.
-    error = found.factor_error / found.factor
+    error = factor.factor_error / factor.factor
     return replace(
         EMPTY,
         context=Context(tool=tools.pop(), **names),
@@ -154,9 +156,9 @@ def _outcome(found: ForceFactor, path: Path, run: str, names: dict[str, str]) ->
         ),
         step_depth=nothing,
         force_ratio=ForceRatio(
-            log_mean=log(found.factor),
-            log_deviation=error * sqrt(found.runs),
-            readings=found.runs,
+            log_mean=log(factor.factor),
+            log_deviation=error * sqrt(factor.runs),
+            readings=factor.runs,
         ),
         run=run,
         recorded_at=datetime.now(UTC),

@@ -118,7 +118,7 @@ class CodeAdvice(OptimiseResult):
                     ],
                 },
             ),
-            Findings(found=self.findings, told=self.faults),
+            Findings(findings=self.findings, reported=self.faults),
         ])
 
     def figures(self) -> "list[go.Figure]":

@@ -174,7 +174,7 @@ class ProgramAdvice(OptimiseResult):
             *_fronts(self.plan),
             *(_confirmation_items(self.confirmation) if self.confirmation else ()),
             *self._along_items(),
-            Findings(found=self.plan.findings, told=self.told, key=""),
+            Findings(findings=self.plan.findings, reported=self.told, key=""),
         ])
 
     def _along_items(self) -> Iterator[Item]:
@@ -355,8 +355,8 @@ def _nearest(confirmation: "Confirmation") -> str:
 def _figure_at(place: int, step: "ConfirmedStep") -> str:
     figure = step.figures[place]
     if figure.ratio is None:
-        return "" if figure.found == 0.0 else f"0 -> {figure.found:.4g}"
-    return f"{figure.promised:.4g} -> {figure.found:.4g} ({figure.ratio:.3f})"
+        return "" if figure.simulated == 0.0 else f"0 -> {figure.simulated:.4g}"
+    return f"{figure.promised:.4g} -> {figure.simulated:.4g} ({figure.ratio:.3f})"
 
 
 def _reason(advice: Advice) -> str:
@@ -422,7 +422,7 @@ def _confirmation(confirmation: "Confirmation") -> dict[str, Any]:
                 **{
                     figure.key: {
                         "promised": figure.promised,
-                        "found": figure.found,
+                        "found": figure.simulated,
                         "ratio": figure.ratio,
                         "bound": figure.bound if isfinite(figure.bound) else None,
                         "found_at_quantile": figure.at_quantile,

@@ -12,8 +12,8 @@ from optimiser.optimise import optimise_program
 from optimiser.source import along_paths
 from service.chosen import machine_for, material_for, require_axes, with_holding
 from service.files import (
-    beside,
     require_places,
+    sibling,
     write_atomically,
     write_lines,
 )
@@ -21,12 +21,12 @@ from service.knowledge.corrected import factors_for, finding_of, with_correction
 from service.knowledge.place import named_place, require_apart
 from service.program_needs import needs_of
 from service.progress import Progress, Tell, silent
-from service.reading import read_given, selected, tool_library
+from service.reading import read_completed, selected, tool_library
 from service.records import changes_of, lost_plunge_feeds
 from service.refusals import Writable, advisable, apart_from
 from service.requests.advice import AdviceRequest
 from service.requests.fields import fields_of, require_bounds
-from service.requests.serves import OF_PATHS, given_values
+from service.requests.serves import OF_PATHS, changed_values
 from service.verbs.optimise.plan_record import depth_notes
 from service.verbs.optimise.plan_result import ProgramAdvice
 from service.verbs.optimise.request import AdviceFiles, output_of
@@ -42,7 +42,7 @@ from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.generate import KeptPaths
 from stepnc_model.toolpath.task import stock_of
 from stepnc_model.units import mm_from_um
-from stepnc_model.withdrawal import without_given
+from stepnc_model.withdrawal import without_user_data
 
 if TYPE_CHECKING:
     from optimiser.clamped import StockMap
@@ -101,7 +101,7 @@ def advise_program(
         progress=Progress(tell, total=len(chosen)),
     )
     told = _remarks(program, paths, tell)
-    notes = (*notes, *depth_notes(program, plan, whole.given))
+    notes = (*notes, *depth_notes(program, plan, whole.attributes))
     plan = replace(
         _with_file_findings(plan, (*findings, *notes, *told), match),
         refused=(*possible.refused, *plan.refused),
@@ -191,9 +191,9 @@ def _along(
 
 def _without_given(whole: Completed, data: bytes) -> bytes:
     """Bytes of an advised program without the data that the request gave."""
-    if not whole.given:
+    if not whole.attributes:
         return data
-    return without_given(_read_again(whole.program, data), whole)
+    return without_user_data(_read_again(whole.program, data), whole)
 
 
 def _factors(
@@ -257,7 +257,7 @@ def _read_whole(
     request: AdviceRequest, files: AdviceFiles, library: "ToolLibrary | None", tell: Tell
 ) -> Completed:
     """Read a program; refuse one that lacks data, with all of them as one command."""
-    whole = read_given(files.file, request, name=files.name, tools=library, tell=tell)
+    whole = read_completed(files.file, request, name=files.name, tools=library, tell=tell)
     if not request.keep_going:
         tools = "" if files.tools is None else str(files.tools)
         name = files.name or str(files.file)
@@ -293,7 +293,7 @@ def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
     if request.writes_toolpaths:
         raise StepNcError("--write-toolpaths needs --along-path")
     flags = {each.name: each.about.flag for each in fields_of(type(request))}
-    for name in given_values(request):
+    for name in changed_values(request):
         if name in OF_PATHS:
             raise StepNcError(f"{flags[name]} needs --along-path")
 
@@ -369,7 +369,7 @@ def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path 
     """Output path of the NC code, next to the optimised program; None if not requested."""
     if request.nc_control is None:
         return None
-    place = beside(output, request.nc_control.suffix)
+    place = sibling(output, request.nc_control.suffix)
     require_places([place], apart_from=[files.file, output, files.report, files.feeds_csv])
     return place
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from service.files import beside, is_same, require_place, require_places
+from service.files import is_same, require_place, require_places, sibling
 from service.requests.advice import AdviceRequest
 from service.requests.fields import About, FileUse, Request
 from service.requests.files import Knowledge, MostRepeats, Report, SetupOfCode, ToolsUnit
@@ -102,7 +102,7 @@ def output_of(files: AdviceFiles, suffix: str) -> Path:
             raise StepNcError("--in-place and --output exclude each other")
         output = files.file
     else:
-        output = files.output or beside(files.file, suffix)
+        output = files.output or sibling(files.file, suffix)
         if is_same(files.file, output):
             message = "is the input file; use --in-place to overwrite it"
             raise WriteError(message, path=str(output))

@@ -37,6 +37,7 @@ class PostResult(Result):
             Fact(key="left_out", value=[str(fault) for fault in paths.faults]),
             Fact(key="findings", value=[finding_record(each) for each in paths.findings]),
             TextLine(
-                text=f"written: {self.written} ({counted(self.lines, 'line')})", is_told=True
+                text=f"written: {self.written} ({counted(self.lines, 'line')})",
+                is_reported=True,
             ),
         ])

@@ -1,10 +1,10 @@
 """NC code of a STEP-NC program."""
 
-from service.files import beside, require_place, write_lines
+from service.files import require_place, sibling, write_lines
 from service.paths.toolpaths import nc_lines, paths_for_code
 from service.program_kind import require_step_nc
 from service.progress import Tell, silent
-from service.reading import read_given, tool_library
+from service.reading import read_completed, tool_library
 from service.verbs.post.request import PostFiles, PostRequest
 from service.verbs.post.result import PostResult
 from stepnc_model.counted import counted
@@ -27,10 +27,10 @@ def run(request: PostRequest, files: PostFiles, *, tell: Tell = silent) -> PostR
         file cannot be written.
     """
     control = request.control
-    output = files.output or beside(files.file, control.suffix)
+    output = files.output or sibling(files.file, control.suffix)
     require_place(output, apart_from=files.file)
     require_step_nc(files.file, NO_CODE)
-    program = read_given(
+    program = read_completed(
         files.file, request, tools=tool_library(files.tools), tell=tell
     ).program
     paths = paths_for_code(program, keep_going=request.keep_going, tell=tell)

@@ -44,6 +44,6 @@ class SetupResult(Result):
             Fact(key="missing", value=list(self.missing)),
             Fact(key="command", value=self.command),
             Fact(key="text", value=self.text),
-            Findings(found=self.findings),
+            Findings(findings=self.findings),
             TextLine(text=ready),
         ])  # fmt: skip

@@ -6,7 +6,7 @@ from service.program_kind import ProgramKind, kind_for
 from service.progress import Tell, silent
 from service.simulation.code_setup import GivenSetup, code_setup
 from service.simulation.setup_draft import setup_draft
-from service.simulation.setup_file import place_beside
+from service.simulation.setup_file import setup_place
 from service.verbs.setup.request import SetupFiles, SetupRequest
 from service.verbs.setup.result import SetupResult
 from simulator.library import load_machine
@@ -25,7 +25,7 @@ def run(request: SetupRequest, files: SetupFiles, *, tell: Tell = silent) -> Set
     """
     if kind_for(files.file, request.dialect or "") is not ProgramKind.NC_CODE:
         raise StepNcError(f"{files.file}: is no NC code: only such code needs a setup")
-    output = files.output or place_beside(files.file)
+    output = files.output or setup_place(files.file)
     require_place(output, apart_from=files.file)
     if files.output is None and output.exists() and not files.dry_run:
         raise StepNcError(

@@ -212,7 +212,8 @@ class SimulateResult(Result):
             *(TextLine(text=text) for text in self._energies()),
             Fact(key="left_out", value=[str(fault) for fault in simulation.faults]),
             Findings(
-                found=simulation.findings, told=(*simulation.told, *simulation.collisions)
+                findings=simulation.findings,
+                reported=(*simulation.reported, *simulation.collisions),
             ),
         ])
 
@@ -322,7 +323,7 @@ def _carbon(carbon: CarbonFactor, whole: float) -> Columns:
     )  # fmt: skip
 
 
-def _peak_rows(simulation: Simulation, found: Sequence[SimulationRow]) -> list[PeakRow]:
+def _peak_rows(simulation: Simulation, rows: Sequence[SimulationRow]) -> list[PeakRow]:
     """Return the peaks, their workingsteps, and the limits of the machine."""
     whole, machine = simulation.whole, simulation.machine
     best = max(machine.spindle.curve, key=lambda point: point.power)
@@ -335,9 +336,7 @@ def _peak_rows(simulation: Simulation, found: Sequence[SimulationRow]) -> list[P
             peak=peak,
             form=form,
             scale=scale,
-            workingstep=next(
-                (row.name for row in reversed(found) if row.begin <= peak.time), ""
-            )
+            workingstep=next((row.name for row in reversed(rows) if row.begin <= peak.time), "")
             if peak.value
             else "",
             permitted=permitted,

@@ -53,5 +53,5 @@ class TapTestResult(Result):
             Fact(key="unexplained", value=fit.unexplained),
             TextLine(text=text),
             *(TextLine(text=line) for line in modes_toml(self.modes).splitlines()),
-            Findings(found=self.findings),
+            Findings(findings=self.findings),
         ])

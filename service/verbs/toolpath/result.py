@@ -101,7 +101,7 @@ class ToolPathResult(Result):
             Fact(key="items", value=lambda: [_item(item) for item in paths.items]),
             Table(key="paths", columns=PATHS, rows=[_row(paths, item) for item in paths.items]),
             Fact(key="left_out", value=[str(fault) for fault in paths.faults]),
-            Findings(found=paths.findings, told=paths.told),
+            Findings(findings=paths.findings, reported=paths.reported),
         ])
 
 
@@ -137,7 +137,7 @@ class CodePathResult(Result):
                 key="moves", columns=_move_columns(program.text),
                 rows=_MoveSequence(program.moves), is_shown=False,
             ),
-            Findings(found=program.findings),
+            Findings(findings=program.findings),
         ])  # fmt: skip
 
 

@@ -7,7 +7,7 @@ from service.paths.toolpaths import paths_of, with_remarks
 from service.program_kind import NO_TABLE, ProgramKind, kind_for
 from service.progress import Tell, silent
 from service.raw_stock import raw_stock_of
-from service.reading import read_given, tool_library
+from service.reading import read_completed, tool_library
 from service.requests.serves import require_served
 from service.verbs.toolpath.request import ToolPathFiles, ToolPathRequest
 from service.verbs.toolpath.result import CodePathResult, ToolPathResult
@@ -46,7 +46,7 @@ def _require_picture(picture: Path, *, apart_from: Path) -> None:
 
 
 def _program(request: ToolPathRequest, files: ToolPathFiles, tell: Tell) -> ToolPathResult:
-    program = read_given(
+    program = read_completed(
         files.file, request, tools=tool_library(files.tools), tell=tell
     ).program
     paths = paths_of(program, keep_going=request.keep_going, tell=tell)

@@ -110,25 +110,25 @@ BENT = (
 class VerificationResult(Result):
     """Result of ``verify``."""
 
-    found: Verification
+    verification: Verification
 
     @property
     def exit_code(self) -> int:
         """5 if a deviation exceeds its uncertainty and the tolerance."""
-        return LIMIT_EXCEEDED if self.found.has_errors else OK
+        return LIMIT_EXCEEDED if self.verification.has_errors else OK
 
     @property
     def verdict(self) -> str:
         """Sum of the deviations beyond uncertainty and tolerance."""
-        return _verdict(self.found, self.rows())
+        return _verdict(self.verification, self.rows())
 
     def rows(self) -> list[SurfaceDeviation]:
         """Deviations by surface."""
-        return list(surface_deviations(self.found))
+        return list(surface_deviations(self.verification))
 
     def view(self) -> ResultView:
         """Return deviations, volumes, tolerance bands and what the log can resolve."""
-        found, rows = self.found, self.rows()
+        found, rows = self.verification, self.rows()
         volumes, facts, bands = found.volumes, found.facts, tolerance_bands(found)
         shares = ", ".join(f"±{band.width:g} mm {band.share:.2%}" for band in bands)
         verdict = _verdict(found, rows)
@@ -180,13 +180,13 @@ class VerificationResult(Result):
             TextLine(text="position feedback does not see:"),
             *(TextLine(text=f"  {text}") for text in UNSEEN),
             Fact(key="not_seen", value=UNSEEN),
-            Findings(found=found.findings),
+            Findings(findings=found.findings),
         ])  # fmt: skip
 
     @property
     def resolution(self) -> str:
         """Resolution of the log, in words."""
-        facts, can = self.found.facts, log_resolution(self.found)
+        facts, can = self.verification.facts, log_resolution(self.verification)
         rounding = f"rounded to {facts.rounding:g} mm" if facts.rounding else "not rounded"
         rate = f"{1.0 / facts.interval:.3g} Hz" if facts.interval > 0.0 else "unknown rate"
         has_arcs = isfinite(can.radius)
@@ -194,7 +194,7 @@ class VerificationResult(Result):
         return (
             f"{facts.samples} positions at {rate}, {rounding}, {can.step:.3g} mm apart in the "
             f"cut: it resolves {can.straight:.4f} mm on straights{arcs}, {can.corner:.4f} mm "
-            f"at square corners; places are known to a cell of {self.found.cell:.3g} mm"
+            f"at square corners; places are known to a cell of {self.verification.cell:.3g} mm"
         )
 
     def figures(self) -> "tuple[go.Figure, go.Figure]":
@@ -204,7 +204,7 @@ class VerificationResult(Result):
             space_figure,
         )
 
-        return plan_figure(self.found), space_figure(self.found)
+        return plan_figure(self.verification), space_figure(self.verification)
 
     def page(self) -> str:
         """Return a self-contained page with both figures."""
@@ -213,14 +213,14 @@ class VerificationResult(Result):
         plan, space = self.figures()
         return rendered(
             "verification.html.jinja",
-            found=self.found,
+            found=self.verification,
             verdict=self.verdict,
             plan=plot(plan, "plan"),
             space=plot(space, "space"),
             surfaces=SURFACES,
             rows=self.rows(),
             band_columns=BAND_COLUMNS,
-            bands=tolerance_bands(self.found),
+            bands=tolerance_bands(self.verification),
             resolution=self.resolution,
             unseen=UNSEEN,
         )
@@ -229,7 +229,7 @@ class VerificationResult(Result):
         """Write places as CSV and Parquet, and the surface for maps."""
         for suffix in (".csv", ".parquet"):
             self.write_places(folder / f"{PLACES}{suffix}")
-        write_surface(folder / SURFACE, self.found)
+        write_surface(folder / SURFACE, self.verification)
         return self.record()
 
     def write_places(self, path: Path) -> int:
@@ -240,7 +240,7 @@ class VerificationResult(Result):
         WriteError
             When the suffix is another, or the file cannot be written.
         """
-        found = self.found
+        found = self.verification
         places = found.places[found.places.is_wall | found.places.is_beyond]
         names = [*(step.workingstep for step in found.steps), RAW]
         numbers = {
@@ -264,16 +264,17 @@ class VerificationResult(Result):
         return file.rows
 
 
-def _verdict(found: Verification, rows: list[SurfaceDeviation]) -> str:
+def _verdict(verification: Verification, rows: list[SurfaceDeviation]) -> str:
     """Sum up the deviations beyond uncertainty and tolerance."""
-    wrong = [row for row in rows if _is_wrong(row, found.tolerance)]
+    wrong = [row for row in rows if _is_wrong(row, verification.tolerance)]
     if wrong:
         names = ", ".join(dict.fromkeys(row.workingstep for row in wrong))
-        return f"deviations of {found.tolerance:g} mm or more beyond the uncertainty: {names}"
+        least = f"{verification.tolerance:g} mm"
+        return f"deviations of {least} or more beyond the uncertainty: {names}"
     beyond = [row for row in rows if row.worse.is_beyond]
     if beyond:
         worst = max(row.worse.size for row in beyond)
-        return f"within {found.tolerance:g} mm; greatest deviation seen {worst:.4f} mm"
+        return f"within {verification.tolerance:g} mm; greatest deviation seen {worst:.4f} mm"
     return "nothing beyond the uncertainty of the log"
 
 

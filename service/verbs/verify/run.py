@@ -33,7 +33,7 @@ def run(
     inputs = VerificationInputs(tools=files.tools, required=required[0], solid=required[1])
     found = verify(files.log, files.program, request, inputs=inputs, tell=tell)
     findings = (*files.log_findings, *found.findings)
-    result = VerificationResult(found=replace(found, findings=findings))
+    result = VerificationResult(verification=replace(found, findings=findings))
     if files.output is not None:
         tell(f"written: {files.output} ({counted(result.write_places(files.output), 'place')})")
     return result

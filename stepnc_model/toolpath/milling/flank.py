@@ -21,8 +21,8 @@ from stepnc_model.toolpath.milling.contour import (
 )
 from stepnc_model.toolpath.milling.cover import Area, Flank, MillingPass, TeeSlotUndercut, extra
 from stepnc_model.toolpath.milling.layer import CentreArea, CutLevel, Layer, nowhere
-from stepnc_model.toolpath.milling.layer import beside as clearance
-from stepnc_model.toolpath.milling.offset import ContourEdges, beside, distances, erode
+from stepnc_model.toolpath.milling.layer import clearance_from_wall as clearance
+from stepnc_model.toolpath.milling.offset import ContourEdges, distances, erode, offset_left
 from stepnc_model.toolpath.milling.strategy import EndMillShape, ResolvedStrategy, run_out
 from stepnc_model.toolpath.milling.strokes import inside
 from stepnc_model.toolpath.task import ToolPathTask
@@ -75,7 +75,7 @@ def _at(
         ]
     run = cutter.radius + run_out(job)
     longer = stretched(flank.chain, run, run)
-    return [MillingPass(chain, is_closed=False) for chain in beside(longer, distance)]
+    return [MillingPass(chain, is_closed=False) for chain in offset_left(longer, distance)]
 
 
 def _start(loop: Loop) -> complex:
@@ -166,7 +166,7 @@ def _chains(
     way = stretched(area.middle or (), *area.ends)
     if aside <= FITS:
         return [way]
-    left, right = beside(way, aside), beside(reversed_chain(way), aside)
+    left, right = offset_left(way, aside), offset_left(reversed_chain(way), aside)
     if len(left) != 1 or len(right) != 1:
         raise job.fault("the slot's course turns too sharply for the mill", area.ref)
     return [left[0], right[0]]

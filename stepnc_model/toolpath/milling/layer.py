@@ -115,7 +115,7 @@ def _within(loops: tuple[Loop, ...]) -> Clearance:
     return clearance
 
 
-def beside(wall: Chain, distance: float) -> Clearance:
+def clearance_from_wall(wall: Chain, distance: float) -> Clearance:
     """Clearance function of the region at least a distance away from a wall."""
     edges = ContourEdges.of(wall)
     return lambda point: float(distances(np.array([point]), edges)[0]) - distance

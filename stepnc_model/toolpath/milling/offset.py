@@ -113,27 +113,29 @@ def distances(points: Points, edges: ContourEdges) -> Floats:
     if len(arcs.start):
         spoke = (points[:, None] - arcs.centre) / (arcs.start - arcs.centre)
         part = _part(spoke, arcs.turn)
-        beside = np.abs(np.abs(spoke) - 1.0) * arcs.radius
+        offset_left = np.abs(np.abs(spoke) - 1.0) * arcs.radius
         ends = np.minimum(
             np.abs(points[:, None] - arcs.start), np.abs(points[:, None] - arcs.end)
         )
-        found = np.minimum(found, np.where(part <= 1.0, beside, ends).min(1))
+        found = np.minimum(found, np.where(part <= 1.0, offset_left, ends).min(1))
     return found
 
 
 def crossings(edges: Sequence[ContourEdge]) -> list[list[float]]:
     """Fractions of each edge's length where another edge crosses or touches it."""
-    return _found(len(edges), *_pairs(ContourEdges.of(edges), None))
+    return _crossings_by_edge(len(edges), *_pairs(ContourEdges.of(edges), None))
 
 
 def crossings_with(
     edges: Sequence[ContourEdge], others: Sequence[ContourEdge]
 ) -> list[list[float]]:
     """Fractions of each edge's length where an edge of a second set crosses or touches it."""
-    return _found(len(edges), *_pairs(ContourEdges.of(edges), ContourEdges.of(others)))
+    return _crossings_by_edge(
+        len(edges), *_pairs(ContourEdges.of(edges), ContourEdges.of(others))
+    )
 
 
-def _found(count: int, index: NDArray[np.intp], parts: Floats) -> list[list[float]]:
+def _crossings_by_edge(count: int, index: NDArray[np.intp], parts: Floats) -> list[list[float]]:
     """Crossing fractions grouped by edge, in rising order."""
     order = np.lexsort((parts, index))
     bounds = np.searchsorted(index[order], np.arange(count + 1))
@@ -318,7 +320,7 @@ def rounded(loop: Loop, radius: float) -> tuple[Loop, ...]:
     return dilate(inner, radius) if inner else ()
 
 
-def beside(chain: Chain, distance: float) -> tuple[Chain, ...]:
+def offset_left(chain: Chain, distance: float) -> tuple[Chain, ...]:
     """Offset of an open chain to its left, as chains from its start to its end."""
     sources = halved(chain)
     candidates = _parallels(sources, distance, is_closed=False)

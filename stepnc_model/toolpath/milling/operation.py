@@ -94,7 +94,7 @@ def milling_path(job: ToolPathTask) -> ToolPath:
     for finding in way.findings:
         course.find(finding)
     for shape, _ in found:
-        _warn_beside_stock(course, job, shape)
+        _warn_outside_stock(course, job, shape)
     planes = [_retract_z(job, course, shape) for shape, _ in found]
     travel_z = _travel_z(job, max(planes))
     for (shape, layers), retract_z in zip(found, planes, strict=True):
@@ -125,7 +125,7 @@ def milling_path(job: ToolPathTask) -> ToolPath:
     return course.finished()
 
 
-def _warn_beside_stock(course: PathBuilder, job: ToolPathTask, shape: Area | Flank) -> None:
+def _warn_outside_stock(course: PathBuilder, job: ToolPathTask, shape: Area | Flank) -> None:
     """Warn that a feature lies wholly outside the stock, as by a placement applied twice."""
     if job.stock is None:
         return

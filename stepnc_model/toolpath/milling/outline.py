@@ -68,7 +68,7 @@ from stepnc_model.toolpath.milling.cover import (
     chord,
     upright,
 )
-from stepnc_model.toolpath.milling.offset import beside, erode, rounded
+from stepnc_model.toolpath.milling.offset import erode, offset_left, rounded
 from stepnc_model.toolpath.milling.strategy import run_out
 from stepnc_model.toolpath.path import ArcPlane, MoveType, Point
 from stepnc_model.toolpath.task import ToolPathTask
@@ -320,8 +320,8 @@ def _band(
         _beyond(job, end, half) if isinstance(end, OpenSlotEndType) else 0.0 for end in ends
     )
     way = stretched(middle, before, after)
-    left = beside(way, half)
-    right = beside(reversed_chain(way), half)
+    left = offset_left(way, half)
+    right = offset_left(reversed_chain(way), half)
     if len(left) != 1 or len(right) != 1:
         return (), ()
     caps = (
@@ -398,7 +398,7 @@ def _corner(job: ToolPathTask, end: FlatSlotEndType, half: float) -> float:
 
 def _solid(middle: Chain, half: float) -> Loop:
     """Outline of the slot between the ends of its course."""
-    left, right = beside(middle, half), beside(reversed_chain(middle), half)
+    left, right = offset_left(middle, half), offset_left(reversed_chain(middle), half)
     caps = (line(right[0][-1].end, left[0][0].start), line(left[0][-1].end, right[0][0].start))
     return counter_clockwise((*right[0], caps[0], *left[0], caps[1]))
 

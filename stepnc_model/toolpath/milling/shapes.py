@@ -283,10 +283,10 @@ def _box(job: ToolPathTask, chain: Chain) -> Chain:
     return (line(end, after), line(after, before), line(before, start))
 
 
-def _require_apart(job: ToolPathTask, outline: Loop, found: list[Island]) -> None:
+def _require_apart(job: ToolPathTask, outline: Loop, islands: list[Island]) -> None:
     """Raise an error if an island touches the wall of its pocket."""
     outer = shape(outline, tolerance=CHORD)
-    for island in found:
+    for island in islands:
         solid = shape(island.wall.loop, tolerance=CHORD)
         if outer.exterior.distance(solid) <= CHORD or not outer.covers(solid):
             raise job.fault(

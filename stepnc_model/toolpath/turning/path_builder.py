@@ -24,7 +24,7 @@ from stepnc_model.toolpath.turning.profile import (
 RAPID_CLEARANCE = 1.0
 """Least distance between the tool and the stock in rapid moves, mm."""
 
-BESIDE = 1e-5
+WALL_CONTACT = 1e-5
 """Distance to a wall, mm, within which the tool touches it without cutting."""
 
 TOUCH = 1e-6
@@ -104,7 +104,10 @@ class TurningPathBuilder:
 
     def _is_in(self, spot: Spot) -> bool:
         u, v = spot
-        return v < min(self._rim.at(u - BESIDE), self._rim.at(u + BESIDE)) - BESIDE
+        return (
+            v
+            < min(self._rim.at(u - WALL_CONTACT), self._rim.at(u + WALL_CONTACT)) - WALL_CONTACT
+        )
 
     def _run(self, pieces: Sequence[ProfilePiece], *, air: Feed, contact: Feed) -> None:
         for piece in pieces:
@@ -146,7 +149,7 @@ class TurningPathBuilder:
         if height <= TOUCH:
             return []
         back = next((low for low, _ in self._open(spot)), None)
-        is_free = back is not None and self._rim.top(u + BESIDE, back) <= v + TOUCH
+        is_free = back is not None and self._rim.top(u + WALL_CONTACT, back) <= v + TOUCH
         if back is not None and is_free and back - u <= height:
             return [(back, v)]
         return [(u, self._clear.at(u))]

@@ -289,13 +289,13 @@ def _run_in(
 
 
 def _room(
-    bar: TurningBlank, helix: TurnedThread, at: float, reach: float, beside: float
+    bar: TurningBlank, helix: TurnedThread, at: float, reach: float, clearance: float
 ) -> float:
     """Clear length for the tip beyond an end of the thread, mm, with side clearance.
 
     Negative at a shoulder, where the insert must stop short.
     """
-    half = copysign(beside, reach)
+    half = copysign(clearance, reach)
     for eighths in range(8, 0, -1):
         part = reach * eighths / 8.0
         if part and _top(bar, at, at + part + half) <= helix.radius - helix.depth:

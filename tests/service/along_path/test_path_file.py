@@ -13,7 +13,7 @@ from service.along_path.run import FeedsAlongPath, along_path
 from service.along_path.task import task_of
 from service.cli.main import optimise_main
 from service.exit_codes import BAD_INPUT
-from service.files import beside
+from service.files import sibling
 from service.progress import silent
 from service.reading import read_program
 from service.requests.advice import AdviceRequest
@@ -131,7 +131,7 @@ def test_nc_code_of_the_file_has_the_planned_feeds(
 ) -> None:
     """Blocks are split at the same places, but for ramps of a hundredth of a millimetre."""
     result = planned(sample, profile, folder)
-    code = beside(written(result), Dialect.LINUXCNC.suffix)
+    code = sibling(written(result), Dialect.LINUXCNC.suffix)
     again = tmp_path / "again.ngc"
     stepnc.post(written(result), control="linuxcnc", output=again)
     lines, others = code.read_text().splitlines(), again.read_text().splitlines()

@@ -99,7 +99,7 @@ def test_the_finished_part_of_a_program_is_its_required_part(
     path = log.write(tmp_path / "log.parquet", ready)
     found = verify(path, program, REQUEST)
     assert not found.has_errors
-    assert "in place of the features" in str(VerificationResult(found=found))
+    assert "in place of the features" in str(VerificationResult(verification=found))
     # Excess is positive: the wall at greater Y lies 0.15 mm before that of the body.
     assert _nominal(found, 46.8) == pytest.approx(-0.15, abs=2e-3)
     assert _nominal(found, 54.8) == pytest.approx(0.15, abs=2e-3)

@@ -15,8 +15,8 @@ from controller.threshold import AlarmLevel
 from optimiser.problem import LimitName
 from service.control.holding import (
     AROUND,
-    ASKED,
     BOTTOM,
+    FORCE_ORDER,
     FREE,
     NO_CHIPS,
     OFF,
@@ -117,7 +117,7 @@ def test_nothing_may_hold_it() -> None:
 
 def test_the_force_follows_from_the_user_the_plan_or_the_tool() -> None:
     assert ENDS.force_bound(AIMS) == "tool deflection"
-    assert ENDS.force_bound(LoopSettings(set_point=100.0)) == ASKED
+    assert ENDS.force_bound(LoopSettings(set_point=100.0)) == FORCE_ORDER
     assert ENDS.force_bound(LoopSettings(set_point=5000.0)) == STRENGTH
     assert AROUND.force_bound(AIMS) == ""
 

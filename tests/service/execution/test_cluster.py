@@ -1,10 +1,12 @@
 """A Dask cluster as an executor: real schedulers and workers, killed at any moment."""
 
+import asyncio
+import math
 import shutil
 import subprocess
 import threading
 from collections.abc import Iterator
-from concurrent.futures import BrokenExecutor
+from concurrent.futures import BrokenExecutor, CancelledError, Future
 from functools import partial
 from pathlib import Path
 
@@ -71,6 +73,23 @@ def test_a_scheduler_that_forgot_everything_is_asked_again(tmp_path: Path) -> No
                 made.start_worker()
     assert len(found) == len(tasks)
     assert told
+
+
+async def lost() -> float:
+    """Result of a task whose worker dies while it is fetched."""
+    raise CancelledError
+
+
+def test_a_task_that_is_lost_with_its_worker_ends_its_future() -> None:
+    future: Future[float] = Future()
+    asyncio.run(cluster_module._finish(lost(), future))
+    with pytest.raises(CancelledError):
+        future.result(timeout=0.0)
+
+
+def test_an_error_of_a_task_is_its_own(shared: LocalCluster) -> None:
+    with pytest.raises(ValueError, match="math domain error"), cluster(shared.address) as pool:
+        pool.submit(math.sqrt, -1.0).result()
 
 
 def test_a_cluster_that_does_not_answer_is_named() -> None:

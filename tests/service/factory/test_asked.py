@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from service.errors import NotFound, TooLarge, Unreadable
-from service.factory.asked import asked_source, require_asked, sample_shops
+from service.factory.asked import checked_shop, sample_shops, source_of_order
 from service.requests.factory import FactoryOrder
 from service.storage import programs
 from service.storage.folder import DataFolder, open_data_folder
@@ -35,7 +35,7 @@ def test_every_sample_shop_can_be_asked_for(data_folder: DataFolder) -> None:
     assert {"line", "paper003"} <= set(sample_shops())
     for name in sample_shops():
         order = FactoryOrder(sample=name)
-        shop = require_asked(asked_source(data_folder, order), order)
+        shop = checked_shop(source_of_order(data_folder, order), order)
         assert shop.machines
 
 
@@ -48,8 +48,8 @@ def test_a_program_is_a_sample_or_an_uploaded_one(data_folder: DataFolder) -> No
         ("../parts/bracket.stpnc", "bracket.stpnc"),
     ):  # fmt: skip
         order = FactoryOrder(shop=milled(word))
-        source = asked_source(data_folder, order)
-        step = require_asked(source, order).products[0].steps[0]
+        source = source_of_order(data_folder, order)
+        step = checked_shop(source, order).products[0].steps[0]
         assert source.programs[step.program] == name
 
 
@@ -57,13 +57,13 @@ def test_a_program_is_a_sample_or_an_uploaded_one(data_folder: DataFolder) -> No
 def test_no_other_file_is_found(data_folder: DataFolder, word: str) -> None:
     order = FactoryOrder(shop=milled(word))
     with pytest.raises(NotFound):
-        require_asked(asked_source(data_folder, order), order)
+        checked_shop(source_of_order(data_folder, order), order)
 
 
 def test_messages_do_not_name_the_folder_of_samples(data_folder: DataFolder) -> None:
     order = FactoryOrder(sample="line")
     with pytest.raises(StepNcError) as caught:
-        asked_source(data_folder, order).read({"machine[9].count": 1.0})
+        source_of_order(data_folder, order).read({"machine[9].count": 1.0})
     assert "line.toml" in str(caught.value)
     assert "examples" not in str(caught.value)
 
@@ -74,13 +74,13 @@ def test_a_live_shop_counts_from_its_beginning(data_folder: DataFolder) -> None:
         (FactoryOrder(sample="line", pace=10.0, warm_up_hours=2.0), 2.0),
     ):  # fmt: skip
         assert (
-            require_asked(asked_source(data_folder, order), order).warm_up == warm_up * 3600.0
+            checked_shop(source_of_order(data_folder, order), order).warm_up == warm_up * 3600.0
         )
 
 
 def test_one_shop_is_named(data_folder: DataFolder) -> None:
     for order in (FactoryOrder(), FactoryOrder(shop=TIMED.format(hours=1), sample="line")):
         with pytest.raises(Unreadable):
-            asked_source(data_folder, order)
+            source_of_order(data_folder, order)
     with pytest.raises(TooLarge):
-        asked_source(data_folder, FactoryOrder(shop="#" * 70_000))
+        source_of_order(data_folder, FactoryOrder(shop="#" * 70_000))

@@ -1,4 +1,4 @@
-"""Interpolated cycles of the pocket of paper 003, held against 200 direct runs."""
+"""Interpolated cycles of the pocket of paper 003, held against 64 direct runs."""
 
 from math import pi
 from pathlib import Path
@@ -6,6 +6,7 @@ from time import process_time
 
 import numpy as np
 import pytest
+from scipy.stats import qmc
 
 from service.chosen import material_for
 from service.factory.cycles import PartCycles
@@ -24,7 +25,8 @@ DESIGN = SettingsDesign(
     spindle_speed=SettingRange(low=LOW[1], high=HIGH[1]),
     depth=SettingRange(low=LOW[2], high=HIGH[2]),
 )
-RUNS = 200
+RUNS = 64
+"""Points of a Sobol sequence: the gaps between them are those of 200 drawn at random."""
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +42,7 @@ def table(cycles: PartCycles) -> CycleTable:
 def test_time_and_energy_are_within_a_per_cent_of_direct_runs(
     cycles: PartCycles, table: CycleTable
 ) -> None:
-    rows = np.random.default_rng(42).uniform(LOW, HIGH, (RUNS, 3))
+    rows = qmc.scale(qmc.Sobol(3, seed=42).random(RUNS), LOW, HIGH)
     found = table.values(*rows.T)
     material = material_for("", POCKET)
     direct = [

@@ -35,7 +35,10 @@ folder = FolderAddress(root=sys.argv[1], files=sys.argv[2], database=sys.argv[3]
 runner.main(folder, 2, os.getppid())
 """
 
-JOBS = 300
+JOBS = 4
+"""Jobs ordered before each kill, as many as the hosts run at a time: more would only be left
+when all kills are done."""
+
 KILLS = 12
 
 
@@ -150,28 +153,29 @@ def test_killed_hosts_lose_no_job_and_no_job_has_two_results(shop: Shop) -> None
     with psycopg.connect(shop.url, autocommit=True) as connection:
         connection.execute(AUDIT)
     made: list[str] = []
-    client = Thread(target=lambda: made.extend(shop.order() for _ in range(JOBS)))
     random = Random(18)
     for host in shop.hosts:
         host.start()
-    client.start()
     pause = Event()
     for kill in range(KILLS):
+        # Beside the hosts: orders come while jobs run and end.
+        client = Thread(target=lambda: made.extend(shop.order() for _ in range(JOBS)))
+        client.start()
         # One that is still starting would tell nothing.
         host = random.choice(until(shop.busy))
         pause.wait(random.uniform(0.0, 0.5))
         host.kill()
+        client.join()
         if kill % 5 == 4:
             # Longer than the lease: the other host takes over.
             pause.wait(1.5)
         host.start()
-    client.join()
     until(lambda: not waiting(shop), within=600.0)
     with psycopg.connect(shop.url) as connection:
         ends = connection.execute(
             "SELECT id, state, attempt FROM stepnc_service.ends"
         ).fetchall()
-    assert len(made) == JOBS
+    assert len(made) == JOBS * KILLS
     assert sorted(row[0] for row in ends) == sorted(made)
     attempts = {row[0]: row[2] for row in ends}
     assert {row[1] for row in ends} == {"succeeded"}

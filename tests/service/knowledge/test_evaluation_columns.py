@@ -140,7 +140,7 @@ def test_a_side_in_two_rows_counts_once() -> None:
     )
     assert dict(key_figures(table))["violated"] == "1"
     # Two remarks, and the legend.
-    page = EvaluationResult(found=table).page()
+    page = EvaluationResult(evaluation=table).page()
     assert page.count("passed its bound") + page.count("exceeded its bound") == 3
 
 

@@ -28,7 +28,9 @@ VIEW = ResultView([
         total=Part(name="total", time=3.0),
     ),
     Table(key="none", columns=COLUMNS, rows=[], heading="nothing of this:"),
-    Findings(found=[TOLD, Finding(severity=Severity.NOTE, message="a note")], told=[TOLD]),
+    Findings(
+        findings=[TOLD, Finding(severity=Severity.NOTE, message="a note")], reported=[TOLD]
+    ),
 ])  # fmt: skip
 
 
@@ -39,7 +41,7 @@ def test_text_has_totals_and_leaves_out_what_was_told() -> None:
         "part   time s", "-----  ------", "a      1.0", "b      2.0", "total  3.0",
         "note: a note",
     ]  # fmt: skip
-    assert "warning: told before" in dict(VIEW.lines(width=80, is_told=False))
+    assert "warning: told before" in dict(VIEW.lines(width=80, is_reported=False))
 
 
 def test_a_sentence_goes_on_in_the_next_line() -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from service.cli.main import main
 from service.numbers import feed_in
-from service.reading import given_data
+from service.reading import user_data
 from service.requests.given import ProgramRequest
 from stepnc_model.errors import StepNcError
 from stepnc_model.given import completed
@@ -14,7 +14,7 @@ from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.technology import programmed
 from stepnc_model.units import PROFILES, FeedUnit
-from stepnc_model.withdrawal import without_given
+from stepnc_model.withdrawal import without_user_data
 from tests.every_case import every_case
 from tests.service.test_keep_going import NO_DEPTH, NO_FEED, NO_TEETH, program
 
@@ -142,17 +142,17 @@ class TestFeed:
         technology = f"#61=MILLING_TECHNOLOGY({written},.TCP.,$,-16.,$,.F.,.F.,.F.,$);"
         data = program(_61=technology)
         read = Program(Part21File.from_bytes(data), units=PROFILES[units])
-        whole = completed(read, given_data(ProgramRequest(feed=text)))
+        whole = completed(read, user_data(ProgramRequest(feed=text)))
         step = whole.program.workingsteps[1]
         found = programmed(whole.program, step.technology_ref)
         assert found.feed_per_tooth(16.0, 2) == pytest.approx(feed)
-        assert without_given(whole.program, whole) == data
+        assert without_user_data(whole.program, whole) == data
 
     def test_a_feed_by_time_needs_a_file_that_has_such_feeds(self) -> None:
         data = program(**NO_FEED)
         read = Program(Part21File.from_bytes(data), units=PROFILES["revs-mmtooth"])
         with pytest.raises(StepNcError, match=r"in mm/tooth: .* as --feed 0.1mm/tooth"):
-            completed(read, given_data(ProgramRequest(feed="240")))
+            completed(read, user_data(ProgramRequest(feed="240")))
 
     def test_a_feed_per_turn_needs_the_number_of_teeth(self) -> None:
         read = Program(Part21File.from_bytes(program(**NO_FEED, **{
@@ -160,5 +160,5 @@ class TestFeed:
         })))  # fmt: skip
         words = ProgramRequest(feed="0.2mm/rev")
         with pytest.raises(StepNcError, match=r'give it with --teeth "T2=N"'):
-            completed(read, given_data(words))
-        assert completed(read, given_data(ProgramRequest(feed="0.2mm/rev", teeth=("T2=2",))))
+            completed(read, user_data(words))
+        assert completed(read, user_data(ProgramRequest(feed="0.2mm/rev", teeth=("T2=2",))))

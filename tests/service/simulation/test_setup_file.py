@@ -6,7 +6,7 @@ import pytest
 
 from service.requests.given import StockFile
 from service.simulation.code_setup import GivenSetup, code_setup
-from service.simulation.setup_file import SetupFile, place_beside, read_setup, setup_of
+from service.simulation.setup_file import SetupFile, read_setup, setup_of, setup_place
 from simulator.errors import LibraryError
 from stepnc_model.errors import Finding
 from stepnc_model.nc.program import read_program
@@ -19,7 +19,7 @@ TOOL = '[[tool]]\nnumber = 1\nkind = "endmill"\ndiameter_mm = 10\nteeth = 4\n'
 
 def written(folder: Path, text: str) -> Path:
     """Setup file beside part.nc."""
-    place = place_beside(folder / "part.nc")
+    place = setup_place(folder / "part.nc")
     place.write_text(text)
     return place
 

@@ -110,7 +110,7 @@ def test_work_coordinates_of_the_log_are_used(tmp_path: Path) -> None:
     (samples,) = file.pieces()
     assert samples.position.tolist() == [[1.0, 2.0, 3.0], [2.0, 2.0, 3.0]]
     assert "PATH_POSITION" in file.zero_source
-    given = LogFile(path=file.path, names=ONE, zero=(300.0, 200.0, 400.0), is_zero_given=True)
+    given = LogFile(path=file.path, names=ONE, zero=(300.0, 200.0, 400.0), is_zero_stated=True)
     (samples,) = given.pieces()
     assert samples.position.tolist() == [[1.0, 2.0, 3.0], [2.0, 2.0, 3.0]]
     assert given.zero_source == ""

@@ -9,8 +9,8 @@ from simulator.spec import CuttingMaterial
 from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.placed_row import (
     FileValue,
-    edge_given,
-    given_length,
+    edge_values,
+    file_length,
     placed_row,
 )
 
@@ -21,7 +21,7 @@ def mill(**changes: FileValue) -> dict[str, FileValue]:
     return {
         "number": FileValue(value=3, place="n"),
         "kind": FileValue(value="endmill", place="type"),
-        "diameter_mm": given_length(0.5, "DC", FileUnit.INCH),
+        "diameter_mm": file_length(0.5, "DC", FileUnit.INCH),
     } | changes
 
 
@@ -30,7 +30,7 @@ def test_lengths_become_millimetres() -> None:
 
 
 def test_a_refusal_names_the_place_the_value_and_what_the_file_says() -> None:
-    given = mill(diameter_mm=given_length(500.0, "DC", FileUnit.INCH))
+    given = mill(diameter_mm=file_length(500.0, "DC", FileUnit.INCH))
     with pytest.raises(LibraryError) as refused:
         placed_row(given, FILE, place="data[0]", line=7)
     assert str(refused.value) == (
@@ -49,7 +49,7 @@ def test_a_value_that_is_missing_is_named_by_its_key() -> None:
 
 
 def test_a_length_that_is_no_number_stays_to_be_refused() -> None:
-    given = mill(diameter_mm=given_length("wide", "DC", FileUnit.INCH))
+    given = mill(diameter_mm=file_length("wide", "DC", FileUnit.INCH))
     with pytest.raises(LibraryError, match="DC: 'wide' is not a number"):
         placed_row(given, FILE)
 
@@ -63,8 +63,8 @@ def test_a_length_that_is_no_number_stays_to_be_refused() -> None:
     ],
 )
 def test_names_of_edge_materials(name: str, material: CuttingMaterial) -> None:
-    assert edge_given(name, "BMC")["cutting_material"].value == material
+    assert edge_values(name, "BMC")["cutting_material"].value == material
 
 
 def test_an_unknown_edge_material_gives_nothing() -> None:
-    assert edge_given("unspecified", "BMC") == {}
+    assert edge_values("unspecified", "BMC") == {}

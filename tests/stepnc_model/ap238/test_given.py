@@ -20,7 +20,7 @@ from stepnc_model.program import Program
 from stepnc_model.technology import programmed
 from stepnc_model.tool import tool_of
 from stepnc_model.units import FeedUnit
-from stepnc_model.withdrawal import without_given
+from stepnc_model.withdrawal import without_user_data
 from tests.stepnc_model.ap238.samples import MILLING, exported, own, public, read
 
 FEED = GivenFeed(value=4.0, unit=FeedUnit.MM_PER_MINUTE)
@@ -95,7 +95,7 @@ def test_given_data_are_read_and_written_in_place_as_ap238(name: str) -> None:
 def test_withdrawn_data_leave_every_instance_as_it_was(name: str) -> None:
     data, words, _, _ = cases()[name]
     whole = completed(Program(read(data)), words)
-    assert instances(without_given(written(whole), whole)) == instances(data)
+    assert instances(without_user_data(written(whole), whole)) == instances(data)
 
 
 def test_a_feed_is_given_to_the_public_example_in_its_own_unit() -> None:
@@ -103,7 +103,7 @@ def test_a_feed_is_given_to_the_public_example_in_its_own_unit() -> None:
     whole = completed(Program(read(data)), GivenData(feed=FEED))
     program = written(whole)
     assert feed_of(whole.program) == feed_of(program) == pytest.approx(4.0, rel=1e-12)
-    left = without_given(program, whole)
+    left = without_user_data(program, whole)
     # The measures were there without a number, and are so again.
     assert instances(left) == instances(data)
     assert feed_is_missing(Program(read(left)))
@@ -148,7 +148,7 @@ class TestWhatTheFileHas:
         after = instances(program.source.data)
         assert sum(after[id] != text for id, text in instances(data).items()) == 1
         assert len(after) - len(instances(data)) == added
-        left = instances(without_given(program, whole))
+        left = instances(without_user_data(program, whole))
         assert all(left[id] == text for id, text in instances(data).items())
 
     def test_a_reference_is_replaced(self) -> None:
@@ -163,7 +163,7 @@ class TestWhatTheFileHas:
         found = written(whole)
         assert found.workingsteps[0].tool_ref == last.tool_ref
         assert found.workingsteps[-1].features == first.features
-        left = Program(read(without_given(found, whole)))
+        left = Program(read(without_user_data(found, whole)))
         assert left.workingsteps[0].tool_ref == first.tool_ref
         assert left.workingsteps[-1].features == last.features
         texts = instances(left.source.data)

@@ -32,35 +32,35 @@ class ReviewReport(Result):
         ])
 
 
-def _paragraph(found: Reviewed) -> Iterator[TextLine]:
-    names = " / ".join(map(one_line, asdict(found.learned.context).values()))
-    number = NOTHING if found.entry is None else found.entry.id
-    is_accepted = found.change is ReviewResult.ACCEPTED
-    text = f"{number}  {names}: {found.change.value}"
+def _paragraph(reviewed: Reviewed) -> Iterator[TextLine]:
+    names = " / ".join(map(one_line, asdict(reviewed.learned.context).values()))
+    number = NOTHING if reviewed.entry is None else reviewed.entry.id
+    is_accepted = reviewed.change is ReviewResult.ACCEPTED
+    text = f"{number}  {names}: {reviewed.change.value}"
     yield TextLine(text=text, colour=GREEN if is_accepted else "")
-    for line in _findings(found):
+    for line in _findings(reviewed):
         yield TextLine(text=f"    {line}")
 
 
-def _findings(found: Reviewed) -> list[str]:
+def _findings(reviewed: Reviewed) -> list[str]:
     """Learned factor, its data, the factor in force, and objections, one text each."""
-    report, texts = found.learned.report, []
-    if found.entry is not None:
-        correction = found.entry.correction
+    report, texts = reviewed.learned.report, []
+    if reviewed.entry is not None:
+        correction = reviewed.entry.correction
         texts.append(
             f"k_c factor {factor(interval(correction))}, 90 % interval of the next run; "
-            f"confidence {correction.confidence:.2f}; {_decided(found.entry)}"
+            f"confidence {correction.confidence:.2f}; {_decided(reviewed.entry)}"
         )
     texts.append(f"from {counted(report.used, 'outcome')} of {counted(report.runs, 'run')}")
     if report.left_out:
         why = ", ".join(f"{count} {reason.value}" for reason, count in report.left_out.items())
         texts.append(f"left out: {why}")
     before = "the catalogue's k_c"
-    if found.accepted is not None:
-        by = one_line(found.accepted.accepted_by)
-        before = f"{factor(interval(found.accepted))}, accepted by {by}"
+    if reviewed.accepted is not None:
+        by = one_line(reviewed.accepted.accepted_by)
+        before = f"{factor(interval(reviewed.accepted))}, accepted by {by}"
     texts.append(f"in force before: {before}")
-    texts += [f"needs a person's decision: {each}" for each in found.objections]
+    texts += [f"needs a person's decision: {each}" for each in reviewed.objections]
     return texts
 
 
@@ -71,19 +71,19 @@ def _decided(entry: StoredCorrection) -> str:
     return f"{entry.standing.value} by {by} on {shown(entry.decided_at)}"
 
 
-def _reviewed(found: Reviewed) -> dict[str, Any]:
-    report = found.learned.report
+def _reviewed(reviewed: Reviewed) -> dict[str, Any]:
+    report = reviewed.learned.report
     return {
-        **asdict(found.learned.context),
-        "change": found.change.value,
-        "correction": found.entry and record(CORRECTION_COLUMNS, found.entry),
-        "in_force": None if found.accepted is None else _factor(found.accepted),
+        **asdict(reviewed.learned.context),
+        "change": reviewed.change.value,
+        "correction": reviewed.entry and record(CORRECTION_COLUMNS, reviewed.entry),
+        "in_force": None if reviewed.accepted is None else _factor(reviewed.accepted),
         "runs": report.runs,
         "outcomes_used": report.used,
         "left_out": {reason.value: count for reason, count in report.left_out.items()},
         "effective_runs": report.effective_runs,
         "scatter": report.scatter,
-        "objections": [asdict(each) for each in found.objections],
+        "objections": [asdict(each) for each in reviewed.objections],
     }
 
 

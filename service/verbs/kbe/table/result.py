@@ -42,11 +42,11 @@ OF_SIDE = tuple(each for each in COLUMNS if not each.is_of_row)
 class EvaluationResult(Result):
     """Evaluation table of outcomes."""
 
-    found: EvaluationTable
+    evaluation: EvaluationTable
 
     def view(self) -> ResultView:
         """Return lines of roughing and finishing, remarks, key figures and legend."""
-        found, request = self.found, self.found.request
+        found, request = self.evaluation, self.evaluation.request
         sides = tuple(lines(found.rows))
         return ResultView([
             Fact(key="place", value=found.place),
@@ -73,7 +73,7 @@ class EvaluationResult(Result):
         """Return one self-contained HTML page that can be mailed, printed and kept."""
         from service.rendering.pages import rendered  # noqa: PLC0415 (Jinja is slow to import)
 
-        found = self.found
+        found = self.evaluation
         sides = tuple(lines(found.rows))
         return rendered(
             "evaluation.html.jinja",
@@ -88,11 +88,11 @@ class EvaluationResult(Result):
         )
 
 
-def _shown(found: EvaluationTable, sides: Sequence[EvaluationLine]) -> Iterator[Item]:
+def _shown(table: EvaluationTable, sides: Sequence[EvaluationLine]) -> Iterator[Item]:
     """Items shown to people."""
     if sides:
         yield Table(
-            columns=screen_columns(found.rows),
+            columns=screen_columns(table.rows),
             rows=sides,
             nothing=NOTHING,
             row_of=lambda line: line.number,
@@ -104,11 +104,11 @@ def _shown(found: EvaluationTable, sides: Sequence[EvaluationLine]) -> Iterator[
         yield TextLine(text=f"{line.number} {line.which}: {remark}", is_wrapped=True)
     if remarks:
         yield TextLine(text="")
-    figures = ", ".join(f"{name} {value}" for name, value in key_figures(found))
+    figures = ", ".join(f"{name} {value}" for name, value in key_figures(table))
     # Without outcomes it was told why; only files repeat the figures then.
-    is_told = not found.outcomes
-    for text in (f"{found.place}: {figures}", "", LEGEND):
-        yield TextLine(text=text, is_wrapped=bool(text), is_told=is_told)
+    is_told = not table.outcomes
+    for text in (f"{table.place}: {figures}", "", LEGEND):
+        yield TextLine(text=text, is_wrapped=bool(text), is_reported=is_told)
 
 
 def _remarks(sides: Sequence[EvaluationLine]) -> list[tuple[EvaluationLine, Remark]]:
@@ -116,15 +116,15 @@ def _remarks(sides: Sequence[EvaluationLine]) -> list[tuple[EvaluationLine, Rema
     return [(line, remark) for line in sides for remark in line.side.remarks]
 
 
-def key_figures(found: EvaluationTable) -> tuple[tuple[str, str], ...]:
+def key_figures(table: EvaluationTable) -> tuple[tuple[str, str], ...]:
     """Key figures of the table, as names and values; a side in two rows counts once."""
-    sides = list({id(side): side for row in found.rows for side in row.sides}.values())
+    sides = list({id(side): side for row in table.rows for side in row.sides}.values())
     grades = [side.grade for side in sides]
-    hidden = f" and {found.left_out} not shown" if found.left_out else ""
+    hidden = f" and {table.left_out} not shown" if table.left_out else ""
     pending = {side.context for side in sides if side.is_pending}
     return (
-        ("outcomes", str(found.outcomes)),
-        ("rows", f"{len(found.rows)}{hidden}"),
+        ("outcomes", str(table.outcomes)),
+        ("rows", f"{len(table.rows)}{hidden}"),
         ("violated", str(grades.count(EvaluationGrade.VIOLATED))),
         ("wasted", str(grades.count(EvaluationGrade.WASTED))),
         ("k_c factors pending", str(len(pending))),
@@ -173,11 +173,11 @@ def _side_json(line: EvaluationLine) -> dict[str, Any]:
 class SummaryResult(Result):
     """Counts and spreads by machine, material, tool and kind of feature."""
 
-    found: Summary
+    summary: Summary
 
     def view(self) -> ResultView:
         """Return a line for each combination."""
-        found = self.found
+        found = self.summary
         count = counted(sum(group.outcomes for group in found.groups), "outcome")
         note = "mean ± standard deviation of measured over planned, minus one"
         is_shown = bool(found.groups)
@@ -188,7 +188,7 @@ class SummaryResult(Result):
                 key="groups", columns=SUMMARY, rows=found.groups, nothing=NOTHING,
                 is_shown=is_shown,
             ),
-            TextLine(text=f"{found.place}: {count}; {note}", is_told=not is_shown),
+            TextLine(text=f"{found.place}: {count}; {note}", is_reported=not is_shown),
         ])  # fmt: skip
 
     def page(self) -> str:

@@ -27,8 +27,8 @@ def run(
         summed = summary(place, request.selection)
         if not summed.groups:
             tell(why_empty(place))
-        return SummaryResult(found=summed)
+        return SummaryResult(summary=summed)
     found = table(place, request, tell=tell)
     if not found.outcomes:
         tell(why_empty(place))
-    return EvaluationResult(found=replace(found, place=files.name or found.place))
+    return EvaluationResult(evaluation=replace(found, place=files.name or found.place))

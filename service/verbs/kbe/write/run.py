@@ -2,7 +2,7 @@
 
 from kbe.queries import Selection
 from kbe.store import Store, open_store
-from service.files import beside, require_place, write_atomically
+from service.files import require_place, sibling, write_atomically
 from service.knowledge.place import require_apart
 from service.progress import Tell, silent
 from service.reading import read_program
@@ -21,7 +21,7 @@ def run(request: WriteRequest, files: WriteFiles, *, tell: Tell = silent) -> Wri
     StepNcError
         When the run does not exist, belongs to another program, or the output is not writable.
     """
-    target = files.output or beside(files.file, ".recorded.stpnc")
+    target = files.output or sibling(files.file, ".recorded.stpnc")
     require_place(target, apart_from=files.file)
     require_apart(files.place, target)
     program = read_program(files.file, units="iso")

@@ -41,7 +41,7 @@ def test_units_are_those_of_the_names(found: EvaluationTable) -> None:
 
 
 def test_json_has_rows_with_sides_and_remarks_in_parts(found: EvaluationTable) -> None:
-    told = EvaluationResult(found=found).record()
+    told = EvaluationResult(evaluation=found).record()
     assert told["outcomes"] == 1200
     assert (told["by"], told["only"], told["sort"]) == ("feature", "all", "name")
     assert len(told["rows"]) == len(found.rows)

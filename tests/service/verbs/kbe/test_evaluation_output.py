@@ -51,4 +51,4 @@ def test_a_summary_is_no_page(shop_file: Path, tmp_path: Path) -> None:
         found.save(tmp_path / "x.html")
     groups = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))["groups"]
     rows = pq.read_table(found.save(tmp_path / "x.parquet")).num_rows
-    assert len(groups) == rows == len(found.found.groups) > 0
+    assert len(groups) == rows == len(found.summary.groups) > 0

@@ -24,7 +24,7 @@ def found(shop_file: Path) -> EvaluationTable:
 
 def evaluation_page(found: EvaluationTable) -> str:
     """The page of a table."""
-    return EvaluationResult(found=found).page()
+    return EvaluationResult(evaluation=found).page()
 
 
 class Reader(HTMLParser):

@@ -38,7 +38,7 @@ def test_means_and_spreads_are_those_of_the_outcomes(
 
 
 def test_json_and_table_have_every_group(found: Summary) -> None:
-    result = SummaryResult(found=found)
+    result = SummaryResult(summary=found)
     assert len(result.record()["groups"]) == len(found.groups)
     out = str(result).splitlines()
     assert len(out) == len(found.groups) + 3

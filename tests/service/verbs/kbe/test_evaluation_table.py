@@ -25,8 +25,8 @@ def found(shop_file: Path) -> EvaluationTable:
 
 def lines(found: EvaluationTable, width: int) -> list[tuple[str, str]]:
     """Lines of a table with their colours, as in a file."""
-    view = EvaluationResult(found=found).view()
-    return list(view.lines(width=width, is_told=False))
+    view = EvaluationResult(evaluation=found).view()
+    return list(view.lines(width=width, is_reported=False))
 
 
 def table_text(found: EvaluationTable, *, width: int) -> str:

@@ -10,7 +10,7 @@ from kbe.queries import Standing, StoredCorrection
 from service.verbs.kbe.content import ContentResult
 from service.verbs.kbe.corrections.result import CorrectionsResult
 from service.verbs.kbe.list.result import OutcomesResult
-from service.verbs.kbe.quantities import EVALUATED, told
+from service.verbs.kbe.quantities import EVALUATED, comparison_text
 from service.verbs.kbe.show.result import RunResult
 from stepnc_model.outcome import EvaluatedQuantity, ProcessOutcome
 from tests.kbe.cuts import SLOT, correction
@@ -30,9 +30,11 @@ def test_the_edge_speaks_micrometres_and_millimetres_a_minute() -> None:
 
 
 def test_a_quantity_is_told_with_its_deviation() -> None:
-    assert told(EvaluatedQuantity(predicted=50.0, measured=55.0)) == "50 -> 55 (+10 %)"
-    assert told(EvaluatedQuantity(predicted=50.0)) == "50 -> –"
-    assert told(EvaluatedQuantity()) == ""
+    assert (
+        comparison_text(EvaluatedQuantity(predicted=50.0, measured=55.0)) == "50 -> 55 (+10 %)"
+    )
+    assert comparison_text(EvaluatedQuantity(predicted=50.0)) == "50 -> –"
+    assert comparison_text(EvaluatedQuantity()) == ""
 
 
 def test_a_listing_has_a_line_for_each(shop_outcomes: tuple[ProcessOutcome, ...]) -> None:

@@ -13,7 +13,7 @@ from tests.service.verification.runs import clean
 
 
 def test_text_and_json_say_the_same(tmp_path: Path) -> None:
-    result = VerificationResult(found=clean(tmp_path))
+    result = VerificationResult(verification=clean(tmp_path))
     text = str(result)
     assert "verdict: nothing beyond the uncertainty of the log" in text
     assert "position feedback does not see" in text
@@ -28,13 +28,13 @@ def test_text_and_json_say_the_same(tmp_path: Path) -> None:
 def test_no_number_is_a_negative_zero(tmp_path: Path) -> None:
     whole = clean(tmp_path)
     found = replace(whole, nominal=np.where(np.isfinite(whole.nominal), -1e-6, np.nan))
-    page = VerificationResult(found=found).page()
+    page = VerificationResult(verification=found).page()
     assert "+0.0000 to +0.0000" in page
     assert "-0.0000" not in page
 
 
 def test_the_page_has_both_pictures_and_loads_nothing(tmp_path: Path) -> None:
-    page = VerificationResult(found=clean(tmp_path)).page()
+    page = VerificationResult(verification=clean(tmp_path)).page()
     assert 'id="plan"' in page
     assert 'id="space"' in page
     assert "nothing beyond the uncertainty of the log" in page
@@ -43,7 +43,7 @@ def test_the_page_has_both_pictures_and_loads_nothing(tmp_path: Path) -> None:
 
 def test_places_are_written_with_their_units(tmp_path: Path) -> None:
     found = clean(tmp_path)
-    count = VerificationResult(found=found).write_places(tmp_path / "places.csv")
+    count = VerificationResult(verification=found).write_places(tmp_path / "places.csv")
     assert count == int(found.places.is_wall.sum())
     names = headings(tmp_path / "places.csv")
     assert names[:5] == ["x_mm", "y_mm", "z_mm", "deviation_mm", "uncertainty_mm"]

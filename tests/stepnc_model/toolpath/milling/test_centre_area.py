@@ -5,7 +5,7 @@ from math import pi
 import pytest
 
 from stepnc_model.toolpath.milling.contour import ContourEdge, circle, clockwise, line, polygon
-from stepnc_model.toolpath.milling.layer import CentreArea, beside, nowhere, within
+from stepnc_model.toolpath.milling.layer import CentreArea, clearance_from_wall, nowhere, within
 
 FIELD = polygon([0j, 40 + 0j, 40 + 20j, 20j])
 CLEAR = within([FIELD, clockwise(circle(20 + 10j, 5.0))])
@@ -35,7 +35,7 @@ def test_way_is_held_only_where_all_of_it_stays_inside() -> None:
 
 
 def test_room_beside_a_wall_keeps_its_distance() -> None:
-    room = CentreArea(clearance=beside((line(0j, 10 + 0j),), 3.0))
+    room = CentreArea(clearance=clearance_from_wall((line(0j, 10 + 0j),), 3.0))
     assert room.holds((line(3j, 10 + 3j),))
     assert not room.holds((line(3j, 10 + 2j),))
 

@@ -18,11 +18,11 @@ from stepnc_model.toolpath.milling.contour import (
     shape,
 )
 from stepnc_model.toolpath.milling.offset import (
-    beside,
     contains,
     dilate,
     erode,
     offset,
+    offset_left,
     rounded,
 )
 
@@ -94,10 +94,10 @@ def test_rounded_square_lacks_its_corners() -> None:
 
 def test_chain_beside_a_corner_bends_around_it_outside_and_is_cut_inside() -> None:
     chain = (line(0j, 10 + 0j), line(10 + 0j, 10 + 10j))
-    (left,) = beside(chain, 2.0)
+    (left,) = offset_left(chain, 2.0)
     assert [edge.start for edge in left] == pytest.approx([2j, 8 + 2j])
     back = (line(10 + 10j, 10 + 0j), line(10 + 0j, 0j))
-    (right,) = beside(back, 2.0)
+    (right,) = offset_left(back, 2.0)
     assert [edge.centre for edge in right] == [None, 10 + 0j, None]
 
 
