@@ -6,11 +6,13 @@ change while they go on has a function of its own (:data:`service.jobs.child.WOR
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 
 from service.errors import NotFound
+from service.extra_parts import declared
 from service.extras import has_package
 from service.files import naming
+from service.jobs.stored_verb import StoredVerb
 from service.jobs.task import RunningJob
 from service.recording.logged_run import AgentRun, keep_run
 from service.requests.fields import Request
@@ -27,19 +29,6 @@ from service.verbs.call import Verb, verbs
 from service.verbs.result import Result
 from stepnc_model.errors import Finding, Severity
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StoredVerb:
-    """A verb that jobs run."""
-
-    name: str
-    """Folder of the verb."""
-    request: type[Request]
-    """Its request as jobs have it: with ids of what was uploaded."""
-    output: str = ""
-    """Name of the file that it writes; empty: its result keeps what there is."""
-
-
 STORED: Mapping[JobKind, StoredVerb] = {
     JobKind.ADVICE: StoredVerb(name="optimise", request=StoredAdviceRequest, output=OPTIMISED),
     JobKind.SIMULATION: StoredVerb(name="simulate", request=SimulationRequest, output=SAMPLES),
@@ -47,6 +36,7 @@ STORED: Mapping[JobKind, StoredVerb] = {
     JobKind.REVIEW: StoredVerb(name="kbe.review", request=ReviewRequest),
     JobKind.VERIFICATION: StoredVerb(name="verify", request=QueuedVerification),
     JobKind.CYCLE_TIME: StoredVerb(name="cycletime", request=QueuedCycleTime),
+    **dict(declared("jobs", "STORED")),
 }
 """Verb of each kind of job that is no live session."""
 

@@ -14,6 +14,7 @@ from starlette.exceptions import HTTPException
 
 from service import log_lines
 from service.agent.shop import ShopAgent
+from service.extra_parts import declared
 from service.knowledge.verbs import require_usable
 from service.lifeline import end_with_parent
 from service.monitor.monitor import MonitorSet
@@ -22,7 +23,6 @@ from service.rest import (
     advice,
     agent,
     comparisons,
-    factories,
     files,
     health,
     jobs,
@@ -115,7 +115,7 @@ def _routed() -> FastAPI:
     # The most frequently used first: routes are tried in this order.
     for routes in (
         advice.ROUTES, jobs.ROUTES, *map(routes_of, RESOURCES), live.ROUTES, programs.ROUTES,
-        comparisons.ROUTES, simulations.ROUTES, factories.ROUTES, factories.SHOPS,
+        comparisons.ROUTES, simulations.ROUTES, *declared("rest", "ROUTES"),
         verifications.ROUTES, files.ROUTES, knowledge.CORRECTIONS, knowledge.OUTCOMES,
         *map(library.routes_of, LibrarySection), monitors.ROUTES,
         health.ROUTES, pages.ROUTES,

@@ -17,7 +17,6 @@ from starlette.concurrency import run_in_threadpool
 from kbe.rows import utc
 from optimiser.source import why_elsewhere
 from service.errors import NotFound, Unreadable
-from service.factory.asked import asked_source, require_asked
 from service.files import read_bytes
 from service.monitor.monitor import MonitorSet
 from service.numbers import numbers_in, tool_numbers_in
@@ -25,7 +24,6 @@ from service.program_kind import ProgramKind
 from service.reading import read_given, selected
 from service.recording.logged_run import DOCUMENTS
 from service.recording.table import TABLES
-from service.requests.factory import FactoryOrder
 from service.requests.fields import loaded
 from service.requests.given import GIVEN, ProgramRequest, StockFile
 from service.requests.knowledge import SelectionRequest
@@ -303,12 +301,6 @@ def verifiable(data_folder: DataFolder, asked: JobRequest) -> None:
 def _missing(words: Mapping[str, Any], names: tuple[str, ...]) -> list[str]:
     """Return which of some fields are not given, nor what takes their place."""
     return [name for name in names if not words[name] and not words.get(IN_PLACE.get(name, ""))]
-
-
-def producible(data_folder: DataFolder, asked: JobRequest) -> None:
-    """Check that a shop, its programs and its machines can be read."""
-    wanted = loaded(FactoryOrder, asked.request)
-    require_asked(asked_source(data_folder, wanted), wanted)
 
 
 def startable(_data_folder: DataFolder, asked: JobRequest) -> None:

@@ -1,22 +1,20 @@
 """Table of the stored verbs over REST: kind of job, request, result and files of each.
 
-A new one needs an entry here, its kind in :mod:`service.storage.jobs`, its path in
-:data:`service.rest.views.PLACES`, and its verb in :data:`service.jobs.verb_job.STORED`. Routes
-that only one resource has stand in a module of their own.
+A new one needs an entry here, or in ``RESOURCES`` of an extra's module ``rest``, its kind in
+:mod:`service.storage.jobs`, its path in :data:`service.rest.views.PLACES`, and its verb in
+:data:`service.jobs.verb_job.STORED`. Routes that only one resource has stand in a module of
+their own.
 """
 
 from dataclasses import asdict
 
-from service.factory.run import STATES
-from service.jobs.produce import FIGURES, TABLES
-from service.requests.factory import FactoryOrder
+from service.extra_parts import declared
 from service.requests.knowledge import EvaluationRequest, ReviewRequest
 from service.requests.runs import ControlRequest, SimulationRequest
 from service.requests.stored_cycle_time import StoredCycleTimeRequest
 from service.requests.stored_verification import StoredVerificationRequest
 from service.rest.bodies import TrialBody
 from service.rest.orders import (
-    producible,
     runnable,
     selectable,
     startable,
@@ -105,43 +103,6 @@ RESOURCES = (
                 about="Download the samples as ``stepnc simulate -o run.parquet`` writes them.",
             ),
         ),
-        has_series=True,
-    ),
-    Resource(
-        kind=JobKind.FACTORY,
-        tag="factories",
-        plural="runs of shops",
-        creation=Creation(
-            name="ask_factory",
-            body=FactoryOrder,
-            require=producible,
-            summary="Run a shop",
-            about="Queue a job that runs a shop: live at a pace, or with replications and a "
-            "sweep.",
-        ),
-        shown=Shown(
-            summary="Show the figures of a shop",
-            about="Show the figures by level, the time in each state, and the cases of a "
-            "sweep.",
-        ),
-        downloads=(
-            Download(
-                path="figures",
-                file=FIGURES,
-                forms=(TableFormat.CSV,),
-                summary="Download the figures as CSV",
-                about="Download the figures of all levels, one row each.",
-            ),
-            Download(
-                path="samples",
-                file=f"{TABLES}/{STATES}",
-                thing="states",
-                summary="Download the states as Parquet",
-                about="Download the states of all machines, one row each, first replication.",
-            ),
-        ),
-        status="Show states of machines, buffers, products and processes; null before it "
-        "begins.",
         has_series=True,
     ),
     Resource(
@@ -249,4 +210,5 @@ RESOURCES = (
         ),
         report="",
     ),
+    *declared("rest", "RESOURCES"),
 )

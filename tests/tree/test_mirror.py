@@ -86,7 +86,14 @@ THROUGH = {
     "service/jobs/test_runner.py": ("service/jobs/frozen.py",),
     "service/verbs/kbe/test_run.py": ("service/requests/output.py",),
     "service/rest/test_agent.py": ("service/agent/shop.py",),
-    "service/rest/test_factories.py": ("service/rest/factory_views.py",),
+    "service/rest/test_resource.py": (
+        "extras/factory/jobs.py",
+        "service/jobs/stored_verb.py",
+    ),
+    "service/rest/test_factories.py": (
+        "extras/factory/rest.py",
+        "extras/factory/views.py",
+    ),
     "service/rest/test_monitors.py": ("service/rest/monitor_views.py",),
     "service/rest/test_programs.py": ("service/rest/uploads.py",),
     "service/rest/test_raw_part.py": ("service/requests/stored_stock.py",),
