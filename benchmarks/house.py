@@ -226,7 +226,13 @@ def entries(root: Path) -> list[Name]:
         for name in FOUND
         for file in sorted(root.glob(f"extras/*/{name}.py"))
     ]
-    return [*((module, name) for module, _, name in scripts), *verbs, *parts, PYTHON, *MIGRATIONS]
+    return [
+        *((module, name) for module, _, name in scripts),
+        *verbs,
+        *parts,
+        PYTHON,
+        *MIGRATIONS,
+    ]
 
 
 def unreached(house: House, found: set[Name]) -> list[Name]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from service.brep.tessellation import ALL, Choice, Tessellation, tessellate
 from simulator.motion.segments import Floats
-from simulator.verification.mesh import edges_of
+from simulator.removal.mesh_stock import edges_of
 from stepnc_model.errors import Part21Error, StepNcError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref, Typed, Value

@@ -33,7 +33,6 @@ from service.rest import (
     pages,
     programs,
     simulations,
-    verifications,
 )
 from service.rest.access import AccessMiddleware
 from service.rest.context import PROBLEMS
@@ -116,7 +115,7 @@ def _routed() -> FastAPI:
     for routes in (
         advice.ROUTES, jobs.ROUTES, *map(routes_of, RESOURCES), live.ROUTES, programs.ROUTES,
         comparisons.ROUTES, simulations.ROUTES, *declared("rest", "ROUTES"),
-        verifications.ROUTES, files.ROUTES, knowledge.CORRECTIONS, knowledge.OUTCOMES,
+        files.ROUTES, knowledge.CORRECTIONS, knowledge.OUTCOMES,
         *map(library.routes_of, LibrarySection), monitors.ROUTES,
         health.ROUTES, pages.ROUTES,
     ):  # fmt: skip

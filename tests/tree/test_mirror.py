@@ -88,6 +88,7 @@ THROUGH = {
     "service/rest/test_agent.py": ("service/agent/shop.py",),
     "service/rest/test_resource.py": (
         "extras/factory/jobs.py",
+        "extras/verification/jobs.py",
         "service/jobs/stored_verb.py",
     ),
     "service/rest/test_factories.py": (
@@ -95,6 +96,7 @@ THROUGH = {
         "extras/factory/views.py",
     ),
     "service/rest/test_monitors.py": ("service/rest/monitor_views.py",),
+    "service/rest/test_verifications.py": ("extras/verification/rest.py",),
     "service/rest/test_programs.py": ("service/rest/uploads.py",),
     "service/rest/test_raw_part.py": ("service/requests/stored_stock.py",),
     "service/rest/test_serve.py": ("service/web_server.py",),
