@@ -30,7 +30,8 @@ ROOT = Path(__file__).parents[1]
 PAPER = ROOT / "examples" / "parts" / "paper002.stpnc"
 
 PRODUCT = (
-    "stepnc_model", "simulator", "optimiser", "controller", "kbe", "service", "extras", "stepnc",
+    "stepnc_model", "simulator", "optimiser", "controller", "kbe", "service", "extras",
+    "stepnc",
 )  # fmt: skip
 
 ALLOWED = {

@@ -42,7 +42,7 @@ STORED: Mapping[JobKind, StoredVerb] = {
 
 @runtime_checkable
 class LogRequest(Protocol):
-    """A request that may name a log: an upload, the samples of a run, or a monitored machine."""
+    """A request that may name a log: an upload, the samples of a run, or a machine."""
 
     log_id: str | None
     run_id: str | None

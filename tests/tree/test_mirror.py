@@ -96,7 +96,6 @@ THROUGH = {
         "extras/factory/views.py",
     ),
     "service/rest/test_monitors.py": ("service/rest/monitor_views.py",),
-    "service/rest/test_verifications.py": ("extras/verification/rest.py",),
     "service/rest/test_programs.py": ("service/rest/uploads.py",),
     "service/rest/test_raw_part.py": ("service/requests/stored_stock.py",),
     "service/rest/test_serve.py": ("service/web_server.py",),
