@@ -8,6 +8,7 @@ folder ``verbs`` (:mod:`service.verbs.call`).
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 EXTRAS = Path(__file__).parents[1] / "extras"
@@ -25,3 +26,14 @@ def declared(module: str, name: str) -> Iterator[Any]:
     """
     for file in sorted(EXTRAS.glob(f"*/{module}.py")):
         yield from getattr(import_module(f"extras.{file.parent.name}.{module}"), name, ())
+
+
+def part(extra: str, module: str) -> ModuleType:
+    """Module of an extra for which the core has a port: one that it calls, but does not import.
+
+    Parameters
+    ----------
+    extra, module : str
+        Names of the folder and of the module in it.
+    """
+    return import_module(f"extras.{extra}.{module}")

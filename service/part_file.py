@@ -12,7 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from service.brep.solid import SolidPlace, require_solids, sag_within, solid_triangles
+from service.brep.bodies import SolidPlace, sag_within, triangles_of
+from service.extra_parts import part
 from service.files import read_bytes
 from service.program_kind import PART21
 from simulator.motion.segments import Floats
@@ -147,7 +148,7 @@ def read_part(path: Path, *, solid: str = "", tolerance: float) -> PartMesh:
     content = read_bytes(path, most=MOST_BYTES)
     if not _is_step(content):
         return PartMesh(triangles=stl_triangles(content, path))
-    triangles = solid_triangles(_solids(content, path, solid), tolerance=tolerance)
+    triangles = triangles_of(_solids(content, path, solid), tolerance=tolerance)
     return PartMesh(triangles=triangles, sag=sag_within(tolerance))
 
 
@@ -161,7 +162,7 @@ def require_part(path: Path) -> None:
     """
     content = read_bytes(path, most=MOST_BYTES)
     if _is_step(content):
-        require_solids(_solids(content, path))
+        part("brep", "solid").require_solids(_solids(content, path))
     else:
         stl_triangles(content, path)
 

@@ -43,5 +43,4 @@ def test_a_verb_of_an_extra_is_found_beside_those_of_the_core() -> None:
     found = call.verbs()
     assert list(found) == sorted(found)
     assert found["shout"].module("run") == "extras.say.verbs.shout.run"
-    assert found["shout"].request is int
     assert found["optimise"].module("run") == "service.verbs.optimise.run"
