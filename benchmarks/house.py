@@ -35,9 +35,9 @@ PRODUCT = (
 )  # fmt: skip
 
 ALLOWED = {
-    "optimiser.profile.smooth_limit": "problems of paths without jumps, made by hand",
+    "optimiser.profile.smooth_limit": "problems without jumps, by hand",
     "optimiser.profile.tangential_limit": "problems made by hand",
-    "optimiser.profile_program.solver_profile": "judge of the sweep, in tests and benchmarks",
+    "optimiser.profile_program.solver_profile": "judge in tests",
     "kbe.migrations.versions.0001_outcomes.upgrade": "Alembic calls it by this name",
     "kbe.migrations.versions.0002_identity.upgrade": "Alembic calls it by this name",
     "service.rest.app.application": "the application by itself, for tests and other servers",
