@@ -28,16 +28,11 @@ from simulator.agent.agent import Agent, StreamQuery
 from simulator.agent.buffer import Value
 from simulator.agent.http import application
 from simulator.agent.machine_feed import RunFeed, beginning, run_feed
-from simulator.agent.machine_model import (
-    MachineModel,
-    NameSet,
-    SchemaVersion,
-    device_uuid,
-    machine_model,
-)
+from simulator.agent.machine_model import MachineModel, device_uuid, machine_model
 from simulator.agent.model import DeviceModel, read_model
 from simulator.agent.schemas import SchemaFiles, read_schemas
 from simulator.agent.tool_assets import tool_asset
+from simulator.client.document_choices import NameSet, SchemaVersion
 from simulator.library import load_machine
 from simulator.machine.samples import Samples, joined
 from simulator.machine.virtual import LoadedTool

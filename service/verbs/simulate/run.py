@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from service.extra_parts import part
 from service.progress import Tell, silent
 from service.requests.runs import SimulationRequest
 from service.simulation.facts import WORLD, stated
@@ -32,10 +33,11 @@ def run(
     elif files.mtconnect is None:
         found = simulate(request, places, tell=tell)
     else:
-        from service.agent.run import DocumentChoice, simulated_with_document  # noqa: PLC0415 (lxml)
-
-        choice = DocumentChoice(
+        agent = part("agent", "run")
+        choice = agent.DocumentChoice(
             version=files.schema, names=files.names, part=files.part, batch=files.batch
         )
-        found = simulated_with_document(request, places, files.mtconnect, choice, tell=tell)
+        found = agent.simulated_with_document(
+            request, places, files.mtconnect, choice, tell=tell
+        )
     return SimulateResult(simulation=found, carbon=carbon)

@@ -29,7 +29,7 @@ from service.requests.agent import AgentRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, simulate
 from simulator.agent.http import application
-from simulator.agent.machine_model import NameSet, SchemaVersion
+from simulator.client.document_choices import NameSet, SchemaVersion
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program
 from tests.simulator.agent.conftest import header, local, observations, require_valid
