@@ -2,13 +2,13 @@
 
 An extra is a folder of ``extras``. The core imports none of them: it reads what each declares
 in a module of a known name, such as ``ROUTES`` in ``rest``. Verbs of extras stand in their
-folder ``verbs`` (:mod:`service.verbs.call`).
+folder ``verbs`` (:mod:`service.verbs.call`). A function of one extra that the core calls is a
+port: its name is a constant of the caller, resolved at the call.
 """
 
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 EXTRAS = Path(__file__).parents[1] / "extras"
@@ -26,14 +26,3 @@ def declared(module: str, name: str) -> Iterator[Any]:
     """
     for file in sorted(EXTRAS.glob(f"*/{module}.py")):
         yield from getattr(import_module(f"extras.{file.parent.name}.{module}"), name, ())
-
-
-def part(extra: str, module: str) -> ModuleType:
-    """Module of an extra for which the core has a port: one that it calls, but does not import.
-
-    Parameters
-    ----------
-    extra, module : str
-        Names of the folder and of the module in it.
-    """
-    return import_module(f"extras.{extra}.{module}")

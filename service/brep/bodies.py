@@ -6,9 +6,9 @@ in coordinates of the workpiece. Units mm.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pkgutil import resolve_name
 from typing import TYPE_CHECKING
 
-from service.extra_parts import part
 from stepnc_model.ap238.view import AimView
 from stepnc_model.errors import StepNcError
 from stepnc_model.part21.reader import Part21File
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 ROUND = 0.05
 """Greatest difference of sizes along x, y and around z at which a body counts as a bar, mm."""
+
+TRIANGLES = "extras.brep.solid:solid_triangles"
+"""Function of an extra that reads the triangles of a solid."""
 
 USUAL_TOLERANCE = 0.0254
 """Size of the deviations that a raw part shows, 0.001 inch in mm."""
@@ -125,7 +128,7 @@ def triangles_of(place: SolidPlace, *, tolerance: float) -> "Floats":
     tolerance : float, mm
         Size of the deviations that are to be seen.
     """
-    found: Floats = part("brep", "solid").solid_triangles(place, tolerance=tolerance)
+    found: Floats = resolve_name(TRIANGLES)(place, tolerance=tolerance)
     return found
 
 

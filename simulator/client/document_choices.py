@@ -1,5 +1,6 @@
 """Choices of an MTConnect document: its schema version, and the ids of its data items."""
 
+from dataclasses import dataclass
 from enum import StrEnum
 
 
@@ -24,3 +25,14 @@ class NameSet(StrEnum):
     """short ids after the device"""
     PAPERS = "papers"
     """as printed in the papers on the virtual machine, where they have one"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DocumentChoice:
+    """Form of a document of MTConnect."""
+
+    version: SchemaVersion = SchemaVersion.V2_7
+    names: NameSet = NameSet.MODERN
+    part: str = ""
+    """Id of the part; empty: unknown."""
+    batch: str = ""

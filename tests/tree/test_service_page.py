@@ -1,7 +1,6 @@
 """Bounds that the page about the service gives are those of the program."""
 
-from service.rest.verifications import PLACES_SHOWN
-
+from extras.verification.rest import PLACES_SHOWN
 from service.code_check import LONGEST as LONGEST_CHECK
 from service.factory import asked
 from service.http_protocol import HEAD_S
