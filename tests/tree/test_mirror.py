@@ -118,9 +118,9 @@ def mirror(module: str) -> Path:
 
     Verbs of one group, whose folders stand in that of the group, are run by one.
     """
-    path = TESTS / module
-    if module.startswith("service/verbs/") and module.count("/") >= 3:
-        return TESTS.joinpath(*Path(module).parts[:3], "test_run.py")
+    path, parts = TESTS / module, Path(module).parts
+    if "verbs" in parts[:-2]:
+        return TESTS.joinpath(*parts[: parts.index("verbs") + 2], "test_run.py")
     return path.with_name(f"test_{path.name}")
 
 
