@@ -85,7 +85,10 @@ THROUGH = {
     ),
     "service/jobs/test_runner.py": ("service/jobs/frozen.py",),
     "service/verbs/kbe/test_run.py": ("service/requests/output.py",),
-    "service/rest/test_agent.py": ("service/agent/shop.py",),
+    "service/rest/test_agent.py": (
+        "extras/agent/rest.py",
+        "service/agent/shop.py",
+    ),
     "service/rest/test_resource.py": (
         "extras/factory/jobs.py",
         "extras/verification/jobs.py",
