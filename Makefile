@@ -78,7 +78,7 @@ demo: $(READY)
 # other and keep 450 MB of a compiler each, and what the first command says of it is no part of what
 # a test looks at. Their files are named by content, so any checkout may take them from another.
 KERNELS := build/.kernels
-SOURCES := $(shell find stepnc_model simulator optimiser controller service -name '*.py')
+SOURCES := $(shell find stepnc_model simulator optimiser controller service extras -name '*.py')
 
 kernels: $(KERNELS)
 

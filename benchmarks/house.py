@@ -29,12 +29,15 @@ ROOT = Path(__file__).parents[1]
 
 PAPER = ROOT / "examples" / "parts" / "paper002.stpnc"
 
-PRODUCT = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service", "stepnc")
+PRODUCT = (
+    "stepnc_model", "simulator", "optimiser", "controller", "kbe", "service", "extras",
+    "stepnc",
+)  # fmt: skip
 
 ALLOWED = {
-    "optimiser.profile.smooth_limit": "problems of paths without jumps, made by hand",
+    "optimiser.profile.smooth_limit": "problems without jumps, by hand",
     "optimiser.profile.tangential_limit": "problems made by hand",
-    "optimiser.profile_program.solver_profile": "judge of the sweep, in tests and benchmarks",
+    "optimiser.profile_program.solver_profile": "judge in tests",
     "kbe.migrations.versions.0001_outcomes.upgrade": "Alembic calls it by this name",
     "kbe.migrations.versions.0002_identity.upgrade": "Alembic calls it by this name",
     "service.rest.app.application": "the application by itself, for tests and other servers",
@@ -101,6 +104,9 @@ MIGRATIONS = (
     ("kbe.migrations.versions.0002_identity", ""),
 )
 """found by their folder"""
+
+FOUND = ("jobs", "rest")
+"""modules of extras that the core finds by their names"""
 
 PYTHON = ("stepnc", "__getattr__")
 """makes every verb a function"""
@@ -212,11 +218,22 @@ def entries(root: Path) -> list[Name]:
     project = tomllib.loads((root / "pyproject.toml").read_text("utf-8"))["project"]
     scripts = (script.partition(":") for script in project["scripts"].values())
     verbs = [
-        (f"service.verbs.{name}.{module}", item)
-        for name in all_verbs()
+        (verb.module(module), item)
+        for verb in all_verbs().values()
         for module, item in (("run", "run"), ("request", ""))
     ]
-    return [*((module, name) for module, _, name in scripts), *verbs, PYTHON, *MIGRATIONS]
+    parts = [
+        (_dotted(file.relative_to(root)), "")
+        for name in FOUND
+        for file in sorted(root.glob(f"extras/*/{name}.py"))
+    ]
+    return [
+        *((module, name) for module, _, name in scripts),
+        *verbs,
+        *parts,
+        PYTHON,
+        *MIGRATIONS,
+    ]
 
 
 def unreached(house: House, found: set[Name]) -> list[Name]:

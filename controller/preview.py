@@ -62,7 +62,7 @@ class Preview:
     workingstep: NDArray[np.int64] | None = None
     """Number of the workingstep, counted from 1, (N,); None: 1."""
     weight: NDArray[np.float64] | None = None
-    """Factors already applied to the forces, :mod:`controller.equivalent`, (N,); None: 1."""
+    """Factors that the forces contain already, (N,), of equivalent forces; None: 1."""
     land_force: Values | None = None
     """Force that 1 mm of flank wear adds at any override, (N,), N; None: not known."""
     arcs: Arcs | None = None

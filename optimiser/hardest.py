@@ -42,7 +42,7 @@ KINDS = {
     CutKind.GROOVING: StationKind.TURNING,
     CutKind.DRILLING: StationKind.DRILLING,
 }
-"""Kind of stations that determine each process; plunges are in :mod:`optimiser.plunge`."""
+"""Kind of stations that determine each process; plunges have a module of their own."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

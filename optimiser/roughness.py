@@ -20,11 +20,10 @@ from optimiser.speed_limits import held_speed
 from simulator.physics.surface import RA_FLOOR, RZ_PER_RA, corner_coefficient, wall_coefficient
 from simulator.physics.surface_spread import (
     RoughnessForecast,
-    SurfaceSpread,
     forecast,
     unmeasured_spread,
 )
-from simulator.spec import ToolKind
+from simulator.spec import SurfaceSpread, ToolKind
 from stepnc_model.entities.enums import BottomOrSide
 from stepnc_model.entities.milling import PlaneMilling, SideMilling
 from stepnc_model.entities.profiles import SurfaceTextureParameter

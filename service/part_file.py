@@ -9,16 +9,20 @@ import re
 from dataclasses import dataclass
 from math import inf
 from pathlib import Path
+from pkgutil import resolve_name
 
 import numpy as np
 
-from service.brep.solid import SolidPlace, require_solids, sag_within, solid_triangles
+from service.brep.bodies import SolidPlace, sag_within, triangles_of
 from service.files import read_bytes
 from service.program_kind import PART21
 from simulator.motion.segments import Floats
 from stepnc_model.errors import Part21Error, StepNcError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.regular_file import open_regular
+
+REQUIRE_SOLIDS = "extras.brep.solid:require_solids"
+"""Function of an extra that refuses a file without a solid."""
 
 HEADER, RECORD = 84, 50
 """Bytes before the first triangle of a binary file, and of each triangle."""
@@ -147,7 +151,7 @@ def read_part(path: Path, *, solid: str = "", tolerance: float) -> PartMesh:
     content = read_bytes(path, most=MOST_BYTES)
     if not _is_step(content):
         return PartMesh(triangles=stl_triangles(content, path))
-    triangles = solid_triangles(_solids(content, path, solid), tolerance=tolerance)
+    triangles = triangles_of(_solids(content, path, solid), tolerance=tolerance)
     return PartMesh(triangles=triangles, sag=sag_within(tolerance))
 
 
@@ -161,7 +165,7 @@ def require_part(path: Path) -> None:
     """
     content = read_bytes(path, most=MOST_BYTES)
     if _is_step(content):
-        require_solids(_solids(content, path))
+        resolve_name(REQUIRE_SOLIDS)(_solids(content, path))
     else:
         stl_triangles(content, path)
 

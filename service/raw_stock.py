@@ -19,9 +19,9 @@ from simulator.motion.segments import Floats
 from simulator.removal.engage import MillingStock
 from simulator.removal.grown import grown_milling_stock, grown_turning_stock
 from simulator.removal.lathe import TurningStock
+from simulator.removal.mesh_stock import bounds_of, milling_stock_of, turning_stock_of
 from simulator.removal.stock_file import kept_stock
 from simulator.spec import Machine, MachineKind
-from simulator.verification.revolved import bounds_of, milling_stock_of, turning_stock_of
 from stepnc_model.entities.executables import Setup
 from stepnc_model.errors import StepNcError
 from stepnc_model.part21.values import Ref

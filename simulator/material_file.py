@@ -12,13 +12,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
-from simulator.physics.surface_spread import NAMES, SurfaceSpread
+from simulator.physics.surface_spread import NAMES
 from simulator.physics.turning import BACK_SHARE, FEED_SHARE
 from simulator.spec import (
     CuttingMaterial,
     CuttingWindow,
     Kienzle,
     LinearEdge,
+    SurfaceSpread,
     Taylor,
     ToolConstruction,
     WorkMaterial,

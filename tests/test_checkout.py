@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service")
+PACKAGES = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service", "extras")
 
 
 @pytest.mark.parametrize("package", PACKAGES)

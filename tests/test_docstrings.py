@@ -5,7 +5,7 @@ from importlib import import_module
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service")
+PACKAGES = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service", "extras")
 
 
 def with_examples() -> list[str]:

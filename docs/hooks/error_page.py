@@ -10,7 +10,7 @@ from pathlib import Path
 
 from docs.hooks.markdown import block, code, first_line, page, table
 
-PACKAGES = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service")
+PACKAGES = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service", "extras")
 ROOT_CLASS = "StepNcError"
 SEVERITY = ("stepnc_model/errors.py", "Severity")
 

@@ -252,7 +252,7 @@ def _chip_bounds(stations: Stations, bounds: CutBounds) -> Iterator[tuple[CapNam
 
 
 def feed_factors(width_ratio: Floats, sine: Floats, window: FeedWindow) -> Floats:
-    """Factors on the catalogue feed; :func:`optimiser.chip_load.feed_factor` for arrays."""
+    """Factors on the catalogue feed, as ``feed_factor`` of the chip load, for arrays."""
     reference = window.width_ratio
     beyond = np.clip((width_ratio - reference) / max(1.0 - reference, 1e-12), 0.0, 1.0)
     thickest = conventional(reference, 1.0).greatest_sine

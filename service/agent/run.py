@@ -28,16 +28,11 @@ from simulator.agent.agent import Agent, StreamQuery
 from simulator.agent.buffer import Value
 from simulator.agent.http import application
 from simulator.agent.machine_feed import RunFeed, beginning, run_feed
-from simulator.agent.machine_model import (
-    MachineModel,
-    NameSet,
-    SchemaVersion,
-    device_uuid,
-    machine_model,
-)
+from simulator.agent.machine_model import MachineModel, device_uuid, machine_model
 from simulator.agent.model import DeviceModel, read_model
 from simulator.agent.schemas import SchemaFiles, read_schemas
 from simulator.agent.tool_assets import tool_asset
+from simulator.client.document_choices import DocumentChoice, NameSet, SchemaVersion
 from simulator.library import load_machine
 from simulator.machine.samples import Samples, joined
 from simulator.machine.virtual import LoadedTool
@@ -304,17 +299,6 @@ def adapted(
     agent = Agent(model=model, clock=now, size=request.buffer)
     intake = AdapterIntake(agent=agent, tell=tell)
     return agent, [partial(listen_to, address, intake) for address in addresses]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DocumentChoice:
-    """Form of a document of MTConnect."""
-
-    version: SchemaVersion = SchemaVersion.V2_7
-    names: NameSet = NameSet.MODERN
-    part: str = ""
-    """Id of the part; empty: unknown."""
-    batch: str = ""
 
 
 def _document_name(request: SimulationRequest, files: RunFiles, shown: DocumentChoice) -> str:

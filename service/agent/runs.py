@@ -33,8 +33,9 @@ from simulator.agent.buffer import (
     Value,
 )
 from simulator.agent.documents import timestamp
-from simulator.agent.model import devices_text, model_of, parsed
+from simulator.agent.model import devices_text, model_of
 from simulator.client.columns import RUNNING
+from simulator.client.xml_text import parsed
 from simulator.motion.segments import Ints
 from stepnc_model.errors import StepNcError, WriteError
 

@@ -5,6 +5,8 @@ in coordinates of the workpiece. Units mm.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from pkgutil import resolve_name
 from typing import TYPE_CHECKING
 
 from stepnc_model.ap238.view import AimView
@@ -18,8 +20,28 @@ if TYPE_CHECKING:
 ROUND = 0.05
 """Greatest difference of sizes along x, y and around z at which a body counts as a bar, mm."""
 
+TRIANGLES = "extras.brep.solid:solid_triangles"
+"""Function of an extra that reads the triangles of a solid."""
+
 USUAL_TOLERANCE = 0.0254
 """Size of the deviations that a raw part shows, 0.001 inch in mm."""
+
+
+PARTS = 5.0
+"""Share of the tolerance by which triangles may lie beside the surface is one in this many."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SolidPlace:
+    """Place of a solid in a file."""
+
+    file: Part21File
+    name: str
+    """Name of the file in messages."""
+    root: int | None = None
+    """Instance of its geometry; None: anywhere in the file."""
+    solid: str = ""
+    """Name of the solid, or its place in the list of a message; empty: the only one."""
 
 
 class ProgramBodies:
@@ -92,10 +114,26 @@ def body_triangles(file: Part21File, representation: int, *, tolerance: float) -
     StepNcError
         When Open CASCADE is not installed, or the body cannot be read.
     """
-    from service.brep.solid import SolidPlace, solid_triangles  # noqa: PLC0415 (numpy)
-
     name = f"{file.name}: {file.label(int(representation))}"
     root = representation
     if isinstance(file, AimView):
         root, file = file.origins[representation].origin, file.source
-    return solid_triangles(SolidPlace(file=file, name=name, root=root), tolerance=tolerance)
+    return triangles_of(SolidPlace(file=file, name=name, root=root), tolerance=tolerance)
+
+
+def triangles_of(place: SolidPlace, *, tolerance: float) -> "Floats":
+    """Triangles of a solid, (T, 3, 3), mm, by the extra that reads them.
+
+    Parameters
+    ----------
+    place : SolidPlace
+    tolerance : float, mm
+        Size of the deviations that are to be seen.
+    """
+    found: Floats = resolve_name(TRIANGLES)(place, tolerance=tolerance)
+    return found
+
+
+def sag_within(tolerance: float) -> float:
+    """Greatest distance of triangles from the surface by which a tolerance is seen, mm."""
+    return tolerance / PARTS

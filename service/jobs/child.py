@@ -17,6 +17,7 @@ from typing import Any, TypeVar
 
 from kbe.errors import StoreFull
 from service.errors import StorageFull, Unavailable
+from service.extra_parts import declared
 from service.extras import missing_extras_named
 from service.jobs.task import RunningJob, clear
 from service.lifeline import end_with_parent
@@ -37,9 +38,9 @@ VERB = "service.jobs.verb_job:run"
 WORK = {
     JobKind.CONTROL: "service.jobs.steer:run_control",
     JobKind.TRIAL: "service.jobs.steer:run_trial",
-    JobKind.FACTORY: "service.jobs.produce:run",
+    **dict(declared("jobs", "WORK")),
 }
-"""Functions that do the work of live sessions; a shop may also run as fast as possible."""
+"""Functions that do the work of live sessions, and of extras whose jobs are no single verb."""
 
 WITHOUT_ROOM = (StorageFull, StoreFull, WriteError)
 """Errors after which large files of the job are removed, because the disk is full."""

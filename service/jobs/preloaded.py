@@ -5,12 +5,13 @@ from pkgutil import resolve_name
 
 from service.jobs.child import WORK
 from service.jobs.verb_job import STORED
+from service.verbs.call import verbs
 
 for name in WORK.values():
     resolve_name(name)
 for name in (
     "service.paths.toolpaths",
     "service.verbs.optimise.code",
-    *(f"service.verbs.{stored.name}.run" for stored in STORED.values()),
+    *(verbs()[stored.name].module("run") for stored in STORED.values()),
 ):
     import_module(name)

@@ -6,11 +6,14 @@ change while they go on has a function of its own (:data:`service.jobs.child.WOR
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
+from typing import Protocol, runtime_checkable
 
 from service.errors import NotFound
+from service.extra_parts import declared
 from service.extras import has_package
 from service.files import naming
+from service.jobs.stored_verb import StoredVerb
 from service.jobs.task import RunningJob
 from service.recording.logged_run import AgentRun, keep_run
 from service.requests.fields import Request
@@ -18,7 +21,6 @@ from service.requests.knowledge import EvaluationRequest, ReviewRequest
 from service.requests.runs import SimulationRequest
 from service.requests.stored_advice import StoredAdviceRequest
 from service.requests.stored_cycle_time import QueuedCycleTime
-from service.requests.stored_verification import QueuedVerification
 from service.storage import jobs
 from service.storage.files import FileKind
 from service.storage.jobs import JobKind
@@ -27,28 +29,26 @@ from service.verbs.call import Verb, verbs
 from service.verbs.result import Result
 from stepnc_model.errors import Finding, Severity
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StoredVerb:
-    """A verb that jobs run."""
-
-    name: str
-    """Folder of the verb."""
-    request: type[Request]
-    """Its request as jobs have it: with ids of what was uploaded."""
-    output: str = ""
-    """Name of the file that it writes; empty: its result keeps what there is."""
-
-
 STORED: Mapping[JobKind, StoredVerb] = {
     JobKind.ADVICE: StoredVerb(name="optimise", request=StoredAdviceRequest, output=OPTIMISED),
     JobKind.SIMULATION: StoredVerb(name="simulate", request=SimulationRequest, output=SAMPLES),
     JobKind.EVALUATION: StoredVerb(name="kbe.table", request=EvaluationRequest),
     JobKind.REVIEW: StoredVerb(name="kbe.review", request=ReviewRequest),
-    JobKind.VERIFICATION: StoredVerb(name="verify", request=QueuedVerification),
     JobKind.CYCLE_TIME: StoredVerb(name="cycletime", request=QueuedCycleTime),
+    **dict(declared("jobs", "STORED")),
 }
 """Verb of each kind of job that is no live session."""
+
+
+@runtime_checkable
+class LogRequest(Protocol):
+    """A request that may name a log: an upload, the samples of a run, or a machine."""
+
+    log_id: str | None
+    run_id: str | None
+    monitor: str
+    agent_url: str
+
 
 KNOWLEDGE = "knowledge base of this service"
 """Name of the knowledge base, whose location clients must not learn."""
@@ -105,14 +105,14 @@ def _files(task: RunningJob, request: Request, output: str) -> dict[str, object]
     required = task.upload(getattr(request, "required_id", None), FileKind.REQUIRED_PART)
     if required is not None:
         found["required"] = f"{required}#{getattr(request, 'required_solid', '')}"
-    if isinstance(request, QueuedVerification | QueuedCycleTime):
+    if isinstance(request, LogRequest):
         found |= _log(task, request)
     if output and (output != SAMPLES or has_package("pyarrow")):
         found["output"] = task.folder / output
     return found
 
 
-def _log(task: RunningJob, request: QueuedVerification | QueuedCycleTime) -> dict[str, object]:
+def _log(task: RunningJob, request: LogRequest) -> dict[str, object]:
     """Return the log of a request, and what was found about it; nothing if it names none."""
     path = task.upload(request.log_id, FileKind.LOG)
     doubts: tuple[Finding, ...] = ()

@@ -8,7 +8,7 @@ from annotated_types import Interval, MaxLen
 from service.requests.fields import About
 from service.requests.given import Name
 from service.requests.runs import SimulationRequest
-from simulator.agent.machine_model import NameSet, SchemaVersion
+from simulator.client.document_choices import NameSet, SchemaVersion
 
 AGENT = "options of the agent"
 """Heading in the help."""

@@ -72,6 +72,9 @@ class PaceOrNone:
 
 OptionalId = Annotated[str | None, IdPattern()]
 
+MonitorName = Annotated[str, MaxLen(LONGEST_NAME)]
+"""Name of a monitored machine; empty: none."""
+
 Seed = Annotated[
     int,
     Interval(ge=0, le=GREATEST_SEED),

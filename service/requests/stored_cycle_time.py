@@ -6,8 +6,7 @@ from typing import Annotated
 from service.requests.advice import MachineName
 from service.requests.fields import About
 from service.requests.given import ProgramRequest
-from service.requests.runs import OptionalId
-from service.requests.stored_verification import MonitorName
+from service.requests.runs import MonitorName, OptionalId
 from simulator.motion.model_name import ControlModelName
 
 

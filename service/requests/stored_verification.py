@@ -3,15 +3,11 @@
 from dataclasses import dataclass
 from typing import Annotated
 
-from annotated_types import MaxLen
-
-from service.requests.fields import LONGEST_NAME, About
+from service.requests.fields import About
 from service.requests.given import Name
-from service.requests.runs import OptionalId
+from service.requests.runs import MonitorName, OptionalId
 from service.requests.stored_stock import StockId, StockSolid
 from service.requests.verification import VerificationRequest
-
-MonitorName = Annotated[str, MaxLen(LONGEST_NAME)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

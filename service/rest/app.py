@@ -13,16 +13,14 @@ from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
 from service import log_lines
-from service.agent.shop import ShopAgent
+from service.extra_parts import declared
 from service.knowledge.verbs import require_usable
 from service.lifeline import end_with_parent
 from service.monitor.monitor import MonitorSet
 from service.problem import plain_problem, problem_of, retry_after
 from service.rest import (
     advice,
-    agent,
     comparisons,
-    factories,
     files,
     health,
     jobs,
@@ -33,7 +31,6 @@ from service.rest import (
     pages,
     programs,
     simulations,
-    verifications,
 )
 from service.rest.access import AccessMiddleware
 from service.rest.context import PROBLEMS
@@ -89,8 +86,7 @@ def _on(data_folder: DataFolder, settings: Settings) -> FastAPI:
     )
     app.state.advice = advice.AdviceCache()
     app.state.monitors = MonitorSet(settings.agents)
-    app.state.shop = ShopAgent(data_folder) if settings.has_agent else None
-    agent.mount(app, app.state.shop)
+    app.state.background = [task for add in declared("rest", "ADDED") for task in add(app)]
     app.add_middleware(AccessMiddleware, settings=settings, data_folder=data_folder)
     return app
 
@@ -115,8 +111,8 @@ def _routed() -> FastAPI:
     # The most frequently used first: routes are tried in this order.
     for routes in (
         advice.ROUTES, jobs.ROUTES, *map(routes_of, RESOURCES), live.ROUTES, programs.ROUTES,
-        comparisons.ROUTES, simulations.ROUTES, factories.ROUTES, factories.SHOPS,
-        verifications.ROUTES, files.ROUTES, knowledge.CORRECTIONS, knowledge.OUTCOMES,
+        comparisons.ROUTES, simulations.ROUTES, *declared("rest", "ROUTES"),
+        files.ROUTES, knowledge.CORRECTIONS, knowledge.OUTCOMES,
         *map(library.routes_of, LibrarySection), monitors.ROUTES,
         health.ROUTES, pages.ROUTES,
     ):  # fmt: skip
@@ -133,15 +129,14 @@ def _routed() -> FastAPI:
 async def _living(app: FastAPI) -> AsyncIterator[None]:
     """Monitor machines while the service runs; close all streams when it stops."""
     app.state.monitors.start()
-    shop = app.state.shop
-    publishing = None if shop is None else asyncio.create_task(shop.run())
+    tasks = [asyncio.create_task(work()) for work in app.state.background]
     try:
         yield
     finally:
-        if publishing is not None:
-            publishing.cancel()
+        for task in tasks:
+            task.cancel()
             with suppress(asyncio.CancelledError):
-                await publishing
+                await task
         await app.state.hub.close()
         await run_in_threadpool(app.state.monitors.stop)
 

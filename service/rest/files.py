@@ -1,7 +1,7 @@
 """Routes of ``/v1/files``: logs of machines, tool tables, required parts and stocks."""
 
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
@@ -21,12 +21,11 @@ from service.rest.context import (
     page_reply,
     settings_of,
 )
-from service.rest.replies import file_reply, json_reply
+from service.rest.replies import file_reply, json_reply, moment
 from service.rest.uploads import pieces
-from service.rest.verification_views import FileView, file_view
-from service.rest.views import PageView
+from service.rest.views import PageView, View
 from service.storage import files
-from service.storage.files import FileKind, FileUpload
+from service.storage.files import FileKind, FileUpload, StoredFile
 from service.verification.inputs import require_content
 
 ROUTES = APIRouter(prefix="/v1/files", tags=["verifications"])
@@ -43,6 +42,31 @@ OF_BODY = {
         "content": {BYTES: {"schema": {"type": "string", "format": "binary"}}},
     }
 }
+
+
+class FileView(View):
+    """Uploaded file: a log, a tool table or a required part."""
+
+    id: str
+    kind: FileKind
+    name: str
+    size_bytes: int
+    sha256: str
+    owner: str
+    created_at: str
+
+
+def file_view(stored: StoredFile) -> dict[str, Any]:
+    """Return a stored file as a :class:`FileView`."""
+    return {
+        "id": stored.id,
+        "kind": stored.kind.value,
+        "name": stored.name,
+        "size_bytes": stored.size,
+        "sha256": stored.sha256,
+        "owner": stored.owner,
+        "created_at": moment(stored.created),
+    }
 
 
 @ROUTES.post("", status_code=201, response_model=FileView, summary="Upload a file",

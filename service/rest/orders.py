@@ -17,15 +17,13 @@ from starlette.concurrency import run_in_threadpool
 from kbe.rows import utc
 from optimiser.source import why_elsewhere
 from service.errors import NotFound, Unreadable
-from service.factory.asked import checked_shop, source_of_order
 from service.files import read_bytes
 from service.monitor.monitor import MonitorSet
-from service.numbers import numbers_in, tool_numbers_in
+from service.numbers import tool_numbers_in
 from service.program_kind import ProgramKind
 from service.reading import read_completed, selected
 from service.recording.logged_run import DOCUMENTS
 from service.recording.table import TABLES
-from service.requests.factory import FactoryOrder
 from service.requests.fields import loaded
 from service.requests.given import GIVEN, ProgramRequest, StockFile
 from service.requests.knowledge import SelectionRequest
@@ -43,7 +41,6 @@ from service.storage.idempotency import made_before
 from service.storage.jobs import Job, JobKind, JobRequest
 from service.storage.results import SAMPLES
 from service.trial.inputs import Inputs, changed
-from service.verification.run import FIT
 from simulator.library import load_machine
 from simulator.tool_files.file_unit import FileUnit
 from stepnc_model.errors import StepNcError
@@ -58,9 +55,6 @@ LOGGED = frozenset({JobKind.SIMULATION, JobKind.CONTROL})
 
 OF_CODE = ("tools_id", "stock", "material")
 """Fields that advice on NC code needs; tools and stock only where the code tells none."""
-
-WITHOUT_PROGRAM = ("machine", "stock", "tools_id", "required_id")
-"""Fields that a verification without a program needs."""
 
 IN_PLACE = {"stock": "stock_id"}
 """Fields that take the place of others."""
@@ -233,7 +227,7 @@ def advisable(data_folder: DataFolder, order: JobRequest) -> None:
     programs.require_file(data_folder, order.program)
     if words["dialect"] == Dialect.CANONICAL:
         raise StepNcError("dialect canonical: canonical commands are no NC code")
-    if missing := _missing(words, OF_CODE):
+    if missing := missing_fields(words, OF_CODE):
         _require_setup(data_folder, order, missing)
     library.require(data_folder, machine=words["machine"], material=words["material"])
     tool_numbers_in(tuple(words["finish"]))
@@ -284,31 +278,9 @@ def timeable(data_folder: DataFolder, order: JobRequest) -> None:
             raise StepNcError(f"{name}: the cycle time is read from a log in {known}")
 
 
-def verifiable(data_folder: DataFolder, order: JobRequest) -> None:
-    """Check that there is a log, a program or what stands for it, and that zero is valid."""
-    words = order.request
-    if not any(words[name] for name in LOGS):
-        raise Unreadable(f"name one of {', '.join(LOGS)}")
-    if order.program:
-        runnable(data_folder, order)
-    elif _missing(words, WITHOUT_PROGRAM):
-        wanted = ", ".join(WITHOUT_PROGRAM)
-        raise Unreadable(f"name a program_id or an advice_id; or all of {wanted}")
-    else:
-        library.require(data_folder, machine=words["machine"], material=words["material"])
-    if words["zero"] and words["zero"] != FIT:
-        numbers_in(words["zero"], "zero", counts=(3,))
-
-
-def _missing(words: Mapping[str, Any], names: tuple[str, ...]) -> list[str]:
+def missing_fields(words: Mapping[str, Any], names: tuple[str, ...]) -> list[str]:
     """Return which of some fields are not given, nor what takes their place."""
     return [name for name in names if not words[name] and not words.get(IN_PLACE.get(name, ""))]
-
-
-def producible(data_folder: DataFolder, order: JobRequest) -> None:
-    """Check that a shop, its programs and its machines can be read."""
-    wanted = loaded(FactoryOrder, order.request)
-    checked_shop(source_of_order(data_folder, wanted), wanted)
 
 
 def startable(_data_folder: DataFolder, order: JobRequest) -> None:

@@ -53,6 +53,8 @@ MEDIA_TYPES = {
     TableFormat.PARQUET: "application/vnd.apache.parquet",
 }
 
+CSV_OR_PARQUET = (TableFormat.CSV, TableFormat.PARQUET)
+
 Form = Annotated[TableFormat, Query(description="format of the file")]
 
 

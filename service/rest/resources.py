@@ -1,36 +1,30 @@
 """Table of the stored verbs over REST: kind of job, request, result and files of each.
 
-A new one needs an entry here, its kind in :mod:`service.storage.jobs`, its path in
-:data:`service.rest.views.PLACES`, and its verb in :data:`service.jobs.verb_job.STORED`. Routes
-that only one resource has stand in a module of their own.
+A new one needs an entry here, or in ``RESOURCES`` of an extra's module ``rest``, its kind in
+:mod:`service.storage.jobs`, its path in :data:`service.rest.views.PLACES`, and its verb in
+:data:`service.jobs.verb_job.STORED`. Routes that only one resource has stand in a module of
+their own.
 """
 
 from dataclasses import asdict
 
-from service.factory.run import STATES
-from service.jobs.produce import FIGURES, TABLES
-from service.requests.factory import FactoryOrder
+from service.extra_parts import declared
 from service.requests.knowledge import EvaluationRequest, ReviewRequest
 from service.requests.runs import ControlRequest, SimulationRequest
 from service.requests.stored_cycle_time import StoredCycleTimeRequest
-from service.requests.stored_verification import StoredVerificationRequest
 from service.rest.bodies import TrialBody
+from service.rest.cycle_time_views import CycleTimeView
 from service.rest.orders import (
-    producible,
     runnable,
     selectable,
     startable,
     timeable,
-    verifiable,
 )
-from service.rest.resource import Creation, Download, Resource, Shown, TableFormat
-from service.rest.verification_views import CycleTimeView, VerificationView
+from service.rest.resource import CSV_OR_PARQUET, Creation, Download, Resource, Shown
 from service.rest.views import SimulationView
 from service.storage.jobs import JobKind
-from service.storage.results import LOG, PLACES, SAMPLES, TABLE
+from service.storage.results import SAMPLES, TABLE
 from service.trial.inputs import Inputs
-
-CSV_OR_PARQUET = (TableFormat.CSV, TableFormat.PARQUET)
 
 RUN_STATUS = (
     "Show inputs, feeds, force, power and the active limit; null before the run begins."
@@ -108,83 +102,6 @@ RESOURCES = (
         has_series=True,
     ),
     Resource(
-        kind=JobKind.FACTORY,
-        tag="factories",
-        plural="runs of shops",
-        creation=Creation(
-            name="ask_factory",
-            body=FactoryOrder,
-            require=producible,
-            summary="Run a shop",
-            about="Queue a job that runs a shop: live at a pace, or with replications and a "
-            "sweep.",
-        ),
-        shown=Shown(
-            summary="Show the figures of a shop",
-            about="Show the figures by level, the time in each state, and the cases of a "
-            "sweep.",
-        ),
-        downloads=(
-            Download(
-                path="figures",
-                file=FIGURES,
-                forms=(TableFormat.CSV,),
-                summary="Download the figures as CSV",
-                about="Download the figures of all levels, one row each.",
-            ),
-            Download(
-                path="samples",
-                file=f"{TABLES}/{STATES}",
-                thing="states",
-                summary="Download the states as Parquet",
-                about="Download the states of all machines, one row each, first replication.",
-            ),
-        ),
-        status="Show states of machines, buffers, products and processes; null before it "
-        "begins.",
-        has_series=True,
-    ),
-    Resource(
-        kind=JobKind.VERIFICATION,
-        tag="verifications",
-        plural="verifications",
-        creation=Creation(
-            name="ask",
-            body=StoredVerificationRequest,
-            require=verifiable,
-            summary="Verify logged positions",
-            about="Queue a job that compares the part that a log left with the programmed one."
-            "\n\nThe log is an uploaded one, the samples of a run, or the latest run of a "
-            "monitored machine.",
-        ),
-        shown=Shown(
-            summary="Show a verification",
-            about="Show deviations by workingstep, tolerance bands, and what the log can "
-            "resolve.",
-            view=VerificationView,
-        ),
-        downloads=(
-            Download(
-                path="places",
-                file=PLACES,
-                forms=CSV_OR_PARQUET,
-                name="places_file",
-                is_result=True,
-                summary="Download the deviations of places",
-                about="Download all places on walls, and others beyond their uncertainty.",
-            ),
-            Download(
-                path="log",
-                file=LOG,
-                thing="log of a monitored machine in verification",
-                saved_as="log",
-                summary="Download the log of a monitored machine",
-                about="Download the positions that were read from the agent of a monitored "
-                "machine.",
-            ),
-        ),
-    ),
-    Resource(
         kind=JobKind.CYCLE_TIME,
         tag="verifications",
         plural="cycle times",
@@ -249,4 +166,5 @@ RESOURCES = (
         ),
         report="",
     ),
+    *declared("rest", "RESOURCES"),
 )

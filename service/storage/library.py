@@ -105,7 +105,7 @@ def machine_word(data_folder: DataFolder, name: str) -> str:
 
 
 def material_word(data_folder: DataFolder, name: str) -> str:
-    """Return the argument for :func:`service.chosen.load_material_named`; empty stays empty.
+    """Return the argument of ``load_material_named``; empty stays empty.
 
     Raises
     ------

@@ -12,7 +12,8 @@ A folder holds
 - :class:`~service.verbs.result.Result`, declared in ``result.py``.
 
 A folder is all that a verb needs: doors find it by its name. Verbs of two words, as
-``kbe review``, share the folder of the first, whose docstring is the help of the group.
+``kbe review``, share the folder of the first, whose docstring is the help of the group. Verbs
+of an extra are folders of its ``verbs``.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -25,6 +26,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from service.extra_parts import EXTRAS
 from service.progress import Tell, silent
 from service.requests.fields import (
     NUMBERS,
@@ -48,7 +50,9 @@ class Verb:
     """A verb, whose parts are imported when they are needed; or a group, of its help alone."""
 
     folder: str
-    """Its folder below this one, with a dot between two names."""
+    """Its folder below the package, with a dot between two names."""
+    package: str = "service.verbs"
+    """Package that its folder lies in: this one, or that of an extra."""
 
     @property
     def name(self) -> str:
@@ -68,7 +72,7 @@ class Verb:
     @property
     def about(self) -> str:
         """Help: a sentence, and details after an empty line."""
-        return import_module(f"service.verbs.{self.folder}").__doc__ or ""
+        return import_module(f"{self.package}.{self.folder}").__doc__ or ""
 
     @property
     def line(self) -> str:
@@ -104,15 +108,24 @@ class Verb:
         found: Callable[..., Result] = self._part("run").run
         return found
 
+    def module(self, name: str) -> str:
+        """Dotted name of one of its modules, such as ``run``."""
+        return f"{self.package}.{self.folder}.{name}"
+
     def _part(self, name: str) -> ModuleType:
-        return import_module(f"service.verbs.{self.folder}.{name}")
+        return import_module(self.module(name))
 
 
 @cache
 def verbs() -> dict[str, Verb]:
     """Return all verbs by the names of their folders, in alphabetical order."""
     folders = (each.parent.relative_to(HERE).parts for each in HERE.rglob("request.py"))
-    return {name: Verb(folder=name) for name in sorted(map(".".join, folders))}
+    core = {name: Verb(folder=name) for name in map(".".join, folders)}
+    added = {
+        file.parts[-2]: Verb(folder=file.parts[-2], package=f"extras.{file.parts[-4]}.verbs")
+        for file in EXTRAS.glob("*/verbs/*/request.py")
+    }
+    return dict(sorted((core | added).items()))
 
 
 def call(

@@ -15,6 +15,7 @@ from service.verification.prepared import PreparedProgram, RequiredSetup
 from simulator.motion.segments import AXES, Floats
 from simulator.removal.cutter import Cutter
 from simulator.removal.lathe import TurningStock
+from simulator.removal.mesh_stock import RequiredBar, required_bar
 from simulator.verification.deviation import (
     ComparedVolumes,
     SurfacePlaces,
@@ -32,12 +33,7 @@ from simulator.verification.mesh import (
     wall_deviation,
 )
 from simulator.verification.required import required_part, required_places
-from simulator.verification.revolved import (
-    RequiredBar,
-    profile_deviation,
-    required_bar,
-    required_turned_places,
-)
+from simulator.verification.revolved import profile_deviation, required_turned_places
 from simulator.verification.surface import EXACT, programmed_part
 from simulator.verification.sweep import FAR
 from simulator.verification.turned import turned_part, turned_places, turned_volumes

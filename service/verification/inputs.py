@@ -5,7 +5,6 @@ from datetime import datetime
 from pathlib import Path
 from xml.parsers import expat
 
-from service.agent.replay import LONGEST_LINE
 from service.files import require_regular
 from service.parquet_pieces import parquet_file
 from service.part_file import require_part, require_part_form
@@ -29,6 +28,9 @@ STREAMS = "MTConnectStreams"
 
 LOOKED_AT = 100
 """Lines of a log among which one must be SHDR."""
+
+LONGEST_LINE = 1 << 16
+"""Most characters of such a line that are looked at."""
 
 
 def require_content(kind: FileKind, path: Path) -> None:

@@ -22,9 +22,10 @@ from service.recording.table import POSITIONS, TABLES, batches, headings
 from service.verification.axes import without_held
 from simulator.agent.buffer import Value
 from simulator.agent.machine_feed import RunFeed
-from simulator.agent.machine_model import NameSet, machine_model
+from simulator.agent.machine_model import machine_model
 from simulator.agent.model import DeviceModel
 from simulator.client.columns import EXECUTION, RUNNING, TIME, WORDS, read_document
+from simulator.client.document_choices import NameSet
 from simulator.motion.segments import AXES, Floats, Ints
 from simulator.spec import Machine
 from simulator.verification.logged import LoggedSamples, joined

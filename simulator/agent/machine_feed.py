@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from simulator.agent.buffer import ConditionValue, Value
-from simulator.agent.machine_model import MachineItem, MachineModel, SchemaVersion
+from simulator.agent.machine_model import MachineItem, MachineModel
 from simulator.agent.tool_assets import asset_id
+from simulator.client.document_choices import SchemaVersion
 from simulator.machine.samples import Condition, Samples
 from simulator.motion.segments import Floats, Ints
 from simulator.spec import Machine

@@ -1,12 +1,8 @@
-"""The device model of a machine of the library, by its file.
-
-Names that an agent goes by: schema versions, and sets of ids.
-"""
+"""The device model of a machine of the library, by its file."""
 
 from collections.abc import Collection, Iterable, Iterator
 from copy import deepcopy
 from dataclasses import dataclass
-from enum import StrEnum
 from functools import cache
 from math import isfinite
 from uuid import NAMESPACE_DNS, uuid5
@@ -14,32 +10,9 @@ from uuid import NAMESPACE_DNS, uuid5
 from lxml import etree
 
 from simulator.agent.model import DeviceModel, model_of
+from simulator.client.document_choices import NameSet, SchemaVersion
 from simulator.spec import Machine, MachineKind
 from stepnc_model.units import SECONDS_PER_MINUTE, rpm_from_rev_s
-
-
-class SchemaVersion(StrEnum):
-    """Schema version of documents."""
-
-    V1_3 = "1.3"
-    V2_0 = "2.0"
-    V2_7 = "2.7"
-
-    @property
-    def key(self) -> tuple[int, int]:
-        """Number by which versions are ordered."""
-        major, minor = map(int, self.value.split("."))
-        return major, minor
-
-
-class NameSet(StrEnum):
-    """Ids of data items."""
-
-    MODERN = "modern"
-    """short ids after the device"""
-    PAPERS = "papers"
-    """as printed in the papers on the virtual machine, where they have one"""
-
 
 AGENT_UUID = uuid5(NAMESPACE_DNS, "agent.stepnc-optimiser")
 

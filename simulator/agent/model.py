@@ -19,17 +19,13 @@ from typing import Any
 
 from lxml import etree
 
+from simulator.client.xml_text import (
+    MOST_BYTES,
+    content_of,
+    parsed,
+    without_namespaces,
+)
 from simulator.errors import AgentError
-from stepnc_model.regular_file import open_regular
-
-MOST_BYTES = 1 << 22
-"""of a device model"""
-
-MOST_STREAMS = 1 << 28
-"""of a document of streams in a file"""
-
-DEEPEST = 40
-"""elements within one another"""
 
 SPECIAL_NAMES = {"MTCONNECT_VERSION": "MTConnectVersion", "PH": "PH"}
 """types whose element is not their words with capitals"""
@@ -232,7 +228,7 @@ def read_model(path: Path) -> DeviceModel:
     AgentError
         When the file cannot be read or is no document of devices.
     """
-    root = parsed(_content(path, most=MOST_BYTES), what=str(path))
+    root = parsed(content_of(path, most=MOST_BYTES), what=str(path))
     found = re.fullmatch(r"\{urn:mtconnect\.org:MTConnectDevices:(\d+\.\d+)\}.*", root.tag)
     if found is None:
         raise AgentError(f"{path}: root element {root.tag}; expected MTConnectDevices")
@@ -243,70 +239,9 @@ def read_model(path: Path) -> DeviceModel:
     return model_of(devices, found[1])
 
 
-def read_streams_root(path: Path) -> Any:
-    """Return the root element of a file that is a document of streams.
-
-    Raises
-    ------
-    AgentError
-        When the file cannot be read or is not a document of streams.
-    """
-    root = parsed(_content(path, most=MOST_STREAMS), what=str(path), most=MOST_STREAMS)
-    name = etree.QName(root).localname
-    if name != "MTConnectStreams":
-        raise AgentError(f"{path}: root element {name}; expected MTConnectStreams")
-    return root
-
-
-def _content(path: Path, *, most: int) -> bytes:
-    """Content of a file, and one byte more than the most."""
-    try:
-        with open_regular(path) as file:
-            return file.read(most + 1)
-    except OSError as error:
-        raise AgentError(f"{path}: cannot be read: {error.strerror}") from error
-
-
 def devices_text(model: DeviceModel) -> str:
     """Return the ``Devices`` element of a model as text."""
     return etree.tostring(model.root, encoding="unicode")
-
-
-def parsed(data: bytes, *, what: str, most: int = MOST_BYTES) -> Any:
-    """Root element of an XML text that nobody here wrote.
-
-    Raises
-    ------
-    AgentError
-        When it is too large or deep, declares entities, or is not well formed.
-    """
-    if len(data) > most:
-        raise AgentError(f"{what}: more than {most} bytes")
-    parser = etree.XMLParser(
-        resolve_entities=False, no_network=True, huge_tree=False, load_dtd=False
-    )
-    try:
-        root = etree.fromstring(data, parser)
-    except (etree.XMLSyntaxError, ValueError) as error:
-        raise AgentError(f"{what}: not well-formed XML: {error}") from error
-    if root.getroottree().docinfo.internalDTD is not None:
-        raise AgentError(f"{what}: a document type declaration is not accepted")
-    depth = 0
-    for event, _ in etree.iterwalk(root, events=("start", "end")):
-        depth += 1 if event == "start" else -1
-        if depth > DEEPEST:
-            raise AgentError(f"{what}: elements nested more than {DEEPEST} deep")
-    return root
-
-
-def without_namespaces(root: Any) -> Any:
-    """A copy of an element in which MTConnect's own elements have no namespace."""
-    copy = etree.fromstring(etree.tostring(root))
-    for element in copy.iter():
-        if isinstance(element.tag, str) and element.tag.startswith("{urn:mtconnect.org:"):
-            element.tag = etree.QName(element).localname
-    etree.cleanup_namespaces(copy)
-    return copy
 
 
 def _owners(device: Any) -> Iterator[Any]:

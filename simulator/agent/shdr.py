@@ -30,7 +30,8 @@ from simulator.agent.buffer import (
     Value,
 )
 from simulator.agent.documents import RequestFault, timestamp
-from simulator.agent.model import DeviceModel, ObservedItem, parsed, without_namespaces
+from simulator.agent.model import DeviceModel, ObservedItem
+from simulator.client.xml_text import parsed, without_namespaces
 from simulator.errors import AgentError
 from stepnc_model.units import US_PER_SECOND
 

@@ -8,8 +8,9 @@ import numpy as np
 from lxml import etree
 
 from simulator.agent.buffer import ConditionValue, TimeSeriesValue, Value
-from simulator.agent.model import DeviceModel, ObservedItem, read_streams_root
+from simulator.agent.model import DeviceModel, ObservedItem
 from simulator.agent.shdr import UNAVAILABLE, read_time
+from simulator.client.xml_text import read_streams_root
 from simulator.errors import AgentError
 from simulator.motion.segments import Ints
 

@@ -19,8 +19,8 @@ from typing import Any
 
 from lxml import etree
 
-from simulator.agent.model import read_streams_root
 from simulator.client.connection import ClientItem, ClientObservation, observation_of
+from simulator.client.xml_text import read_streams_root
 from simulator.errors import AgentError
 
 Cell = float | str | None

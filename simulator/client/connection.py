@@ -16,7 +16,7 @@ from urllib.parse import urlencode, urlsplit
 
 from lxml import etree
 
-from simulator.agent.model import parsed, without_namespaces
+from simulator.client.xml_text import parsed, without_namespaces
 from simulator.errors import AgentError
 
 TIMEOUT = 15.0

@@ -22,6 +22,7 @@ from functools import lru_cache
 from math import exp, log, sqrt
 from statistics import NormalDist
 
+from simulator.spec import SurfaceSpread
 from stepnc_model.units import m_min_from_speed, mm_from_um, um_from_mm
 
 NAMES = ("ln c", "ln R0", "gamma", "delta", "wear", "contact")
@@ -43,18 +44,6 @@ LIKELY = 0.9
 
 LARGEST_DEVIATE = 8.0
 """Standard deviations beyond which a probability is 0 or 1."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SurfaceSpread:
-    """Known parameters of the law of Ra, :data:`NAMES`, and the scatter of one surface."""
-
-    mean: tuple[float, ...]
-    covariance: tuple[tuple[float, ...], ...]
-    sigma: float
-    degrees: float
-    count: int = 0
-    """Number of measured surfaces; 0: the spread between published studies."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

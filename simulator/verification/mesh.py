@@ -8,17 +8,14 @@ outline; a floor by its height. Excess is positive, a gouge negative. Units mm.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, floor
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from simulator.kernels.kernel import entry
 from simulator.motion.segments import Floats, Ints
-from simulator.removal.zmap import HeightGrid
+from simulator.removal.mesh_stock import EDGE, FLAT
 from simulator.verification.path import pieces_of
 from simulator.verification.sweep import FAR
-from stepnc_model.units import rad_from_deg
 
 PIECE = 0.05
 """Longest piece of an outline whose middle stands for it, mm."""
@@ -117,64 +114,6 @@ def floor_deviation(heights: Floats, floors: Sequence[float]) -> Floats:
     return np.where(np.abs(nearest) <= NEAR_FLOOR, nearest, np.nan)
 
 
-FLAT = 1e-9
-"""Area in plan, mm², below which a triangle is upright."""
-
-EDGE = 1e-9
-"""Share by which a place may lie beside a triangle that counts as over it."""
-
-SAME = 5
-"""Decimals of a millimetre to which corners are the same."""
-
-CURVED = rad_from_deg(30.0)
-"""Greatest angle between neighbours that stand for a curved surface, rad."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class MeshEdges:
-    """Edges that T triangles share."""
-
-    open: int
-    """Edges that do not belong to exactly two triangles."""
-    unlike: int
-    """Edges that both of their triangles follow in the same direction."""
-    bend: Floats
-    """Greatest angle to a neighbour with which a triangle forms a curved surface, (T,), rad."""
-
-
-def edges_of(triangles: Floats) -> MeshEdges:
-    """Find out how triangles, (T, 3, 3) in mm, meet."""
-    corners = np.unique(triangles.reshape(-1, 3).round(SAME), axis=0, return_inverse=True)[1]
-    corner = corners.reshape(-1, 3)
-    ends = corner[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-    # A triangle without area is none: its edges belong to its neighbours.
-    is_whole = ends[:, 0] != ends[:, 1]
-    owner = np.repeat(np.arange(len(triangles)), 3)[is_whole]
-    ends = ends[is_whole]
-    low, high = ends.min(axis=1), ends.max(axis=1)
-    order = np.lexsort((high, low))
-    low, high, owner = low[order], high[order], owner[order]
-    is_rising = (ends[:, 0] < ends[:, 1])[order]
-    is_new = np.append(True, (np.diff(low) != 0) | (np.diff(high) != 0))
-    first = np.flatnonzero(is_new)
-    counts = np.diff(np.append(first, len(low)))
-    pairs = first[counts == 2]
-    normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    size = np.linalg.norm(normal, axis=1)
-    normal /= np.where(size > 0.0, size, 1.0)[:, None]
-    one, other = owner[pairs], owner[pairs + 1]
-    angle = np.arccos(np.clip(np.abs(np.sum(normal[one] * normal[other], axis=1)), 0.0, 1.0))
-    angle[angle > CURVED] = 0.0
-    bend = np.zeros(len(triangles))
-    np.maximum.at(bend, one, angle)
-    np.maximum.at(bend, other, angle)
-    return MeshEdges(
-        open=int((counts != 2).sum()),
-        unlike=int((is_rising[pairs] == is_rising[pairs + 1]).sum()),
-        bend=bend,
-    )
-
-
 def section_at(triangles: Floats, height: float) -> tuple[Floats, Ints]:
     """Cut triangles at a height.
 
@@ -205,37 +144,6 @@ def section_at(triangles: Floats, height: float) -> tuple[Floats, Ints]:
 def outline_at(triangles: Floats, height: float) -> NominalOutline:
     """Outline of triangles, (T, 3, 3) in mm, at a height."""
     return NominalOutline(points=tuple(section_at(triangles, height)[0]))
-
-
-@entry
-def raise_to(grid: HeightGrid, triangles: Floats) -> None:
-    """Raise the heights of a grid to the highest triangle over the middle of each cell.
-
-    Parameters
-    ----------
-    grid : HeightGrid
-        Its heights are changed in place.
-    triangles : (T, 3, 3) array, mm
-    """
-    columns, rows = grid.heights.shape
-    for index in range(len(triangles)):
-        a, b, c = triangles[index, 0], triangles[index, 1], triangles[index, 2]
-        area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
-        if abs(area) < FLAT:
-            continue
-        low = ceil((min(a[0], b[0], c[0]) - grid.x) / grid.dx - 0.5 - 1e-6)
-        high = floor((max(a[0], b[0], c[0]) - grid.x) / grid.dx - 0.5 + 1e-6)
-        begin = ceil((min(a[1], b[1], c[1]) - grid.y) / grid.dy - 0.5 - 1e-6)
-        end = floor((max(a[1], b[1], c[1]) - grid.y) / grid.dy - 0.5 + 1e-6)
-        for column in range(max(low, 0), min(high, columns - 1) + 1):
-            x = grid.x + (column + 0.5) * grid.dx - a[0]
-            for row in range(max(begin, 0), min(end, rows - 1) + 1):
-                y = grid.y + (row + 0.5) * grid.dy - a[1]
-                one = (x * (c[1] - a[1]) - y * (c[0] - a[0])) / area
-                two = (y * (b[0] - a[0]) - x * (b[1] - a[1])) / area
-                if one >= -EDGE and two >= -EDGE and one + two <= 1.0 + EDGE:
-                    height = a[2] + one * (b[2] - a[2]) + two * (c[2] - a[2])
-                    grid.heights[column, row] = max(grid.heights[column, row], height)
 
 
 def height_deviation(places: Floats, triangles: Floats) -> Floats:

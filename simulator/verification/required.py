@@ -12,6 +12,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from simulator.motion.segments import Bools, Floats
+from simulator.removal.mesh_stock import edges_of, raise_to
 from simulator.removal.zmap import OUTSIDE, UNCUT, ZMap, cell_size, zmap_of
 from simulator.verification.deviation import (
     SurfacePlaces,
@@ -20,7 +21,7 @@ from simulator.verification.deviation import (
     wall_uncertainty,
 )
 from simulator.verification.logged import LoggedPart
-from simulator.verification.mesh import edges_of, raise_to, section_at
+from simulator.verification.mesh import section_at
 from simulator.verification.path import divided
 from simulator.verification.surface import EXACT, WallCells, wall_cells
 from simulator.verification.sweep import WallTargets, targets_at

@@ -11,8 +11,8 @@ import numpy as np
 
 from simulator.motion.segments import Bools, Floats, Ints
 from simulator.removal.cutter import Cutter, CutterProfile, Insert, profile_of
+from simulator.removal.mesh_stock import raise_to
 from simulator.removal.zmap import ZMap, cell_size, zmap_of
-from simulator.verification.mesh import raise_to
 from simulator.verification.path import ProgrammedPath, rows_between
 from simulator.verification.sweep import (
     WallTargets,

@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 from simulator.motion.segments import Bools, Floats, Ints
 from simulator.removal.cutter import Insert
 from simulator.removal.lathe import TurningStock
+from simulator.removal.mesh_stock import CELL
 from simulator.verification.deviation import (
     ComparedVolumes,
     SurfacePlaces,
@@ -39,9 +40,6 @@ from simulator.verification.logged_bar import (
 )
 from simulator.verification.path import ProgrammedPath, pieces_of
 from stepnc_model.program import Stock
-
-CELL = 0.01
-"""Length of a cell along the axis, mm."""
 
 LEAST_GOUGE = 0.01
 """Least depth of a gouge that samples alone make certain, mm."""

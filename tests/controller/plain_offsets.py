@@ -1,4 +1,4 @@
-"""The fit of tooth offsets in plain numpy, the oracle of :mod:`controller.offset_fit`."""
+"""The fit of tooth offsets in plain numpy: the oracle of its kernel."""
 
 from math import inf, pi
 

@@ -38,7 +38,7 @@ def test_the_wheel_has_every_file_of_the_packages(wheel: Path) -> None:
     names = set(ZipFile(wheel).namelist())
     listed = subprocess.run(
         ["git", "ls-files", "stepnc_model", "simulator", "optimiser", "controller", "kbe",
-         "service"],
+         "service", "extras", "stepnc"],
         cwd=ROOT, capture_output=True, text=True, timeout=120.0, check=True,
     )  # fmt: skip
     assert set(listed.stdout.split("\n")) - {""} <= names

@@ -11,7 +11,7 @@ from simulator.machine_xml import read_machine_xml
 from simulator.spec import Handling, HandlingState, PowerDeviation
 from tests.every_case import every_case
 
-EXAMPLE = Path(__file__).parent / "data" / "paper003.xml"
+EXAMPLE = Path(__file__).parents[1] / "simulator" / "data" / "paper003.xml"
 
 
 def with_change(folder: Path, old: str, new: str) -> Path:

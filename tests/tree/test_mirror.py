@@ -85,8 +85,19 @@ THROUGH = {
     ),
     "service/jobs/test_runner.py": ("service/jobs/frozen.py",),
     "service/verbs/kbe/test_run.py": ("service/requests/output.py",),
-    "service/rest/test_agent.py": ("service/agent/shop.py",),
-    "service/rest/test_factories.py": ("service/rest/factory_views.py",),
+    "service/rest/test_agent.py": (
+        "extras/agent/rest.py",
+        "service/agent/shop.py",
+    ),
+    "service/rest/test_resource.py": (
+        "extras/factory/jobs.py",
+        "extras/verification/jobs.py",
+        "service/jobs/stored_verb.py",
+    ),
+    "service/rest/test_factories.py": (
+        "extras/factory/rest.py",
+        "extras/factory/views.py",
+    ),
     "service/rest/test_monitors.py": ("service/rest/monitor_views.py",),
     "service/rest/test_programs.py": ("service/rest/uploads.py",),
     "service/rest/test_raw_part.py": ("service/requests/stored_stock.py",),
@@ -110,9 +121,9 @@ def mirror(module: str) -> Path:
 
     Verbs of one group, whose folders stand in that of the group, are run by one.
     """
-    path = TESTS / module
-    if module.startswith("service/verbs/") and module.count("/") >= 3:
-        return TESTS.joinpath(*Path(module).parts[:3], "test_run.py")
+    path, parts = TESTS / module, Path(module).parts
+    if "verbs" in parts[:-2]:
+        return TESTS.joinpath(*parts[: parts.index("verbs") + 2], "test_run.py")
     return path.with_name(f"test_{path.name}")
 
 

@@ -1,5 +1,6 @@
 """Bounds that the page about the service gives are those of the program."""
 
+from extras.verification.rest import PLACES_SHOWN
 from service.code_check import LONGEST as LONGEST_CHECK
 from service.factory import asked
 from service.http_protocol import HEAD_S
@@ -8,7 +9,6 @@ from service.live.series import MOST_BYTES
 from service.requests.factory import MOST_REPLICATIONS
 from service.rest.files import LARGEST_TOOLS
 from service.rest.settings import Settings
-from service.rest.verifications import PLACES_SHOWN
 from service.session.runner import FORGOTTEN_AFTER, MOST_ROWS
 from service.simulation.live import MOST_SAMPLES
 from service.storage.jobs import MOST_WAITING, OWNERS

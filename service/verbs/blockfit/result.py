@@ -183,7 +183,7 @@ class BlockFitResult(Result):
 
     def figures(self) -> "tuple[go.Figure]":
         """Return feed over spacing with the fits, beside Table 2 of paper 004."""
-        from service.blocks.figures import block_fit_figure  # noqa: PLC0415 (plotly)
+        from service.verbs.blockfit.figures import block_fit_figure  # noqa: PLC0415 (plotly)
 
         return (block_fit_figure(self.fit, paper_fit(), printed=PRINTED_SLOPE),)
 

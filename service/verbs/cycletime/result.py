@@ -158,7 +158,7 @@ class CycleTimeResult(Result):
 
     def figures(self) -> "tuple[go.Figure]":
         """Return the feed of each block: programmed, and what limits it."""
-        from service.blocks.figures import cycle_time_figure  # noqa: PLC0415 (plotly)
+        from service.verbs.cycletime.figures import cycle_time_figure  # noqa: PLC0415 (plotly)
 
         return (cycle_time_figure(self.times),)
 

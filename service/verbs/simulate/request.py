@@ -10,7 +10,7 @@ from service.live.journal import LiveFolder
 from service.requests.fields import About, FileUse
 from service.requests.runs import SimulationRequest
 from service.simulation.run_files import RunOutputs
-from simulator.agent.machine_model import NameSet, SchemaVersion
+from simulator.client.document_choices import NameSet, SchemaVersion
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

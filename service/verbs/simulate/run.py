@@ -1,6 +1,7 @@
 """Run of a program of any kind on the virtual machine."""
 
 from dataclasses import replace
+from pkgutil import resolve_name
 
 from service.progress import Tell, silent
 from service.requests.runs import SimulationRequest
@@ -9,6 +10,10 @@ from service.simulation.run import simulate
 from service.simulation.run_files import placed_run
 from service.verbs.simulate.request import SimulateFiles
 from service.verbs.simulate.result import SimulateResult
+from simulator.client.document_choices import DocumentChoice
+
+DOCUMENT = "service.agent.run:simulated_with_document"
+"""Function of an extra that runs a program and writes its document of MTConnect."""
 
 
 def run(
@@ -32,10 +37,8 @@ def run(
     elif files.mtconnect is None:
         found = simulate(request, places, tell=tell)
     else:
-        from service.agent.run import DocumentChoice, simulated_with_document  # noqa: PLC0415 (lxml)
-
         choice = DocumentChoice(
             version=files.schema, names=files.names, part=files.part, batch=files.batch
         )
-        found = simulated_with_document(request, places, files.mtconnect, choice, tell=tell)
+        found = resolve_name(DOCUMENT)(request, places, files.mtconnect, choice, tell=tell)
     return SimulateResult(simulation=found, carbon=carbon)

@@ -10,12 +10,7 @@ from pyarrow import parquet
 
 from service.agent.play import begun, play
 from service.agent.replay import RecordedRun, read_log
-from service.agent.run import (
-    AgentFiles,
-    DocumentChoice,
-    replayed,
-    simulated_with_document,
-)
+from service.agent.run import AgentFiles, replayed, simulated_with_document
 from service.recording.run import record
 from service.requests.agent import AgentRequest
 from service.requests.runs import SimulationRequest
@@ -25,6 +20,7 @@ from simulator.agent.buffer import ConditionValue, Value
 from simulator.agent.machine_model import machine_model
 from simulator.agent.model import DeviceModel, read_model
 from simulator.agent.shdr import written
+from simulator.client.document_choices import DocumentChoice
 from simulator.library import load_machine
 from stepnc_model.errors import StepNcError
 from tests.every_case import every_case

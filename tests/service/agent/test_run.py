@@ -17,7 +17,6 @@ from lxml import etree
 from service.agent.play import PlayableRun, begun, now, play
 from service.agent.run import (
     AgentFiles,
-    DocumentChoice,
     PublishedRun,
     adapted,
     listening,
@@ -29,7 +28,7 @@ from service.requests.agent import AgentRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, simulate
 from simulator.agent.http import application
-from simulator.agent.machine_model import NameSet, SchemaVersion
+from simulator.client.document_choices import DocumentChoice, NameSet, SchemaVersion
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program
 from tests.simulator.agent.conftest import header, local, observations, require_valid

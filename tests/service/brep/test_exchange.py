@@ -1,6 +1,6 @@
 """What Open CASCADE gets of a file: no comments, and only what a solid needs."""
 
-from service.brep.solid import exchange_below, whole_exchange
+from extras.brep.solid import exchange_below, whole_exchange
 from stepnc_model.part21.reader import Part21File
 
 TEXT = b"""ISO-10303-21;

@@ -6,8 +6,8 @@ from random import Random
 
 import pytest
 
-from service.brep import tessellation
-from service.brep.tessellation import Choice, tessellate
+from extras.brep import tessellation
+from extras.brep.tessellation import Choice, tessellate
 from service.part_file import read_part
 from stepnc_model.errors import StepNcError
 from tests.service.brep.shapes import block, torus, write_step

@@ -2,6 +2,7 @@
 
 import json
 
+from service.jobs.produce import FIGURES, TABLES
 from service.live.journal import append
 from service.requests.factory import FactoryOrder
 from service.requests.fields import dumped
@@ -22,11 +23,11 @@ def test_a_shop_leaves_tables_report_and_result(shop: Shop) -> None:
     job = shop.over(ordered(shop, replications=2).id)
     assert job.state is JobState.SUCCEEDED, job.problem
     folder = shop.data_folder.job_folder(job.id)
-    assert {file.name for file in (folder / "tables").iterdir()} == {
+    assert {file.name for file in (folder / TABLES).iterdir()} == {
         "saw 1.csv", "mill-1.csv", "mill-2.csv", "states.parquet",
     }  # fmt: skip
     assert (folder / "report.html").is_file()
-    assert (folder / "figures.csv").is_file()
+    assert (folder / FIGURES).is_file()
     assert json.loads((folder / "result.json").read_text())["replications"] == 2
 
 

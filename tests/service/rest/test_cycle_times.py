@@ -5,7 +5,7 @@ from typing import Any
 import httpx
 import pytest
 
-from service.rest.verification_views import CycleTimeView
+from service.rest.cycle_time_views import CycleTimeView
 from tests.service.rest.conftest import Done
 from tests.service.rest.samples import SLOT
 from tests.service.rest.server import is_problem, made, over

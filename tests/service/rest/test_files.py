@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import httpx
 import pytest
 
-from service.rest.verification_views import FileView
+from service.rest.files import FileView
 from tests.every_case import every_case
 from tests.service.rest.server import Server, is_problem, made
 from tests.service.waiting import rss_mib

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from extras.verification.rest import verifiable
 from service.errors import Conflict, NotFound, Unreadable
 from service.ids import new_id
 from service.monitor.monitor import MonitorSet
@@ -19,7 +20,6 @@ from service.rest.orders import (
     selectable,
     startable,
     timeable,
-    verifiable,
 )
 from service.storage import jobs, programs
 from service.storage.folder import DataFolder, open_data_folder

@@ -10,7 +10,7 @@ import httpx
 import pytest
 from pyarrow import csv, parquet
 
-from service.rest.verification_views import SurfaceMapView, VerificationView
+from extras.verification.views import SurfaceMapView, VerificationView
 from tests.service.agent.test_run import run_of
 from tests.service.brep.shapes import block, first_face, write_step
 from tests.service.monitor.played import PlayedAgent

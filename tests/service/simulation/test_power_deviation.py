@@ -8,11 +8,11 @@ import pytest
 from numpy.typing import NDArray
 from pyarrow import parquet
 
-from service.agent.run import DocumentChoice, simulated_with_document
+from service.agent.run import simulated_with_document
 from service.cli.commands import print_result
 from service.simulation.run import Simulation, simulate
 from service.verbs.simulate.result import SimulateResult
-from simulator.agent.machine_model import NameSet, SchemaVersion
+from simulator.client.document_choices import DocumentChoice, NameSet, SchemaVersion
 from stepnc_model.errors import StepNcError
 from tests.asking import asked_simulation
 

@@ -18,8 +18,9 @@ from lxml import etree
 from simulator.agent.agent import Agent
 from simulator.agent.buffer import Value
 from simulator.agent.http import application
-from simulator.agent.machine_model import SchemaVersion, machine_model
+from simulator.agent.machine_model import machine_model
 from simulator.agent.model import DeviceModel
+from simulator.client.document_choices import SchemaVersion
 from simulator.library import load_machine
 
 T = TypeVar("T")

@@ -5,13 +5,8 @@ from dataclasses import replace
 import pytest
 
 from simulator.agent.documents import DocumentWriter
-from simulator.agent.machine_model import (
-    MachineModel,
-    NameSet,
-    SchemaVersion,
-    device_uuid,
-    machine_model,
-)
+from simulator.agent.machine_model import MachineModel, device_uuid, machine_model
+from simulator.client.document_choices import NameSet, SchemaVersion
 from simulator.library import load_machine, machine_names
 from tests.every_case import every_case
 from tests.simulator.agent.conftest import require_valid

@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from simulator.agent.model import DeviceModel, model_of, parsed, read_model
+from simulator.agent.model import DeviceModel, model_of, read_model
+from simulator.client.xml_text import parsed
 from simulator.errors import AgentError
 from tests.every_case import every_case
 

@@ -5,8 +5,8 @@ from math import pi
 from lxml import etree
 
 from simulator.agent.documents import DocumentWriter
-from simulator.agent.machine_model import SchemaVersion
 from simulator.agent.tool_assets import tool_asset
+from simulator.client.document_choices import SchemaVersion
 from simulator.machine.cutting import CuttingEdge
 from simulator.machine.virtual import LoadedTool, Shape
 from simulator.removal.cutter import Cutter, Holder, Insert

@@ -12,12 +12,13 @@ import pytest
 from simulator.motion.control import ExactStop
 from simulator.motion.segments import AxisLimits, Floats, Motion, Segments, chained, lines
 from simulator.removal.cutter import Insert
+from simulator.removal.mesh_stock import required_bar
 from simulator.verification.deviation import SurfacePlaces, surface_places
 from simulator.verification.logged import LoggedPart, LoggedSamples
 from simulator.verification.logged_bar import LoggedBar
 from simulator.verification.path import ProgrammedRun, programmed_path
 from simulator.verification.required import required_places
-from simulator.verification.revolved import required_bar, required_turned_places
+from simulator.verification.revolved import required_turned_places
 from simulator.verification.surface import programmed_part
 from simulator.verification.turned import turned_part, turned_places
 from tests.simulator.verification import test_required, test_revolved

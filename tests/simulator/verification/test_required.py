@@ -5,9 +5,9 @@ import pytest
 
 from simulator.motion.segments import Floats
 from simulator.removal.cutter import Cutter
+from simulator.removal.mesh_stock import edges_of
 from simulator.verification.deviation import SurfacePlaces
 from simulator.verification.logged import LoggedPart
-from simulator.verification.mesh import edges_of
 from simulator.verification.required import required_part, required_places
 from stepnc_model.program import Stock
 from tests.simulator.verification.block import sampled, samples_at

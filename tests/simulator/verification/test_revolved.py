@@ -5,15 +5,11 @@ import pytest
 
 from simulator.motion.segments import Floats, lines
 from simulator.removal.cutter import Insert
+from simulator.removal.mesh_stock import RequiredBar, required_bar
 from simulator.verification.deviation import SurfacePlaces
 from simulator.verification.logged_bar import LoggedBar
 from simulator.verification.path import ProgrammedRun, programmed_path
-from simulator.verification.revolved import (
-    RequiredBar,
-    profile_deviation,
-    required_bar,
-    required_turned_places,
-)
+from simulator.verification.revolved import profile_deviation, required_turned_places
 from simulator.verification.turned import turned_part, turned_places, turned_volumes
 from stepnc_model.program import Stock
 from tests.simulator.verification.block import sampled, samples_at

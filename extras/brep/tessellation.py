@@ -143,7 +143,7 @@ def tessellate(
             "file": str(place), "kept": str(kept), "sag": sag, "longest": longest,
             "most_memory": MOST_MEMORY, "most_solids": MOST_SOLIDS, **asdict(choice),
         })  # fmt: skip
-        _run([sys.executable, "-m", "service.brep.tessellation", words], name, longest)
+        _run([sys.executable, "-m", "extras.brep.tessellation", words], name, longest)
         with np.load(kept, allow_pickle=False) as found:
             count = int(found["count"])
             if count > MOST_TRIANGLES:

@@ -1,11 +1,11 @@
-"""Plotly figures of block rate and cycle time."""
+"""Plotly figure of a fitted block rate."""
 
 import numpy as np
 import plotly.graph_objects as go
 
-from service.panels import BLUE, CLEAR, FAINT, GREEN, GREY, ORANGE, RED
+from service.panels import BLUE, FAINT, GREEN, GREY, ORANGE, RED
+from service.verbs.cycletime.figures import laid_out
 from simulator.calibration.block_fit import BlockFit, FeedCause
-from simulator.machine.block_times import BlockTimes
 from simulator.motion.segments import Floats
 from stepnc_model.units import SECONDS_PER_MINUTE, mm_min_from_speed
 
@@ -16,10 +16,7 @@ COLOURS = {
 }
 """Colours of the fits."""
 
-HEIGHT = 560
-
-MOST_POINTS = 4_000
-"""Most blocks that are drawn; of more, the slowest of each group is shown."""
+_ON_LINE = FeedCause.BLOCK_RATE
 
 
 def block_fit_figure(fit: BlockFit, paper: BlockFit, *, printed: float) -> go.Figure:
@@ -57,12 +54,9 @@ def block_fit_figure(fit: BlockFit, paper: BlockFit, *, printed: float) -> go.Fi
         marker={"size": 9, "symbol": "diamond-open", "color": GREY},
     )
     _line(figure, "printed line, no fit of it", ends, printed / 60.0 * ends, GREY, dash="dot")
-    _laid_out(figure)
+    laid_out(figure)
     figure.update_xaxes(type="log", title="spacing, mm", gridcolor=FAINT)
     return figure.update_yaxes(type="log", title="greatest feed, mm/min", gridcolor=FAINT)
-
-
-_ON_LINE = FeedCause.BLOCK_RATE
 
 
 def _line(
@@ -83,41 +77,3 @@ def _line(
         name=name,
         line={"color": colour, "dash": dash, "width": 1.5},
     )
-
-
-def _laid_out(figure: go.Figure) -> None:
-    """Apply the common layout."""
-    figure.update_layout(
-        height=HEIGHT,
-        paper_bgcolor=CLEAR,
-        plot_bgcolor=CLEAR,
-        margin={"l": 60, "r": 10, "t": 20, "b": 50},
-        legend={"orientation": "h", "y": 1.02, "yanchor": "bottom"},
-    )
-
-
-def cycle_time_figure(times: BlockTimes) -> go.Figure:
-    """Feed of each feed block: as programmed, by the block rate, and by the control."""
-    rows = np.flatnonzero((times.is_rapid == 0) & (times.length > 0.0))
-    feeds = [
-        SECONDS_PER_MINUTE * times.length[rows] / np.maximum(seconds[rows], 1e-12)
-        for seconds in (times.programmed, times.by_rate, times.predicted)
-    ]
-    group = max(1, -(-len(rows) // MOST_POINTS))
-    starts = np.arange(0, len(rows), group)
-    figure = go.Figure()
-    for name, colour, feed in (
-        ("programmed", GREY, feeds[0]),
-        ("by the block rate", ORANGE, feeds[1]),
-        ("predicted", BLUE, feeds[2]),
-    ):
-        figure.add_scatter(
-            x=times.line[rows[starts]].tolist(),
-            y=np.minimum.reduceat(feed, starts).tolist() if len(rows) else [],
-            mode="lines",
-            name=name,
-            line={"color": colour, "width": 1.5},
-        )
-    _laid_out(figure)
-    figure.update_xaxes(title="block", gridcolor=FAINT)
-    return figure.update_yaxes(title="feed, mm/min", rangemode="tozero", gridcolor=FAINT)

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from service.brep.tessellation import ALL, Choice, Tessellation, tessellate
+from extras.brep.tessellation import ALL, Choice, Tessellation, tessellate
+from service.brep.bodies import SolidPlace, sag_within
 from simulator.motion.segments import Floats
-from simulator.verification.mesh import edges_of
+from simulator.removal.mesh_stock import edges_of
 from stepnc_model.errors import Part21Error, StepNcError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref, Typed, Value
@@ -92,9 +93,6 @@ def _references(values: Sequence[Value]) -> list[int]:
     return found
 
 
-PARTS = 5.0
-"""Share of the tolerance by which triangles may lie beside the surface is one in this many."""
-
 ROUNDING = 1e-6
 """Relative difference of volumes that rounding explains."""
 
@@ -103,24 +101,6 @@ SOLIDS = ("MANIFOLD_SOLID_BREP", "FACETED_BREP", "BREP_WITH_VOIDS")
 
 MOST_NAMED = 12
 """Most solids that a message lists."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SolidPlace:
-    """Place of a solid in a file."""
-
-    file: Part21File
-    name: str
-    """Name of the file in messages."""
-    root: int | None = None
-    """Instance of its geometry; None: anywhere in the file."""
-    solid: str = ""
-    """Name of the solid, or its place in the list of a message; empty: the only one."""
-
-
-def sag_within(tolerance: float) -> float:
-    """Greatest distance of triangles from the surface by which a tolerance is seen, mm."""
-    return tolerance / PARTS
 
 
 def solid_triangles(place: SolidPlace, *, tolerance: float) -> Floats:

@@ -1,6 +1,6 @@
 """The MTConnect agent of the service, mounted under ``/mtconnect``."""
 
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Coroutine, Mapping, Sequence
 from typing import Any
 
 from fastapi import FastAPI
@@ -14,15 +14,17 @@ from simulator.agent.http import application
 BASE = "/mtconnect"
 
 Receive = Callable[[], Awaitable[Mapping[str, Any]]]
+Work = Callable[[], Coroutine[Any, Any, None]]
 Send = Callable[[Mapping[str, Any]], Awaitable[None]]
 
 
-def mount(app: FastAPI, shop: ShopAgent | None) -> None:
-    """Mount the agent; without one, say why there is none.
+def mount(app: FastAPI) -> Sequence[Work]:
+    """Mount the agent; without one, say why there is none. Return what it does meanwhile.
 
     Several web processes would give different sequence numbers, so only a single one has the
     agent.
     """
+    shop = ShopAgent(app.state.data_folder) if app.state.settings.has_agent else None
     served = None
     if shop is not None:
         served = application(shop.agent)
@@ -43,3 +45,7 @@ def mount(app: FastAPI, shop: ShopAgent | None) -> None:
         await served({**scope, "path": path, "raw_path": raw, "root_path": ""}, receive, send)
 
     app.mount(BASE, serve)  # type: ignore[arg-type]
+    return () if shop is None else (shop.run,)
+
+
+ADDED = (mount,)

@@ -1,26 +1,12 @@
-"""Response bodies of verifications and of the files that they compare."""
+"""Response bodies of verifications."""
 
 from typing import Any
 
 import numpy as np
 from pydantic import ConfigDict, Field
 
-from service.rest.replies import moment
 from service.rest.views import FindingView, View
-from service.storage.files import FileKind, StoredFile
 from service.verification.facts import SurfaceMap
-
-
-class FileView(View):
-    """Uploaded file: a log, a tool table or a required part."""
-
-    id: str
-    kind: FileKind
-    name: str
-    size_bytes: int
-    sha256: str
-    owner: str
-    created_at: str
 
 
 class SurfaceView(View):
@@ -129,62 +115,6 @@ class SurfaceMapView(View):
     kind: list[int] = Field(description="place in kinds, from 0")
     block: list[int] = Field(description="block of the program; 0: none")
     time_s: list[float | None] = Field(description="time in the log; null: none came near")
-
-
-class CycleRowView(View):
-    """Times of one tool in one workingstep, or of all."""
-
-    workingstep: str
-    tool: int | None
-    blocks: int
-    theoretical_s: float = Field(description="length over feed")
-    block_rate_s: float = Field(description="at the feed that block rate and axes allow")
-    predicted_s: float = Field(description="with acceleration and corners")
-    actual_s: float | None = Field(description="as logged; null: the log does not tell it")
-
-
-class LosingStretchView(View):
-    """Consecutive blocks that lose time for the same reason."""
-
-    workingstep: str
-    first_block: int
-    last_block: int
-    blocks: int
-    spacing_mm: float = Field(description="mean length of a block")
-    feed_mm_min: float
-    reached_mm_min: float
-    lost_s: float
-    cause: str
-
-
-class CycleTimeView(View):
-    """Cycle time of a program, as ``stepnc cycletime --json`` prints it."""
-
-    model_config = ConfigDict(extra="allow", frozen=True)
-
-    program: str
-    log: str | None
-    machine: str
-    control: str
-    block_time_ms: float | None = Field(description="null: the block rate limits nothing")
-    rows: list[CycleRowView]
-    total: CycleRowView
-    stretches: list[LosingStretchView] = Field(description="those that lose most, first")
-    hints: list[str]
-    findings: list[FindingView]
-
-
-def file_view(stored: StoredFile) -> dict[str, Any]:
-    """Return a stored file as a :class:`FileView`."""
-    return {
-        "id": stored.id,
-        "kind": stored.kind.value,
-        "name": stored.name,
-        "size_bytes": stored.size,
-        "sha256": stored.sha256,
-        "owner": stored.owner,
-        "created_at": moment(stored.created),
-    }
 
 
 def map_view(surface_map: SurfaceMap) -> dict[str, Any]:

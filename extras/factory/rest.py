@@ -1,4 +1,4 @@
-"""States, parts and changes of runs of shops, and the sample shops of ``/v1/shops``."""
+"""Runs of shops over REST, and the sample shops of ``/v1/shops``."""
 
 from math import inf
 from pathlib import Path as FilePath
@@ -7,22 +7,25 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Path, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
+from extras.factory.views import SampleShopView, StatesView
 from service.errors import Conflict, NotFound, Unreadable
-from service.factory.asked import sample_shops
+from service.factory.asked import checked_shop, sample_shops, source_of_order
 from service.factory.live import require_failure
+from service.factory.run import STATES
 from service.factory.state_log import state_bars
-from service.jobs.produce import STATE_LOG, TABLES, table_of
+from service.jobs.produce import FIGURES, STATE_LOG, TABLES, table_of
 from service.live.series import open_series
-from service.requests.factory import FactoryChanges
+from service.requests.factory import FactoryChanges, FactoryOrder
+from service.requests.fields import loaded
 from service.rest.asking import answered
 from service.rest.bodies import Id
 from service.rest.context import (
     InDataFolder,
     fetched,
 )
-from service.rest.factory_views import SampleShopView, StatesView
 from service.rest.live import ordered
 from service.rest.replies import file_reply, json_reply
+from service.rest.resource import Creation, Download, Resource, Shown, TableFormat
 from service.rest.results import (
     Begin,
     End,
@@ -31,10 +34,10 @@ from service.rest.results import (
 )
 from service.storage import jobs
 from service.storage.folder import DataFolder
-from service.storage.jobs import Job, JobKind
+from service.storage.jobs import Job, JobKind, JobRequest
 from simulator.factory.shop_file import content_of
 
-ROUTES = APIRouter(prefix="/v1/factories", tags=["factories"])
+RUNS = APIRouter(prefix="/v1/factories", tags=["factories"])
 SHOPS = APIRouter(prefix="/v1/shops", tags=["factories"])
 
 CSV = "text/csv"
@@ -43,6 +46,53 @@ BARS = 400
 
 Bars = Annotated[int, Query(ge=1, le=2000, description="most bars of each machine")]
 MachineName = Annotated[str, Path(max_length=200, description="name of a machine of the shop")]
+
+
+def producible(data_folder: DataFolder, asked: JobRequest) -> None:
+    """Check that a shop, its programs and its machines can be read."""
+    wanted = loaded(FactoryOrder, asked.request)
+    checked_shop(source_of_order(data_folder, wanted), wanted)
+
+
+RESOURCES = (
+    Resource(
+        kind=JobKind.FACTORY,
+        tag="factories",
+        plural="runs of shops",
+        creation=Creation(
+            name="ask_factory",
+            body=FactoryOrder,
+            require=producible,
+            summary="Run a shop",
+            about="Queue a job that runs a shop: live at a pace, or with replications and a "
+            "sweep.",
+        ),
+        shown=Shown(
+            summary="Show the figures of a shop",
+            about="Show the figures by level, the time in each state, and the cases of a "
+            "sweep.",
+        ),
+        downloads=(
+            Download(
+                path="figures",
+                file=FIGURES,
+                forms=(TableFormat.CSV,),
+                summary="Download the figures as CSV",
+                about="Download the figures of all levels, one row each.",
+            ),
+            Download(
+                path="samples",
+                file=f"{TABLES}/{STATES}",
+                thing="states",
+                summary="Download the states as Parquet",
+                about="Download the states of all machines, one row each, first replication.",
+            ),
+        ),
+        status="Show states of machines, buffers, products and processes; null before it "
+        "begins.",
+        has_series=True,
+    ),
+)
 
 
 @SHOPS.get("", response_model=list[SampleShopView], summary="List the sample shops")
@@ -60,7 +110,7 @@ def _shop(name: str, file: FilePath) -> dict[str, Any]:
     return {"name": name, "title": content_of(text, file).get("title", name), "text": text}
 
 
-@ROUTES.get("/{id}/states", response_model=StatesView, summary="States over time")
+@RUNS.get("/{id}/states", response_model=StatesView, summary="States over time")
 async def states(
     request: Request,
     data_folder: InDataFolder,
@@ -100,7 +150,7 @@ def _states(
     }
 
 
-@ROUTES.post("/{id}/changes", status_code=202, summary="Change a live shop")
+@RUNS.post("/{id}/changes", status_code=202, summary="Change a live shop")
 async def change_factory(
     request: Request, data_folder: InDataFolder, id: Id, body: FactoryChanges
 ) -> Response:
@@ -129,7 +179,7 @@ def _machines(data_folder: DataFolder, job: Job) -> list[str]:
     return [machine["name"] for machine in status["machines"]]
 
 
-@ROUTES.get("/{id}/parts/{machine}", summary="Download the parts of a machine as CSV",
+@RUNS.get("/{id}/parts/{machine}", summary="Download the parts of a machine as CSV",
             response_class=Response, responses={200: {"content": {CSV: {}}}})  # fmt: skip
 async def parts(
     request: Request, data_folder: InDataFolder, id: Id, machine: MachineName
@@ -142,3 +192,6 @@ async def parts(
     if file is None:
         raise NotFound("table of parts", machine)
     return file_reply(request, file, name=file.name, kind=CSV, thing="table of parts")
+
+
+ROUTES = (RUNS, SHOPS)

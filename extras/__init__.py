@@ -1,0 +1,1 @@
+"""Extras: what only some users need. The core imports none of them, and finds them by name."""

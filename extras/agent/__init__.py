@@ -1,0 +1,1 @@
+"""MTConnect agent: a run, or a shop of machines, published to clients."""

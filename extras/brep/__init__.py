@@ -1,0 +1,1 @@
+"""B-rep: solids of STEP files as triangles, by Open CASCADE."""

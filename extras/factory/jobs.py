@@ -1,0 +1,5 @@
+"""Jobs of the factory, found by the runner of jobs."""
+
+from service.storage.jobs import JobKind
+
+WORK = ((JobKind.FACTORY, "service.jobs.produce:run"),)

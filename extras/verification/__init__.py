@@ -1,0 +1,1 @@
+"""Verification: the part that a log of positions left, compared with the programmed one."""

@@ -1,1 +1,0 @@
-"""Time of blocks: the test of the block rate, its fit, and cycle times that follow."""
