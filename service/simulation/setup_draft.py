@@ -24,7 +24,7 @@ HEAD = """\
 
 
 class Sureness(StrEnum):
-    """How sure a value of a draft is."""
+    """Certainty of a value of a draft."""
 
     GIVEN = "given"
     """By the user."""

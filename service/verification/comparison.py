@@ -346,8 +346,8 @@ def _open_notes(count: int) -> Iterator[str]:
     """Say that a mesh is not closed."""
     if count:
         yield (
-            f"the mesh of the required part is not closed: {count} edges do not belong to two "
-            "triangles; what is missing is not compared"
+            f"the mesh of the required part is not closed: {counted(count, 'edge')} without "
+            "two triangles; what is missing is not compared"
         )
 
 

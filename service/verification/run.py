@@ -364,8 +364,8 @@ def _findings(file: LogFile, facts: LogFacts, tools: set[int]) -> list[Finding]:
         )
     if facts.gaps:
         found.append(
-            f"{facts.gaps} gaps of up to {facts.longest_gap:.3g} s in which the tool moved: "
-            "what it did there is not known, and what it may have cut there is left"
+            f"{counted(facts.gaps, 'gap')} of up to {facts.longest_gap:.3g} s in which the "
+            "tool moved: what it did there is not known, and what it may have cut there is left"
         )
     missing = sorted(tools - facts.tools)
     if missing:

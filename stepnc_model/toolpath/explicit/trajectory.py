@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 from math import ceil, dist, hypot, inf
 
+from stepnc_model.counted import counted
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import SpeedName, ToolpathType
 from stepnc_model.entities.geometry import BSplineCurve, Polyline
@@ -333,7 +334,8 @@ def _axes(
     if len(set(names)) != len(names) or not set(names) <= set(AXES):
         raise program.path_error(f"axes {', '.join(names)}: only X, Y and Z, each once", ref)
     if len(names) != len(trajectory.commands):
-        counts = f"{len(names)} axes but {len(trajectory.commands)} commands"
+        commands = counted(len(trajectory.commands), "command")
+        counts = f"{counted(len(names), 'axis', 'axes')} but {commands}"
         raise program.path_error(counts, ref)
     if at is None and len(names) < len(AXES):
         raise program.path_error("the positions of the other axes are unknown", ref)
@@ -376,7 +378,8 @@ def _contact(
     contacts = _points(program, ref, curve.basiccurve)
     normals = _points(program, ref, curve.surface_normal)
     if len(contacts) != len(normals):
-        raise program.path_error(f"{len(contacts)} points, but {len(normals)} normals", ref)
+        counts = f"{counted(len(contacts), 'point')}, but {counted(len(normals), 'normal')}"
+        raise program.path_error(counts, ref)
     points = [
         _tip(program, ref, cutter, contact=frame.point(contact), normal=frame.direction(normal))
         for contact, normal in zip(contacts, normals, strict=True)
