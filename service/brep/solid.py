@@ -129,7 +129,6 @@ def solid_triangles(place: SolidPlace, *, tolerance: float) -> Floats:
 
     Parameters
     ----------
-    place : SolidPlace
     tolerance : float, mm
         Size of the deviations that are to be seen: triangles lie within a fifth of it of the
         surface.

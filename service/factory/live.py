@@ -1,4 +1,4 @@
-"""A shop that runs live: advanced step by step, watched, and ordered about while it runs.
+"""A live shop: it runs step by step, reports its states, and takes orders while it runs.
 
 Running state; independent of wall-clock time. Inside s, W and J; rows and status in the units
 of their names. Figures begin anew at the end of the warm-up, as those of the result.
@@ -40,12 +40,7 @@ from stepnc_model.units import (
 
 
 class Stages:
-    """Places of machines and buffers in the flow of parts, from 0.
-
-    Parameters
-    ----------
-    shop : Shop
-    """
+    """Places of machines and buffers in the flow of parts, from 0."""
 
     def __init__(self, shop: Shop) -> None:
         self.machines: dict[str, int] = {}
@@ -274,16 +269,13 @@ class ShopUpdate:
 
 
 class LiveShop:
-    """Shop that is advanced and ordered about. Running state.
+    """Shop that runs step by step and takes orders. Running state.
 
     Parameters
     ----------
-    shop : Shop
-    plan : MachiningPlan
     seed : int
     programs : mapping
         Names of programs for display, by their path.
-    listeners : Listeners
     """
 
     def __init__(

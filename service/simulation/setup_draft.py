@@ -58,8 +58,6 @@ def setup_draft(program: NcProgram, known: GivenSetup, setup: CodeSetup) -> Setu
 
     Parameters
     ----------
-    program : NcProgram
-    known : GivenSetup
     setup : CodeSetup
         What was found for it.
     """

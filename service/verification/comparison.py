@@ -62,7 +62,6 @@ def nominal_deviation(
 
     Parameters
     ----------
-    program : PreparedProgram
     places : SurfacePlaces
         Those on walls first.
     normal : (P, 2) array
@@ -126,7 +125,6 @@ def required_profile_deviation(
 
     Parameters
     ----------
-    part : RequiredBar
     bar : TurningStock
         Programmed part.
     places : SurfacePlaces
@@ -381,11 +379,8 @@ def _require_cut(
 
     Parameters
     ----------
-    parts : ComparedParts
-    file : LogFile
     wanted : (A,) array, mm
         Extent of what is to be removed along some axes, less the widest tool.
-    axes : list of int
     """
     if not parts.volumes.logged > LEAST_VOLUME:
         raise StepNcError(f"{file.name}: the positions {NEVER}")

@@ -129,8 +129,6 @@ def verify(
     program : Path or None
         STEP-NC program; without one, the inputs name tools and required part, and the request
         machine and stock.
-    request : VerificationRequest
-    inputs : VerificationInputs
     tell : callable
         Takes messages on the progress.
 
@@ -180,9 +178,6 @@ def verified(
 
     Parameters
     ----------
-    log : Path
-    program : PreparedProgram
-    request : VerificationRequest
     name : str
         Name of the log in messages; empty: its path.
     tell : callable
@@ -244,9 +239,6 @@ def verified_without_program(
 
     Parameters
     ----------
-    log : Path
-    setup : RequiredSetup
-    request : VerificationRequest
     name : str
         Name of the log in messages; empty: its path.
     tell : callable

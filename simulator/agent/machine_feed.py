@@ -40,10 +40,8 @@ def run_feed(
 
     Parameters
     ----------
-    samples : Samples
     machine : Machine
         Whose greatest motor power is 100 % of the spindle's load.
-    shown : MachineModel
     workingsteps : sequence of str
         Ids by their number, from 1.
     """
@@ -75,7 +73,6 @@ def beginning(
 
     Parameters
     ----------
-    shown : MachineModel
     program : str
         Name of the program.
     part_count : int

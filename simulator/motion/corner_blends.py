@@ -107,8 +107,6 @@ def joints(plan: MovePlan, *, mode: PathControl, period: float) -> Joints:
 
     Parameters
     ----------
-    plan : MovePlan
-    mode : PathControl
     period : float, s
         Servo period.
     """

@@ -199,7 +199,6 @@ class RecordedMachine:
     ----------
     course : NominalCourse
         Course of the program that was run.
-    signals : RecordedSignals
 
     Raises
     ------

@@ -51,7 +51,6 @@ def required_bar(triangles: Floats, stock: Stock, *, cell: float | None = None) 
     ----------
     triangles : (T, 3, 3) array, mm
         Closed, all seen counter-clockwise from outside, or all clockwise.
-    stock : Stock
     cell : float, mm
         Length of a cell along the axis.
 
@@ -180,10 +179,8 @@ def profile_deviation(places: SurfacePlaces, is_bore: Bools, part: RequiredBar) 
 
     Parameters
     ----------
-    places : SurfacePlaces
     is_bore : (N,) array of bool
         Whether a place lies in the bore.
-    part : RequiredBar
 
     Returns
     -------

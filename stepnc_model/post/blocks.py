@@ -302,7 +302,6 @@ def expanded(
 
     Parameters
     ----------
-    cycle : DrillingCycle
     spindle : SpindleOn or SurfaceSpeed, optional
         Spindle state to restore after a cycle that stops the spindle.
     """

@@ -90,7 +90,6 @@ def commands(blocks: Iterable[Block], *, places: int = PLACES) -> Iterator[Canon
 
     Parameters
     ----------
-    blocks : iterable of Block
     places : int
         Decimal places to which coordinates are rounded.
     """

@@ -92,8 +92,6 @@ def write_outcome(
 
     Parameters
     ----------
-    path : Path
-    factor : ForceFactor
     program : Path
         Program of the runs, which mills with one tool.
     names : mapping

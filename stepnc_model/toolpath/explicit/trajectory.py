@@ -81,8 +81,6 @@ def pace_of(
 
     Parameters
     ----------
-    program : Program
-    ref : Ref
     technology : Ref or None
         Technology of the operation; None for a rapid movement, where everything is rapid.
     alike : collection of Ref
@@ -135,7 +133,6 @@ def paced(start: Point, moves: Sequence[Move], factors: Spline) -> Iterator[Move
         Start of the first move.
     moves : sequence of Move
         All moves of one tool path, at feed.
-    factors : Spline
     """
     starts = [start, *(move.end for move in moves[:-1])]
     lengths = [length(at, move) for at, move in zip(starts, moves, strict=True)]
@@ -290,8 +287,6 @@ def trajectory_segments(
 
     Parameters
     ----------
-    program : Program
-    ref : Ref
     frame : Frame
         Frame in which the curve is given.
     tool : callable or None
