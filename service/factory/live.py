@@ -3,10 +3,8 @@
 Running state; independent of wall-clock time. Inside s, W and J; rows and status in the units
 of their names. Figures begin anew at the end of the warm-up, as those of the result.
 
-Status of a live shop as JSON: line, machines, buffers, products and processes.
-
-A status is made several times a second, so it holds numbers only that change; its size is that
-of the shop.
+Its status is JSON: line, machines, buffers, products and processes. It is made several times a
+second, so that it holds only numbers that change; its size is that of the shop.
 """
 
 from collections.abc import Collection, Mapping
