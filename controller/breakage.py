@@ -125,7 +125,6 @@ def inspected(
 
     Parameters
     ----------
-    breakage : Breakage
     revolution : Revolution
         A revolution in the cut; noise alone has no pattern to learn.
     expected : Expected, optional

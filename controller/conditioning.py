@@ -69,7 +69,6 @@ def tared(tare: Tare, reading: Reading, *, has_chips: bool | None = None) -> Tar
 
     Parameters
     ----------
-    tare : Tare
     reading : Reading
         Raw sensor reading, with nothing subtracted.
     has_chips : bool, optional
@@ -104,8 +103,6 @@ def idled(idle: IdlePower, reading: Reading, *, has_chips: bool | None = None) -
 
     Parameters
     ----------
-    idle : IdlePower
-    reading : Reading
     has_chips : bool, optional
         As in :func:`tared`.
     """
@@ -130,8 +127,6 @@ def force_from_power(
 
     Parameters
     ----------
-    reading : Reading
-    idle : IdlePower
     tool_diameter : float, mm
         In turning, the diameter of the work.
     efficiency : float

@@ -50,7 +50,6 @@ def log_ratio(
 
     Parameters
     ----------
-    revolution : Revolution
     expected : float, N
         Mean force at the feed that was run, ``g · u^p``, with the catalogue's k_c; 0: no cut.
     expected_before : float, N

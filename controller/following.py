@@ -39,8 +39,6 @@ def followed(before: Following, reading: Reading, commanded: float, *, lag: floa
 
     Parameters
     ----------
-    before : Following
-    reading : Reading
     commanded : float
         Override commanded before the reading.
     lag : float, s

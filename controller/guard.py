@@ -144,7 +144,6 @@ class WorkingstepBounds:
 
         Parameters
         ----------
-        band : OverrideBand
         level : float, N
             Force as if all teeth were alike, compared with the set point.
         force : float, N
@@ -182,8 +181,6 @@ def allowed(
     ----------
     wanted : float
         Requested override; NaN or infinity counts as the floor.
-    band : OverrideBand
-    keep : WorkingstepBounds
     last : float
         Last commanded override.
     actual : float

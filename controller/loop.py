@@ -45,8 +45,6 @@ class Loop:
 
     Parameters
     ----------
-    sensor : Sensor
-    override : Override
     source : Source
         Force from a dynamometer or from spindle power.
     law : callable
@@ -55,7 +53,6 @@ class Loop:
         The program's workingsteps in the order in which they begin.
     preview : Preview
         Force that the program expects; the law uses it when the settings have a look-ahead.
-    settings : LoopSettings
     """
 
     def __init__(  # noqa: PLR0913 (everything that is plugged together, once)

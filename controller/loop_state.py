@@ -200,7 +200,6 @@ def answered(
 
     Parameters
     ----------
-    state : LoopState
     reading : Reading
         In equivalent forces.
     revolution : Revolution, optional
@@ -209,7 +208,6 @@ def answered(
         ln(measured / expected) of the revolution.
     force : float, N
         Mean of the reading; NaN: not known.
-    law_for : callable
     """
     if not reading.can_override:
         return _out_of_cut(state)._replace(without_sample=0.0, without_force=0.0, greatest=0.0)
@@ -240,10 +238,8 @@ def awaited(state: LoopState, reading: Reading, law_for: LawFor) -> LoopState:
 
     Parameters
     ----------
-    state : LoopState
     reading : Reading
         Part of a tooth period, which has no load of a tooth.
-    law_for : callable
     """
     sample, force = _listened(state, reading, None, nan)
     state = state._replace(without_sample=sample, without_force=force)

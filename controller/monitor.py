@@ -140,7 +140,6 @@ class Monitor(NamedTuple):
 
         Parameters
         ----------
-        tool : str
         hardness : float, optional
             Factor on k_c that the sharp tool has taught in this cut; None: none was taught.
         """
@@ -181,7 +180,6 @@ class Monitor(NamedTuple):
 
         Parameters
         ----------
-        revolution : Revolution
         keep : WorkingstepBounds
             Bounds of the workingstep.
         ratio : float, optional

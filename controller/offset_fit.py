@@ -70,7 +70,6 @@ def misfits(shares: ToothShares, mean: Floats, *, scale: float) -> Floats:
 
     Parameters
     ----------
-    shares : ToothShares
     mean : (z,) array, mm
     scale : float
         Relative standard deviation of a common change of the chip thickness.
@@ -99,7 +98,6 @@ def fitted(
 
     Parameters
     ----------
-    shares : ToothShares
     mean : (z,) array, mm
         Offsets known before.
     covariance : (z, z) array, mm²

@@ -93,8 +93,6 @@ def judged(offsets: Offsets, shares: ToothShares, *, lost: int | None = None) ->
 
     Parameters
     ----------
-    offsets : Offsets
-    shares : ToothShares
     lost : int, optional
         Number of the tooth that takes no chip; None: all teeth cut.
     """

@@ -17,11 +17,8 @@ def obeyed(
 
     Parameters
     ----------
-    state : LoopState
-    order : Order
     plain : Preview
         Preview of real forces.
-    steps : sequence of LoopStep
     """
     settings, preview = state.settings, state.preview
     match order:

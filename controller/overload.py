@@ -70,7 +70,6 @@ def noted(shares: UsualShares, tooth: int, force: float) -> UsualShares:
 
     Parameters
     ----------
-    shares : UsualShares
     tooth : int
     force : float, N
         Mean of the period; NaN: lost, the tooth's previous value stays.
@@ -86,7 +85,6 @@ def seen(shares: UsualShares, tooth: int, force: float) -> UsualShares:
 
     Parameters
     ----------
-    shares : UsualShares
     tooth : int
     force : float, N
         Mean of the period; NaN: lost, the tooth's previous value stays.

@@ -39,8 +39,6 @@ def bounded(
 
     Parameters
     ----------
-    settings : LoopSettings
-    step : LoopStep
     set_point : float, N
         Infinite: there is none yet, or nothing limits the force.
     settled : float, N

@@ -130,7 +130,6 @@ class Collector:
 
         Parameters
         ----------
-        reading : Reading
         is_tooth : bool
             Whether it may be a tooth period; pieces that were put together are none.
         """

@@ -106,7 +106,6 @@ def watched(
 
     Parameters
     ----------
-    watch : ThresholdWatch
     revolution : Revolution
         Without a mean force above 0 it changes nothing.
     set_point : float, N
@@ -114,7 +113,6 @@ def watched(
     is_steady : bool
         Whether depth and feed are those of the previous revolutions. If not, nothing is learnt
         and only the set point counts.
-    by : Thresholds
 
     Raises
     ------
@@ -148,10 +146,8 @@ def reason(
     ----------
     watch : ThresholdWatch
         State before the revolution of that force.
-    level : AlarmLevel
     force : float, N
     set_point : float, N
-    by : Thresholds
 
     Examples
     --------

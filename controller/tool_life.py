@@ -242,14 +242,7 @@ def taught(life: ToolLife, hardness: float) -> ToolLife:
 
 
 def lived(life: ToolLife, at: Ratios, *, by: WearMonitorSettings = USUAL) -> ToolLife:
-    """Update the wear estimate of the tool with one more revolution.
-
-    Parameters
-    ----------
-    life : ToolLife
-    at : Ratios
-    by : WearMonitorSettings
-    """
+    """Update the wear estimate of the tool with one more revolution."""
     readings = life.readings + 1
     predicted = _predicted(life.belief, at.period)
     explained = max(_explained(predicted, at), _LEAST)

@@ -118,7 +118,6 @@ def shares_of(
 
     Parameters
     ----------
-    revolution : Revolution
     expected : Expected
         Forces that equal teeth would take.
     exponent : float

@@ -51,7 +51,6 @@ def objections(
 
     Parameters
     ----------
-    proposed : LearnedCorrection
     accepted : LearnedCorrection or None
         Correction in force; None: none was accepted yet, and only the range limits the change
         from the catalogue.

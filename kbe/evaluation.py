@@ -372,7 +372,6 @@ def evaluation(
     ----------
     outcomes : iterable of ProcessOutcome
         In the order of time for each machine; iterated once.
-    grouping : Grouping
     knowledge : Knowledge, optional
         Corrections to show and to compare; omitted: none.
 

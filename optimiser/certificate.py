@@ -111,7 +111,6 @@ def certify(
     ----------
     problem : ProfileProblem
         N stations.
-    profile : PathProfile
     caps : NamedCaps
         Caps at the N stations by name.
     limit : TangentialLimit or AxisLimit

@@ -177,7 +177,6 @@ def feed_factor(width_ratio: float, sine: float, window: FeedWindow) -> float:
         a_e/D.
     sine : float
         Greatest sin φ in the cut: chip thickness over feed per tooth of a straight edge.
-    window : FeedWindow
 
     Examples
     --------

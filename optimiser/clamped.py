@@ -59,7 +59,6 @@ def assumed_stock(program: Program, setup: Ref[Setup] | None) -> Stock | None:
 
     Parameters
     ----------
-    program : Program
     setup : Ref or None
 
     Returns
@@ -239,8 +238,6 @@ class ClampedStocks:
 
     Parameters
     ----------
-    program : Program
-    machine : Machine
     body_map : BodyMaps, optional
         Without it, the box or bar around a body counts.
     """

@@ -118,9 +118,6 @@ def milling_cut(
 
     Parameters
     ----------
-    program : Program
-    step : ResolvedWorkingstep
-    tool : Tool
     speed : float, rev/s
         Programmed spindle speed.
     feed : float, mm

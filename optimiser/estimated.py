@@ -347,9 +347,6 @@ def estimated_cut(
 
     Parameters
     ----------
-    program : Program
-    step : ResolvedWorkingstep
-    machine : Machine
     material : WorkMaterial
         Workpiece material; helix and parallel land come from the tool grade, the land unless
         the machine uses only its stated limits.

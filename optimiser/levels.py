@@ -117,7 +117,6 @@ def best_levels(
         Greatest feed of each stretch.
     count : int
         Largest number of distinct feeds.
-    rule : BlockRule
 
     Returns
     -------

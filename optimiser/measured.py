@@ -81,9 +81,6 @@ class MeasuredCuts:
 
     Parameters
     ----------
-    program : Program
-    machine : Machine
-    material : WorkMaterial
     is_run : bool
         Whether a simulated run is compared with the plan; the cuts then include all loads that
         the axes actually reach, and not only those above what the feed says.

@@ -68,10 +68,6 @@ def optimise_program(
 
     Parameters
     ----------
-    program : Program
-    machine : Machine
-    material : MaterialMatch
-    task : OptimisationTask
     selected : callable
         Predicate that selects the workingsteps.
     progress : callable

@@ -196,7 +196,6 @@ def _relaxed_limits(
 
     Parameters
     ----------
-    limits : tuple of Limit
     depth : float, mm
         Depth at which loads count, for passes that are deeper than it; None: at their own.
     is_alike : bool

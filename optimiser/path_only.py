@@ -47,9 +47,6 @@ def path_only_cut(
 
     Parameters
     ----------
-    program : Program
-    step : ResolvedWorkingstep
-    tool : Tool
     speed : float, rev/s
         Programmed spindle speed.
     feed : float, mm
@@ -121,7 +118,6 @@ def greatest_depth(run: ToolPathRun, met: PathContacts) -> float | None:
 
     Parameters
     ----------
-    run : ToolPathRun
     met : PathContacts
         Contacts of the path with the stock.
     """

@@ -85,14 +85,12 @@ def way_in_of(
 
     Parameters
     ----------
-    cut : Cut
     met : PathContacts
         Contacts along the path.
     run : ToolPathRun
         Run of the path.
     slope : PlungeCuts or None
         Result of :func:`down_ramps`.
-    kienzle : Kienzle
     depth : float, mm
         Nominal depth of one pass.
     """
@@ -157,7 +155,6 @@ def plunge_of(cut: Cut, met: PathContacts, is_bound: Bools) -> Cut | None:
 
     Parameters
     ----------
-    cut : Cut
     met : PathContacts
         Contacts along the path.
     is_bound : (N,) array

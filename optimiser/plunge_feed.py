@@ -252,8 +252,6 @@ def best_plunge(
 
     Parameters
     ----------
-    cut : Cut
-    at : CuttingConditions
     setting : Setting
         Setting of the passes.
     timed : callable

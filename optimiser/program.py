@@ -116,8 +116,6 @@ class GeometricProgram:
 
         Parameters
         ----------
-        problem : Problem
-        mode : Mode
         passes : int
         depth : float
             Depth of each pass, mm.
@@ -263,11 +261,6 @@ def solve(problem: Problem, mode: Mode) -> SolverOptimum:
 
     Where the cost is convex in the logarithm of the number of passes the search stops at the
     first rise, otherwise where no larger number of passes can cost less.
-
-    Parameters
-    ----------
-    problem : Problem
-    mode : Mode
 
     Returns
     -------

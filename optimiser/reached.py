@@ -75,12 +75,10 @@ def with_power(
 
     Parameters
     ----------
-    cut : Cut
     met : PathContacts
         Contacts along the path.
     bent : Bending
         Bending forces at the same stations.
-    ride : MachineRun
     exponent : float
         Kienzle exponent m_c.
     """

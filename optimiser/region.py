@@ -207,7 +207,6 @@ def region_of(program: Program, ref: Ref[Entity]) -> FeatureRegion:
 
     Parameters
     ----------
-    program : Program
     ref : Ref
         A feature of ISO 14649-10.
 

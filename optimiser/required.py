@@ -79,7 +79,6 @@ def unchecked_limits(
 
     Parameters
     ----------
-    cut : Cut
     at : CuttingConditions
         On a machine with only stated limits nothing else is required.
     limits : tuple of Limit

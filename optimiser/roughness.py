@@ -23,7 +23,8 @@ from simulator.physics.surface_spread import (
     forecast,
     unmeasured_spread,
 )
-from simulator.spec import SurfaceSpread, ToolKind
+from simulator.spec import ToolKind
+from simulator.surface_law import SurfaceSpread
 from stepnc_model.entities.enums import BottomOrSide
 from stepnc_model.entities.milling import PlaneMilling, SideMilling
 from stepnc_model.entities.profiles import SurfaceTextureParameter

@@ -77,7 +77,6 @@ def side_by_side(
 
     Parameters
     ----------
-    steps : sequence of ResolvedWorkingstep
     do : callable
         Processes one workingstep; its result must be picklable.
     state : SplittableState

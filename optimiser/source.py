@@ -65,7 +65,6 @@ class WiperCutSource:
 
     Parameters
     ----------
-    cuts : CutSource
     wipers : set of str
         Ids of the tools whose inserts have a wiper.
     """

@@ -180,10 +180,6 @@ def why_thread_too_fast(
 
     Parameters
     ----------
-    tool : Tool
-    conditions : Programmed
-    machine : Machine
-    material : WorkMaterial
     diameter : float
         Thread diameter, mm; 0: not known, so the speed is not checked.
     """

@@ -81,7 +81,6 @@ def left_by_path(program: Program, step: ResolvedWorkingstep) -> float:
 
     Parameters
     ----------
-    program : Program
     step : ResolvedWorkingstep
         A workingstep with a given tool path.
 
@@ -257,7 +256,6 @@ def permitted_deflection(
 
     Parameters
     ----------
-    program : Program
     step : ResolvedWorkingstep
         A milling workingstep.
 

@@ -68,7 +68,6 @@ def solve(problem: Problem, mode: Mode) -> Solution:
 
     Parameters
     ----------
-    problem : Problem
     mode : Mode
         ``EC`` minimises energy; ``TC`` and ``QC`` minimise time (they differ in their limits).
 

@@ -30,7 +30,6 @@ def checked_code(file: Path, *, name: str, longest: float = LONGEST) -> bytes:
 
     Parameters
     ----------
-    file : Path
     name : str
         Name of the program.
     longest : float, s

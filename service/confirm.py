@@ -219,7 +219,6 @@ def confirm(
 
     Parameters
     ----------
-    plan : Plan
     program : Program
         Program as given, whose remaining stock the advised program must leave.
     advised : Program

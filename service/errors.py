@@ -30,7 +30,6 @@ class NotFound(ServiceError):
     ----------
     thing : str
         Kind of resource that was looked for, e.g. ``program``.
-    id : str
     """
 
     def __init__(self, thing: str, id: str) -> None:
@@ -52,7 +51,6 @@ class TooLarge(ServiceError):
 
     Parameters
     ----------
-    what : str
     bound : int
         Largest accepted size, in bytes.
     """

@@ -190,7 +190,6 @@ def write_atomically(path: Path, data: bytes) -> None:
 
     Parameters
     ----------
-    path : Path
     data : bytes
 
     Raises

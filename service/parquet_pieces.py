@@ -60,7 +60,6 @@ def pages(content: mmap.mmap, chunk: parquet.ColumnChunkMetaData) -> Iterator[Pa
     ----------
     content : mmap
         The whole file.
-    chunk : ColumnChunkMetaData
 
     Raises
     ------
@@ -189,7 +188,6 @@ def parquet_file(path: Path, *, texts: Sequence[str] = ()) -> parquet.ParquetFil
 
     Parameters
     ----------
-    path : Path
     texts : sequence of str
         Columns that are read as dictionaries.
 
@@ -225,7 +223,6 @@ def parquet_pieces(
 
     Parameters
     ----------
-    path : Path
     rows : int
         Most rows of a piece.
     columns : sequence of str, optional

@@ -136,7 +136,6 @@ def read_part(path: Path, *, solid: str = "", tolerance: float) -> PartMesh:
 
     Parameters
     ----------
-    path : Path
     solid : str
         Solid of a STEP file, by its name or its place in the file; empty: its only one.
     tolerance : float, mm

@@ -65,7 +65,6 @@ def problem_of(error: StepNcError, *, hidden: str = "") -> dict[str, Any]:
 
     Parameters
     ----------
-    error : StepNcError
     hidden : str
         Path of the data folder, which is removed from all texts.
     """

@@ -1,4 +1,4 @@
-"""What a STEP-NC program lacks for advice and simulation, all at once, as one ready command.
+"""Data that a STEP-NC program lacks for advice and simulation, as one complete command.
 
 Tools of which a file has only the name, technologies without a feed or a speed, tool data
 without which nothing can be computed, and the material. What is missing stands as a name in
@@ -60,7 +60,7 @@ class ProgramNeeds:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """What the user must give, in words."""
+        """Sentences on the data that the user must give."""
         return tuple(dict.fromkeys(each.words for each in self.needs))
 
     def require_whole(self) -> None:

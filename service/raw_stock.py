@@ -155,7 +155,6 @@ def body_map(
 
     Parameters
     ----------
-    program : Program
     setup : Ref or None
     is_turning : bool
         Whether it is turned.

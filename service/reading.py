@@ -55,8 +55,6 @@ def read_completed(
 
     Parameters
     ----------
-    path : Path
-    request : ProgramRequest
     name : str
         Name of the program; empty: the name of its file.
     tools : ToolLibrary or None

@@ -41,11 +41,6 @@ def lost_plunge_feeds(program: Program, plan: Plan) -> tuple[Finding, ...]:
 
     ISO 14649-11 gives an operation one feed, and its approach strategies none, so that only a
     record keeps the second one.
-
-    Parameters
-    ----------
-    program : Program
-    plan : Plan
     """
     return tuple(
         program.finding(

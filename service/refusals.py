@@ -28,8 +28,6 @@ def advisable(
 
     Parameters
     ----------
-    program : Program
-    chosen : sequence of ResolvedWorkingstep
     keep_going : bool
         Whether a fault refuses its workingstep only.
 
@@ -70,12 +68,6 @@ def apart_from(
 
     A workingstep that shares its operation with a refused one gets a copy of it. Operations of
     AP238 are not copied: their advice is shown, with a warning that it is not written.
-
-    Parameters
-    ----------
-    program : Program
-    changes : sequence of WorkingstepUpdate
-    refused : sequence of RefusedWorkingstep
     """
     refs = {int(each.ref) for each in refused}
     kept = {
@@ -153,11 +145,6 @@ def refused_workingsteps(
     """Workingsteps that cannot be advised, of those chosen, with the reason of each.
 
     Executables that could not be resolved are among them when nothing was selected by name.
-
-    Parameters
-    ----------
-    program : Program
-    chosen : sequence of ResolvedWorkingstep
 
     Yields
     ------

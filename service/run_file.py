@@ -161,7 +161,6 @@ class RunFile:
     ----------
     path : Path
         Ends with ``.parquet`` or ``.csv``.
-    columns : sequence of RunColumn
 
     Raises
     ------

@@ -25,7 +25,6 @@ def staged_folder(folder: Path, *, tell: Tell) -> Iterator[Path]:
     folder : Path
         A new folder appears as a whole. Into one that exists, the files are moved one after
         the other; those of other names stay, and are told.
-    tell : callable
 
     Raises
     ------

@@ -55,7 +55,6 @@ def uses_of(program: Program, made: "Paths | StepNcError") -> tuple[Use, ...]:
 
     Parameters
     ----------
-    program : Program
     made : Paths or StepNcError
         Tool paths of the program, or the reason why they cannot be made.
 

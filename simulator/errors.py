@@ -46,7 +46,6 @@ class ProgramFault(SimulationError):
 
     Parameters
     ----------
-    message : str
     line : int
         Line of the NC code, or of the blocks generated from the program, counted from 1.
     """
@@ -61,7 +60,6 @@ class OutOfTravel(SimulationError):
 
     Parameters
     ----------
-    axis : str
     position : float, mm
         Position in the program's coordinates.
     travel : (float, float), mm

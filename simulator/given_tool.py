@@ -19,12 +19,7 @@ BODIES = {
 
 
 def user_tool(tool: TableTool) -> GivenTool:
-    """Tool of a table as data for a file that only names it.
-
-    Parameters
-    ----------
-    tool : TableTool
-    """
+    """Tool of a table as data for a file that only names it."""
     shape = tool.shape
     if isinstance(shape, Insert):
         return GivenTool(

@@ -156,8 +156,6 @@ def find_grade(
 
     Parameters
     ----------
-    tool_kind : ToolKind
-    cutting_material : CuttingMaterial
     iso_group : str
         P, M, K, N, S or H.
 

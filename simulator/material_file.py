@@ -12,18 +12,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
-from simulator.physics.surface_spread import NAMES
 from simulator.physics.turning import BACK_SHARE, FEED_SHARE
 from simulator.spec import (
     CuttingMaterial,
     CuttingWindow,
     Kienzle,
     LinearEdge,
-    SurfaceSpread,
     Taylor,
     ToolConstruction,
     WorkMaterial,
 )
+from simulator.surface_law import NAMES, SurfaceSpread
 from simulator.toml_file import (
     FileTable,
     KeyFault,

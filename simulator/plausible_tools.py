@@ -57,9 +57,6 @@ def plausible_tools(
     ----------
     tool : TableTool
         The tool with its guessed values.
-    guess : ToolGuess
-    use : ToolUse
-    material : WorkMaterial
     """
     shape = tool.shape
     if not isinstance(shape, Cutter):

@@ -9,6 +9,7 @@ from enum import StrEnum
 from math import inf
 
 from simulator.planner_settings import USUAL, PlannerSettings
+from simulator.surface_law import SurfaceSpread
 from simulator.work_holding import Holding
 
 
@@ -313,18 +314,6 @@ class CuttingWindow:
     taylor: Taylor | None
     tool_body: ToolConstruction | None = None
     """Construction for which the window is valid; ``None``: both."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SurfaceSpread:
-    """Law of Ra of :mod:`simulator.physics.surface_spread`: what is known of its parameters."""
-
-    mean: tuple[float, ...]
-    covariance: tuple[tuple[float, ...], ...]
-    sigma: float
-    degrees: float
-    count: int = 0
-    """Number of measured surfaces; 0: the spread between published studies."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -111,11 +111,6 @@ class KeyFault(ValueError):
 
     Raised in ``__post_init__`` of a table. Any other ``ValueError`` there concerns the table as
     a whole.
-
-    Parameters
-    ----------
-    key : str
-    message : str
     """
 
     def __init__(self, key: str, message: str) -> None:

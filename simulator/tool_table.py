@@ -419,11 +419,6 @@ def grade_of_table_tool(tool: TableTool, material: WorkMaterial) -> ToolGrade | 
     The vendor's windows of feed, speed and depth, helix angle and name of the grade replace
     those of the library where the table gives them.
 
-    Parameters
-    ----------
-    tool : TableTool
-    material : WorkMaterial
-
     Returns
     -------
     ToolGrade or None

@@ -47,7 +47,6 @@ def usual_teeth(kind: ToolKind, diameter: float, *, iso_group: str = "") -> Usua
 
     Parameters
     ----------
-    kind : ToolKind
     diameter : float, mm
     iso_group : str
         Group of the material; small end mills for group N may have one tooth.

@@ -126,10 +126,6 @@ class Model:
     """Entities of one file, bound on request.
 
     The object has state: entities are cached once bound.
-
-    Parameters
-    ----------
-    file : Part21File
     """
 
     def __init__(self, file: Part21File) -> None:
@@ -255,7 +251,6 @@ def bind(
     Parameters
     ----------
     cls : type
-    values : tuple of Value
     file : Part21File, optional
         File in which references are looked up, to recognise a reference to an optimisation.
     """

@@ -44,9 +44,6 @@ def edit_number(draft: Draft, step: ResolvedWorkingstep, number: Number, value: 
 
     Parameters
     ----------
-    draft : Draft
-    step : ResolvedWorkingstep
-    number : Number
     value : float
         Number for the file, with its sign.
     """
@@ -195,8 +192,6 @@ def with_settings(
 
     Parameters
     ----------
-    program : Program
-    settings : CutSettings
     workingsteps : sequence of str
         Ids of the workingsteps that are changed; none: all that can be.
 
@@ -222,12 +217,7 @@ def with_settings(
 
 
 def common_settings(program: Program) -> CutSettings:
-    """Settings that all milling and turning workingsteps of a program share; None: they differ.
-
-    Parameters
-    ----------
-    program : Program
-    """
+    """Settings that all workingsteps of a program share; None where they differ."""
     found = [
         _settings(program, step)
         for step in program.workingsteps
@@ -331,7 +321,6 @@ def with_tool_diameter(program: Program, diameter: float) -> Program:
 
     Parameters
     ----------
-    program : Program
     diameter : float, mm
 
     Returns

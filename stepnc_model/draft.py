@@ -50,8 +50,6 @@ class Draft:
         ----------
         owner : Ref
             Instance of the file that defines the attribute's position.
-        attribute : str
-        value : Value
         at : Ref, optional
             Copy of the owner that is edited instead of it.
         """
@@ -129,8 +127,6 @@ class Draft:
 
         Parameters
         ----------
-        owner : Ref
-        attribute : str
         at : Ref, optional
             Copy of the owner that is edited instead of it.
         parts : sequence of Ref

@@ -94,11 +94,6 @@ class Completed:
 def completed(program: Program, data: GivenData) -> Completed:
     """Set data into a program.
 
-    Parameters
-    ----------
-    program : Program
-    data : GivenData
-
     Returns
     -------
     Completed

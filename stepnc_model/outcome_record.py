@@ -250,7 +250,6 @@ def write_outcomes(
         Program as it was read.
     outcomes : sequence of ProcessOutcome
         Outcomes of workingsteps of this program, given by name or by instance, ``#16``.
-    corrections : sequence of LearnedCorrection
 
     Returns
     -------

@@ -41,11 +41,6 @@ LEAST_LENGTH = 1e-6
 def technologies_of(model: Model, operation: MachiningOperation) -> tuple[Ref[Entity], ...]:
     """Technologies that the feed of an operation stands in.
 
-    Parameters
-    ----------
-    model : Model
-    operation : MachiningOperation
-
     Returns
     -------
     tuple of Ref

@@ -102,7 +102,6 @@ def proposal(program: Program, steps: Sequence[ResolvedWorkingstep]) -> UnitProp
     ----------
     program : Program
         Program in any unit profile.
-    steps : sequence of ResolvedWorkingstep
 
     Returns
     -------

@@ -108,7 +108,6 @@ class Program:
 
     Parameters
     ----------
-    file : Part21File
     units : UnitProfile
         Units in which the file writes feeds and speeds.
     name : str

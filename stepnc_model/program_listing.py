@@ -68,7 +68,6 @@ def program_lines(
 
     Parameters
     ----------
-    model : Model
     error : callable
         Makes the error of an instance.
     faults : dict

@@ -239,7 +239,6 @@ def parameters_of(record: AdviceRecord, key: str = "") -> Iterator[PropertyParam
 
     Parameters
     ----------
-    record : AdviceRecord
     key : str
         Workingstep of the record, ``1:ROUGH THE FACE``, which ends the names; empty: none.
     """

@@ -80,11 +80,6 @@ NO_LIMITS = RecordLimits()
 def record_limits(program: Program, step: ResolvedWorkingstep) -> RecordLimits:
     """Limits of the optimisation record of a workingstep.
 
-    Parameters
-    ----------
-    program : Program
-    step : ResolvedWorkingstep
-
     Returns
     -------
     RecordLimits

@@ -25,10 +25,6 @@ def why_irregular(path: Path) -> str:
 
     A path that leads nowhere, or must not be read, is not known: opening it tells more.
 
-    Parameters
-    ----------
-    path : Path
-
     Raises
     ------
     ValueError
@@ -45,10 +41,6 @@ def open_regular(path: Path) -> BinaryIO:
     """Open a regular file for reading, without ever waiting for a writer.
 
     The open file is asked for its kind again: what the path leads to may have changed since.
-
-    Parameters
-    ----------
-    path : Path
 
     Raises
     ------

@@ -69,7 +69,6 @@ def write(
     ----------
     program : Program
         Program as it was read.
-    changes : sequence of WorkingstepUpdate
     profile : FileProfile or None
         None: no records are written, and those of this project are removed.
 

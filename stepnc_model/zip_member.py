@@ -36,8 +36,6 @@ def member_chunks(archive: ZipFile, member: ZipInfo, *, most: int) -> Iterator[b
 
     Parameters
     ----------
-    archive : ZipFile
-    member : ZipInfo
     most : int
         Greatest length of the content, bytes.
 
@@ -82,7 +80,6 @@ def require_sizes(archive: ZipFile, *, most: int) -> None:
 
     Parameters
     ----------
-    archive : ZipFile
     most : int
         Greatest length of all members together, bytes.
 

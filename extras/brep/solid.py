@@ -17,6 +17,7 @@ from extras.brep.tessellation import ALL, Choice, Tessellation, tessellate
 from service.brep.bodies import SolidPlace, sag_within
 from simulator.motion.segments import Floats
 from simulator.removal.mesh_stock import edges_of
+from stepnc_model.counted import counted
 from stepnc_model.errors import Part21Error, StepNcError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref, Typed, Value
@@ -108,7 +109,6 @@ def solid_triangles(place: SolidPlace, *, tolerance: float) -> Floats:
 
     Parameters
     ----------
-    place : SolidPlace
     tolerance : float, mm
         Size of the deviations that are to be seen: triangles lie within a fifth of it of the
         surface.
@@ -207,8 +207,9 @@ def _check_watertight(name: str, tessellation: Tessellation, sag: float) -> None
     edges = edges_of(triangles)
     if edges.open or edges.unlike:
         raise StepNcError(
-            f"{name}: the solid is not closed: {edges.open} edges of its triangles do not "
-            f"belong to two, and {edges.unlike} triangles face the other way than a neighbour"
+            f"{name}: the solid is not closed: {counted(edges.open, 'edge')} without two "
+            f"triangles, and {counted(edges.unlike, 'triangle')} facing the other way than a "
+            "neighbour"
         )
     normal = np.cross(triangles[:, 1], triangles[:, 2])
     volume = float(np.einsum("ij,ij->i", triangles[:, 0], normal).sum()) / 6.0

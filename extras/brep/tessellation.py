@@ -125,7 +125,6 @@ def tessellate(
         Name of the file in messages.
     sag : float, mm
         Greatest distance of triangles from the surface.
-    choice : Choice
     longest : float, s
         Time limit.
 

@@ -170,7 +170,6 @@ def station_caps(
     ----------
     stations : Stations
         M stations of one tool.
-    bounds : CutBounds
     spindle : (M,) array, rev/s
         Magnitude of the spindle speed; where it is 0 nothing is limited.
     descent : (M,) array

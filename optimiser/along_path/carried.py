@@ -181,8 +181,6 @@ def slower_pieces(
     ----------
     stretch : PathStretch
         Path at the feeds that are judged.
-    machine : MachineFeeds
-    rules : PieceRules
 
     Raises
     ------

@@ -60,7 +60,6 @@ def plunge_feeds(stretch: PathStretch, base: Floats, *, is_allowed: bool) -> Flo
 
     Parameters
     ----------
-    stretch : PathStretch
     base : (N,) array
         Feeds as programmed, in the units of their blocks.
     is_allowed : bool

@@ -120,11 +120,8 @@ def free_profile(
 
     Parameters
     ----------
-    stretch : PathStretch
     places : PlaceCaps
         Process limits along it.
-    machine : MachineFeeds
-    task : FreeTask
     """
     segments = stretch.segments
     offsets = np.concatenate(([0.0], np.cumsum(segments.length)))
@@ -200,7 +197,7 @@ class _RunCaps:
         return jerk_limited_profile(problem, limit, jerk=float(known.min())).time
 
     def _smoothest(self, share: float) -> SmoothestRuns:
-        """Smoothest profile that takes a share of time more than the fastest one.
+        """Smoothest profile that takes at most a given share longer than the fastest one.
 
         A run of too many stations for the solver keeps its fastest profile.
         """

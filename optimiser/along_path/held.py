@@ -32,10 +32,8 @@ def held_feeds(
 
     Parameters
     ----------
-    cut : Cut
     at : CuttingConditions
         With the holding, and with the grip of a chuck.
-    stations : Stations
     spindle : (M,) array, rev/s
     force : (M,) array, N
         Mean tangential force at a feed per tooth of 1 mm, with its margin.

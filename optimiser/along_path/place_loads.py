@@ -151,7 +151,6 @@ def loads_at(
     ----------
     place : Stations
         One row, where the tool cuts.
-    bounds : CutBounds
     feed : float, mm/s
     spindle : float, rev/s
         Magnitude of the spindle speed.
@@ -181,7 +180,6 @@ def cut_at(place: Stations, bounds: CutBounds, *, feed: float, spindle: float) -
     ----------
     place : Stations
         One row, where the tool cuts.
-    bounds : CutBounds
     feed : float, mm/s
     spindle : float, rev/s
     """

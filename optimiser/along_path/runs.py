@@ -109,10 +109,8 @@ def commands_of(stretch: PathStretch, places: PlaceCaps, machine: MachineFeeds) 
 
     Parameters
     ----------
-    stretch : PathStretch
     places : PlaceCaps
         Process limits along it.
-    machine : MachineFeeds
     """
     segments = stretch.segments
     offsets = np.concatenate(([0.0], np.cumsum(segments.length)))

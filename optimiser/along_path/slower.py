@@ -22,7 +22,6 @@ def slower_part(plan: PartPlan, before: float, after: float) -> str:
 
     Parameters
     ----------
-    plan : PartPlan
     before, after : float, s
         Times of the runs as programmed and as planned.
     """

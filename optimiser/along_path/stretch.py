@@ -98,8 +98,6 @@ def segment_caps(segments: Segments, limits: AxisLimits, *, greatest: float | No
 
     Parameters
     ----------
-    segments : Segments
-    limits : AxisLimits
     greatest : float or None, mm/s
         Greatest feed of the machine.
     """

@@ -71,9 +71,6 @@ def bounds_of_tool(  # noqa: PLR0913 (a tool, its machine and material, and what
 
     Parameters
     ----------
-    tool : TableTool
-    machine : Machine
-    material : WorkMaterial
     quantile : float
         Quantile of k_c at which loads keep their bounds.
     is_finishing : bool
@@ -160,8 +157,6 @@ def window_findings(
     ----------
     tools : iterable of TableTool
         Tools that cut.
-    machine : Machine
-    material : WorkMaterial
     """
     for tool in tools:
         if tool.kind in THREADS or machine.only_stated_limits:

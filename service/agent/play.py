@@ -61,8 +61,6 @@ async def play(agent: Agent, run: PlayableRun, *, speed: float, is_looped: bool)
 
     Parameters
     ----------
-    agent : Agent
-    run : PlayableRun
     speed : float
         Seconds of the run per second of wall-clock time; 0: all at once.
     is_looped : bool

@@ -224,8 +224,6 @@ def run_server(
 
     Parameters
     ----------
-    agent : Agent
-    app : Application
     work : sequence
     listener : socket
     shdr : socket, optional
@@ -318,12 +316,8 @@ def simulated_with_document(
 
     Parameters
     ----------
-    request : SimulationRequest
-    files : RunFiles
     output : Path
         File of the document, or a folder in which its name is that of machine and part [1]_.
-    shown : DocumentChoice
-    tell : callable
 
     Raises
     ------

@@ -197,7 +197,6 @@ class RunKeeper:
     ----------
     agent : Agent
         Its observations are watched from now on.
-    repository : RunRepository
     tell : callable
         Takes why a run cannot be kept; publishing goes on.
     """

@@ -79,12 +79,7 @@ _News = Sequence[tuple[str, int, Value]]
 
 
 class ShopAgent:
-    """Agent of all machines that the service knows. Running state.
-
-    Parameters
-    ----------
-    data_folder : DataFolder
-    """
+    """Agent of all machines that the service knows. Running state."""
 
     def __init__(self, data_folder: DataFolder) -> None:
         self._data_folder = data_folder

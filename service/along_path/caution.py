@@ -77,7 +77,7 @@ class Doubts:
 
 @dataclass(slots=True, kw_only=True)
 class Caution:
-    """Caution with one program. Running state: it notes doubts and programmed feeds."""
+    """Doubts about one program, and its programmed feeds. Running state."""
 
     fresh: Callable[[float], Any]
     """Function that gives the uncut stock, larger by some mm."""

@@ -43,8 +43,6 @@ def job_of(code: CodePaths, request: AdviceRequest, *, knowledge: str) -> CodeJo
 
     Parameters
     ----------
-    code : CodePaths
-    request : AdviceRequest
     knowledge : str
         Knowledge base; empty: the one that the environment names.
 

@@ -139,11 +139,9 @@ def stretches_of(  # noqa: PLR0913 (a run, its larger stock, and who watches it)
 
     Parameters
     ----------
-    prepared : PreparedRun
     larger : PreparedRun or None
         The same program in a larger stock, of which only the stock is used; None: what is air
         is known exactly.
-    control : ControlModel
     bounds : callable
         Bounds of a part of the program; None if its feed may not be chosen.
     log : NumberedBlocks

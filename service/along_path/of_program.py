@@ -35,9 +35,6 @@ def along_program(
 
     Parameters
     ----------
-    program : Program
-    plan : Plan
-    request : AdviceRequest
     keeps_traces : bool
         Whether feed, force and power are kept for plots.
     tell : callable
@@ -77,8 +74,6 @@ def nc_lines_along(
     ----------
     program : Program
         The program that was planned.
-    along : FeedsAlongPath
-    control : Dialect
     is_exact : bool
         Whether corners get exact stops.
     """

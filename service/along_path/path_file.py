@@ -32,8 +32,6 @@ def with_tool_paths(program: Program, along: FeedsAlongPath, profile: FileProfil
     ----------
     program : Program
         The program that was planned.
-    along : FeedsAlongPath
-    profile : FileProfile
 
     Raises
     ------

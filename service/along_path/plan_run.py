@@ -48,7 +48,6 @@ class PartTotals:
 
     Parameters
     ----------
-    ticker : Ticker
     what : str
         Name of the run in messages.
     share : callable
@@ -127,9 +126,6 @@ def run_plan(
 
     Parameters
     ----------
-    source : PathSource
-    feeds : BlockFeeds
-    task : FeedTask
     splits : bool
         Whether parts that are too fast may be divided.
     totals : PartTotals

@@ -224,8 +224,6 @@ def along_path(
 
     Parameters
     ----------
-    source : PathSource
-    task : AlongPathTask
     tell : callable
         Receives progress.
 
@@ -245,9 +243,6 @@ def planned(
 
     Parameters
     ----------
-    source : PathSource
-    task : AlongPathTask
-    ticker : Ticker
     what : str
         Name of the run in messages.
 

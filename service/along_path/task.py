@@ -36,7 +36,7 @@ def task_of(request: AdviceRequest, machine: Machine) -> AlongPathTask:
 
 
 def least_feed(request: AdviceRequest) -> float:
-    """Feed that is permitted everywhere, mm/s; 0: none.
+    """Feed that is allowed on the whole path, mm/s; 0: none.
 
     Raises
     ------

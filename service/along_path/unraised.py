@@ -25,12 +25,7 @@ def unraised_tools(code: CodePaths) -> Iterator[tuple[int, Finding]]:
 
 
 def fast_tools(code: CodePaths) -> Iterator[tuple[int, Finding]]:
-    """Tools that turn above their greatest cutting speed, by number, each with a warning.
-
-    Parameters
-    ----------
-    code : CodePaths
-    """
+    """Tools that turn above their greatest cutting speed, by number, each with a warning."""
     moves = code.program.moves
     is_fed = np.isin(moves.kind, list(FED))
     spindle = np.where(is_fed, np.nan_to_num(np.abs(moves.spindle)), 0.0)

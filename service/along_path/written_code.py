@@ -85,8 +85,6 @@ def written_code(
 
     Parameters
     ----------
-    source : CodeSource
-    task : AlongPathTask
     tell : callable
         Receives progress.
 
@@ -154,7 +152,6 @@ def composed(feeds: BlockFeeds, more: BlockFeeds, lines: WrittenLines) -> BlockF
         Parts by the line of the program.
     more : mapping
         Parts by the line of the rewritten code.
-    lines : WrittenLines
     """
     changes: dict[int, list[tuple[float, float, tuple[BlockPart, ...]]]] = {}
     for line, parts in more.items():

@@ -147,7 +147,6 @@ def taught_by(run: ControlRun, *, is_teaching: bool) -> dict[CutKey, ReferenceLo
 
     Parameters
     ----------
-    run : ControlRun
     is_teaching : bool
         Whether loads that are known are taught anew.
     """

@@ -80,7 +80,6 @@ def disturbances(words: Iterable[str], *, hardness: Callable[[str], float]) -> D
 
     Parameters
     ----------
-    words : iterable of str
     hardness : callable
         Function that returns a material's k_c relative to that of the workpiece.
 

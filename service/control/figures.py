@@ -78,7 +78,6 @@ def control_figure(
 
     Parameters
     ----------
-    run : ControlRun
     rows : sequence of ControlRow
         Rows of the workingsteps of the run.
     trace : BucketedRun

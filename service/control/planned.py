@@ -61,7 +61,6 @@ def with_hardest(
     Parameters
     ----------
     planned : dict of PlannedWorkingstep
-    course : NominalCourse
     weight : (N,) array, optional
         Weight of the force in each cell; None: equal weights.
     """

@@ -106,7 +106,6 @@ def keep(
 
     Parameters
     ----------
-    run : ControlRun
     place : str
         Location of the knowledge base.
     by : str
@@ -115,7 +114,6 @@ def keep(
         Location of the samples.
     recorded : str
         Id of the recorded run that was evaluated; empty: it ran on the virtual machine.
-    tell : callable
 
     Raises
     ------

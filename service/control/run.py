@@ -154,12 +154,10 @@ def prepare(
 
     Parameters
     ----------
-    request : ControlRequest
     files : RunFiles
         A recorded run among them stands for the machine; the loop commands nothing then.
     knowledge : str
         Location of the knowledge base whose corrections apply; empty: the usual one.
-    tell : callable
 
     Raises
     ------

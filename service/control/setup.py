@@ -131,10 +131,6 @@ def plan_as_it_is(
 
     Parameters
     ----------
-    program : Program
-    machine : Machine
-    material : MaterialMatch
-    mode : Mode
     knowledge : str or None
         Location of the knowledge base; empty: the usual one; None: none.
     left_out : frozenset of int, optional

@@ -107,7 +107,6 @@ class ControlTrace:
 
     Parameters
     ----------
-    course : NominalCourse
     holdings : HoldTallies
         Which has seen each cycle before.
     workingsteps : sequence of str

@@ -242,7 +242,6 @@ def dataset_source(file: DesignFile, path: Path) -> DatasetSource:
 
     Parameters
     ----------
-    file : DesignFile
     path : Path
         Its place, for messages.
 

@@ -132,9 +132,6 @@ def part_cycle(  # noqa: PLR0913 (each is a choice of the caller)
 
     Parameters
     ----------
-    program : Program
-    machine : Machine
-    material : MaterialMatch
     settings : CutSettings, optional
         Feed, spindle speed and depth instead of the program's own.
     workingsteps : tuple of str

@@ -117,7 +117,6 @@ def state_values(state: MachineState, before: MachineState) -> dict[str, Value]:
 
     Parameters
     ----------
-    state : MachineState
     before : MachineState
         State from which a failed machine comes.
     """

@@ -106,11 +106,8 @@ class PartDocuments:
 
     Parameters
     ----------
-    shop : Shop
-    plan : MachiningPlan
     streams : Streams
         Of the replication whose parts they are.
-    tell : callable
     """
 
     def __init__(

@@ -1,12 +1,10 @@
-"""A shop that runs live: advanced step by step, watched, and ordered about while it runs.
+"""A live shop: it runs step by step, reports its states, and takes orders while it runs.
 
 Running state; independent of wall-clock time. Inside s, W and J; rows and status in the units
 of their names. Figures begin anew at the end of the warm-up, as those of the result.
 
-Status of a live shop as JSON: line, machines, buffers, products and processes.
-
-A status is made several times a second, so it holds numbers only that change; its size is that
-of the shop.
+Its status is JSON: line, machines, buffers, products and processes. It is made several times a
+second, so that it holds only numbers that change; its size is that of the shop.
 """
 
 from collections.abc import Collection, Mapping
@@ -40,12 +38,7 @@ from stepnc_model.units import (
 
 
 class Stages:
-    """Places of machines and buffers in the flow of parts, from 0.
-
-    Parameters
-    ----------
-    shop : Shop
-    """
+    """Places of machines and buffers in the flow of parts, from 0."""
 
     def __init__(self, shop: Shop) -> None:
         self.machines: dict[str, int] = {}
@@ -274,16 +267,13 @@ class ShopUpdate:
 
 
 class LiveShop:
-    """Shop that is advanced and ordered about. Running state.
+    """Shop that runs step by step and takes orders. Running state.
 
     Parameters
     ----------
-    shop : Shop
-    plan : MachiningPlan
     seed : int
     programs : mapping
         Names of programs for display, by their path.
-    listeners : Listeners
     """
 
     def __init__(

@@ -18,7 +18,6 @@ def machining_plan(shop: Shop, cycles: PartCycles, *, place: str) -> MachiningPl
 
     Parameters
     ----------
-    shop : Shop
     cycles : PartCycles
         Cycles that were run before.
     place : str

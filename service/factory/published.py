@@ -59,11 +59,8 @@ def part_timelines(
 
     Parameters
     ----------
-    shop : Shop
-    plan : MachiningPlan
     rate : float, 1/s
         Samples per simulated second, at most :data:`FASTEST`.
-    tell : callable
 
     Raises
     ------
@@ -140,15 +137,7 @@ class Cutting:
 
 
 class ShopPublisher:
-    """Turns what happens in a live shop into observations. Running state.
-
-    Parameters
-    ----------
-    shop : Shop
-    plan : MachiningPlan
-    devices : ShopDevices
-    timelines : mapping
-    """
+    """Turns what happens in a live shop into observations. Running state."""
 
     def __init__(
         self,

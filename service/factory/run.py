@@ -93,11 +93,8 @@ def run_source(  # noqa: PLR0913 (each is a choice of the caller)
 
     Parameters
     ----------
-    source : ShopSource
-    request : FactoryRequest
     folder : Path, optional
         Folder for the tables of parts and the states of the first replication.
-    tell : callable
     most_parts : float
         Most parts that the machines of a run may make together.
     pools : callable

@@ -31,10 +31,6 @@ def factors_for(  # noqa: PLR0913 (all that a context is made of)
     ----------
     place : str
         File or URL; empty: from the environment, and no factors if that names none.
-    program : Program
-    steps : iterable of ResolvedWorkingstep
-    machine : Machine
-    material : MaterialMatch
     safety : float
         Quantile of the factor that the plan applies, 0.5 to 0.999.
     is_new_allowed : bool

@@ -63,7 +63,6 @@ def accepted_factors(
 
     Parameters
     ----------
-    place : str
     machine, material : str
         Names as in the outcomes.
     tools : iterable of str
@@ -218,7 +217,6 @@ def outcomes_of_run(place: str, run: str) -> tuple[ProcessOutcome, ...]:
 
     Parameters
     ----------
-    place : str
     run : str
         Id of the run, or the first four or more characters of a recent run's id.
 

@@ -91,13 +91,7 @@ def logarithms(features: Features, values: Floats) -> Floats:
 
 
 def fitted_law(features: Features, tables: Iterable[LearningTable]) -> PowerLaw:
-    """Power law of the rows of some tables, by least squares.
-
-    Parameters
-    ----------
-    features : Features
-    tables : iterable of LearningTable
-    """
+    """Power law of the rows of some tables, by least squares."""
     count, mean, squares = 0, np.zeros(1), np.zeros((1, 1))
     for table in tables:
         logs = logarithms(features, table.values)
@@ -182,8 +176,6 @@ def trained(
 
     Parameters
     ----------
-    kind : ModelKind
-    features : Features
     pieces : callable
         Yields the rows.
     rows : int

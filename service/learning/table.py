@@ -102,8 +102,6 @@ def learning_table(
     Parameters
     ----------
     table : pa.Table
-    features : Features
-    target : str
     place : str
         Where the rows are from, for messages.
     first : int
@@ -282,7 +280,6 @@ def with_recorded(table: pa.Table, target: str, *, folder: Path) -> pa.Table:
     Parameters
     ----------
     table : pa.Table
-    target : str
     folder : Path
         What paths of recordings are relative to.
 

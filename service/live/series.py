@@ -39,7 +39,6 @@ class SeriesWriter:
 
     Parameters
     ----------
-    file : Path
     columns : sequence of str
         Names of the columns; the first must be the time.
 
@@ -174,8 +173,6 @@ def window(
 
     Parameters
     ----------
-    series : Series
-    names : sequence of str
     begin, end : float, s
     points : int
 

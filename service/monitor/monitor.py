@@ -130,7 +130,6 @@ class MachineMonitor:
 
     Parameters
     ----------
-    source : MonitorSource
     clock : callable
         Time of this computer, in s, which never goes back.
     """

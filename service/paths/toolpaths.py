@@ -104,7 +104,6 @@ def paths_for_code(program: Program, *, keep_going: bool = False, tell: Tell = s
 
     Parameters
     ----------
-    program : Program
     keep_going : bool
         Whether workingsteps without a usable path are left out.
     tell : callable
@@ -138,7 +137,6 @@ def with_feeds(
 
     Parameters
     ----------
-    paths : Paths
     keep_going : bool
         Whether other paths are left out; otherwise the first of them is an error.
     also : callable

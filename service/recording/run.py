@@ -55,7 +55,6 @@ class RowJournal:
     ----------
     path : Path
         File that the recording will have; the journal stands beside it, as ``.partial.csv``.
-    columns : sequence of RunColumn
 
     Raises
     ------

@@ -65,7 +65,6 @@ def batches(path: Path, kinds: Mapping[str, pa.DataType]) -> Iterator[pa.RecordB
 
     Parameters
     ----------
-    path : Path
     kinds : mapping
         Types of the wanted columns, which the file has.
 

@@ -100,7 +100,6 @@ def shown(value: Cell, form: str = "", *, arrow: str = "->", nothing: str = "") 
 
     Parameters
     ----------
-    value : Cell
     form : str
         Format specification of numbers.
     arrow : str

@@ -62,7 +62,6 @@ def table(  # noqa: PLR0913 (each is a choice of the caller)
 
     Parameters
     ----------
-    columns : sequence of Column
     rows : sequence
     width : int
         Characters per line.

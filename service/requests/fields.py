@@ -185,7 +185,6 @@ def add_options(
 
     Parameters
     ----------
-    parser : ArgumentParser
     kind : type
     usual : mapping, optional
         Command-specific default values, by field name.

@@ -115,7 +115,6 @@ def require_options_served(
     ----------
     values : mapping
         Values by the names of the options; those that were not given are absent.
-    kind : ProgramKind
     flags : mapping
         Names of options on the command line; others are called by their names.
 

@@ -80,12 +80,10 @@ class FileReply(Response):
 
     Parameters
     ----------
-    file : BinaryIO
     size : int
         Size of the file, in bytes.
     kind : str
         Media type.
-    headers : mapping
     """
 
     def __init__(
@@ -118,8 +116,6 @@ def file_reply(
 
     Parameters
     ----------
-    request : Request
-    file : Path
     name : str
         Name of the download.
     kind : str

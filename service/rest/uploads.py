@@ -17,7 +17,6 @@ async def pieces(request: Request, *, what: str, bound: int) -> AsyncIterator[by
 
     Parameters
     ----------
-    request : Request
     what : str
         Name of the content in messages.
     bound : int

@@ -77,11 +77,8 @@ class CodePaths:
 
     Parameters
     ----------
-    program : NcProgram
-    machine : Machine
     material : MaterialMatch or None
         None: nothing is cut.
-    name : str
     tools : dict or None
         Tools by number; None: any tool may run, and nothing is cut.
     stock : RawPart

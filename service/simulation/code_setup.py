@@ -112,11 +112,6 @@ class CodeSetup:
 def code_setup(program: NcProgram, known: GivenSetup) -> CodeSetup:
     """Find tools and stock of NC code.
 
-    Parameters
-    ----------
-    program : NcProgram
-    known : GivenSetup
-
     Raises
     ------
     StepNcError

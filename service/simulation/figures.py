@@ -45,7 +45,6 @@ def run_figure(rows: Sequence[SimulationRow], trace: BucketedRun) -> go.Figure:
     ----------
     rows : sequence of SimulationRow
         Rows of the workingsteps of the run.
-    trace : BucketedRun
 
     Returns
     -------

@@ -61,7 +61,6 @@ class LiveSamples:
 
     Parameters
     ----------
-    folder : LiveFolder
     paced : callable
         Function that waits until the machine may have come to a time, in s.
     apart : float, s

@@ -137,8 +137,6 @@ def from_code(
 
     Parameters
     ----------
-    request : CodeRequest
-    run : RunRequest
     program : Path, optional
         STEP-NC program of which the code was made.
     keep_going : bool

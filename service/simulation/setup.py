@@ -101,8 +101,6 @@ def from_program(
 
     Parameters
     ----------
-    file : Path
-    request : RunRequest
     name : str
         Name of the program; empty: the name of its file.
     tools : ToolLibrary or None
@@ -139,9 +137,6 @@ def prepared_program(
 
     Parameters
     ----------
-    program : Program
-    chosen : Machine
-    match : MaterialMatch
     tell : callable
         Receives messages.
     margin : float, mm

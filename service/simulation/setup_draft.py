@@ -24,7 +24,7 @@ HEAD = """\
 
 
 class Sureness(StrEnum):
-    """How sure a value of a draft is."""
+    """Certainty of a value of a draft."""
 
     GIVEN = "given"
     """By the user."""
@@ -58,8 +58,6 @@ def setup_draft(program: NcProgram, known: GivenSetup, setup: CodeSetup) -> Setu
 
     Parameters
     ----------
-    program : NcProgram
-    known : GivenSetup
     setup : CodeSetup
         What was found for it.
     """

@@ -30,7 +30,6 @@ def turned_against(
 
     Parameters
     ----------
-    program : NcProgram
     tools : mapping
         Tools by their numbers.
     """

@@ -121,7 +121,6 @@ class FileStore:
 
         Parameters
         ----------
-        folder : Path
         at_once : bool
             Also if it was compared a moment ago.
         """

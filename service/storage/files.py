@@ -89,8 +89,6 @@ class FileUpload:
 
     Parameters
     ----------
-    data_folder : DataFolder
-    kind : FileKind
     name : str
         Name given by the owner.
 

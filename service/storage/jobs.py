@@ -258,8 +258,6 @@ def claim(
 
     Parameters
     ----------
-    data_folder : DataFolder
-    kinds : sequence of JobKind
     is_paced : bool, optional
         True: only paced jobs; False: only other jobs; None: either.
     runner : str

@@ -11,7 +11,6 @@ def take(database: Database, client: str, *, most: int, rate: float, burst: int)
     ----------
     database : Database
         A database on a server, whose clock fills the buckets.
-    client : str
     most : int
     rate : float
         Tokens per second that flow in.

@@ -130,7 +130,6 @@ class TrialSetup:
     begin : float
         Time in the run at the start of the setup, in s.
     seed : int
-    law : LawName
     sink : callable
         Callback that receives the rows.
     """
@@ -292,10 +291,8 @@ class TrialRun:
 
     Parameters
     ----------
-    inputs : Inputs
     seed : int
         Seed of the instruments' noise.
-    law : LawName
     """
 
     def __init__(self, inputs: Inputs, *, seed: int = 0, law: LawName = LawName.LOG_PI) -> None:

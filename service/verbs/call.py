@@ -135,7 +135,6 @@ def call(
 
     Parameters
     ----------
-    verb : Verb
     args : sequence
         Words that the command line takes without an option, in its order.
     words : mapping
@@ -183,8 +182,6 @@ def ran(
 
     Parameters
     ----------
-    verb : Verb
-    request, files : Request
     named : mapping
         Values that the caller named, by their fields; those that do not serve the kind of
         program are refused, even if they are the usual ones.

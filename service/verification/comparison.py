@@ -58,7 +58,6 @@ def nominal_deviation(
 
     Parameters
     ----------
-    program : PreparedProgram
     places : SurfacePlaces
         Those on walls first.
     normal : (P, 2) array
@@ -122,7 +121,6 @@ def required_profile_deviation(
 
     Parameters
     ----------
-    part : RequiredBar
     bar : TurningStock
         Programmed part.
     places : SurfacePlaces
@@ -342,8 +340,8 @@ def _open_notes(count: int) -> Iterator[str]:
     """Say that a mesh is not closed."""
     if count:
         yield (
-            f"the mesh of the required part is not closed: {count} edges do not belong to two "
-            "triangles; what is missing is not compared"
+            f"the mesh of the required part is not closed: {counted(count, 'edge')} without "
+            "two triangles; what is missing is not compared"
         )
 
 
@@ -377,11 +375,8 @@ def _require_cut(
 
     Parameters
     ----------
-    parts : ComparedParts
-    file : LogFile
     wanted : (A,) array, mm
         Extent of what is to be removed along some axes, less the widest tool.
-    axes : list of int
     """
     if not parts.volumes.logged > LEAST_VOLUME:
         raise StepNcError(f"{file.name}: the positions {NEVER}")

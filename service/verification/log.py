@@ -40,7 +40,6 @@ def table_of(path: Path, machine: Machine, columns: Sequence[str]) -> pa.Table:
 
     Parameters
     ----------
-    path : Path
     machine : Machine
         Machine whose data items, in modern names or those of the papers, the log has.
     columns : sequence of str

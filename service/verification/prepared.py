@@ -199,8 +199,6 @@ def with_required(
 
     Parameters
     ----------
-    program : PreparedProgram
-    file : RequiredFile
     tolerance : float, mm
         Deviation that is an error.
 
@@ -223,7 +221,6 @@ def with_own_part(program: PreparedProgram, *, tolerance: float) -> PreparedProg
 
     Parameters
     ----------
-    program : PreparedProgram
     tolerance : float, mm
         Deviation that is an error.
     """
@@ -252,8 +249,6 @@ def required_mesh(file: RequiredFile, stock: Stock, *, tolerance: float) -> Part
 
     Parameters
     ----------
-    file : RequiredFile
-    stock : Stock
     tolerance : float, mm
         Deviation that is an error.
 

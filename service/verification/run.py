@@ -129,8 +129,6 @@ def verify(
     program : Path or None
         STEP-NC program; without one, the inputs name tools and required part, and the request
         machine and stock.
-    request : VerificationRequest
-    inputs : VerificationInputs
     tell : callable
         Takes messages on the progress.
 
@@ -180,9 +178,6 @@ def verified(
 
     Parameters
     ----------
-    log : Path
-    program : PreparedProgram
-    request : VerificationRequest
     name : str
         Name of the log in messages; empty: its path.
     tell : callable
@@ -244,9 +239,6 @@ def verified_without_program(
 
     Parameters
     ----------
-    log : Path
-    setup : RequiredSetup
-    request : VerificationRequest
     name : str
         Name of the log in messages; empty: its path.
     tell : callable
@@ -364,8 +356,8 @@ def _findings(file: LogFile, facts: LogFacts, tools: set[int]) -> list[Finding]:
         )
     if facts.gaps:
         found.append(
-            f"{facts.gaps} gaps of up to {facts.longest_gap:.3g} s in which the tool moved: "
-            "what it did there is not known, and what it may have cut there is left"
+            f"{counted(facts.gaps, 'gap')} of up to {facts.longest_gap:.3g} s in which the "
+            "tool moved: what it did there is not known, and what it may have cut there is left"
         )
     missing = sorted(tools - facts.tools)
     if missing:

@@ -81,7 +81,7 @@ State = list[tuple[StateEntry, ...]]
 
 @dataclass(kw_only=True)
 class ObservationBuffer:
-    """Observations of a model, oldest first out."""
+    """Ring buffer of observations: the oldest are dropped first."""
 
     model: DeviceModel
     size: int = SIZE

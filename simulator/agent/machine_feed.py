@@ -41,10 +41,8 @@ def run_feed(
 
     Parameters
     ----------
-    samples : Samples
     machine : Machine
         Whose greatest motor power is 100 % of the spindle's load.
-    shown : MachineModel
     workingsteps : sequence of str
         Ids by their number, from 1.
     """
@@ -76,7 +74,6 @@ def beginning(
 
     Parameters
     ----------
-    shown : MachineModel
     program : str
         Name of the program.
     part_count : int

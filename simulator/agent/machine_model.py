@@ -259,9 +259,6 @@ def machine_model(
 
     Parameters
     ----------
-    machine : Machine
-    version : SchemaVersion
-    names : NameSet
     more : tuple of MachineItem
         Further data items, of components that the machine has.
     left_out : collection of str

@@ -57,7 +57,6 @@ def read_line(line: str, model: DeviceModel, clock: Callable[[], int]) -> list[S
     ----------
     line : str
         Without its end.
-    model : DeviceModel
     clock : callable
         Time in µs since 1970, for lines without a timestamp.
     """
@@ -236,7 +235,6 @@ def put_asset(agent: Agent, body: bytes, *, id: str, kind: str, device: int) -> 
 
     Parameters
     ----------
-    agent : Agent
     body : bytes
         The element of the asset.
     id : str
@@ -307,7 +305,6 @@ def put_observations(agent: Agent, values: Mapping[str, str], *, device: int) ->
 
     Parameters
     ----------
-    agent : Agent
     values : mapping
         Values by id or name, in the form of SHDR; ``time`` is the time of all of them.
     device : int

@@ -24,7 +24,6 @@ def tool_asset(tool: LoadedTool, *, device: str, uuid: str, index: int, time: in
 
     Parameters
     ----------
-    tool : LoadedTool
     device, uuid : str
         Name and uuid of the device that has it.
     index : int

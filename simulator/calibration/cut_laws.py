@@ -26,11 +26,11 @@ from simulator.motion.segments import Floats
 from simulator.physics.surface import RA_FLOOR, corner_coefficient
 from simulator.physics.surface_spread import (
     HELD_SPEED,
-    NAMES,
     REFERENCE_SPEED,
     unmeasured_spread,
 )
 from simulator.spec import Taylor, WorkMaterial
+from simulator.surface_law import NAMES
 from stepnc_model.units import m_min_from_speed, rad_from_deg, um_from_mm
 
 REFERENCE_CHIP = 0.2  # mm

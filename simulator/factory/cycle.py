@@ -62,7 +62,6 @@ def cycle_of(episodes: Iterable[Episode], machine: Machine) -> PartCycle:
     ----------
     episodes : iterable of Episode
         All episodes of the run, in order.
-    machine : Machine
     """
     end, peak, cut = 0.0, 0.0, 0.0
     times, spent, drawn = [np.zeros(1)], [np.zeros(0)], [MovementEnergies()]
@@ -132,8 +131,6 @@ def drawn_energies(
 
     Parameters
     ----------
-    cycle : PartCycle
-    deviation : PowerDeviation
     rng : numpy.random.Generator
     count : int
         Number of parts.

@@ -198,7 +198,6 @@ class CycleTable:
         ----------
         feed, spindle_speed, depth : (N,) array
             As in :meth:`values`.
-        deviation : PowerDeviation
         rng : numpy.random.Generator
 
         Returns
@@ -278,7 +277,6 @@ def cycle_table(
 
     Parameters
     ----------
-    design : SettingsDesign
     run : callable
         Runs the virtual machine with given settings.
     layers : callable

@@ -141,8 +141,6 @@ class PreparedParts:
     ----------
     setups, ejections : Blocks
         Times of set-up and ejection, s.
-    source : PartSource
-    powers : HandlingPowers
     ahead : int
         Parts that are drawn before they are needed; 0 where other steps take from the same
         numbers.

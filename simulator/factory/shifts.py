@@ -15,11 +15,8 @@ def changes_of_shift(
 
     Parameters
     ----------
-    env : Environment
-    calendar : Calendar
     start : float, s
         Time of the week at which the run begins.
-    tell : callable
     """
     while True:
         now = start + env.now

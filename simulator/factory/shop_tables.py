@@ -366,7 +366,7 @@ def _range(ends: Sequence[float]) -> SettingRange | None:
 def _require_once(key: str, names: Sequence[str]) -> None:
     for name, times in Counter(names).items():
         if times > 1:
-            raise KeyFault(key, f"'{name}' is there {times} times")
+            raise KeyFault(key, f"'{name}' occurs {times} times")
 
 
 def _require_in(key: str, name: str, known: Iterable[str]) -> None:

@@ -89,8 +89,6 @@ class StateBook:
 
         Parameters
         ----------
-        part : DrawnPart
-        times : PartTimes
         powers : (float, float), W
             Of set-up and ejection.
 

@@ -168,7 +168,6 @@ def next_batch(
     ----------
     raw : sequence of RawStock
         Raw stocks among the supplies whose batches come as machines ask for them.
-    supplies : sequence of Supply
     products : sequence of Product
         All products of the shop.
     """

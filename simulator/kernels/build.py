@@ -34,7 +34,6 @@ def object_code(
 
     Parameters
     ----------
-    function : callable
     arguments : tuple
     symbol : str
         Name of the kernel in the object file.

@@ -101,7 +101,6 @@ def block_times(episodes: Iterable[Episode], limits: AxisLimits) -> BlockTimes:
 
     Parameters
     ----------
-    episodes : iterable of Episode
     limits : AxisLimits
         Those of the machine that runs.
     """

@@ -111,14 +111,12 @@ def cutting_loads(
 
     Parameters
     ----------
-    stations : Stations
     rows : (M,) array of int
         Index of the station that applies.
     speed : (M,) array, mm/s
         Speed along the path.
     spindle_speed : (M,) array, rev/s
         Magnitude; cutting with a stopped spindle is not modelled: the force is 0.
-    edge : CuttingEdge
     beyond : (M,) array or float
         Distance from the middle of the stretch over its length, -1/2 to 1/2.
     """
@@ -163,12 +161,10 @@ def worn_loads(
     ----------
     sharp : CuttingLoads
         Loads of the sharp edge at M points.
-    stations : Stations
     rows : (M,) array of int
         Index of the station that applies.
     spindle_speed : (M,) array, rev/s
         Magnitude of the spindle speed.
-    edge : CuttingEdge
     flank_wear : (M,) array, mm
     """
     width = np.where(sharp.removal_rate > 0.0, engaged_width(stations, edge.teeth)[rows], 0.0)

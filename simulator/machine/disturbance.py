@@ -90,7 +90,6 @@ def shown(sensor: SeededSensor, truth: Floats, *, first: int, is_rapid: Bools) -
 
     Parameters
     ----------
-    sensor : SeededSensor
     truth : (M,) array
     first : int
         Number of the first sample in the run, counted from 0.
@@ -186,7 +185,6 @@ class Disturbed:
 
     Parameters
     ----------
-    disturbance : Disturbance
     rate : float, 1/s
     efficiency : float
         Efficiency of the main drive, from the mains to the edge.

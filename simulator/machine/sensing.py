@@ -109,7 +109,6 @@ class Sampler:
 
     Parameters
     ----------
-    machine : Machine
     rate : float, 1/s
     """
 

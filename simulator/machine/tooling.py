@@ -31,7 +31,6 @@ def loaded_tool(
 
     Parameters
     ----------
-    program : Program
     ref : reference
         Reference to the tool.
     number : int

@@ -51,13 +51,10 @@ def tooth_loads(  # noqa: PLR0913 (places, times and state of the edge are apart
     ----------
     mean : CuttingLoads
         Means over a revolution at M times; power, removal rate and deflection are kept.
-    stations : Stations
     rows : (M,) array of int
         Index of the station that applies.
     turned : (M,) array
         Revolutions of the spindle.
-    edge : CuttingEdge
-    teeth : ToothOptions
     flank_wear : (M,) array, mm
     """
     at = np.flatnonzero(_has_arc(stations)[rows] & (mean.force > 0.0))
@@ -118,10 +115,8 @@ def bent(
     ----------
     loads : CuttingLoads
         Means over a revolution at M times.
-    stations : Stations
     rows : (M,) array of int
         Index of the station that applies.
-    edge : CuttingEdge
     walls : array
         Result of :func:`wall_forces`.
     flank_wear : (M,) array, mm
@@ -150,12 +145,10 @@ def entered_loads(
     ----------
     mean : CuttingLoads
         Mean loads at M times.
-    stations : Stations
     rows : (M,) array of int
         Index of the station that applies.
     since_entry : (M,) array
         Revolutions since the insert entered the cut.
-    edge : CuttingEdge
     """
     is_turning = stations.kind[rows] == StationKind.TURNING
     share = np.where(is_turning, entry_share(since_entry) ** (1.0 - edge.kienzle.m_c), 1.0)

@@ -74,7 +74,6 @@ class Follower:
 
     Parameters
     ----------
-    response : Response
     interval : float, s
         Time between samples.
 

@@ -90,7 +90,6 @@ def paced(
 
     Parameters
     ----------
-    stretch : MoveStretch
     plan : callable
         Function that plans the motion of segments, from rest to rest.
     spindle : SpindleCourse

@@ -63,7 +63,6 @@ def wearing_along(
     ----------
     flank : float, mm
         Flank wear when the path begins.
-    taylor : Taylor
     segments : Segments
         N segments of the path.
     stations : Stations

@@ -147,8 +147,6 @@ def control_model(
 
     Parameters
     ----------
-    control : ControlModelName
-    limits : AxisLimits
     deviation : float, mm
         Deviation for :attr:`ControlModelName.JUNCTION`.
     planner : PlannerSettings

@@ -53,7 +53,7 @@ class MovePlan:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Joints:
-    """How K − 1 joints between K moves are passed."""
+    """Speeds and blends at the K − 1 joints between K moves."""
 
     moves: Segments
     speed: Floats
@@ -107,8 +107,6 @@ def joints(plan: MovePlan, *, mode: PathControl, period: float) -> Joints:
 
     Parameters
     ----------
-    plan : MovePlan
-    mode : PathControl
     period : float, s
         Servo period.
     """

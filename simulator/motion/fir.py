@@ -325,7 +325,6 @@ def shortest_filter(limits: AxisLimits, change: Floats) -> FixedTimeFilter:
 
     Parameters
     ----------
-    limits : AxisLimits
     change : (3,) array, mm/s
         Change Δv of the speed of each axis.
 

@@ -50,7 +50,6 @@ def path_limits(segments: Segments, limits: AxisLimits) -> PathLimits:
     ----------
     segments : Segments
         N segments; their commanded speeds are upper limits, too.
-    limits : AxisLimits
 
     Returns
     -------

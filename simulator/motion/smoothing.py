@@ -59,8 +59,6 @@ def smoothing_of(control: ControlModel, limits: AxisLimits, greatest: float) -> 
 
     Parameters
     ----------
-    control : ControlModel
-    limits : AxisLimits
     greatest : float, mm/s
         Greatest commanded feed of the run, by which :class:`FilterWithinLimits` chooses its
         filter.

@@ -66,7 +66,6 @@ def in_pieces(segments: Segments, least: float) -> Segments:
 
     Parameters
     ----------
-    segments : Segments
     least : float, mm
         Radius within which the spindle has its greatest speed.
     """
@@ -201,7 +200,6 @@ def run_of(shape: PathGeometry, look_up: LookUp, spindle: Spindle) -> ToolPathRu
 
     Parameters
     ----------
-    shape : PathGeometry
     look_up : callable
         Conditions of a feed, as from :func:`stepnc_model.post.modal_state.conditions`.
     spindle : Spindle

@@ -52,7 +52,6 @@ def guide_torque(drive: AxisDrive, *, vertical_force: Value) -> Value:
 
     Parameters
     ----------
-    drive : AxisDrive
     vertical_force : float or array, N
         Positive when it presses on the guide; a lifting force is ignored.
 
@@ -70,7 +69,6 @@ def bearing_torque(drive: AxisDrive, *, feed_force: Value) -> Value:
 
     Parameters
     ----------
-    drive : AxisDrive
     feed_force : float or array, N
         Either sign loads the bearing.
 
@@ -98,7 +96,6 @@ def steady_torque(
 
     Parameters
     ----------
-    drive : AxisDrive
     feed_force : float or array, N
         Force against the motion.
     vertical_force : float or array, N
@@ -135,7 +132,6 @@ def motor_torque(
 
     Parameters
     ----------
-    drive : AxisDrive
     velocity, acceleration : float or array, mm/s and mm/s²
         Signed along the axis. At rest there is no motion to oppose: 0.
     feed_force : float or array, N
@@ -170,7 +166,6 @@ def axis_power(
 
     Parameters
     ----------
-    drive : AxisDrive
     velocity, acceleration : float or array, mm/s and mm/s²
         Signed along the axis.
     feed_force : float or array, N

@@ -48,7 +48,6 @@ def edge_angle(kind: ToolKind, point_angle: float | None) -> float:
 
     Parameters
     ----------
-    kind : ToolKind
     point_angle : float, rad, or None
         None: customary value for a drill, flat for a reamer or a counterbore.
     """
@@ -179,8 +178,6 @@ def drilling_specific_force(
 
     Parameters
     ----------
-    kienzle : Kienzle
-    cut : DrillingCut
     factor : float
         Factor K of :class:`~simulator.physics.cutting.ForceCorrection`.
 
@@ -208,8 +205,6 @@ def drilling_torque(kienzle: Kienzle, cut: DrillingCut, *, factor: float = 1.0) 
 
     Parameters
     ----------
-    kienzle : Kienzle
-    cut : DrillingCut
     factor : float
         Factor K of :class:`~simulator.physics.cutting.ForceCorrection`.
 
@@ -240,8 +235,6 @@ def lip_thrust(kienzle: Kienzle, cut: DrillingCut, *, factor: float = 1.0) -> fl
 
     Parameters
     ----------
-    kienzle : Kienzle
-    cut : DrillingCut
     factor : float
         Factor K of :class:`~simulator.physics.cutting.ForceCorrection`.
 
@@ -271,7 +264,6 @@ def constant_thrust(
 
     Parameters
     ----------
-    kienzle : Kienzle
     diameter : float or array, mm
         Diameter D; while the tool enters, at most its own.
     lip_sine : float or array

@@ -175,7 +175,6 @@ def mean_chip_thickness(
     Parameters
     ----------
     feed_per_tooth : float, mm
-    engagement : Engagement
     cutting_edge_angle : float, rad
         Cutting edge angle κ_r, π/2 for an end mill.
 

@@ -54,7 +54,6 @@ def sums(
         Angle φ of the tip of tooth 0 at M engagements.
     arc : two (M,) arrays, rad
         Entry and exit angles.
-    bands : Bands
     teeth : int
     exponent : float
         Exponent q of the force law.

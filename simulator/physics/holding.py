@@ -62,7 +62,6 @@ def clamping_force(chuck: Chuck, speed: float) -> float:
 
     Parameters
     ----------
-    chuck : Chuck
     speed : float, rev/s
 
     Returns
@@ -99,7 +98,6 @@ def permitted_speed(chuck: Chuck, held: float = 0.0) -> float:
 
     Parameters
     ----------
-    chuck : Chuck
     held : float, N
         Clamping force F_spz that the cut requires; 0: up to the loss of all force.
 

@@ -43,8 +43,6 @@ def peak_at(edges: CuttingEdges, law: ForceLaw, arcs: Floats) -> Floats:
 
     Parameters
     ----------
-    edges : CuttingEdges
-    law : ForceLaw
     arcs : (3, M) array
         Entry angle and exit angle in rad, axial depth in mm.
     """

@@ -62,8 +62,6 @@ def mean_specific_force(kienzle: Kienzle, cut: MillingCut, *, factor: float = 1.
 
     Parameters
     ----------
-    kienzle : Kienzle
-    cut : MillingCut
     factor : float
         Factor K of :class:`~simulator.physics.cutting.ForceCorrection`.
 
@@ -90,8 +88,6 @@ def mean_force(kienzle: Kienzle, cut: MillingCut, *, factor: float = 1.0) -> flo
 
     Parameters
     ----------
-    kienzle : Kienzle
-    cut : MillingCut
     factor : float
         Factor K of :class:`~simulator.physics.cutting.ForceCorrection`.
 

@@ -70,10 +70,6 @@ def curve_segments(spindle: Spindle) -> tuple[CurveSegment, ...]:
     between two points if both have it. The segments cover the range from the spindle's lowest
     to its highest speed, or from 0 and to infinity.
 
-    Parameters
-    ----------
-    spindle : Spindle
-
     Returns
     -------
     tuple of CurveSegment
@@ -114,7 +110,6 @@ def available_power(spindle: Spindle, spindle_speed: float) -> float:
 
     Parameters
     ----------
-    spindle : Spindle
     spindle_speed : float, rev/s
 
     Returns
@@ -254,7 +249,6 @@ def idle_power(spindle: Spindle, speed: Value) -> Value:
 
     Parameters
     ----------
-    spindle : Spindle
     speed : float or array, rev/s
 
     Returns

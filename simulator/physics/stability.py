@@ -67,7 +67,6 @@ def receptance(modes: Sequence[VibrationMode], frequency: Floats) -> Complex:
 
     Parameters
     ----------
-    modes : sequence of VibrationMode
     frequency : (N,) array, rad/s
 
     Returns
@@ -84,10 +83,6 @@ def receptance(modes: Sequence[VibrationMode], frequency: Floats) -> Complex:
 
 def chatter_frequencies(modes: Sequence[VibrationMode]) -> Floats:
     """Frequencies at which chatter is searched: dense around each mode, sparse elsewhere.
-
-    Parameters
-    ----------
-    modes : sequence of VibrationMode
 
     Returns
     -------
@@ -159,7 +154,6 @@ def directional_coefficients(engagement: Engagement, radial_ratio: float) -> Flo
 
     Parameters
     ----------
-    engagement : Engagement
     radial_ratio : float
         Ratio K_r.
 
@@ -198,7 +192,6 @@ def borders(
 
     Parameters
     ----------
-    cut : DynamicCut
     structure : ModalStructure
         Modes along x and y of the machine.
     feed_angle : float, rad
@@ -243,8 +236,6 @@ def stable_depths(
 
     Parameters
     ----------
-    cut : DynamicCut
-    structure : ModalStructure
     speeds : (N,) array, rev/s
         Ascending, positive.
     tolerance : float
@@ -297,8 +288,6 @@ def lobes(
 
     Parameters
     ----------
-    cut : DynamicCut
-    structure : ModalStructure
     between : (float, float), rev/s
         Lowest and highest speed; they may be equal.
     step : float
@@ -331,7 +320,6 @@ def damped_speed(modes: Sequence[VibrationMode], diameter: float) -> float:
 
     Parameters
     ----------
-    modes : sequence of VibrationMode
     diameter : float, mm
         Diameter at which the cutting speed is taken.
 

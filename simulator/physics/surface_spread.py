@@ -22,11 +22,8 @@ from functools import lru_cache
 from math import exp, log, sqrt
 from statistics import NormalDist
 
-from simulator.spec import SurfaceSpread
+from simulator.surface_law import SurfaceSpread
 from stepnc_model.units import m_min_from_speed, mm_from_um, um_from_mm
-
-NAMES = ("ln c", "ln R0", "gamma", "delta", "wear", "contact")
-"""Parameters of the law, in their order."""
 
 REFERENCE_SPEED = 150.0  # m/min
 HELD_SPEED = (60.0, 250.0)  # m/min

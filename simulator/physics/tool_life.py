@@ -26,7 +26,6 @@ def tool_life(taylor: Taylor, cutting_speed: float) -> float:
 
     Parameters
     ----------
-    taylor : Taylor
     cutting_speed : float, mm/s
 
     Returns
@@ -58,7 +57,6 @@ def speed_for_life(taylor: Taylor, life: float) -> float:
 
     Parameters
     ----------
-    taylor : Taylor
     life : float, s
 
     Returns

@@ -142,9 +142,6 @@ def forces(
 
     Parameters
     ----------
-    edges : CuttingEdges
-    places : Places
-    law : ForceLaw
     rotation : (M, K) array, rad
         Angle φ of the tip of tooth 0; tooth j follows at ``j·2π/z`` behind.
     runout : Runout in mm, optional

@@ -149,7 +149,6 @@ def means_of(at: Periods, offsets: Floats, means: Floats) -> None:
 
     Parameters
     ----------
-    at : Periods
     offsets : (z,) array, mm
         Assumed radius of each tooth minus the nominal radius; ``LOST`` if broken.
     means : (z,) array

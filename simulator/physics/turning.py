@@ -82,8 +82,6 @@ def cutting_force(kienzle: Kienzle, cut: TurningCut, *, factor: float = 1.0) -> 
 
     Parameters
     ----------
-    kienzle : Kienzle
-    cut : TurningCut
     factor : float
         Factor K of :class:`~simulator.physics.cutting.ForceCorrection`.
 

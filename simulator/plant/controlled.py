@@ -124,14 +124,7 @@ class _Columns:
 
 
 class ControlledMachine:
-    """Virtual machine with a feed override; a mutable object.
-
-    Parameters
-    ----------
-    course : NominalCourse
-    hidden : HiddenTruth
-    bench : Instrumentation
-    """
+    """Virtual machine with a feed override; a mutable object."""
 
     def __init__(
         self, course: NominalCourse, hidden: HiddenTruth, bench: Instrumentation

@@ -64,10 +64,6 @@ class EngagedTeeth(NamedTuple):
 def pattern(teeth: EngagedTeeth) -> Floats:
     """Force in each tooth period of a revolution, over the mean force of unbroken teeth.
 
-    Parameters
-    ----------
-    teeth : EngagedTeeth
-
     Returns
     -------
     (z, K) array
@@ -229,7 +225,6 @@ def course_of(episodes: Iterable[Episode], machine: Machine) -> NominalCourse:
     ----------
     episodes : iterable of Episode
         Episodes of the virtual machine, with forces as means over a revolution.
-    machine : Machine
 
     Raises
     ------

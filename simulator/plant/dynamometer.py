@@ -63,7 +63,6 @@ class Acquisition:
 
     Parameters
     ----------
-    instrument : Instrument
     random : Generator
         Separate generator per instrument, so that instruments do not affect each other.
     """

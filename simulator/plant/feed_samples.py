@@ -27,7 +27,6 @@ class FeedSamples:
 
     Parameters
     ----------
-    course : NominalCourse
     count : int
         Number K of samples.
     lag : float, s

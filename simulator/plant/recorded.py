@@ -18,6 +18,7 @@ from simulator.plant.controlled import LONGEST, SLOWEST, TrueState
 from simulator.plant.course import NominalCourse
 from simulator.plant.hidden import HiddenChange
 from simulator.reading import Reading
+from stepnc_model.counted import counted
 
 AHEAD = 2.0
 """Multiple of the measured way within which the next place is looked for."""
@@ -81,7 +82,9 @@ def program_times(signals: RecordedSignals, course: NominalCourse) -> Floats:
         When there are too few samples, or the run is not one of this program.
     """
     if len(signals.time) < FEWEST:
-        raise CalibrationError(f"{len(signals.time)} samples; at least {FEWEST} are needed")
+        raise CalibrationError(
+            f"{counted(len(signals.time), 'sample')}; at least {FEWEST} are needed"
+        )
     # An axis that is hardly recorded does not count.
     is_known = ~np.isnan(signals.position)
     has_axis = is_known.sum(axis=0) >= 0.5 * is_known.any(axis=1).sum()
@@ -196,7 +199,6 @@ class RecordedMachine:
     ----------
     course : NominalCourse
         Course of the program that was run.
-    signals : RecordedSignals
 
     Raises
     ------

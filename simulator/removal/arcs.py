@@ -72,7 +72,6 @@ def free_by_move(
         Buffers; the cleared intervals are added to ``free``.
     count : int
         Number of free intervals so far.
-    circle : ToolCircle
     record : (RECORD,) array
         Row of the move, then the profile of its tool.
     level : float, mm

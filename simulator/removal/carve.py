@@ -68,7 +68,6 @@ def carve_part(
     ----------
     grid : HeightGrid
         Changed, unless the number is ``MEASURE``.
-    profile : CutterProfile
     row : (13,) array
     span : (float, float)
         Begin and end of the part, as shares of the row's length.
@@ -283,7 +282,6 @@ def lowest(profile: CutterProfile, u: float, v: float, length: float, slope: flo
 
     Parameters
     ----------
-    profile : CutterProfile
     u, v : float, mm
         Position of the cell along the line and beside it, in the plane.
     length : float, mm
@@ -321,7 +319,6 @@ def corner_lowest(
 
     Parameters
     ----------
-    profile : CutterProfile
     u, v : float, mm
         Position of the cell in the sweep: along the line from its higher end, and beside it.
     length : float, mm
@@ -367,7 +364,6 @@ def corner_contact(profile: CutterProfile, v: float, fall: float) -> float:
 
     Parameters
     ----------
-    profile : CutterProfile
     v : float, mm
         Distance of the cell from the line, less than that of the edge of the flat.
     fall : float

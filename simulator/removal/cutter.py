@@ -179,7 +179,6 @@ def profile_of(cutter: Cutter, *, reach: float) -> CutterProfile:
 
     Parameters
     ----------
-    cutter : Cutter
     reach : float, mm
         Height above the tip up to which a tapered flank of unlimited length is followed.
 

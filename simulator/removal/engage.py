@@ -120,7 +120,6 @@ class MillingStock:
         ----------
         segments : Segments
             Path of the tip of the tool.
-        cutter : Cutter
         is_clockwise : bool
             Direction of rotation of the spindle, seen from above.
 

@@ -75,8 +75,6 @@ class KeptMarches:
 
         Parameters
         ----------
-        task : RemovalTask
-        segments : Segments
         rows : (N, 13) array
             Their rows.
         out : (L, COLUMNS) array

@@ -49,7 +49,6 @@ def edge_angles(insert: Insert, direction: Floats) -> Floats:
 
     Parameters
     ----------
-    insert : Insert
     direction : (M, 3) array
         Unit vectors of the feed.
 
@@ -79,7 +78,6 @@ def chip_ratios(insert: Insert, depth: Floats, angle: Floats) -> Floats:
 
     Parameters
     ----------
-    insert : Insert
     depth : (M,) array, mm
         Depth of cut a_p.
     angle : (M,) array, rad
@@ -126,8 +124,6 @@ def ways_of(segments: Segments, windows: Windows, insert: Insert) -> Floats:
     ----------
     segments : Segments
         Path of the programmed point.
-    windows : Windows
-    insert : Insert
 
     Returns
     -------

@@ -91,8 +91,6 @@ def carve(
         Heights over the cells; lowered in place.
     bed : (C,) array, mm
         Heights below which there is no material.
-    grid : AxialGrid
-    body : InsertOutline
     ways : (M, 9) array
         Rows of :class:`NosePath`, one after another.
 
@@ -160,7 +158,6 @@ def bore(
     ----------
     surface, bed : (C,) array, mm
         As in :func:`carve`, for a bore: negative radii.
-    grid : AxialGrid
     profile : (3,) array
         Radius in mm, cotangent of half the point angle, corner radius in mm.
     tips : (M,) array, mm

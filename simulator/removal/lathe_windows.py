@@ -57,7 +57,6 @@ def windows_of(segments: Segments, cell: float) -> Windows:
 
     Parameters
     ----------
-    segments : Segments
     cell : float, mm
 
     Returns
@@ -90,7 +89,6 @@ def grouped(removed: Removed, cell: float) -> Removed:
 
     Parameters
     ----------
-    removed : Removed
     cell : float, mm
 
     Returns

@@ -99,7 +99,6 @@ def march(
 
     Parameters
     ----------
-    task : RemovalTask
     rows : (N, 13) array
         Rows from :func:`rows_of`.
     lengths : (N,) array, mm

@@ -107,11 +107,6 @@ def look(
 
     Parameters
     ----------
-    grid : HeightGrid
-    before : RecentOutlines
-    tool : RimTool
-    work : RimBuffers
-    pose : Pose
     into : (ENGAGEMENT,) array
         Receives the engagement.
     """

@@ -234,7 +234,6 @@ def renumbered(trial: PathTrial, number: int, known: dict[int, int]) -> StockPat
 
     Parameters
     ----------
-    trial : PathTrial
     number : int
         New number of its first move.
     known : dict

@@ -57,7 +57,6 @@ def tools_of_code(program: NcProgram, *, name: str = "") -> CodeTools:
 
     Parameters
     ----------
-    program : NcProgram
     name : str
         Name of the program, for messages.
     """

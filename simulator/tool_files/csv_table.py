@@ -40,7 +40,6 @@ def read_csv(text: str, path: Path) -> ToolRows:
 
     Parameters
     ----------
-    text : str
     path : Path
         The file, for messages.
 

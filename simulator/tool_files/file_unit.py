@@ -43,7 +43,6 @@ def other_size(name: str, diameter: float) -> float | None:
 
     Parameters
     ----------
-    name : str
     diameter : float, mm
 
     Returns

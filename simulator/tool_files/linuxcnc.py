@@ -64,7 +64,6 @@ def read_linuxcnc(text: str, path: Path, unit: FileUnit) -> ToolRows:
 
     Parameters
     ----------
-    text : str
     path : Path
         The file, for messages.
     unit : FileUnit

@@ -66,7 +66,6 @@ def read_tools(path: Path, *, unit: FileUnit | None = None) -> ToolLibrary:
 
     Parameters
     ----------
-    path : Path
     unit : FileUnit, optional
         Unit of lengths of a format that names none, LinuxCNC's; by default mm.
 

@@ -125,7 +125,6 @@ def note_of(text: str, *, line: int, unit: float) -> ToolNote:
 
     Parameters
     ----------
-    text : str
     line : int
     unit : float, mm
         Length of one unit of the program.

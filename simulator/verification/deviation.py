@@ -242,7 +242,6 @@ def floor_cells(
         Cells that count.
     is_wall : (X, Y) array of bool
         Cells beside a wall.
-    logged : LoggedPart
     """
     distance = ndimage.distance_transform_edt(~is_wall, sampling=(grid.dx, grid.dy))
     column, row = np.nonzero(is_compared & (distance > WALL_STRIP))

@@ -286,7 +286,6 @@ class LoggedPart:
     ----------
     part : ReferencePart
         What it is compared with.
-    stock : Stock
     cutters : mapping
         Shapes of tools by number; other tools remove nothing.
     raw : (T, 3, 3) array, mm

@@ -178,7 +178,6 @@ class LoggedFaces:
             Positions of the samples.
         block : (N,) array of int
             Samples of the stretch.
-        part : SampledStretch
         """
         if not len(self._place):
             return
@@ -198,7 +197,6 @@ class LoggedBar:
     ----------
     reference : TurningStock
         Bar that it is compared with.
-    stock : Stock
     shapes : mapping
         Shapes of tools by number; other tools remove nothing.
     raw : TurningStock

@@ -44,7 +44,6 @@ def wall_deviation(points: Floats, normal: Floats, outline: NominalOutline) -> F
     points : (P, 2) array, mm
     normal : (P, 2) array
         Direction from the air into the material.
-    outline : NominalOutline
 
     Returns
     -------

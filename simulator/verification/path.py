@@ -187,7 +187,6 @@ def fitted_zero(
     ----------
     positions : (N, 3) array, mm
         Positions on the axes, in order, spread over the whole log.
-    path : ProgrammedPath
 
     Returns
     -------

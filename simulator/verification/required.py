@@ -75,7 +75,6 @@ def required_part(
     ----------
     triangles : (T, 3, 3) array, mm
         In the coordinates of the log.
-    stock : Stock
     cell : float, mm
         Size of the cells of the height map; by default chosen from the stock.
     most_sag : float, mm

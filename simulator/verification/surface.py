@@ -113,8 +113,6 @@ def programmed_part(
 
     Parameters
     ----------
-    path : ProgrammedPath
-    stock : Stock
     cell : float, mm
         Size of the cells of the height map; by default chosen from the stock.
     raw : (T, 3, 3) array, mm

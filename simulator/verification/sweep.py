@@ -57,7 +57,6 @@ def sweep(grid: HeightGrid, profile: CutterProfile, rows: Floats, number: int) -
     ----------
     grid : HeightGrid
         Changed in place.
-    profile : CutterProfile
     rows : (N, 13) array
     number : int
         Number of the first row, which its cells get as their owner.
@@ -74,7 +73,6 @@ def approach(targets: WallTargets, profile: CutterProfile, rows: Floats, number:
     ----------
     targets : WallTargets
         Changed in place.
-    profile : CutterProfile
     rows : (N, 13) array
         Lines only.
     number : int

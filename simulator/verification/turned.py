@@ -68,8 +68,6 @@ def turned_part(
 
     Parameters
     ----------
-    path : ProgrammedPath
-    stock : Stock
     cell : float, mm
         Length of a cell along the axis.
     raw : TurningStock
@@ -110,8 +108,6 @@ def turned_volumes(
 
     Parameters
     ----------
-    bar : TurningStock
-    logged : LoggedBar
     low : float, mm
         Only what lies before this z counts.
     """

@@ -23,6 +23,7 @@ from functools import cached_property
 from heapq import merge
 from typing import Self
 
+from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, FindingList, SchemaError, Severity
 from stepnc_model.part21.grammar import closing, skip_blank
 from stepnc_model.part21.index import Index, InstanceRecord, Part, parse_record, part_spans
@@ -131,7 +132,9 @@ def _parameters(
     values = record.parts[0][1]
     expected = _ARITY[statement.keyword]
     if len(values) != expected:
-        message = f"{statement.keyword} has {len(values)} parameters instead of {expected}"
+        message = (
+            f"{statement.keyword} has {counted(len(values), 'parameter')} instead of {expected}"
+        )
         slips.append(SyntaxSlip(offset=statement.start, message=message))
     return values
 
@@ -426,8 +429,9 @@ class Part21File:
         return Finding(
             severity=Severity.WARNING,
             message=(
-                f"{len(self._unexamined)} instances from here on are not in the plain form of "
-                f"the standard and were not checked: more than {MAX_EXAMINED >> 20} MB of them"
+                f"{counted(len(self._unexamined), 'instance')} from here on not in the plain "
+                "form of the standard and not checked: more than "
+                f"{MAX_EXAMINED >> 20} MB of them"
             ),
             entity=self.label(first),
             line=self.line(first),

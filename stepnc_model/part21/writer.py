@@ -234,7 +234,6 @@ class Edits:
         id, part, position : int
             Instance, its part, and the place in the part, counted from 0; a simple instance
             has one part.
-        value : Value
 
         Raises
         ------

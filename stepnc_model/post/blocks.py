@@ -99,7 +99,7 @@ class Comment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PathControl:
-    """How the control runs from one move into the next, from here on."""
+    """Mode in which the control runs from one move into the next, from here on."""
 
     tolerance: float
     """Path tolerance, mm; 0: corners are stops; infinite: none is given."""
@@ -302,7 +302,6 @@ def expanded(
 
     Parameters
     ----------
-    cycle : DrillingCycle
     spindle : SpindleOn or SurfaceSpeed, optional
         Spindle state to restore after a cycle that stops the spindle.
     """

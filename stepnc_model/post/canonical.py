@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from math import copysign, dist, isfinite
 from typing import Any
 
+from stepnc_model.counted import counted
 from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import (
     Block,
@@ -89,7 +90,6 @@ def commands(blocks: Iterable[Block], *, places: int = PLACES) -> Iterator[Canon
 
     Parameters
     ----------
-    blocks : iterable of Block
     places : int
         Decimal places to which coordinates are rounded.
     """
@@ -346,7 +346,9 @@ def _parsed(line: str, number: int) -> Canonical:
     chosen = values[NUMBERS[name]] if len(values) > 1 else values
     wanted = {"ARC_FEED": 6}.get(name, 3 if NUMBERS[name] == slice(0, 3) else 1)
     if len(chosen) != wanted:
-        raise PostError(f"{name} has {len(chosen)} arguments: it needs {wanted}", line=number)
+        raise PostError(
+            f"{name} has {counted(len(chosen), 'argument')}: it needs {wanted}", line=number
+        )
     if name == "ARC_FEED":
         turns = float(chosen[4])
         if not turns or turns != int(turns):

@@ -45,7 +45,6 @@ def on_grid(blocks: Iterable[Block], places: int) -> Iterator[Block]:
 
     Parameters
     ----------
-    blocks : iterable of Block
     places : int
         Decimal places of a coordinate in mm.
     """

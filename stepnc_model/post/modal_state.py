@@ -58,12 +58,9 @@ def conditions(
 
     Parameters
     ----------
-    program : Program
-    feed : Feed
     tool : Ref, optional
         Tool in the spindle; without a tool, feed per tooth and cutting speed cannot be
         converted to numbers for a control.
-    machine : MachineType
 
     Raises
     ------

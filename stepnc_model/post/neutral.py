@@ -141,7 +141,6 @@ def blocks_of(
         Program in which tools and technologies are looked up.
     paths : sequence of ToolPath and Function
         Paths and functions in execution order.
-    name : str
 
     Raises
     ------

@@ -34,7 +34,6 @@ def path_tolerance(program: Program, step: ResolvedWorkingstep | None) -> float:
 
     Parameters
     ----------
-    program : Program
     step : ResolvedWorkingstep or None
         None for a path without a workingstep.
     """

@@ -58,7 +58,6 @@ def planned_paths(
 
     Parameters
     ----------
-    program : Program
     items : sequence of ToolPath and Function
         Paths and functions in execution order.
     blocks : iterable of (int, Block)

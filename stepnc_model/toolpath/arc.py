@@ -95,8 +95,6 @@ def points_along(start: Point, move: PathCurve, *, step: float) -> Iterator[Poin
 
     Parameters
     ----------
-    start : Point
-    move : PathCurve
     step : float, rad
         Greatest angle between two points of an arc.
     """
@@ -147,8 +145,6 @@ def swept(
     Parameters
     ----------
     start, end : sequence of 3 floats, mm
-    centre : Point
-    plane : ArcPlane
     sense : float
         1 counter-clockwise, -1 clockwise.
     """
@@ -190,7 +186,6 @@ def centre_of_radius(
     ----------
     start, end : sequence of 3 floats, mm
     radius : float, mm
-    plane : ArcPlane
     sense : float
         1 counter-clockwise, -1 clockwise.
 

@@ -221,7 +221,6 @@ def placements(
 
     Parameters
     ----------
-    program : Program
     setup : Ref or None
         Setup of the workingstep.
     feature : Ref

@@ -72,7 +72,6 @@ def generate(
 
     Parameters
     ----------
-    program : Program
     on_fault : callable
         Called with each executable that is left out, and its error; by default raises it.
     path_of : callable

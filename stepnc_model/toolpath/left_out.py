@@ -82,11 +82,6 @@ def _depends(step: ResolvedWorkingstep, box: SweptBox | None, omission: _Omissio
 def swept_box(program: Program, path: ToolPath) -> SweptBox | None:
     """Box around the tool on the moves of a path at a feed; None if there is none.
 
-    Parameters
-    ----------
-    program : Program
-    path : ToolPath
-
     Returns
     -------
     SweptBox or None

@@ -44,10 +44,6 @@ ALIKE = 0.01
 def doubts(program: Program) -> Iterator[Finding]:
     """Warnings about what a program may mean otherwise than it is read.
 
-    Parameters
-    ----------
-    program : Program
-
     Yields
     ------
     Finding
@@ -122,7 +118,6 @@ def remarks(program: Program, paths: Iterable[ToolPath]) -> tuple[Finding, ...]:
 
     Parameters
     ----------
-    program : Program
     paths : iterable of ToolPath
         Paths of those workingsteps for which one can be made.
 

@@ -1,4 +1,4 @@
-"""Plans as they are read from their JSON, as far as a comparison looks at them."""
+"""Plans read back from their JSON, with the values that a comparison needs."""
 
 import json
 from dataclasses import dataclass

@@ -240,7 +240,7 @@ def _why_same(first: NamedPlan, other: NamedPlan, one: PlannedStep, two: Planned
 
 
 def _difference(first: NamedPlan, other: NamedPlan, one: PlannedStep, two: PlannedStep) -> str:
-    """What differs in a workingstep."""
+    """Differences of a workingstep between two plans."""
     a, b = one.setting, two.setting
     if one.time is None or two.time is None or a is None or b is None:
         return f"{first.name} {one.status}, {other.name} {two.status} ({two.reason})"

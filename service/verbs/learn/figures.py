@@ -15,7 +15,6 @@ def scatter_figure(model: LearnedModel, actual: Floats, predicted: Floats) -> go
 
     Parameters
     ----------
-    model : LearnedModel
     actual, predicted : (M,) array
         In the unit of the target's name.
     """

@@ -64,6 +64,7 @@ from service.rendering.columns import dump, plain
 from service.requests.fields import member_of
 from service.verbs.learn.request import LearnFiles, LearnRequest
 from service.verbs.learn.result import LearnResult
+from stepnc_model.counted import counted
 from stepnc_model.entities.milling import MillingTypeOperation
 from stepnc_model.errors import StepNcError
 from stepnc_model.outcome import (
@@ -91,8 +92,6 @@ def write_outcome(
 
     Parameters
     ----------
-    path : Path
-    factor : ForceFactor
     program : Path
         Program of the runs, which mills with one tool.
     names : mapping
@@ -330,7 +329,7 @@ def _rows(path: Path, request: LearnRequest) -> LearningRows:
     needed = (request.target, *([exact] if request.is_on_physics else []))
     count, first = 0, pa.table({})
 
-    def counted() -> Iterator[pa.Table]:
+    def pieces() -> Iterator[pa.Table]:
         nonlocal count, first
         for table in source.pieces(0, wanted):
             require_columns(table, needed, place=place)
@@ -338,11 +337,11 @@ def _rows(path: Path, request: LearnRequest) -> LearningRows:
             count += table.num_rows
             yield table
 
-    features, names = features_of(counted(), place=place)
+    features, names = features_of(pieces(), place=place)
     if count < wanted:
         raise StepNcError(
-            f"{path}: {count} rows, but --train {request.train} and --test {request.test} need "
-            f"{wanted}: make more, or ask for less"
+            f"{path}: {counted(count, 'row')}, but --train {request.train} and --test "
+            f"{request.test} need {wanted}: make more, or ask for less"
         )
     has_physics = bool(exact) and exact in first.column_names
     manifest = (first.schema.metadata or {}).get(IN_METADATA)

@@ -61,10 +61,8 @@ class CurveWriter:
 
     Parameters
     ----------
-    draft : Draft
     frame : Frame
         Frame in which the file gives the curves.
-    form : HelixForm
     """
 
     def __init__(self, draft: Draft, frame: Frame, form: HelixForm) -> None:

@@ -38,10 +38,6 @@ def explicit_path(job: ToolPathTask) -> ToolPath:
     last one: no moves from or to the security plane are added, so that consecutive workingsteps
     can be joined directly.
 
-    Parameters
-    ----------
-    job : ToolPathTask
-
     Returns
     -------
     ToolPath
@@ -87,11 +83,6 @@ def path_frames(program: Program, step: ResolvedWorkingstep) -> tuple[Frame, ...
     A path for an element of a compound feature is given in the coordinates of the compound, as
     in example 3 of ISO 14649-11, where it begins on the security plane.
 
-    Parameters
-    ----------
-    program : Program
-    step : ResolvedWorkingstep
-
     Returns
     -------
     tuple of Frame
@@ -111,11 +102,6 @@ def path_frames(program: Program, step: ResolvedWorkingstep) -> tuple[Frame, ...
 
 def rapid_movement_path(program: Program, executable: ProgramLine) -> ToolPath | None:
     """Path of a ``RAPID_MOVEMENT`` or ``RETURN_HOME``, all in rapid.
-
-    Parameters
-    ----------
-    program : Program
-    executable : ProgramLine
 
     Returns
     -------

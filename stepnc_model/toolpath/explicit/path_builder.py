@@ -72,8 +72,6 @@ def approach_segments(
 
     Parameters
     ----------
-    program : Program
-    ref : Ref
     frame : Frame
         Frame in which the fixed point is given.
     cut : Segment

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 from math import ceil, dist, hypot, inf
 
+from stepnc_model.counted import counted
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import SpeedName, ToolpathType
 from stepnc_model.entities.geometry import BSplineCurve, Polyline
@@ -80,8 +81,6 @@ def pace_of(
 
     Parameters
     ----------
-    program : Program
-    ref : Ref
     technology : Ref or None
         Technology of the operation; None for a rapid movement, where everything is rapid.
     alike : collection of Ref
@@ -134,7 +133,6 @@ def paced(start: Point, moves: Sequence[Move], factors: Spline) -> Iterator[Move
         Start of the first move.
     moves : sequence of Move
         All moves of one tool path, at feed.
-    factors : Spline
     """
     starts = [start, *(move.end for move in moves[:-1])]
     lengths = [length(at, move) for at, move in zip(starts, moves, strict=True)]
@@ -289,8 +287,6 @@ def trajectory_segments(
 
     Parameters
     ----------
-    program : Program
-    ref : Ref
     frame : Frame
         Frame in which the curve is given.
     tool : callable or None
@@ -333,7 +329,8 @@ def _axes(
     if len(set(names)) != len(names) or not set(names) <= set(AXES):
         raise program.path_error(f"axes {', '.join(names)}: only X, Y and Z, each once", ref)
     if len(names) != len(trajectory.commands):
-        counts = f"{len(names)} axes but {len(trajectory.commands)} commands"
+        commands = counted(len(trajectory.commands), "command")
+        counts = f"{counted(len(names), 'axis', 'axes')} but {commands}"
         raise program.path_error(counts, ref)
     if at is None and len(names) < len(AXES):
         raise program.path_error("the positions of the other axes are unknown", ref)
@@ -376,7 +373,8 @@ def _contact(
     contacts = _points(program, ref, curve.basiccurve)
     normals = _points(program, ref, curve.surface_normal)
     if len(contacts) != len(normals):
-        raise program.path_error(f"{len(contacts)} points, but {len(normals)} normals", ref)
+        counts = f"{counted(len(contacts), 'point')}, but {counted(len(normals), 'normal')}"
+        raise program.path_error(counts, ref)
     points = [
         _tip(program, ref, cutter, contact=frame.point(contact), normal=frame.direction(normal))
         for contact, normal in zip(contacts, normals, strict=True)

@@ -289,10 +289,6 @@ ON_AXIS = 1e-3
 def hole_path(job: ToolPathTask) -> ToolPath:
     """Generate the tool path of a drilling, boring, reaming or tapping operation.
 
-    Parameters
-    ----------
-    job : ToolPathTask
-
     Returns
     -------
     ToolPath

@@ -299,7 +299,6 @@ def shapes(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> Iterator[Area |
 
     Parameters
     ----------
-    job : ToolPathTask
     ref : Ref
         A feature, not a pattern.
     frame : Frame

@@ -261,10 +261,6 @@ def knurl(
 def turning_path(job: ToolPathTask) -> ToolPath:
     """Tool path of a turning workingstep.
 
-    Parameters
-    ----------
-    job : ToolPathTask
-
     Returns
     -------
     ToolPath

@@ -268,7 +268,6 @@ def outline_of(job: ToolPathTask, ref: Ref[Entity], reach: float) -> FeatureOutl
 
     Parameters
     ----------
-    job : ToolPathTask
     ref : Ref
         A turning feature.
     reach : float, mm

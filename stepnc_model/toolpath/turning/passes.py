@@ -175,12 +175,10 @@ def scan(
 
     Parameters
     ----------
-    walk : TurningPathBuilder
     centres : RadiusProfile
         Lowest allowed path of the nose centre.
     level : float, mm
         Height v of the nose centre.
-    setting : TurningSetting
     towards : int
         −1 for passes to the chuck or the axis, +1 for passes in the other direction.
     """

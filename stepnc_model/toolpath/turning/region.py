@@ -142,10 +142,6 @@ def region_of(
 
     Parameters
     ----------
-    job : ToolPathTask
-    bar : TurningBlank
-    outlines : tuple of FeatureOutline
-    plane : HalfPlane
     allowance, overcut : float, mm
         Material that remains on the surface, and the feed length in front of the cut.
     """
@@ -367,7 +363,6 @@ def _faced(
 
     Parameters
     ----------
-    outlines : tuple of FeatureOutline
     allowance : float, mm
     left : RadiusProfile
         Bar before.

@@ -77,9 +77,6 @@ def cut_thread(
 
     Parameters
     ----------
-    job : ToolPathTask
-    course : PathBuilder
-    one : ThreadPass
     stock : RadiusProfile
         Radius over z before the thread.
     pitch : float, mm

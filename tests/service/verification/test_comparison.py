@@ -39,7 +39,7 @@ def test_turned_positions_in_inches_are_refused(tmp_path: Path) -> None:
 def test_an_open_mesh_is_told(tmp_path: Path) -> None:
     log = write_log(tmp_path / "log.csv", POCKET)
     found = verify(log, None, MILL, inputs=pocket_inputs(tmp_path, mesh=test_required.MESH[1:]))
-    assert any("3 edges do not belong" in each.message for each in found.findings)
+    assert any("3 edges without two triangles" in each.message for each in found.findings)
 
 
 def test_the_sag_of_facets_is_told(tmp_path: Path) -> None:

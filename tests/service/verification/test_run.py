@@ -173,7 +173,7 @@ def test_a_long_gap_cuts_nothing_and_is_told(tmp_path: Path) -> None:
     lost = log.only((log.time < begin) | (log.time > begin + 20.0))
     answer = verified(lost.write(tmp_path / "log.parquet", program()), program(), REQUEST)
     assert answer.volumes.gouge < 20.0
-    assert any("1 gaps of up to 20" in each.message for each in answer.findings)
+    assert any("1 gap of up to 20" in each.message for each in answer.findings)
 
 
 def test_workingsteps_of_another_program_are_told(tmp_path: Path) -> None:

@@ -223,7 +223,7 @@ def test_header_with_the_wrong_arity_is_read_as_far_as_it_goes() -> None:
     file = file_of("#1=A();", header=header)
     assert file.schemas == ("S",)
     assert messages(file) == [
-        "FILE_DESCRIPTION has 1 parameters instead of 2",
+        "FILE_DESCRIPTION has 1 parameter instead of 2",
         "FILE_NAME has 2 parameters instead of 7",
     ]
 
@@ -256,8 +256,8 @@ def test_figure_11_of_paper_002_is_readable_as_printed() -> None:
     assert file.parameters(204) == (180.0, "FULL_IMMERSION")
     assert file.parameters(202) == ("CUTTING POWER", None, "kW", Ref(203), 35)
     assert [(f.line, f.message) for f in file.findings] == [
-        (3, "FILE_DESCRIPTION has 1 parameters instead of 2"),
-        (4, "FILE_NAME has 1 parameters instead of 7"),
+        (3, "FILE_DESCRIPTION has 1 parameter instead of 2"),
+        (4, "FILE_NAME has 1 parameter instead of 7"),
         (7, "text outside any instance: '. . .'"),
         (11, "nested comment: '/*' within a comment"),
         (13, "text outside any instance: '*****/'"),

@@ -57,6 +57,17 @@ def test_the_modified_program_has_reachable_feeds_and_takes_as_long(
     assert again.total.predicted == pytest.approx(result.total.predicted, rel=0.01)
 
 
+def test_the_modified_program_of_a_step_nc_part_has_reachable_feeds(tmp_path: Path) -> None:
+    machine, modified = tmp_path / "slow.toml", tmp_path / "modified.ngc"
+    slow = replace(load_machine("vmc15"), block_time=0.5, block_time_source="")
+    machine.write_text(machine_toml(slow), encoding="utf-8")
+    part = PARTS / "paper003_pocket.stpnc"
+    result = stepnc.cycletime(part, machine=str(machine), output=modified)
+    assert result.total.by_rate > 1.05 * result.total.programmed
+    again = stepnc.cycletime(modified, machine=str(machine))
+    assert again.total.programmed == pytest.approx(result.total.by_rate, rel=1e-3)
+
+
 def test_a_log_of_the_same_machine_agrees_by_workingstep_and_tool(tmp_path: Path) -> None:
     log = tmp_path / "run.parquet"
     part = PARTS / "paper003_case1.stpnc"

@@ -35,6 +35,15 @@ def test_the_centre_stops_beside_the_wall_and_goes_up_it(
     assert chain[-1].end == pytest.approx((-110.0 + 0.8 + 0.5, 30.0))
 
 
+def test_a_sharp_insert_starts_nearer_to_the_stock_by_its_nose(
+    job: Callable[..., ToolPathTask],
+) -> None:
+    rounded = region(job, "ROUGH CONTOUR")
+    sharp = region(job, "ROUGH CONTOUR", ("ROUNDED_CORNER(0.8)", "ROUNDED_CORNER(0.)"))
+    assert (rounded.nose, sharp.nose) == (0.8, 0.0)
+    assert rounded.front - sharp.front == pytest.approx(0.8)
+
+
 def test_a_face_has_no_wall_at_the_axis(job: Callable[..., ToolPathTask]) -> None:
     face = region(job, "ROUGH FACE")
     assert (face.low, face.own_high, face.wall) == (0.0, 30.0, None)
