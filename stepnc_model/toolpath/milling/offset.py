@@ -117,7 +117,7 @@ def distances(points: Points, edges: ContourEdges) -> Floats:
         ends = np.minimum(
             np.abs(points[:, None] - arcs.start), np.abs(points[:, None] - arcs.end)
         )
-        found = np.minimum(found, np.where(part <= 1.0, offset_left, ends).min(1))
+        found = np.minimum(found, np.where(part <= 1.0, from_circle, ends).min(1))
     return found
 
 
