@@ -128,7 +128,7 @@ class HoldingFile(FileTable, frozen=True, kw_only=True):
     holding: tuple[HoldingRow, ...] = ()
 
     def __post_init__(self) -> None:
-        require_distinct_setups(self.holding)
+        require_distinct(self.holding)
 
 
 def read_holding_file(path: Path, kind: MachineKind) -> tuple[Holding, ...]:
@@ -149,7 +149,7 @@ def read_holding_file(path: Path, kind: MachineKind) -> tuple[Holding, ...]:
     return tuple(row.holding for row in rows)
 
 
-def require_distinct_setups(rows: Sequence[HoldingRow]) -> None:
+def require_distinct(rows: Sequence[HoldingRow]) -> None:
     """Refuse rows that hold the same setup."""
     setups = [row.setup.strip().casefold() for row in rows]
     for at, setup in enumerate(setups, start=1):

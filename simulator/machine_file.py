@@ -18,12 +18,7 @@ from simulator.handling_file import (
     deviation_table,
     handling_table,
 )
-from simulator.holding_file import (
-    HoldingRow,
-    holding_row,
-    require_distinct_setups,
-    require_kind,
-)
+from simulator.holding_file import HoldingRow, holding_row, require_distinct, require_kind
 from simulator.physics.spindle import curve_segments
 from simulator.planner_settings import PlannerSettings
 from simulator.spec import (
@@ -316,7 +311,7 @@ class MachineFile(FileTable, frozen=True, kw_only=True):
     mode: tuple[ModeRow, ...] = ()
 
     def __post_init__(self) -> None:
-        require_distinct_setups(self.holding)
+        require_distinct(self.holding)
         require_kind(self.holding, self.kind)
 
     def machine(self, name: str) -> Machine:

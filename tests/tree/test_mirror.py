@@ -15,6 +15,7 @@ TESTS = ROOT / "tests"
 IMPORT = re.compile(r"^ *from ([\w.]+) import (\([^)]*\)|.*)$", flags=re.MULTILINE)
 
 THROUGH = {
+    "simulator/physics/test_surface_spread.py": ("simulator/surface_law.py",),
     "simulator/linuxcnc/test_bench.py": ("simulator/linuxcnc/session.py",),
     "simulator/motion/test_linuxcnc_planner.py": ("simulator/motion/corner_blends.py",),
     "stepnc_model/ap238/test_export.py": (

@@ -113,29 +113,27 @@ def distances(points: Points, edges: ContourEdges) -> Floats:
     if len(arcs.start):
         spoke = (points[:, None] - arcs.centre) / (arcs.start - arcs.centre)
         part = _part(spoke, arcs.turn)
-        offset_left = np.abs(np.abs(spoke) - 1.0) * arcs.radius
+        to_arc = np.abs(np.abs(spoke) - 1.0) * arcs.radius
         ends = np.minimum(
             np.abs(points[:, None] - arcs.start), np.abs(points[:, None] - arcs.end)
         )
-        found = np.minimum(found, np.where(part <= 1.0, from_circle, ends).min(1))
+        found = np.minimum(found, np.where(part <= 1.0, to_arc, ends).min(1))
     return found
 
 
 def crossings(edges: Sequence[ContourEdge]) -> list[list[float]]:
     """Fractions of each edge's length where another edge crosses or touches it."""
-    return _crossings_by_edge(len(edges), *_pairs(ContourEdges.of(edges), None))
+    return _edge_crossings(len(edges), *_pairs(ContourEdges.of(edges), None))
 
 
 def crossings_with(
     edges: Sequence[ContourEdge], others: Sequence[ContourEdge]
 ) -> list[list[float]]:
     """Fractions of each edge's length where an edge of a second set crosses or touches it."""
-    return _crossings_by_edge(
-        len(edges), *_pairs(ContourEdges.of(edges), ContourEdges.of(others))
-    )
+    return _edge_crossings(len(edges), *_pairs(ContourEdges.of(edges), ContourEdges.of(others)))
 
 
-def _crossings_by_edge(count: int, index: NDArray[np.intp], parts: Floats) -> list[list[float]]:
+def _edge_crossings(count: int, index: NDArray[np.intp], parts: Floats) -> list[list[float]]:
     """Crossing fractions grouped by edge, in rising order."""
     order = np.lexsort((parts, index))
     bounds = np.searchsorted(index[order], np.arange(count + 1))
