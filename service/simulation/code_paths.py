@@ -227,9 +227,7 @@ class CodePaths:
         tools = None
         if material is not None:
             tools = {n: table_tool(tool, material.material) for n, tool in self.tools.items()}
-        clamped = None if raw is None else self._map(raw, margin)
-        if isinstance(clamped, MillingStock):
-            clamped.marches = self.marches
+        clamped = None if raw is None else self.recalled(margin)
         return PreparedRun(
             name=self.name,
             machine=self.machine,
@@ -262,6 +260,13 @@ class CodePaths:
         if raw is None:
             raise StepNcError("the stock is not known: name it with --stock")
         return self._map(raw, margin)
+
+    def recalled(self, margin: float) -> StockMap:
+        """Stock as :meth:`uncut` gives it, whose marches are kept for other runs."""
+        found = self.uncut(margin)
+        if isinstance(found, MillingStock):
+            found.marches = self.marches
+        return found
 
     def _raw(self) -> GivenStock | None:
         """Raw part; None if it is not known."""

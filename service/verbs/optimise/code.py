@@ -227,6 +227,7 @@ def source_of(
     return PathSource(
         caution=Caution(
             fresh=code.uncut,
+            larger=code.recalled,
             rise=rise,
             allows_plunge=request.allow_plunge,
             clearance=max(CLEARANCE, request.stock_margin_mm),
