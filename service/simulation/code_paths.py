@@ -101,6 +101,8 @@ class CodePaths:
         self.machine, self.material, self.name = machine, material, name
         self.marches: KeptMarches | None = None
         """Marches of other runs, from which a mill reads again what its tools met before."""
+        self.larger_marches: KeptMarches | None = None
+        """The same of runs in larger stocks."""
         self.stock, self.tools = stock, tools or {}
         self._has_any_tool = tools is None
         self._mesh: GivenStock | None = None
@@ -265,7 +267,7 @@ class CodePaths:
         """Stock as :meth:`uncut` gives it, whose marches are kept for other runs."""
         found = self.uncut(margin)
         if isinstance(found, MillingStock):
-            found.marches = self.marches
+            found.marches = self.larger_marches if margin > 0.0 else self.marches
         return found
 
     def _raw(self) -> GivenStock | None:

@@ -31,7 +31,7 @@ class Detour:
     def led_around(self, blocks: Iterable[Numbered]) -> Iterator[Numbered]:
         """Yield the blocks with detours, whose line is :data:`BRIDGE`."""
         for numbered in blocks:
-            line, block = numbered
+            block = numbered[1]
             if type(block) is Linear:
                 # The usual block of a long program.
                 self._at = block.end

@@ -88,13 +88,7 @@ class Rows:
         return len(self._points)
 
     def line(
-        self,
-        start: Point,
-        end: Point,
-        *,
-        pace: PieceSpeed,
-        line: int,
-        is_way: bool = False,
+        self, start: Point, end: Point, *, pace: PieceSpeed, line: int, is_way: bool = False
     ) -> None:
         """Add a line, which is a rapid if its speed is infinite."""
         leads = is_way and self._way == len(self._points)

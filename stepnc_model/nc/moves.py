@@ -445,8 +445,7 @@ class NcMoves:
         if begin not in self._latest:
             self._latest.clear()
             self._latest[begin] = self.part(begin, begin + CHUNK)
-        part = self._latest[begin]
-        at = row - begin
+        part, at = self._latest[begin], row - begin
         return self._value(next(_numbers(part.rows[at : at + 1])), float(part.feed[at]))
 
     @cached_property
@@ -488,8 +487,7 @@ class NcMoves:
 
 
 def _numbers(rows: NDArray[np.void]) -> Iterator[tuple[Any, ...]]:
-    """Numbers of rows as :meth:`NcMoves._value` takes them, points as tuples."""
-    # Column by column: numbers that are taken out of small arrays one by one are slow.
+    """Numbers of rows as :meth:`NcMoves._value` takes them; points are tuples."""
     points = (map(tuple, rows[name].tolist()) for name in ("start", "end"))
     names = ("word", "block", "call", "arc", "setting", "flags", "kind")
     return zip(*points, *(rows[name].tolist() for name in names), strict=True)
@@ -499,5 +497,4 @@ _flag = cache(MoveFlag)  # a program has few different ones
 
 
 def _arc(numbers: Sequence[float]) -> Arc:
-    x, y, z, turn, plane = numbers
-    return Arc(centre=(x, y, z), turn=turn, plane=PLANES[int(plane)])
+    return Arc(centre=(*numbers[:3],), turn=numbers[3], plane=PLANES[int(numbers[4])])

@@ -186,16 +186,13 @@ def _goes_on(state: _State, move: NcMove) -> bool:
 
     No place that is not known equals another.
     """
-    x, y, z = move.end
     return (
         move.kind is MoveKind.LINE
         and move.arc is None
         and move.feed > 0.0
         and move.setting.mode is not FeedMode.PER_REVOLUTION
         and state.at == move.start
-        and x == x
-        and y == y
-        and z == z
+        and not isnan(sum(move.end))
     )
 
 
