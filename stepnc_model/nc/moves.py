@@ -228,7 +228,6 @@ ROW = np.dtype([
 ])
 KINDS = tuple(MoveKind)
 """Kinds of moves by their values."""
-DWELL = MoveKind.DWELL.value
 
 CHUNK = 1 << 14
 """Rows that become values together."""
@@ -469,7 +468,7 @@ class NcMoves:
             None if arc < 0 else _arc(self.arcs[arc].tolist()),
             feed,
             word,
-            word if kind == DWELL else 0.0,
+            word if kind == MoveKind.DWELL else 0.0,
             block,
             call,
             _flag(flags),
@@ -497,4 +496,5 @@ _flag = cache(MoveFlag)  # a program has few different ones
 
 
 def _arc(numbers: Sequence[float]) -> Arc:
-    return Arc(centre=(*numbers[:3],), turn=numbers[3], plane=PLANES[int(numbers[4])])
+    x, y, z, turn, plane = numbers
+    return Arc(centre=(x, y, z), turn=turn, plane=PLANES[int(plane)])
