@@ -81,6 +81,8 @@ class Caution:
 
     fresh: Callable[[float], Any]
     """Function that gives the uncut stock, larger by some mm."""
+    larger: Callable[[float], Any] | None = None
+    """The same for the stock that the whole program cuts; None: ``fresh``."""
     rise: float = USUAL_RISE
     """Greatest feed over the programmed one."""
     allows_plunge: bool = False
@@ -125,7 +127,7 @@ class Caution:
         )
         if self._larger is None:
             # Not a lambda: it would keep this object, and its stocks, alive in a circle.
-            self._larger = LargerStock(partial(self.fresh, self.clearance))
+            self._larger = LargerStock(partial(self.larger or self.fresh, self.clearance))
         self._larger.add(move)
         watched = stretch
         if self.misuse is not None:

@@ -98,6 +98,8 @@ class CodePaths:
         self.machine, self.material, self.name = machine, material, name
         self.marches: KeptMarches | None = None
         """Marches of other runs, from which a mill reads again what its tools met before."""
+        self.larger_marches: KeptMarches | None = None
+        """The same of runs in larger stocks."""
         self.stock, self.tools = stock, tools or {}
         self._has_any_tool = tools is None
         self._mesh: GivenStock | None = None
@@ -224,9 +226,7 @@ class CodePaths:
         tools = None
         if material is not None:
             tools = {n: table_tool(tool, material.material) for n, tool in self.tools.items()}
-        clamped = None if raw is None else self._map(raw, margin)
-        if isinstance(clamped, MillingStock):
-            clamped.marches = self.marches
+        clamped = None if raw is None else self.recalled(margin)
         return PreparedRun(
             name=self.name,
             machine=self.machine,
@@ -259,6 +259,13 @@ class CodePaths:
         if raw is None:
             raise StepNcError("the stock is not known: name it with --stock")
         return self._map(raw, margin)
+
+    def recalled(self, margin: float) -> StockMap:
+        """Stock as :meth:`uncut` gives it, whose marches are kept for other runs."""
+        found = self.uncut(margin)
+        if isinstance(found, MillingStock):
+            found.marches = self.larger_marches if margin > 0.0 else self.marches
+        return found
 
     def _raw(self) -> GivenStock | None:
         """Raw part; None if it is not known."""

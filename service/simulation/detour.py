@@ -30,15 +30,21 @@ class Detour:
 
     def led_around(self, blocks: Iterable[Numbered]) -> Iterator[Numbered]:
         """Yield the blocks with detours, whose line is :data:`BRIDGE`."""
-        for line, block in blocks:
+        for numbered in blocks:
+            block = numbered[1]
+            if type(block) is Linear:
+                # The usual block of a long program.
+                self._at = block.end
+                yield numbered
+                continue
             if isinstance(block, Rapid) and block.is_way:
                 for end in self._ways(block.end):
                     yield BRIDGE, Rapid(end=end, is_way=True)
             else:
-                yield line, block
+                yield numbered
             if isinstance(block, ToolChange):
                 self._tool = block.number
-            elif isinstance(block, (Rapid, Linear, Circular, ThreadingMove)):
+            elif isinstance(block, (Rapid, Circular, ThreadingMove)):
                 self._at = block.end
 
     def _ways(self, end: Point) -> Iterator[Point]:

@@ -71,7 +71,7 @@ class PreparedRun:
 class CountedIterator(Generic[T]):
     """Iterator that counts its items. Running state."""
 
-    def __init__(self, items: Iterable[T], size: Callable[[T], int] = lambda _: 1) -> None:
+    def __init__(self, items: Iterable[T], size: Callable[[T], int] | None = None) -> None:
         self.count = 0
         self.size = 0
         self._items = items
@@ -80,7 +80,7 @@ class CountedIterator(Generic[T]):
     def __iter__(self) -> Iterator[T]:
         for item in self._items:
             self.count += 1
-            self.size += self._size(item)
+            self.size += 1 if self._size is None else self._size(item)
             yield item
 
     def share(self, whole: int) -> float:

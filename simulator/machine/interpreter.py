@@ -8,8 +8,9 @@ The rows of a stretch are mutable while it is collected.
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import ceil, copysign, exp, inf, isfinite, isnan, log, nan, pi
+from typing import NamedTuple
 
 import numpy as np
 
@@ -60,9 +61,8 @@ from stepnc_model.toolpath.arc import radius as radius_of
 from stepnc_model.toolpath.path import ArcPlane, Point
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PieceSpeed:
-    """Path and spindle speeds of one piece of a move."""
+class PieceSpeed(NamedTuple):
+    """Path and spindle speeds of one piece of a move; a tuple, as each block has one."""
 
     speed: float
     """Speed along the path at the nominal spindle speed, mm/s; infinite for a rapid."""
@@ -88,13 +88,7 @@ class Rows:
         return len(self._points)
 
     def line(
-        self,
-        start: Point,
-        end: Point,
-        *,
-        pace: PieceSpeed,
-        line: int,
-        is_way: bool = False,
+        self, start: Point, end: Point, *, pace: PieceSpeed, line: int, is_way: bool = False
     ) -> None:
         """Add a line, which is a rapid if its speed is infinite."""
         leads = is_way and self._way == len(self._points)
@@ -124,8 +118,7 @@ class Rows:
         line: int,
     ) -> None:
         self._points.append(points)
-        per_time = (pace.speed, pace.spindle, pace.per_revolution)
-        self._numbers.append((turn, normal, line, *per_time))
+        self._numbers.append((turn, normal, line, *pace))
 
     def taken(self) -> MoveStretch:
         """Return the collected moves as a stretch and clear the rows."""
@@ -249,6 +242,8 @@ class _Interpreter:
         """Actions with their lines; collected moves are passed on when another action comes."""
         for line, block in blocks:
             self.line = line
+            if len(self.rows) < LONGEST - 1 and self._goes_on(block):
+                continue
             for act in self._read(block):
                 yield ProgramAct(line=line, act=act)
             if isinstance(block, ProgramEnd):
@@ -367,15 +362,21 @@ class _Interpreter:
             self.rows.line(start, block.end, pace=pace, line=self.line, is_way=block.is_way)
         self.at = list(block.end)
 
+    def _goes_on(self, block: Block) -> bool:
+        """Collect a line that is one piece, the usual block; return whether it is one."""
+        if type(block) is not Linear or self.surface is not None or self.is_awaited:
+            return False
+        start, end = self._start(block.end), block.end
+        pace = self._pace(block.rate, 0.5 * (start[0] + end[0]), end[0])
+        if start != end:
+            self.rows.line(start, end, pace=pace, line=self.line)
+        self.at = list(end)
+        return True
+
     def _linear(self, block: Linear) -> Iterator[Act]:
         start = self._start(block.end)
         yield from self._cut_begins(start[0])
-        if self.surface is None:
-            # The usual case, once in each block: the line is one piece.
-            pace = self._pace(block.rate, 0.5 * (start[0] + block.end[0]), block.end[0])
-            if start != block.end:
-                self.rows.line(start, block.end, pace=pace, line=self.line)
-            self.at = list(block.end)
+        if self._goes_on(block):
             return
         *parts, _ = self._parts(start[0], block.end[0])
         at = start
@@ -455,7 +456,7 @@ class _Interpreter:
             reason = "the spindle is stopped" if rate.value > 0.0 else "it must be positive"
             unit = "mm/rev" if rate.mode is RateMode.PER_REVOLUTION else "mm/s"
             raise ProgramFault(f"feed {rate.value:g} {unit}: {reason}", self.line)
-        return PieceSpeed(speed=speed, spindle=last, per_revolution=per_revolution)
+        return PieceSpeed(speed, last, per_revolution)
 
     def _cut_begins(self, radius: float) -> Iterator[Act]:
         """Set the spindle speed for a feed move and wait for the spindle if necessary."""

@@ -101,6 +101,8 @@ def _add(
     begin, end = arc
     low, high, weight, radial = bands
     pitch = 2.0 * pi / teeth
+    # Mostly a band ends where the one before began: what was looked up there serves again.
+    known, lower = -1.0, _until(table, -1.0)
     for row in range(rotation.shape[0]):
         for column in range(rotation.shape[1]):
             for tooth in range(teeth):
@@ -112,9 +114,11 @@ def _add(
                         top = min(tip - low[row, band], end[row])
                         if top > bottom:
                             share = weight[row, band] / (high[row, band] - low[row, band])
-                            shear = share * _between(table, SHEAR, bottom, top)
-                            cosine = share * _between(table, COSINE, bottom, top)
-                            sine = share * _between(table, SINE, bottom, top)
+                            upper = lower if top == known else _until(table, top)
+                            known, lower = bottom, _until(table, bottom)
+                            shear = share * (upper[SHEAR] - lower[SHEAR])
+                            cosine = share * (upper[COSINE] - lower[COSINE])
+                            sine = share * (upper[SINE] - lower[SINE])
                             totals[0, row, column] += shear
                             totals[1, row, column] += cosine + radial[row, band] * sine
                             totals[2, row, column] += sine - radial[row, band] * cosine
@@ -122,19 +126,20 @@ def _add(
 
 
 @kernel
-def _between(table: Floats, which: int, bottom: float, top: float) -> float:
-    return _until(table, which, top) - _until(table, which, bottom)
-
-
-@kernel
-def _until(table: Floats, which: int, angle: float) -> float:
-    """Integral from 0 to an angle; the chip is zero below 0 and beyond π."""
+def _until(table: Floats, angle: float) -> tuple[float, float, float]:
+    """Integrals from 0 to an angle; the chip is zero below 0 and beyond π."""
     place = min(max(angle, 0.0), pi) * (CELLS / pi)
     cell = min(int(place), CELLS - 1)
     on = place - cell
     off = 1.0 - on
-    value: float = off * off * (1.0 + 2.0 * on) * table[cell, 0, which]
-    value += on * on * (3.0 - 2.0 * on) * table[cell + 1, 0, which]
-    value += on * off * off * table[cell, 1, which]
-    value -= on * on * off * table[cell + 1, 1, which]
-    return value
+    before, after = off * off * (1.0 + 2.0 * on), on * on * (3.0 - 2.0 * on)
+    rise, fall = on * off * off, on * on * off
+    one, other = table[cell], table[cell + 1]
+    return (
+        before * one[0, SHEAR] + after * other[0, SHEAR]
+        + rise * one[1, SHEAR] - fall * other[1, SHEAR],
+        before * one[0, COSINE] + after * other[0, COSINE]
+        + rise * one[1, COSINE] - fall * other[1, COSINE],
+        before * one[0, SINE] + after * other[0, SINE]
+        + rise * one[1, SINE] - fall * other[1, SINE],
+    )  # fmt: skip

@@ -26,7 +26,7 @@ GROUP = 512
 """Mean number of rows in a group; a power of 2."""
 
 MOST_BYTES = 1 << 28
-"""Memory for marches; beyond it no more are kept. A raster of 100 000 blocks takes a half."""
+"""Memory for marches; beyond it no more are kept."""
 
 MIXER = np.uint64(0x9E3779B97F4A7C15)
 """Odd number near 2⁶⁴ over the golden ratio, whose multiples spread evenly (Fibonacci hashing:
@@ -60,12 +60,20 @@ class KeptMarch:
 
 
 class KeptMarches:
-    """Marches of the runs of a program by the digests of what they read. Running state."""
+    """Marches of the runs of a program by the digests of what they read. Running state.
 
-    def __init__(self, most: int = MOST_BYTES) -> None:
+    Parameters
+    ----------
+    most : int
+        Memory for them, bytes.
+    is_once : bool
+        Whether a march is forgotten when it has been read again, for a path that runs twice.
+    """
+
+    def __init__(self, most: int = MOST_BYTES, *, is_once: bool = False) -> None:
         self.again = 0
         """Number of rows that were read again."""
-        self._most = most
+        self._most, self._is_once = most, is_once
         self._kept: dict[bytes, KeptMarch] = {}
 
     def marched(
@@ -114,6 +122,8 @@ class KeptMarches:
         elif before.remembers(len(kept.records)):
             self.again += len(rows)
             before.put(kept, findings)
+            if self._is_once:
+                self._most += self._kept.pop(before.digest).size
         else:
             return marched(task, rows, segments.length, out, findings)
         return kept.lines

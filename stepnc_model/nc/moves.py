@@ -444,8 +444,8 @@ class NcMoves:
         if begin not in self._latest:
             self._latest.clear()
             self._latest[begin] = self.part(begin, begin + CHUNK)
-        part = self._latest[begin]
-        return self._value(part.rows[row - begin].item(), float(part.feed[row - begin]))
+        part, at = self._latest[begin], row - begin
+        return self._value(next(_numbers(part.rows[at : at + 1])), float(part.feed[at]))
 
     @cached_property
     def _latest(self) -> dict[int, "NcMoves"]:
@@ -456,24 +456,23 @@ class NcMoves:
         """Yield all rows as values, in bounded memory."""
         for begin in range(0, len(self), CHUNK):
             part = self.part(begin, begin + CHUNK)
-            for row, feed in zip(part.rows.tolist(), part.feed.tolist(), strict=True):
-                yield self._value(row, feed)
+            yield from map(self._value, _numbers(part.rows), part.feed.tolist())
 
     def _value(self, row: tuple[Any, ...], feed: float) -> NcMove:
-        """Value of a row in the order of :data:`ROW`."""
-        start, end, word, block, _, call, arc, setting, flags, kind = row
+        """Value of a row by its :func:`_numbers`."""
+        start, end, word, block, call, arc, setting, flags, kind = row
         return NcMove(
-            kind=KINDS[kind],
-            start=_point(start),
-            end=_point(end),
-            arc=None if arc < 0 else _arc(self.arcs[arc].tolist()),
-            feed=feed,
-            word=word,
-            seconds=word if kind == MoveKind.DWELL else 0.0,
-            block=block,
-            call=call,
-            flags=_flag(flags),
-            setting=self.settings[setting],
+            KINDS[kind],
+            start,
+            end,
+            None if arc < 0 else _arc(self.arcs[arc].tolist()),
+            feed,
+            word,
+            word if kind == MoveKind.DWELL else 0.0,
+            block,
+            call,
+            _flag(flags),
+            self.settings[setting],
         )
 
     def _of_arcs(self, column: int | slice, filled: float) -> Floats:
@@ -486,15 +485,16 @@ class NcMoves:
         return spread
 
 
-@cache
-def _flag(number: int) -> MoveFlag:
-    """Flag of a number; there are few different ones."""
-    return MoveFlag(number)
+def _numbers(rows: NDArray[np.void]) -> Iterator[tuple[Any, ...]]:
+    """Numbers of rows as :meth:`NcMoves._value` takes them; points are tuples."""
+    points = (map(tuple, rows[name].tolist()) for name in ("start", "end"))
+    names = ("word", "block", "call", "arc", "setting", "flags", "kind")
+    return zip(*points, *(rows[name].tolist() for name in names), strict=True)
+
+
+_flag = cache(MoveFlag)  # a program has few different ones
 
 
 def _arc(numbers: Sequence[float]) -> Arc:
-    return Arc(centre=_point(numbers), turn=numbers[3], plane=PLANES[int(numbers[4])])
-
-
-def _point(numbers: Sequence[float]) -> Point:
-    return float(numbers[0]), float(numbers[1]), float(numbers[2])
+    x, y, z, turn, plane = numbers
+    return Arc(centre=(x, y, z), turn=turn, plane=PLANES[int(plane)])

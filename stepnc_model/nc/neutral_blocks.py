@@ -59,11 +59,12 @@ def neutral_blocks(
         Blocks to be put before moves, by the row of the stream.
     """
     yield 1, ProgramStart(name=name, machine=program.machine)
-    line, block = 1, None
-    for line, block in stream_blocks(program, before=before):
-        yield line, block
-    if not isinstance(block, ProgramEnd):
-        yield line, ProgramEnd()
+    last: tuple[int, Block | None] = 1, None
+    for numbered in stream_blocks(program, before=before):
+        last = numbered
+        yield numbered
+    if not isinstance(last[1], ProgramEnd):
+        yield last[0], ProgramEnd()
 
 
 def stream_blocks(
@@ -82,6 +83,7 @@ def stream_blocks(
     stream, text = program.stream, program.text
     state = _State(setting=ModalSetting(spindle=0.0), at=at)
     tap: NcMove | None = None
+    rate = Rate(value=nan)
     moves = stream.each()
     move = next(moves, None)
     index = 0
@@ -106,8 +108,15 @@ def stream_blocks(
                 for block in _set(state.setting, move.setting):
                     yield line, block
                 state.setting = move.setting
-            for block in _moved(state, move):
-                yield line, block
+            if _goes_on(state, move):
+                # The usual block of a long program; moves at one feed share their rate.
+                if move.feed != rate.value:
+                    rate = Rate(value=move.feed)
+                state.at = move.end
+                yield line, Linear(end=move.end, rate=rate)
+            else:
+                for block in _moved(state, move):
+                    yield line, block
         move, index = following, index + 1
 
 
@@ -170,6 +179,21 @@ def _tapped(state: _State, move: NcMove) -> Iterator[Block]:
         sense=turning.sense,
     )
     state.at = move.start
+
+
+def _goes_on(state: _State, move: NcMove) -> bool:
+    """True if a move is a line at a feed per time from the very place of the tool.
+
+    No place that is not known equals another.
+    """
+    return (
+        move.kind is MoveKind.LINE
+        and move.arc is None
+        and move.feed > 0.0
+        and move.setting.mode is not FeedMode.PER_REVOLUTION
+        and state.at == move.start
+        and not isnan(sum(move.end))
+    )
 
 
 def _moved(state: _State, move: NcMove) -> Iterator[Block]:

@@ -6,9 +6,8 @@ where the count of lines changes are kept.
 
 import re
 from array import array
+from bisect import bisect_right
 from dataclasses import dataclass, field
-
-import numpy as np
 
 LINE_END = re.compile(r"\r\n|\n|\r")
 
@@ -60,7 +59,7 @@ class WrittenLines:
         line : int
             Line of the rewritten program, counted from 1.
         """
-        row = int(np.searchsorted(np.frombuffer(self._firsts, np.int64), line, "right")) - 1
+        row = bisect_right(self._firsts, line) - 1
         beyond = line - self._firsts[row]
         if beyond:
             return LineOrigin(line=self._lines[row] + beyond, begin=0.0, end=1.0)

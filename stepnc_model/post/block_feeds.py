@@ -5,6 +5,7 @@ Units mm, mm/s, mm/rev.
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import (
@@ -38,9 +39,8 @@ class BlockPart:
     """Name of the limit that gives the feed; empty if unknown."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FedBlock:
-    """Block at its new feed."""
+class FedBlock(NamedTuple):
+    """Block at its new feed; a tuple, as a long program has one for each block."""
 
     number: int
     """Number of the block that it comes from."""
@@ -70,11 +70,11 @@ def with_feeds(
     for number, block in blocks:
         parts = feeds.get(number)
         if parts is None:
-            yield FedBlock(number=number, part=0, block=block)
+            yield FedBlock(number, 0, block)
         else:
             for row, part in enumerate(_parts(block, parts, at)):
-                yield FedBlock(number=number, part=row, block=part)
-        at = _end(block, at)
+                yield FedBlock(number, row, part)
+        at = block.end if type(block) is Linear else _end(block, at)
 
 
 def _end(block: Block, at: Point | None) -> Point | None:

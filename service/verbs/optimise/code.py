@@ -44,7 +44,7 @@ from service.verbs.optimise.request import AdviceFiles, output_of
 from simulator.library import load_machine
 from simulator.machine.cutting import STOPPED
 from simulator.removal.cutter import THREADS
-from simulator.removal.kept_marches import KeptMarches
+from simulator.removal.kept_marches import MOST_BYTES, KeptMarches
 from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.nc.advice import RewrittenCode
@@ -84,7 +84,9 @@ def optimise_code(
     material = load_material_named(setup.material)
     tell(f"material: {material.reason}")
 
-    marches = KeptMarches()
+    # Only the stock as given is cut more than twice, and there are two larger ones.
+    marches = KeptMarches(3 * MOST_BYTES // 8)
+    larger_marches = KeptMarches(5 * MOST_BYTES // 8, is_once=True)
 
     speeds = speeds_in(request.spindle)
 
@@ -97,7 +99,7 @@ def optimise_code(
             tools=library.by_number,
             stock=request.stock,
         )
-        found.marches = marches
+        found.marches, found.larger_marches = marches, larger_marches
         return found
 
     code = paths_of(program)
@@ -227,6 +229,7 @@ def source_of(
     return PathSource(
         caution=Caution(
             fresh=code.uncut,
+            larger=code.recalled,
             rise=rise,
             allows_plunge=request.allow_plunge,
             clearance=max(CLEARANCE, request.stock_margin_mm),

@@ -85,6 +85,20 @@ def test_another_stock_is_marched() -> None:
     assert marches.again - before < len(path)
 
 
+def test_a_path_that_runs_twice_leaves_nothing_behind() -> None:
+    marches, path, cutter = KeptMarches(is_once=True), raster(), CUTTERS["bull"]
+    cut(path, cutter, marches)
+    stock, _ = cut(path, cutter, marches)
+    plain, _ = cut(path, cutter, None)
+    assert np.array_equal(stock.map.grid.heights, plain.map.grid.heights)
+    assert marches.again == len(path)
+    # Everything was read, so a third run marches, and a fourth reads again.
+    cut(path, cutter, marches)
+    assert marches.again == len(path)
+    cut(path, cutter, marches)
+    assert marches.again == 2 * len(path)
+
+
 def test_no_more_is_kept_than_there_is_room_for() -> None:
     marches = KeptMarches(most=0)
     for _ in range(2):
