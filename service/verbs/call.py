@@ -48,7 +48,7 @@ class Verb:
     """A verb, whose parts are imported when they are needed; or a group, of its help alone."""
 
     folder: str
-    """Its folder below this one, with a dot between two names."""
+    """Folder of the verb below this one, with a dot between two names."""
 
     @property
     def name(self) -> str:
