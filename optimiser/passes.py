@@ -112,10 +112,10 @@ class PassCountSearch:
         near = {n for n, each in self.optima.items() if self.cost(each) <= bound}
         return programmed if programmed in near else min(near)
 
-    def cost(self, optimum: PassCountOptimum) -> float:
+    def cost(self, candidate: PassCountOptimum) -> float:
         """Cost of a number of passes along its own path, s or J."""
-        cost = exact.cost_function(optimum.problem, self.context.task.mode)
-        return cost(optimum.optimum.solution.setting)
+        cost = exact.cost_function(candidate.problem, self.context.task.mode)
+        return cost(candidate.optimum.solution.setting)
 
     def try_passes(self, problem: Problem, passes: int) -> Problem:
         """Try a number of passes along its path, and return the problem of that path."""

@@ -200,7 +200,7 @@ def unevenness(lengths: Floats, squares: Floats) -> float:
 def _require_size(problem: ProfileProblem) -> None:
     """Refuse what would take a solver hours."""
     if len(problem) > MOST_STATIONS:
-        raise ValueError(f"{len(problem)} stations exceed the {MOST_STATIONS} of a solver")
+        raise ValueError(f"{len(problem)} stations: a solver takes at most {MOST_STATIONS}")
 
 
 def bounds(problem: ProfileProblem, square: cp.Variable, scale: Scale) -> list[cp.Constraint]:

@@ -134,11 +134,11 @@ def why_impossible(cut: Cut, at: CuttingConditions, tool: Tool) -> str:
     return (
         why_unsuited(at.cutting_material, at.material)
         or why_no_speed(cut, at)
-        or _why_not_reamed(cut, at)
+        or _unreamable_allowance(cut, at)
     )
 
 
-def _why_not_reamed(cut: Cut, at: CuttingConditions) -> str:
+def _unreamable_allowance(cut: Cut, at: CuttingConditions) -> str:
     """Allowance that a reamer cannot take off; empty if it can, or if it is too small."""
     for limit in allowance_limits(cut, at):
         if limit.sense is BoundSide.AT_MOST and not limit.holds(1.0, 1.0, 1.0):

@@ -64,7 +64,7 @@ class ProgramNeeds:
         return tuple(dict.fromkeys(each.words for each in self.needs))
 
     def require_whole(self) -> None:
-        """Refuse to go on while anything is missing.
+        """Raise an error that names all missing data.
 
         Raises
         ------

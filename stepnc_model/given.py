@@ -119,22 +119,22 @@ def completed(program: Program, data: GivenData) -> Completed:
     return Completed(program=found, attributes=tuple(given))
 
 
-def _changed(draft: Draft, attributes: Sequence[SetAttribute]) -> Program:
+def _changed(draft: Draft, changes: Sequence[SetAttribute]) -> Program:
     """Program read again with what was set; refused if an attribute cannot hold its value."""
-    if not attributes:
+    if not changes:
         return draft.program
-    found = _read(draft.program, draft.edits.apply(), attributes)
-    for each in attributes:
+    found = _read(draft.program, draft.edits.apply(), changes)
+    for each in changes:
         _require_taken(found.model, each)
     return found
 
 
-def _read(program: Program, data: bytes, attributes: Sequence[SetAttribute]) -> Program:
+def _read(program: Program, data: bytes, changes: Sequence[SetAttribute]) -> Program:
     """Program with changed text; one of AP238 stays one."""
     file = Part21File.from_bytes(data, name=program.name)
     if isinstance(program.file, AimView):
         view = program.file
-        settled = {(view.label(int(each.ref)), each.attribute) for each in attributes}
+        settled = {(view.label(int(each.ref)), each.attribute) for each in changes}
         file = view.changed(file, settled)
     return program.changed(file)
 
@@ -379,10 +379,10 @@ def _teeth_of(program: Program, ref: Ref[Entity], steps: Sequence[ResolvedWorkin
     return counts.pop()
 
 
-def _require_taken(model: Model, attribute: SetAttribute) -> None:
+def _require_taken(model: Model, change: SetAttribute) -> None:
     """Refuse a value that the attribute cannot hold."""
     for finding in model.findings():
-        label = model.file.label(int(attribute.ref))
-        is_here = finding.entity == label and finding.attribute == attribute.attribute
+        label = model.file.label(int(change.ref))
+        is_here = finding.entity == label and finding.attribute == change.attribute
         if is_here and finding.severity is Severity.ERROR:
-            raise SchemaError(finding.message, entity=label, attribute=attribute.attribute)
+            raise SchemaError(finding.message, entity=label, attribute=change.attribute)

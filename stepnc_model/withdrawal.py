@@ -77,18 +77,18 @@ def _is_alike(program: Program, ref: Ref[Any], before: Program, old: Ref[Any]) -
     return (now.origin, now.keyword) == (then.origin, then.keyword)
 
 
-def _together(attributes: Sequence[SetAttribute], one: SetAttribute) -> Iterator[SetAttribute]:
+def _together(changes: Sequence[SetAttribute], one: SetAttribute) -> Iterator[SetAttribute]:
     """Set attribute, with the one beside which alone it is withdrawn."""
     yield one
-    for other in attributes:
+    for other in changes:
         if other.ref == one.ref and other.attribute == one.withdrawn_with:
             yield other
 
 
-def _is_kept(program: Program, attribute: SetAttribute) -> bool:
+def _is_kept(program: Program, change: SetAttribute) -> bool:
     """True if an attribute still has the value that was given."""
-    place = program.model.position(attribute.ref, attribute.attribute)
-    return program.file.parameters(int(attribute.ref))[place] == attribute.value
+    place = program.model.position(change.ref, change.attribute)
+    return program.file.parameters(int(change.ref))[place] == change.value
 
 
 class _AimWithdrawal:
@@ -100,33 +100,33 @@ class _AimWithdrawal:
         self._view = view
         self._remembered: list[Converted] = []
 
-    def withdraw(self, attribute: SetAttribute) -> None:
+    def withdraw(self, change: SetAttribute) -> None:
         """Withdraw one attribute, if it still has the value that was given."""
         view = self._view
-        number = None if attribute.origin is None else view.number_of(attribute.origin)
+        number = None if change.origin is None else view.number_of(change.origin)
         if number is None:
             return
         ref: Ref[object] = Ref(number)
-        place = self._draft.program.model.position(ref, attribute.attribute)
+        place = self._draft.program.model.position(ref, change.attribute)
         value = view.parameters(number)[place]
-        if not self._is_kept(value, attribute):
+        if not self._is_kept(value, change):
             return
-        self._draft.put(ref, attribute.attribute, self._before(attribute))
-        if attribute.added and isinstance(value, Ref):
+        self._draft.put(ref, change.attribute, self._before(change))
+        if change.added and isinstance(value, Ref):
             self._draft.remove(tuple(_below(view, value)))
 
-    def _is_kept(self, value: Value, attribute: SetAttribute) -> bool:
+    def _is_kept(self, value: Value, change: SetAttribute) -> bool:
         """True if a value is the one that was given."""
-        if not isinstance(value, Ref) or not isinstance(attribute.value, Ref):
-            return _is_same(value, attribute.value)
-        origin = attribute.value_origin
+        if not isinstance(value, Ref) or not isinstance(change.value, Ref):
+            return _is_same(value, change.value)
+        origin = change.value_origin
         return origin is None or self._view.number_of(origin) == int(value)
 
-    def _before(self, attribute: SetAttribute) -> Value:
+    def _before(self, change: SetAttribute) -> Value:
         """Previous value, under the number that it has now."""
-        origin = attribute.before_origin
+        origin = change.before_origin
         if origin is None:
-            return attribute.before
+            return change.before
         number = self._view.number_of(origin)
         if number is None:
             # Nothing leads to it any more, so that the program as it is does not have it.

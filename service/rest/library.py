@@ -82,15 +82,15 @@ def routes_of(section: LibrarySection) -> APIRouter:
     return routes
 
 
-def _view(entry: LibraryEntry | LibraryListing) -> dict[str, object]:
-    if isinstance(entry, LibraryEntry):
-        title, problem = entry.entry.title, ""
+def _view(item: LibraryEntry | LibraryListing) -> dict[str, object]:
+    if isinstance(item, LibraryEntry):
+        title, problem = item.entry.title, ""
     else:
-        title, problem = entry.title, entry.problem
+        title, problem = item.title, item.problem
     return {
-        "name": entry.name,
+        "name": item.name,
         "title": title,
-        "is_own": entry.is_own,
+        "is_own": item.is_own,
         "problem": problem or None,
     }
 

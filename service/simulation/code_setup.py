@@ -82,7 +82,7 @@ class CodeSetup:
     """Where tools and stock come from, what is guessed, and contradictions."""
 
     def require_whole(self) -> None:
-        """Refuse to go on while anything is missing.
+        """Raise an error that names all missing data.
 
         Raises
         ------

@@ -182,7 +182,7 @@ def _skewed(address: AdapterAddress, seconds: float) -> str:
 
 
 def _begin(agent: Agent, reported: set[int]) -> None:
-    """An adapter that is connected makes its device available."""
+    """Report the devices of a connected adapter as available."""
     for number, item in enumerate(agent.model.items):
         of = agent.model.devices[agent.model.components[item.component].device]
         if item.type == "AVAILABILITY" and not of.is_agent:

@@ -32,7 +32,7 @@ DrawnPart: TypeAlias = tuple[float, Machining, float]
 def drawn_parts(
     spec: ShopMachine, machining: Mapping[Step, PartSource], streams: Streams
 ) -> dict[Step, Iterator[DrawnPart]]:
-    """One part after another of each step at a machine, without end."""
+    """Parts of each step at a machine, one after another, without end."""
     setups, ejections = (
         streams.numbers(spec.handling[state].time, spec.name, state)
         for state in (MachineState.PART_SETUP, MachineState.PART_EJECTION)

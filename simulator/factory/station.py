@@ -92,7 +92,7 @@ class Station:
     _times: dict[MachineState, Iterator[float]] = field(default_factory=dict)
     """Times of set-up and ejection of batches, s."""
     _parts: Mapping[Step, Iterator[DrawnPart]] = field(default_factory=dict)
-    """One part after another of each step."""
+    """Parts of each step, one after another."""
     _prepared: Mapping[Step, PreparedParts] = field(default_factory=dict)
     """The same, of a machine through which whole batches pass in one go."""
     _scrap: Iterator[float] = field(init=False)

@@ -197,7 +197,7 @@ def added(total: Total, episode: Episode, machine: Machine) -> Total:
         energy=total.energy + energy,
         cutting_energy=total.cutting_energy + float(weights @ samples.cutting_power),
         volume=total.volume + float(weights @ samples.removal_rate),
-        way_time=total.way_time + _way(episode),
+        way_time=total.way_time + _time_off_path(episode),
         power=total.power.or_greater(samples.spindle_power, samples),
         cutting_power=total.cutting_power.or_greater(feeds * samples.cutting_power, samples),
         drive_power=total.drive_power.or_greater(
@@ -224,7 +224,7 @@ def _steady(samples: Samples, episode: Episode, machine: Machine) -> Floats:
     return episode.power_factor(episode.kinematics(samples.time)) * power
 
 
-def _way(episode: Episode) -> float:
+def _time_off_path(episode: Episode) -> float:
     """Time of an episode before and after the path of its workingstep, s."""
     course = episode.course
     if course is None:

@@ -94,7 +94,7 @@ def test_second_differences_of_a_parabola() -> None:
 def test_too_many_stations_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     problem, limit, _ = trial("random", step=1.0)
     monkeypatch.setattr(profile_program, "MOST_STATIONS", 100)
-    with pytest.raises(ValueError, match="stations exceed the 100 of a solver"):
+    with pytest.raises(ValueError, match="stations: a solver takes at most 100"):
         solver_profile(problem, limit)
 
 
