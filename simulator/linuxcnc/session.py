@@ -36,6 +36,8 @@ def main() -> None:
     os.chdir(folder)
     _start(order)
     control = _Control(order["patience_s"])
+    if order["loop"]:
+        _tell({"ready": True})
     for program in order["programs"]:
         _tell(control.run(**program))
     os._exit(0)
@@ -63,6 +65,8 @@ def _start(order: dict[str, Any]) -> None:
     _call("halcmd", "loadrt", "tpmod", environment=speed)
     _call("halcmd", "loadrt", "homemod")
     _call("halcmd", "-i", "machine.ini", "-f", "machine.hal")
+    if order["loop"]:
+        _call("halcmd", "-i", "machine.ini", "-f", "loop.hal")
     # Before milltask, which waits 20 s for a servo thread that does not run.
     _call("halcmd", "start")
     _call("halcmd", "loadusr", "-Wn", "inihal", "milltask", "-ini", "machine.ini")
@@ -96,7 +100,9 @@ class _Control:
         # On by default: M1 would wait for ever.
         self._told(self.command.set_optional_stop, False)
 
-    def run(self, *, file: str, samples: str, start: list[str]) -> dict[str, Any]:
+    def run(
+        self, *, file: str, samples: str, start: list[str], waits_for_loop: bool
+    ) -> dict[str, Any]:
         """Run commands that lead to the start, then a program, and record its motion."""
         api = self.api
         self._told(self.command.mode, api.MODE_MDI)
@@ -108,6 +114,9 @@ class _Control:
         self._told(self.command.program_open, file)
         with Path(samples).open("wb") as rows:
             reader = subprocess.Popen(["halsampler", "-t"], stdout=rows)
+        if waits_for_loop:
+            # The operator of a shop waits for this, too.
+            self._until(lambda: _bit("stepnc.armed"), "a loop that is armed")
         _call("halcmd", "setp", "sampler.0.enable", "1")
         overruns = _pin("sampler.0.overruns")
         self._told(self.command.auto, api.AUTO_RUN, 0)
@@ -152,6 +161,12 @@ class _Control:
             time.sleep(POLL)
         _tell({"failed": f"{what}: not within {self.patience:g} s"})
         os._exit(1)
+
+
+def _bit(name: str) -> bool:
+    """Value of a pin that is true or false."""
+    told = subprocess.run(["halcmd", "getp", name], check=True, capture_output=True, text=True)
+    return told.stdout.strip() == "TRUE"
 
 
 def _pin(name: str) -> int:
