@@ -32,7 +32,7 @@ LONGEST_LINE = 4096
 """Longest line of JSON that is taken, bytes."""
 
 OUTPUTS = {"adaptive": "FLOAT", "virtual-load": "FLOAT", "hold": "BIT", "heartbeat": "BIT",
-           "arm": "BIT", "armed": "BIT"}  # fmt: skip
+           "arm": "BIT", "reset": "BIT", "armed": "BIT"}  # fmt: skip
 INPUTS = {"alive": "BIT", "tripped": "BIT"}
 
 
@@ -190,7 +190,9 @@ def main() -> None:
         loop.accept()
         if loop.is_new:
             loop.is_new, begun, armed, heard = False, now, 0.0, now
-            pins["arm"], load_pin, refused, is_ready = False, "", "", False
+            # A new loop begins disarmed, and releases the hold of the hard limit.
+            pins["arm"], pins["reset"] = False, True
+            load_pin, refused, is_ready = "", "", False
         told = loop.last()
         if told is not None:
             wanted = set_point(told.get("override"))
@@ -207,7 +209,7 @@ def main() -> None:
         if not is_fresh:
             pins["adaptive"] = pins["safe"]
         if loop.is_there and now - begun >= DISARMED:
-            pins["arm"] = True
+            pins["arm"], pins["reset"] = True, False
             armed = armed or now
         is_armed = bool(is_fresh and pins["arm"] and now - armed >= DISARMED and pins["alive"])
         pins["armed"] = is_armed and is_ready

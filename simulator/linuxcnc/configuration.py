@@ -30,6 +30,9 @@ SOCKET = "loop.socket"
 SAFE = 0.2
 """Feed without a loop, as a share of the programmed feed."""
 
+LIMITS = "stepnc-range,stepnc-limit"
+"""Comparators of the loop that belong to the same module as the spindle's."""
+
 TIMEOUT = 5.0
 """Time without a heartbeat after which the safe feed holds, s of the servo thread.
 
@@ -61,8 +64,9 @@ def write_loop(folder: Path, *, load_limit: float) -> None:
     """
     here = Path(__file__).parent
     text = (here / "loop.hal").read_text("ascii")
+    text = text.replace(f"loadrt near names={LIMITS}\n", "")
     # In the bench the load is what the loop's own process says.
-    text += "net stepnc-load stepnc.virtual-load => stepnc-limit.in\n"
+    text += "net stepnc-load stepnc.virtual-load => stepnc-limit.in1\n"
     (folder / "loop.hal").write_text(text, "ascii")
     keys = {
         "COMPONENT": here / "component.py",
@@ -148,7 +152,8 @@ def _hal(machine: Machine, axes: list[Axis]) -> str:
         "loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD "
         "num_joints=[KINS]JOINTS num_spindles=1",
         "loadrt limit2 names=run-up",
-        "loadrt near names=at-speed",
+        # A module is loaded once, for all of its names.
+        f"loadrt near names=at-speed,{LIMITS}",
         "loadrt sim_spindle names=encoder",
         f"loadrt sampler depth={SAMPLES} cfg=fffffss",
         "addf motion-command-handler servo-thread",
