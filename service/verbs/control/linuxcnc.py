@@ -7,7 +7,8 @@ at the actual feed, with hidden factors on hardness and depth. Units mm, s, N, W
 """
 
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from math import inf, isfinite, nan, pi
 from pathlib import Path
@@ -16,7 +17,7 @@ import numpy as np
 
 from simulator.errors import MachineSilent, SimulationError
 from simulator.linuxcnc.link import ControlState, Link
-from simulator.motion.segments import Floats, Ints
+from simulator.motion.segments import Ints
 from simulator.plant.controlled import TrueState
 from simulator.plant.course import NominalCourse
 from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
@@ -67,8 +68,6 @@ class LinuxCncMachine:
     link : Link
     course : NominalCourse
         Course of the NC code that the control runs.
-    lines : (N,) array
-        Line of the code in each cell of the course.
     hidden : HiddenTruth
         Of our own process; a load pin has none.
     load : Load
@@ -80,7 +79,6 @@ class LinuxCncMachine:
         self,
         link: Link,
         course: NominalCourse,
-        lines: Ints,
         *,
         hidden: HiddenTruth,
         load: Load,
@@ -95,11 +93,11 @@ class LinuxCncMachine:
         self._link, self._load, self._efficiency = link, load, efficiency
         self._hidden = hidden
         self._changes = sorted(hidden.changes, key=lambda each: each.time)
-        self._places = Places(course, lines)
+        self._places = Places(course)
         self._begun = nan
         self._progress, self._turned = 0.0, 0.0
         self._operator = nan
-        self._is_silenced = False
+        self._is_held = self._has_ended = False
         self._same: tuple[float, float] = (nan, 0.0)
 
     @property
@@ -112,7 +110,16 @@ class LinuxCncMachine:
         if not 0.0 <= override < inf:
             raise ValueError(f"override {override:g} must be at least 0 and finite")
         self.commanded = min(override, 1.0)
-        self._send()
+        # A component that is gone is noticed by the next reading.
+        with suppress(MachineSilent):
+            self._send()
+
+    def close(self) -> None:
+        """Hold the feed unless the program has ended: nobody watches the load any more."""
+        if not self._has_ended:
+            with suppress(MachineSilent):
+                self._hold()
+                self._link.state()
 
     def change(self, change: HiddenChange) -> None:
         """Apply a hidden change of our own process at its time."""
@@ -167,6 +174,7 @@ class LinuxCncMachine:
                 raise self._lost("the task of the control has no state")
             self.time = state.time - self._begun
             if not state.is_running and not state.is_estop and state.is_on:
+                self._has_ended = True
                 return None
             self._require_agreed(state)
             reading = self._reading(state, self.time - before)
@@ -193,7 +201,7 @@ class LinuxCncMachine:
         for text, is_so in refused.items():
             if is_so:
                 # What the loop cannot steer must not cut on.
-                self._send(hold=True)
+                self._hold()
                 raise self._lost(text)
 
     def _lost(self, text: str) -> MachineSilent:
@@ -272,11 +280,16 @@ class LinuxCncMachine:
         self.truth = TrueState(power=power, cell=cell)
         return nan, power
 
-    def _send(self, *, hold: bool = False, is_ready: bool = True) -> None:
+    def _hold(self) -> None:
+        """Hold the feed for good: a new connection alone releases it."""
+        self._is_held = True
+        self._send()
+
+    def _send(self, *, is_ready: bool = True) -> None:
         """Send the set point, and the load of our own process."""
         words: dict[str, object] = {
             "override": self.commanded,
-            "hold": hold,
+            "hold": self._is_held,
             "is_ready": is_ready,
         }
         if self._load.pin:
@@ -289,10 +302,10 @@ class LinuxCncMachine:
 class Places:
     """Search of the place on a course, within the line that runs."""
 
-    def __init__(self, course: NominalCourse, lines: Ints) -> None:
+    def __init__(self, course: NominalCourse) -> None:
         self._path = np.asarray(course.position, dtype=np.float64)
         self._until = np.concatenate(([0.0], course.until))
-        self._rows = _rows_of(lines)
+        self._rows = _rows_of(course.line)
         self._ends: list[float] = course.until.tolist()
 
     def nearest(self, state: ControlState, progress: float) -> tuple[float, int]:
@@ -348,21 +361,6 @@ def require_process(hidden: HiddenTruth, load: Load) -> None:
     if other:
         text = "behind LinuxCNC's motion only kc, hardness, material and depth change"
         raise StepNcError(f"--disturb {other[0].replace('_', ' ')}: {text}")
-
-
-def lines_of(course: NominalCourse, found: Iterator[tuple[float, int]]) -> Ints:
-    """Line of the code in each cell.
-
-    Parameters
-    ----------
-    course : NominalCourse
-    found : iterator of (float, int)
-        End of each stretch of one line, s, and the line.
-    """
-    ends, lines = zip(*found, strict=True)
-    middles: Floats = course.until - 0.5 * np.diff(course.until, prepend=0.0)
-    rows = np.minimum(np.searchsorted(np.array(ends), middles), len(ends) - 1)
-    return np.array(lines, dtype=np.int64)[rows]
 
 
 def require_adaptive(code: Path) -> None:
