@@ -181,6 +181,32 @@ class LoopBench:
     period: float
     """Servo period, s."""
 
+    def order(self, *words: str | float) -> str:
+        """Do what an operator does, or a fault; return the answer.
+
+        Parameters
+        ----------
+        *words : str or float
+            ``halcmd`` and its words, ``kill`` and a part of a command line, or a method of
+            LinuxCNC's command channel with its values.
+
+        Raises
+        ------
+        LinuxCncFailed
+            If LinuxCNC has ended, or the program has.
+        """
+        assert self.session.stdin is not None
+        assert self.session.stdout is not None
+        try:
+            self.session.stdin.write(json.dumps(words).encode() + b"\n")
+            self.session.stdin.flush()
+        except BrokenPipeError as error:
+            raise LinuxCncFailed(_why(self.folder, [])) from error
+        told = json.loads(self.session.stdout.readline() or "{}")
+        if "answer" not in told:
+            raise LinuxCncFailed("LinuxCNC: the program has ended before the order")
+        return str(told["answer"])
+
     def ended(self) -> ProgramRun:
         """Wait for the end of the program; return its run.
 

@@ -10,6 +10,7 @@ of the project is imported: the modules of LinuxCNC belong to the system's Pytho
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -25,7 +26,7 @@ POLL = 0.002
 def main() -> None:
     """Run the order that is named on the command line."""
     order = json.loads(Path(sys.argv[1]).read_text("utf-8"))
-    threading.Thread(target=_end_with_owner, daemon=True).start()
+    threading.Thread(target=_obey_owner, daemon=True).start()
     folder = Path(order["folder"])
     os.environ.update(
         INI_FILE_NAME=str(folder / "machine.ini"),
@@ -49,10 +50,30 @@ def _tell(found: dict[str, Any]) -> None:
     sys.stdout.flush()
 
 
-def _end_with_owner() -> None:
-    """Wait until standard input closes; then end everything."""
-    sys.stdin.buffer.read()
+def _obey_owner() -> None:
+    """Do what an operator would do, line by line; when standard input closes, end everything."""
+    for line in sys.stdin:
+        _tell({"answer": _obeyed(*json.loads(line))})
     os._exit(1)
+
+
+def _obeyed(order: str, *words: Any) -> str:
+    """Obey an order: a command of HAL or of the task, or the end of the component."""
+    if order == "halcmd":
+        told = subprocess.run(["halcmd", *words], capture_output=True, text=True, check=False)
+        return told.stdout.strip() or told.stderr.strip()
+    if order == "kill":
+        for place in Path("/proc").glob("[0-9]*/cmdline"):
+            if words[0].encode() in place.read_bytes():
+                os.kill(int(place.parent.name), signal.SIGKILL)
+        return ""
+    import linuxcnc  # noqa: PLC0415 (as in _Control)
+
+    command = linuxcnc.command()
+    values = [getattr(linuxcnc, word) if isinstance(word, str) else word for word in words]
+    getattr(command, order)(*values)
+    command.wait_complete()
+    return ""
 
 
 def _start(order: dict[str, Any]) -> None:

@@ -249,7 +249,7 @@ class LinuxCncMachine:
             last, since = self._same
             if value != last:
                 self._same = (value, state.time)
-            elif override > 0.0 and state.time - since > STALE:
+            elif self._is_cut(cell, override) and state.time - since > STALE:
                 return nan
             return value
         course = self.course
@@ -268,6 +268,10 @@ class LinuxCncMachine:
             cell=cell,
         )
         return force
+
+    def _is_cut(self, cell: int, override: float) -> bool:
+        """True where chips are expected: a load in air may well stay the same."""
+        return override > 0.0 and bool(self.course.force[cell] > 0.0)
 
     def _shown(self, load: float, cell: int) -> tuple[float, float]:
         """Force and power of a load, N and W."""
