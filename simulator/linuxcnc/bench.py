@@ -12,7 +12,7 @@ import subprocess
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -180,6 +180,8 @@ class LoopBench:
     session: subprocess.Popen[bytes]
     period: float
     """Servo period, s."""
+    told: list[dict[str, Any]] = field(default_factory=list)
+    """What the session said of the program, once it has ended."""
 
     def order(self, *words: str | float) -> str:
         """Do what an operator does, or a fault; return the answer.
@@ -193,7 +195,7 @@ class LoopBench:
         Raises
         ------
         LinuxCncFailed
-            If LinuxCNC has ended, or the program has.
+            If LinuxCNC has ended.
         """
         assert self.session.stdin is not None
         assert self.session.stdout is not None
@@ -202,10 +204,12 @@ class LoopBench:
             self.session.stdin.flush()
         except BrokenPipeError as error:
             raise LinuxCncFailed(_why(self.folder, [])) from error
-        told = json.loads(self.session.stdout.readline() or "{}")
-        if "answer" not in told:
-            raise LinuxCncFailed("LinuxCNC: the program has ended before the order")
-        return str(told["answer"])
+        for line in self.session.stdout:
+            told = json.loads(line)
+            if "answer" in told:
+                return str(told["answer"])
+            self.told.append(told)
+        raise LinuxCncFailed(_why(self.folder, self.told))
 
     def ended(self) -> ProgramRun:
         """Wait for the end of the program; return its run.
@@ -216,8 +220,10 @@ class LoopBench:
             If the program does not end, or samples were lost.
         """
         assert self.session.stdout is not None
-        line = self.session.stdout.readline()
-        told = json.loads(line) if line else {"failed": "it ended early"}
+        if not self.told:
+            line = self.session.stdout.readline()
+            self.told.append(json.loads(line) if line else {"failed": "it ended early"})
+        told = self.told[0]
         if "failed" in told:
             raise LinuxCncFailed(_why(self.folder, [told]))
         return _program_run(told, self.folder / "samples", self.period)

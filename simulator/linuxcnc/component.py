@@ -64,6 +64,11 @@ class Loop:
         """True while a loop is connected."""
         return self._line is not None
 
+    def close(self) -> None:
+        """Drop the loop, and listen no longer."""
+        self._drop()
+        self._door.close()
+
     def accept(self) -> None:
         """Take a loop that waits, unless there is one."""
         if self._line is not None:

@@ -41,6 +41,9 @@ def main() -> None:
         _tell({"ready": True})
     for program in order["programs"]:
         _tell(control.run(**program))
+    if order["loop"]:
+        # Its owner still looks at pins, and ends it.
+        threading.Event().wait()
     os._exit(0)
 
 

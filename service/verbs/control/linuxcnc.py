@@ -169,7 +169,11 @@ class LinuxCncMachine:
             self.start()
         before = self.time
         while True:
-            state = self._link.state()
+            try:
+                state = self._link.state()
+            except MachineSilent as silent_:
+                # In the time of the run, not of the component.
+                raise MachineSilent(self.time) from silent_
             if state is None:
                 raise self._lost("the task of the control has no state")
             self.time = state.time - self._begun
