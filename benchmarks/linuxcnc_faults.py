@@ -215,7 +215,8 @@ def print_ends() -> int:
     print("| fault in the cut | feed in the end | within it after | the loop says |")
     print("|---|---|---|---|")
     for each in ends():
-        event = each.event.replace("|", "/")
+        # A loop that was killed says nothing.
+        event = each.event.replace("|", "/") if each.fault.words else "–"
         print(
             f"| {each.fault.name} | {each.feed:.0%} | {each.seconds:.1f} s | {event} |",
             flush=True,

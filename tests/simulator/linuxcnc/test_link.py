@@ -24,7 +24,7 @@ def served(tmp_path: Path) -> Iterator[Served]:
             yield link, line
 
 
-def sent(line: socket.socket, **changes: object) -> None:
+def sent(line: socket.socket, /, **changes: object) -> None:
     line.sendall(json.dumps({**STATE, **changes}).encode() + b"\n")
 
 
