@@ -370,7 +370,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--parts", default=",".join(PARTS), help="sample parts")
     parser.add_argument("--modes", default="posted,G61", help=", ".join(MODES))
     parser.add_argument("--without-experiments", action="store_true")
-    parser.add_argument("--only", choices=("motion", "loop", "faults"), help="one of the tables")
+    parser.add_argument("--only", choices=("motion", "loop", "faults"), help="one table")
     options = parser.parse_args(arguments)
     if reason := reason_why_not():
         print(f"not run: {reason}")

@@ -20,7 +20,6 @@ from optimiser.advice import Advice, Plan
 from optimiser.modes import Mode
 from service.buckets import BucketedRun
 from service.control.disturbances import TimedOrder, disturbances
-from service.control.drive import LoopMachine
 from service.control.holding import HoldTallies, HoldTally
 from service.control.loads import CutKey, Loads, key_of, read_loads
 from service.control.planned import PlannedWorkingstep, planned_steps, with_hardest
@@ -40,6 +39,7 @@ from service.requests.fields import require_bounds
 from service.requests.runs import ControlRequest, SensorChoice, SimulationRequest
 from service.run_file import RunFile
 from service.session.runner import Moment
+from service.simulation.drive import LoopMachine
 from service.simulation.run import RunFiles, waiting_machine
 from simulator.errors import MachineSilent
 from simulator.plant.controlled import ControlledMachine, Instrumentation, TrueState

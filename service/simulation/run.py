@@ -48,7 +48,7 @@ from stepnc_model.program import Program
 from stepnc_model.units import mm_from_um
 
 if TYPE_CHECKING:
-    from service.control.drive import Drive
+    from service.simulation.drive import Drive
 
 TRACE = 0.1
 """Volume that counts as none, mm³: edges of a stock that was cut before are known to a cell."""

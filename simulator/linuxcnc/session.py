@@ -54,7 +54,7 @@ def _tell(found: dict[str, Any]) -> None:
 
 
 def _obey_owner() -> None:
-    """Do what an operator would do, line by line; when standard input closes, end everything."""
+    """Do what an operator would do, line by line; end everything with the owner."""
     for line in sys.stdin:
         _tell({"answer": _obeyed(*json.loads(line))})
     os._exit(1)

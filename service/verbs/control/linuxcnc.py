@@ -1,7 +1,7 @@
 """LinuxCNC as the machine of the closed loop, at places of the program's nominal course.
 
-The control moves; its component says where, how fast and in which line. The place on the course
-is the nearest one within the running line, because a path may come by again near itself. The
+The control moves; its component says where, how fast and in which line. The place on the
+course is the nearest one within the running line, because a path may come by again near itself. The
 load is that of a pin, or that of our own process behind the real motion: the force of the course
 at the actual feed, with hidden factors on hardness and depth. Units mm, s, N, W, rev/s.
 """
@@ -75,7 +75,7 @@ class LinuxCncMachine:
         Of the main drive.
     """
 
-    def __init__(  # noqa: PLR0913 (what meets here, once)
+    def __init__(
         self,
         link: Link,
         course: NominalCourse,
@@ -134,13 +134,13 @@ class LinuxCncMachine:
             If the component cannot be armed, the operator's override is not 100 %, or no
             program begins.
         """
-        begin = nan
+        begin: float | None = None
         while True:
             state = self._link.state()
             self._send(is_ready=state is not None and state.feed_override == 1.0)
             if state is None:
                 continue
-            begin = state.time if begin != begin else begin
+            begin = state.time if begin is None else begin
             waited = state.time - begin
             if abs(state.feed_override - 1.0) > SAME:
                 text = f"the operator's feed override is {100.0 * state.feed_override:g} %"
@@ -257,7 +257,7 @@ class LinuxCncMachine:
                 return nan
             return value
         course = self.course
-        shape = max(override, 0.0) ** float(course.exponent[cell])
+        shape = float(np.power(max(override, 0.0), course.exponent[cell]))
         force = float(course.force[cell]) * shape * self._hidden.force_factor
         force *= self.factors[HiddenQuantity.HARDNESS] * self.factors[HiddenQuantity.DEPTH]
         depth = self.factors[HiddenQuantity.DEPTH]

@@ -4,9 +4,9 @@ from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from service.control.drive import Drive, LoopMachine
 from service.progress import Tell
 from service.requests.runs import ControlRequest, SensorChoice
+from service.simulation.drive import Drive, LoopMachine
 from service.verbs.control.linuxcnc import (
     LinuxCncMachine,
     Load,

@@ -69,8 +69,8 @@ class ControlFiles(RunOutputs):
     virtual_load: Annotated[
         bool,
         About(
-            "take the load from the force model, with hidden disturbances, behind the motion of "
-            "LinuxCNC; the bench always does",
+            "take the load from the force model, with hidden disturbances, behind the motion "
+            "of LinuxCNC; the bench always does",
             flag="--virtual-load", group="LinuxCNC",
         ),
     ] = False  # fmt: skip
@@ -81,7 +81,7 @@ class ControlFiles(RunOutputs):
     load_unit: Annotated[
         LoadUnit,
         About(
-            "unit of the load pin: % or A of the rated load, W of the main drive, or N of force",
+            "unit of the load pin: % or A of the rated load, W of the main drive, or N",
             flag="--load-unit", metavar="%|A|W|N", group="LinuxCNC",
         ),
     ] = LoadUnit.PERCENT  # fmt: skip

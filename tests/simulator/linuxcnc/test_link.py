@@ -11,7 +11,6 @@ from simulator.errors import MachineSilent, SimulationError
 from simulator.linuxcnc.link import Link
 from tests.service.verbs.control.states import STATE
 
-
 Served = tuple[Link, socket.socket]
 
 
@@ -48,7 +47,7 @@ def test_a_component_that_is_gone_is_silent(served: Served) -> None:
     sent(line, time=7.5)
     link.state()
     line.close()
-    with pytest.raises(MachineSilent, match="since 7.50 s"):
+    with pytest.raises(MachineSilent, match=r"since 7\.50 s"):
         link.state()
 
 

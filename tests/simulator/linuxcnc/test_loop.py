@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from benchmarks.linuxcnc_faults import FAULTS, Fault, ended, short_program
-from benchmarks.linuxcnc_loop import SET_POINT, LawName, runs
+from benchmarks.linuxcnc_loop import SET_POINT, runs
+from controller.laws.choice import LawName
 
 pytestmark = [pytest.mark.usefixtures("linuxcnc"), pytest.mark.slow]
 
