@@ -3,7 +3,8 @@
 Each sample part is posted, run by a real LinuxCNC to its end, and run again in other path
 modes. The models plan the same code. Times are of moving axes: waits for the spindle are no
 matter of motion. Deviations are those of feed moves: of the control and of the model from the
-programmed path, and of the control from the path of the model.
+programmed path, and of the control from the path of the model. Two further tables have the
+closed loop in real time: its laws under hidden steps, and its faults.
 """
 
 import argparse
@@ -19,6 +20,8 @@ import numpy as np
 from scipy.spatial import KDTree
 
 import stepnc
+from benchmarks.linuxcnc_faults import print_ends
+from benchmarks.linuxcnc_loop import print_runs
 from simulator.library import load_machine
 from simulator.linuxcnc.bench import (
     FASTER,
@@ -367,10 +370,21 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--parts", default=",".join(PARTS), help="sample parts")
     parser.add_argument("--modes", default="posted,G61", help=", ".join(MODES))
     parser.add_argument("--without-experiments", action="store_true")
+    parser.add_argument("--only", choices=("motion", "loop", "faults"), help="one table")
     options = parser.parse_args(arguments)
     if reason := reason_why_not():
         print(f"not run: {reason}")
         return
+    if options.only in {None, "motion"}:
+        _print_motion(options)
+    if options.only in {None, "loop"}:
+        print_runs()
+    if options.only in {None, "faults"}:
+        print_ends()
+
+
+def _print_motion(options: argparse.Namespace) -> None:
+    """Print the table of motion."""
     names = " ".join(f"{name.value:>10}" for name in ControlModelName)
     print(f"{'':24}{'':5}{'moving':>10}  models, % more than the control", end="")
     print(f"{'':13}worst workingstep     µm from path   and from")

@@ -212,6 +212,12 @@ def control(
     loads: str | Path | None = ...,
     teach: bool = ...,
     cut_log: str | Path | None = ...,
+    linuxcnc: str | Path = ...,
+    virtual_load: bool = ...,
+    load_pin: str | Path = ...,
+    load_unit: Literal['%', 'A', 'W', 'N'] = ...,
+    rated: float = ...,
+    load_limit: float = ...,
     kb: str | Path = ...,
     by: str | Path = ...,
     units: Literal['iso', 'rpm-mmin', 'rpm-mmtooth', 'rpm-mmrev', 'revs-mmtooth', 'revs-mmrev', 'rpm-mmtooth-mmrev', 'revs-mmtooth-mmrev', 'auto'] = ...,
@@ -527,6 +533,7 @@ def post(
     control: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'],
     cycles: bool = ...,
     exact_path: bool = ...,
+    adaptive_feed: bool = ...,
     keep_going: bool = ...,
 ) -> PostResult: ...
 def predict(

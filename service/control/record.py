@@ -128,7 +128,7 @@ def keep(
         at=datetime.now(UTC),
         by=", ".join((
             by,
-            "recorded run" if run.recorded else "virtual machine",
+            "recorded run" if run.recorded else run.ran_on,
             *run.disturbances,
             *(("changed while it ran",) if orders else ()),
         )),

@@ -39,6 +39,7 @@ from service.requests.fields import require_bounds
 from service.requests.runs import ControlRequest, SensorChoice, SimulationRequest
 from service.run_file import RunFile
 from service.session.runner import Moment
+from service.simulation.drive import LoopMachine
 from service.simulation.run import RunFiles, waiting_machine
 from simulator.errors import MachineSilent
 from simulator.plant.controlled import ControlledMachine, Instrumentation, TrueState
@@ -103,7 +104,9 @@ class ControlRun:
     loads: Loads = field(default_factory=dict)
     """Reference loads of earlier runs."""
     recorded: str = ""
-    """File of the recorded run that was evaluated; empty: it ran on the virtual machine."""
+    """File of the recorded run that was evaluated; empty: it ran."""
+    ran_on: str = "virtual machine"
+    """Machine that ran the program."""
 
 
 Watcher = Callable[[LoopCycle, TrueState], None]
@@ -189,11 +192,16 @@ def prepare(
         tell(f"left as programmed: '{each.id}' ({each.ref}): {each.reason}")
     course = planned_course(prepared, virtual, tell)
     require_teeth(found.hidden, course)
-    machine = (
-        ControlledMachine(course, found.hidden, _bench(found.bench, virtual.machine, request))
-        if signals is None
-        else RecordedMachine(course, signals)
-    )
+    machine: LoopMachine
+    if signals is not None:
+        machine = RecordedMachine(course, signals)
+    elif files.drive is not None:
+        if found.bench != Instrumentation():
+            raise StepNcError("--disturb: a real control has its own instruments")
+        machine = files.drive.connect(course, found.hidden, virtual.machine)
+    else:
+        bench = _bench(found.bench, virtual.machine, request)
+        machine = ControlledMachine(course, found.hidden, bench)
     planned = planned_steps(course)
     advices = advices_in_order(virtual.workingsteps, plan.advices)
     loads = read_loads(files.loads)
@@ -266,7 +274,7 @@ def _evaluating(request: ControlRequest, signals: RecordedSignals) -> ControlReq
 class VirtualSensor:
     """Machine as a sensor of the loop; a silent one counts as lost."""
 
-    def __init__(self, machine: ControlledMachine | RecordedMachine) -> None:
+    def __init__(self, machine: LoopMachine) -> None:
         self._machine = machine
 
     def read(self) -> Reading | None:
@@ -282,7 +290,7 @@ class Session:
     """Controlled run in progress: loop, machine, plan and records. Running state."""
 
     loop: Loop
-    machine: ControlledMachine | RecordedMachine
+    machine: LoopMachine
     recorder: Recorder
     holdings: HoldTallies
     workingsteps: tuple[str, ...]
@@ -385,6 +393,7 @@ class Session:
             seed=self.request.seed,
             samples=0 if trace is None else trace.rows,
             trace=None if trace is None else trace.trace(),
+            ran_on="virtual machine" if self.files.drive is None else self.files.drive.name,
             recorded="" if self.files.recorded is None else self.files.recorded.name,
         )
 

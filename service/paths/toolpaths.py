@@ -13,7 +13,7 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.plausibility import refusal
 from stepnc_model.post.blocks import Cycles
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.post.dialects import with_exact_stops, write
+from stepnc_model.post.dialects import with_adaptive_feed, with_exact_stops, write
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program, ResolvedWorkingstep, Stock
 from stepnc_model.program_listing import ProgramLine
@@ -196,15 +196,18 @@ def nc_lines(
     cycles: Cycles = Cycles.EXPANDED,
     *,
     is_exact: bool = False,
+    is_adaptive: bool = False,
 ) -> Iterator[str]:
     """Generate NC code of tool paths, line by line.
 
     Raises
     ------
     PostError
-        If exact stops are asked for, and are not written for the control.
+        If exact stops or adaptive feed are wanted, and are not written for the control.
     """
     blocks = blocks_of(paths.program, paths.items, name=Path(paths.program.name).stem)
     if is_exact:
         blocks = with_exact_stops(blocks, control)
+    if is_adaptive:
+        blocks = with_adaptive_feed(blocks, control)
     return write(blocks, control, cycles=cycles)

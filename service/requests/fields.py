@@ -252,6 +252,7 @@ def _help(field: RequestField) -> str:
         return text
     if isinstance(shown, tuple):
         shown = ",".join(map(str, shown))
+    shown = str(shown).replace("%", "%%")
     return f"{text} (default: {shown})"
 
 

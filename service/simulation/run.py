@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from service.buckets import BucketedRun
 from service.chosen import require_axes
@@ -45,6 +46,9 @@ from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError, WriteError
 from stepnc_model.program import Program
 from stepnc_model.units import mm_from_um
+
+if TYPE_CHECKING:
+    from service.simulation.drive import Drive
 
 TRACE = 0.1
 """Volume that counts as none, mm³: edges of a stock that was cut before are known to a cell."""
@@ -113,6 +117,8 @@ class RunFiles:
     """File for the stock that the run leaves, which a later run can take."""
     recorded: Path | None = None
     """Recorded run of the program that ``control`` evaluates instead of running it."""
+    drive: "Drive | None" = None
+    """Control that runs the program under ``control`` in place of the virtual machine."""
     loads: Path | None = None
     """File of reference loads, which ``control`` reads and adds to."""
     is_teaching: bool = False

@@ -372,6 +372,7 @@ def course_of(trial: TrialCut) -> NominalCourse:
         teeth=np.full(count, trial.cut.teeth),
         tool=np.ones(count, dtype=np.int64),
         workingstep=np.ones(count, dtype=np.int64),
+        line=np.ones(count, dtype=np.int64),
     )
 
 

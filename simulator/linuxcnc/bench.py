@@ -10,8 +10,9 @@ import re
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from simulator.errors import SimulationError
-from simulator.linuxcnc.configuration import write_configuration
+from simulator.linuxcnc.configuration import SOCKET, write_configuration, write_loop
 from simulator.motion.segments import Floats, Ints
 from simulator.planner_settings import PlannerSettings
 from simulator.spec import Machine
@@ -147,6 +148,7 @@ def run_programs(
                 "file": str(path.resolve()),
                 "samples": str(folder / f"samples-{row}"),
                 "start": _way_to(starts[row] if starts else None, machine),
+                "waits_for_loop": False,
             }
             for row, path in enumerate(programs)
         ]
@@ -156,6 +158,7 @@ def run_programs(
             "speedup": speedup,
             "patience_s": patience,
             "programs": orders,
+            "loop": False,
         }
         (folder / "order.json").write_text(json.dumps(order), "utf-8")
         ended = _session(folder)
@@ -165,6 +168,124 @@ def run_programs(
             _program_run(each, Path(told["samples"]), settings.servo_period)
             for each, told in zip(ended, orders, strict=True)
         ]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LoopBench:
+    """LinuxCNC with the component of the loop, which runs one program once a loop is armed."""
+
+    socket: Path
+    """Where the component listens."""
+    folder: Path
+    session: subprocess.Popen[bytes]
+    period: float
+    """Servo period, s."""
+    told: list[dict[str, Any]] = field(default_factory=list)
+    """What the session said of the program, once it has ended."""
+
+    def order(self, *words: str | float) -> str:
+        """Do what an operator does, or a fault; return the answer.
+
+        Parameters
+        ----------
+        *words : str or float
+            ``halcmd`` and its words, ``kill`` and a part of a command line, or a method of
+            LinuxCNC's command channel with its values.
+
+        Raises
+        ------
+        LinuxCncFailed
+            If LinuxCNC has ended.
+        """
+        assert self.session.stdin is not None
+        assert self.session.stdout is not None
+        try:
+            self.session.stdin.write(json.dumps(words).encode() + b"\n")
+            self.session.stdin.flush()
+        except BrokenPipeError as error:
+            raise LinuxCncFailed(_why(self.folder, [])) from error
+        for line in self.session.stdout:
+            told = json.loads(line)
+            if "answer" in told:
+                return str(told["answer"])
+            self.told.append(told)
+        raise LinuxCncFailed(_why(self.folder, self.told))
+
+    def ended(self) -> ProgramRun:
+        """Wait for the end of the program; return its run.
+
+        Raises
+        ------
+        LinuxCncFailed
+            If the program does not end, or samples were lost.
+        """
+        assert self.session.stdout is not None
+        if not self.told:
+            line = self.session.stdout.readline()
+            self.told.append(json.loads(line) if line else {"failed": "it ended early"})
+        told = self.told[0]
+        if "failed" in told:
+            raise LinuxCncFailed(_why(self.folder, [told]))
+        return _program_run(told, self.folder / "samples", self.period)
+
+
+@contextmanager
+def bench_with_loop(
+    machine: Machine,
+    program: Path,
+    *,
+    start: Point | None = None,
+    load_limit: float,
+    patience: float = PATIENCE,
+) -> Iterator[LoopBench]:
+    """Start LinuxCNC with the component of the loop, in real time; end it afterwards.
+
+    Parameters
+    ----------
+    machine : Machine
+    program : Path
+        NC code for LinuxCNC, which begins once the component is armed.
+    start : 3 floats, mm, optional
+    load_limit : float
+        Load above which realtime holds the feed, in the unit of the load.
+    patience : float, s
+
+    Raises
+    ------
+    LinuxCncFailed
+        If LinuxCNC does not start.
+    """
+    settings = machine.planner
+    with tempfile.TemporaryDirectory(prefix="stepnc-lcnc-", dir="/tmp") as name:
+        folder = Path(name)
+        write_configuration(folder, machine, settings, tools=_tools(program))
+        write_loop(folder, load_limit=load_limit)
+        order = {
+            "folder": name,
+            "preload": "",
+            "speedup": 1.0,
+            "patience_s": patience,
+            "loop": True,
+            "programs": [
+                {
+                    "file": str(program.resolve()),
+                    "samples": str(folder / "samples"),
+                    "start": _way_to(start, machine),
+                    "waits_for_loop": True,
+                }
+            ],
+        }
+        (folder / "order.json").write_text(json.dumps(order), "utf-8")
+        with _started(folder) as session:
+            assert session.stdout is not None
+            if not session.stdout.readline():
+                raise LinuxCncFailed(_why(folder, []))
+            yield LoopBench(
+                socket=folder / SOCKET,
+                folder=folder,
+                session=session,
+                period=settings.servo_period,
+            )
 
 
 def _tools(program: Path) -> Iterable[int]:
@@ -196,6 +317,14 @@ def _preload(folder: Path) -> str:
 
 def _session(folder: Path) -> list[dict[str, Any]]:
     """Run the session; return what it said of each program."""
+    with _started(folder) as session:
+        assert session.stdout is not None
+        return [json.loads(line) for line in session.stdout]
+
+
+@contextmanager
+def _started(folder: Path) -> Iterator[subprocess.Popen[bytes]]:
+    """Session as a process, which ends with the block."""
     script = Path(__file__).with_name("session.py")
     # Its standard input stays open as long as this process lives.
     with (folder / "session.log").open("wb") as log:
@@ -206,8 +335,7 @@ def _session(folder: Path) -> list[dict[str, Any]]:
             stderr=log,
         )
         try:
-            assert session.stdout is not None
-            return [json.loads(line) for line in session.stdout]
+            yield session
         finally:
             # unshare ignores SIGTERM; all of its children end with it.
             session.kill()

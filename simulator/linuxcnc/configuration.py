@@ -24,6 +24,22 @@ SAMPLES = 30_000
 IMMEDIATE = 1e6
 """Acceleration of a spindle without one, rev/s²."""
 
+SOCKET = "loop.socket"
+"""Name of the socket at which the component of the loop listens."""
+
+SAFE = 0.2
+"""Feed without a loop, as a share of the programmed feed."""
+
+LIMITS = "stepnc-range,stepnc-limit"
+"""Comparators of the loop that belong to the same module as the spindle's."""
+
+TIMEOUT = 5.0
+"""Time without a heartbeat after which the safe feed holds, s of the servo thread.
+
+Without a realtime kernel the thread stalls and then runs its periods in a burst, in which no
+heartbeat comes: 0.1 to 0.2 s are for machines.
+"""
+
 
 def write_configuration(
     folder: Path, machine: Machine, settings: PlannerSettings, *, tools: Iterable[int]
@@ -34,6 +50,33 @@ def write_configuration(
     (folder / "machine.hal").write_text(_hal(machine, axes), "ascii")
     rows = "".join(f"T{number} P{number} Z0 D0\n" for number in sorted(set(tools)))
     (folder / "tool.tbl").write_text(rows, "ascii")
+
+
+def write_loop(folder: Path, *, load_limit: float) -> None:
+    """Add the realtime side of the closed loop, ``loop.hal``, and its section of the INI file.
+
+    Parameters
+    ----------
+    folder : Path
+        With the files of :func:`write_configuration`.
+    load_limit : float
+        Load above which realtime holds the feed, in the unit of the load.
+    """
+    here = Path(__file__).parent
+    text = (here / "loop.hal").read_text("ascii")
+    text = text.replace(f"loadrt near names={LIMITS}\n", "")
+    # In the bench the load is what the loop's own process says.
+    text += "net stepnc-load stepnc.virtual-load => stepnc-limit.in1\n"
+    (folder / "loop.hal").write_text(text, "ascii")
+    keys = {
+        "COMPONENT": here / "component.py",
+        "SOCKET": folder / SOCKET,
+        "SAFE": SAFE,
+        "LOAD_LIMIT": f"{load_limit:g}",
+        "TIMEOUT": TIMEOUT,
+    }
+    with (folder / "machine.ini").open("a", encoding="ascii") as ini:
+        ini.write("[STEPNC]\n" + "".join(f"{key} = {value}\n" for key, value in keys.items()))
 
 
 def _ini(axes: list[Axis], settings: PlannerSettings) -> str:
@@ -109,7 +152,8 @@ def _hal(machine: Machine, axes: list[Axis]) -> str:
         "loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD "
         "num_joints=[KINS]JOINTS num_spindles=1",
         "loadrt limit2 names=run-up",
-        "loadrt near names=at-speed",
+        # A module is loaded once, for all of its names.
+        f"loadrt near names=at-speed,{LIMITS}",
         "loadrt sim_spindle names=encoder",
         f"loadrt sampler depth={SAMPLES} cfg=fffffss",
         "addf motion-command-handler servo-thread",

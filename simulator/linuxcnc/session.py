@@ -10,6 +10,7 @@ of the project is imported: the modules of LinuxCNC belong to the system's Pytho
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -25,7 +26,7 @@ POLL = 0.002
 def main() -> None:
     """Run the order that is named on the command line."""
     order = json.loads(Path(sys.argv[1]).read_text("utf-8"))
-    threading.Thread(target=_end_with_owner, daemon=True).start()
+    threading.Thread(target=_obey_owner, daemon=True).start()
     folder = Path(order["folder"])
     os.environ.update(
         INI_FILE_NAME=str(folder / "machine.ini"),
@@ -36,8 +37,13 @@ def main() -> None:
     os.chdir(folder)
     _start(order)
     control = _Control(order["patience_s"])
+    if order["loop"]:
+        _tell({"ready": True})
     for program in order["programs"]:
         _tell(control.run(**program))
+    if order["loop"]:
+        # Its owner still looks at pins, and ends it.
+        threading.Event().wait()
     os._exit(0)
 
 
@@ -47,10 +53,30 @@ def _tell(found: dict[str, Any]) -> None:
     sys.stdout.flush()
 
 
-def _end_with_owner() -> None:
-    """Wait until standard input closes; then end everything."""
-    sys.stdin.buffer.read()
+def _obey_owner() -> None:
+    """Do what an operator would do, line by line; end everything with the owner."""
+    for line in sys.stdin:
+        _tell({"answer": _obeyed(*json.loads(line))})
     os._exit(1)
+
+
+def _obeyed(order: str, *words: Any) -> str:
+    """Obey an order: a command of HAL or of the task, or the end of the component."""
+    if order == "halcmd":
+        told = subprocess.run(["halcmd", *words], capture_output=True, text=True, check=False)
+        return told.stdout.strip() or told.stderr.strip()
+    if order == "kill":
+        for place in Path("/proc").glob("[0-9]*/cmdline"):
+            if words[0].encode() in place.read_bytes():
+                os.kill(int(place.parent.name), signal.SIGKILL)
+        return ""
+    import linuxcnc  # noqa: PLC0415 (as in _Control)
+
+    command = linuxcnc.command()
+    values = [getattr(linuxcnc, word) if isinstance(word, str) else word for word in words]
+    getattr(command, order)(*values)
+    command.wait_complete()
+    return ""
 
 
 def _start(order: dict[str, Any]) -> None:
@@ -63,6 +89,8 @@ def _start(order: dict[str, Any]) -> None:
     _call("halcmd", "loadrt", "tpmod", environment=speed)
     _call("halcmd", "loadrt", "homemod")
     _call("halcmd", "-i", "machine.ini", "-f", "machine.hal")
+    if order["loop"]:
+        _call("halcmd", "-i", "machine.ini", "-f", "loop.hal")
     # Before milltask, which waits 20 s for a servo thread that does not run.
     _call("halcmd", "start")
     _call("halcmd", "loadusr", "-Wn", "inihal", "milltask", "-ini", "machine.ini")
@@ -96,7 +124,9 @@ class _Control:
         # On by default: M1 would wait for ever.
         self._told(self.command.set_optional_stop, False)
 
-    def run(self, *, file: str, samples: str, start: list[str]) -> dict[str, Any]:
+    def run(
+        self, *, file: str, samples: str, start: list[str], waits_for_loop: bool
+    ) -> dict[str, Any]:
         """Run commands that lead to the start, then a program, and record its motion."""
         api = self.api
         self._told(self.command.mode, api.MODE_MDI)
@@ -108,6 +138,9 @@ class _Control:
         self._told(self.command.program_open, file)
         with Path(samples).open("wb") as rows:
             reader = subprocess.Popen(["halsampler", "-t"], stdout=rows)
+        if waits_for_loop:
+            # The operator of a shop waits for this, too.
+            self._until(lambda: _bit("stepnc.armed"), "a loop that is armed")
         _call("halcmd", "setp", "sampler.0.enable", "1")
         overruns = _pin("sampler.0.overruns")
         self._told(self.command.auto, api.AUTO_RUN, 0)
@@ -152,6 +185,12 @@ class _Control:
             time.sleep(POLL)
         _tell({"failed": f"{what}: not within {self.patience:g} s"})
         os._exit(1)
+
+
+def _bit(name: str) -> bool:
+    """Value of a pin that is true or false."""
+    told = subprocess.run(["halcmd", "getp", name], check=True, capture_output=True, text=True)
+    return told.stdout.strip() == "TRUE"
 
 
 def _pin(name: str) -> int:

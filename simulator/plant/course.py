@@ -195,6 +195,8 @@ class NominalCourse:
     """Number of the tool, (N,)."""
     workingstep: Ints
     """Number of the workingstep, (N,), counted from 1; 0 for none."""
+    line: Ints
+    """Line of the program, (N,)."""
 
     def __post_init__(self) -> None:
         count = len(self.until)
@@ -296,6 +298,7 @@ def _part(
         teeth=np.full(count, 1 if edge is None else edge.teeth),
         tool=samples.tool,
         workingstep=samples.workingstep,
+        line=samples.line,
     )
 
 

@@ -101,7 +101,7 @@ END_FUNCTIONS: dict[Dialect, frozenset[int]] = {
 START_FUNCTIONS = frozenset({30, 40, 70, 80, 130, 140, 880})
 """M codes that act before the move of their block: spindle and coolant on."""
 
-KNOWN_FUNCTIONS = START_FUNCTIONS | {0, 10, 20, 50, 60, 90, 300, 290, 190, 170, 480, 490,
+KNOWN_FUNCTIONS = START_FUNCTIONS | {0, 10, 20, 50, 60, 90, 300, 290, 190, 170, 480, 490, 520,
                                      890, 400, 410, 420, 430, 440, 600}  # fmt: skip
 
 SINUMERIK_QUIET = frozenset({

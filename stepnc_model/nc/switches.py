@@ -58,12 +58,12 @@ COMMON = {*STOPS, *STARTS, *COOLANT_ON, *COOLANT_OFF, 50, 60, 190}
 """M codes that all controls know."""
 
 OWN = {
-    Dialect.LINUXCNC: {610},
+    Dialect.LINUXCNC: {520, 610},
     Dialect.FANUC: {290, 970, 980, 990},
     Dialect.HAAS: {290, 880, 890, 970, 980, 990},
     Dialect.SINUMERIK: {170},
 }
-"""Further M codes that are read: tools and taps, calls and returns."""
+"""Further M codes that are read: tools and taps, calls and returns, adaptive feed (M52)."""
 
 SPEEDS = {500, 960, 961, 970, 9610}
 """G codes that change what S says."""
@@ -246,3 +246,5 @@ class IsoSwitches(SwitchRecorder):
             yield "D"
         if is_linuxcnc and PATH_CONTROL & codes:
             yield from "PQ"
+        if is_linuxcnc and 520 in words.functions:
+            yield "P"

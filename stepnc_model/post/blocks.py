@@ -86,6 +86,8 @@ class ProgramStart:
 
     name: str
     machine: MachineType = MachineType.MILL
+    has_adaptive_feed: bool = False
+    """Whether an outer loop may change the feed while the program runs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

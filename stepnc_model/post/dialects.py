@@ -1,11 +1,12 @@
 """Common interface for writing the NC code of all supported controls."""
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from typing import Protocol
 
 from stepnc_model.errors import PostError
 from stepnc_model.post import canonical, heidenhain
-from stepnc_model.post.blocks import Block, Cycles, PathControl
+from stepnc_model.post.blocks import Block, Cycles, PathControl, ProgramStart
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.fanuc import HAAS, Fanuc
 from stepnc_model.post.heidenhain import Heidenhain
@@ -61,6 +62,23 @@ def with_exact_stops(blocks: Iterable[Block], control: Dialect) -> Iterator[Bloc
         raise PostError(f"exact stops are not written for {control.value}: omit --exact-path")
     return (
         PathControl(tolerance=0.0) if isinstance(block, PathControl) else block
+        for block in blocks
+    )
+
+
+def with_adaptive_feed(blocks: Iterable[Block], control: Dialect) -> Iterator[Block]:
+    """Blocks of a program whose feed an outer loop may change (M52 P1 of LinuxCNC).
+
+    Raises
+    ------
+    PostError
+        If the control is another one.
+    """
+    if control is not Dialect.LINUXCNC:
+        text = f"adaptive feed is written for linuxcnc, not {control.value}"
+        raise PostError(f"{text}: omit --adaptive-feed")
+    return (
+        replace(block, has_adaptive_feed=True) if isinstance(block, ProgramStart) else block
         for block in blocks
     )
 

@@ -16,6 +16,7 @@ from stepnc_model.post.blocks import (
     Message,
     PathControl,
     ProgramEnd,
+    ProgramStart,
     RigidTap,
     ThreadingMove,
     ToolChange,
@@ -62,6 +63,10 @@ class LinuxCnc(IsoCode):
         MachineType.LATHE: "G18 G21 G40 G49 G54 G7 G80 G90 G91.1 G94 G97",
     }
 
+    def __init__(self) -> None:
+        super().__init__()
+        self._has_adaptive_feed = False
+
     def shaped(self, blocks: Iterable[Block]) -> Iterator[Block]:
         """Keep arcs unchanged: P counts their turns."""
         return iter(blocks)
@@ -75,8 +80,18 @@ class LinuxCnc(IsoCode):
         self.modal.set("mode", "G94")
         yield from self.line(self.wide_codes[self.machine])
 
+    def _start(self, block: ProgramStart) -> Iterator[str]:
+        yield from super()._start(block)
+        if block.has_adaptive_feed:
+            # Without it the control ignores the pin motion.adaptive-feed; M2 keeps it, so that
+            # the end of the program switches it off.
+            yield from self.line("M52", "P1")
+            self._has_adaptive_feed = True
+
     def end(self, _: ProgramEnd) -> Iterator[str]:
         """Write the program end and the percent sign."""
+        if self._has_adaptive_feed:
+            yield from self.line("M52", "P0")
         yield from self.line("M2")
         yield "%"
 

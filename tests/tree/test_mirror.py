@@ -112,6 +112,7 @@ THROUGH = {
     "service/test_log_lines.py": ("service/fork_log.py",),
     "service/test_report.py": ("service/figures.py",),
     "service/verbs/test_verb.py": ("service/requests/files.py",),
+    "service/verbs/control/test_linuxcnc.py": ("service/simulation/drive.py",),
     "service/test_uses.py": ("service/paths/remarks.py",),
 }
 """tests, and the modules that they run through others"""

@@ -1,5 +1,6 @@
 """Run of a program under force control, or evaluation of a recorded run."""
 
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
@@ -32,7 +33,16 @@ def run(request: ControlRequest, files: ControlFiles, *, tell: Tell = silent) ->
         is_teaching=files.teach,
         cut_log=files.cut_log,
     )
-    found = control_recorded(placed.request, places, knowledge=files.kb, by=files.by, tell=tell)
+    with ExitStack() as stack:
+        if files.linuxcnc:
+            from service.verbs.control.linuxcnc_drive import drive_of  # noqa: PLC0415 (an extra)
+
+            found_drive = drive_of(files, placed.request, stack, tell)
+            places = replace(places, drive=found_drive.drive)
+            placed = replace(placed, request=found_drive.request)
+        found = control_recorded(
+            placed.request, places, knowledge=files.kb, by=files.by, tell=tell
+        )
     return ControlResult(run=found)
 
 

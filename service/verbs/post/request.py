@@ -31,6 +31,14 @@ class PostRequest(ProgramRequest):
             flag="--exact-path",
         ),
     ] = False
+    adaptive_feed: Annotated[
+        bool,
+        About(
+            "let an outer loop change the feed (M52 P1 of linuxcnc), as "
+            "`control --linuxcnc` needs it",
+            flag="--adaptive-feed",
+        ),
+    ] = False
     keep_going: KeepsGoing = False
 
 

@@ -35,7 +35,9 @@ def run(request: PostRequest, files: PostFiles, *, tell: Tell = silent) -> PostR
     ).program
     paths = paths_for_code(program, keep_going=request.keep_going, tell=tell)
     cycles = Cycles.OWN if request.cycles else Cycles.EXPANDED
-    lines = nc_lines(paths, control, cycles, is_exact=request.exact_path)
+    lines = nc_lines(
+        paths, control, cycles, is_exact=request.exact_path, is_adaptive=request.adaptive_feed
+    )
     count = write_lines(output, lines)
     tell(f"written: {output} ({counted(count, 'line')})")
     return PostResult(paths=paths, control=control, written=output, lines=count)

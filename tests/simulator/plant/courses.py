@@ -51,6 +51,7 @@ def course(
         teeth=np.full(count, TEETH),
         tool=np.ones(count, dtype=np.int64),
         workingstep=np.ones(count, dtype=np.int64),
+        line=np.ones(count, dtype=np.int64),
     )
 
 
