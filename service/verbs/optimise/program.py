@@ -75,7 +75,7 @@ def advise_program(
     require_apart(named_place(files.kb), output, files.report, files.feeds_csv, nc_place)
     whole = _read_whole(request, files, library, tell)
     program = whole.program
-    profile = writeback.profile_for(program, _profile(request))
+    profile = _profile(request, program)
     chosen = selected(program, request.workingsteps)
     findings = program.file.findings + program.model.findings()
     possible = advisable(program, chosen, keep_going=request.keep_going)
@@ -320,9 +320,12 @@ def _tell_conflicts(plan: Plan, tell: Tell) -> None:
         tell(f"infeasible, left as programmed: {names}")
 
 
-def _profile(request: AdviceRequest) -> FileProfile | None:
-    """Form of the records that is requested; None for no records."""
-    return None if request.records is RecordChoice.NONE else request.profile
+def _profile(request: AdviceRequest, program: Program) -> FileProfile | None:
+    """Form of the records; None for no records."""
+    if request.records is RecordChoice.NONE:
+        return None
+    chosen = request.profile or writeback.usual_profile(program)
+    return writeback.profile_for(program, chosen)
 
 
 def _task(
