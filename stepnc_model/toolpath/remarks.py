@@ -19,7 +19,7 @@ from stepnc_model.ap238.quantity import MEASURES, Units, conversion
 from stepnc_model.ap238.table import Kind
 from stepnc_model.ap238.view import AimView
 from stepnc_model.entities.enums import Hand
-from stepnc_model.entities.executables import Setup
+from stepnc_model.entities.executables import Parallel, Setup
 from stepnc_model.entities.features import RoundHole
 from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.entities.profiles import LinearPath
@@ -54,6 +54,7 @@ def doubts(program: Program) -> Iterator[Finding]:
     """
     yield from _other_lengths(program)
     yield from _same_ids(program)
+    yield from _simultaneous(program)
     for step in program.workingsteps:
         try:
             with program.using(step.operation_ref, step.tool_ref, *step.features):
@@ -94,6 +95,15 @@ def _same_ids(program: Program) -> Iterator[Finding]:
                 "not tell them apart"
             )
             yield program.finding(Severity.WARNING, text, step.ref, "its_id")
+
+
+def _simultaneous(program: Program) -> Iterator[Finding]:
+    """Warn of branches that a control runs at the same time."""
+    for executable in program.executables:
+        entity = program.model.entity(int(executable.ref))
+        if isinstance(entity, Parallel) and len(entity.branches) > 1 and not executable.is_open:
+            text = "its branches run at the same time; here they run one after another"
+            yield program.finding(Severity.WARNING, text, executable.ref, "branches")
 
 
 def _inch_tool(program: Program, step: ResolvedWorkingstep) -> Finding | None:
