@@ -284,6 +284,8 @@ def _write_feeds(files: AdviceFiles, along: "FeedsAlongPath | None", tell: Tell)
 def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
     """Refuse numbers out of bounds, and options that have no effect."""
     require_bounds(request)
+    if request.is_exact_path and request.nc_control is None:
+        raise StepNcError("--exact-path is of NC code, and needs --nc")
     if request.is_along_path:
         return
     if request.levels is not None or files.feeds_csv is not None:
