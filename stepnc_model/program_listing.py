@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from stepnc_model.binding import Model
-from stepnc_model.conditions import ErrorMaker, Variables
+from stepnc_model.conditions import ErrorMaker, ProgramVariables
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import (
     Assignment,
@@ -72,7 +72,7 @@ class _Walk:
         self.model = model
         self.error = error
         self.faults = faults
-        self.variables = Variables(model, error)
+        self.variables = ProgramVariables(model, error)
         self.stack = [_WalkVisit(_main_workplan(model, error), 0, None)]
         self.inside: set[int] = set()
         self.count = 0
