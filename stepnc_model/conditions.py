@@ -1,4 +1,4 @@
-"""ProgramVariables of a program and the conditions on them (ISO 14649-10), where the file states them.
+"""Variables of a program and the conditions on them (ISO 14649-10), where the file states them.
 
 A variable has its initial value until an assignment. What only the control knows, as a measured
 offset, is not stated: a condition on it is refused, with the option that gives a value.
