@@ -133,3 +133,18 @@ def test_one_id_for_two_workingsteps_is_refused_where_a_run_needs_it(
     assert '''--set "#21.its_id='TEXT'"''' in refused.reason
     done = run(verb, part, *options, "--set", "#21.its_id='CENTRE HOLE 2'")
     assert done.code == 0, done.reason
+
+
+def test_a_feature_above_the_stock_is_put_on_it_by_the_option_that_is_named(
+    tmp_path: Path,
+) -> None:
+    part = part_with(tmp_path, "(#10)")
+    text = part.read_text(encoding="ascii")
+    assert "#102=CARTESIAN_POINT('',(-3.,-3.,2.));" in text
+    part.write_text(text.replace("(-3.,-3.,2.)", "(-3.,-3.,25.)"), encoding="ascii")
+    said = run("toolpath", part).told
+    named = re.search(r'outside the stock: .*; --set "([^"]+)" puts it .* 23 mm lower', said)
+    assert named is not None
+    given = ("--set", named[1])
+    assert "outside the stock" not in run("toolpath", part, *given).told
+    assert run("optimise", part, *given, "--dry-run").code == 0
