@@ -128,13 +128,13 @@ class MeasuredCuts:
     def cut(self, step: ResolvedWorkingstep) -> tuple[Cut, list[Finding]]:
         """Return the cut of a workingstep as programmed, with findings on assumptions.
 
-        Where no path can be made, or its contacts are not known, the estimate from the feature
-        takes its place, and a finding says so.
+        Where the contacts of its path are not known, the estimate from the feature takes their
+        place, and a finding says so.
 
         Raises
         ------
-        SchemaError
-            When the workingstep lacks what a cut needs.
+        SchemaError, PostError
+            When the workingstep lacks what a cut needs, or no path can be made.
         """
         self._seen, self._refused, self._paths, self._shapes = {}, {}, {}, {}
         self._trace = SearchTrace(place=self.stocks.place(step))
@@ -143,12 +143,8 @@ class MeasuredCuts:
             self.program, step, self.machine, self.material, depth=depth
         )
         self._estimate, self._found = cut, self.stocks.before(step)
-        try:
-            seen = self._see(step, self._path(step), cut, passes=cut.programmed.passes)
-        except (SchemaError, PostError) as error:
-            self._leave_out(step)
-            text = f"no tool path: length, time and engagement are estimated ({error})"
-            return cut, [*findings, self._warning(step, text)]
+        # Where no path can be made, no run could follow the advice.
+        seen = self._see(step, self._path(step), cut, passes=cut.programmed.passes)
         assumed = self.stocks.assumed.get(self.stocks.place(step))
         if assumed is not None:
             at = step.ref if step.setup is None else step.setup

@@ -15,6 +15,7 @@ from typing import Any
 from optimiser.clamped import assumed_stock
 from optimiser.path_only import UNKNOWN_DEPTH, is_path_only
 from service.chosen import DEFAULT_LATHE, DEFAULT_MILL, material_for
+from service.reading import FEEDS
 from service.requests.given import ProgramRequest, StockFile
 from service.requests.runs import ControlRequest, RunRequest
 from stepnc_model.ap238.view import AimView
@@ -35,8 +36,6 @@ BAR = "DIAMETER,Z0,Z1"
 
 MISFIT = 5.0
 """Ratio of a raw part to what the tools sweep from which it is doubtful in another unit."""
-
-FEEDS = ("feedrate", "feedrate_per_tooth", "feed_per_revolution")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 E = TypeVar("E", bound=StrEnum)
 
+FEEDS = ("feedrate", "feedrate_per_tooth", "feed_per_revolution")
+"""Attributes of technologies that give a feed."""
+
 
 def read_program(
     path: Path, *, units: str, name: str = "", stock: RawPart = "", tell: Tell = silent
@@ -74,7 +77,24 @@ def read_completed(
     """
     program = read_program(path, units=request.units, stock=request.stock, name=name, tell=tell)
     program.tools = () if tools is None else user_tools(tools)
-    return completed(program, user_data(request))
+    whole = completed(program, user_data(request))
+    _tell_unused(whole, request, tell)
+    return whole
+
+
+def _tell_unused(whole: Completed, request: ProgramRequest, tell: Tell) -> None:
+    """Tell which options have no effect on a program."""
+    if request.feed and not any(each.attribute in FEEDS for each in whole.attributes):
+        text = "has no effect: each technology gives a feed; --set changes one"
+        tell(f"--feed {request.feed} {text}")
+    program = whole.program
+    names = {str(getattr(program.get(s.tool_ref), "its_id", "")) for s in program.workingsteps}
+    if program.tools and not any(
+        each.is_named(name) for each in program.tools for name in names
+    ):
+        of_program = ", ".join(f"'{name}'" for name in sorted(names))
+        of_table = ", ".join(f"'{each.id}'" for each in program.tools)
+        tell(f"--tools has no effect: the program has tools {of_program}, the table {of_table}")
 
 
 def user_data(request: ProgramRequest) -> GivenData:

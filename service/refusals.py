@@ -4,11 +4,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from optimiser.advice import RefusedWorkingstep
+from stepnc_model.entities.executables import Parallel
 from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.own_operation import can_be_copied, with_own_operations
 from stepnc_model.plausibility import refusal
 from stepnc_model.program import Program, ResolvedWorkingstep
-from stepnc_model.program_listing import NOT_FOLLOWED, is_followed
+from stepnc_model.program_listing import ProgramLine, is_followed, not_followed
 from stepnc_model.remedy import error_of
 from stepnc_model.writeback import WorkingstepUpdate
 
@@ -39,6 +40,7 @@ def advisable(
     if not keep_going:
         require_usable(program, chosen, program.file.findings + program.model.findings())
         return Advisable(steps=tuple(chosen))
+    require_one_channel(program)
     refused = tuple(refused_workingsteps(program, chosen))
     left_out = {int(each.ref) for each in refused}
     steps = tuple(step for step in chosen if int(step.ref) not in left_out)
@@ -122,15 +124,35 @@ def require_usable(
     require_any(chosen)
     if len(chosen) == len(program.workingsteps):
         for executable in program.executables:
-            entity = program.model.entity(int(executable.ref))
-            if program.fault_of(executable.ref) is None and not is_followed(entity):
-                raise program.error(NOT_FOLLOWED, executable.ref)
+            fault = _not_followed(program, executable)
+            if fault is not None:
+                raise fault
+    require_one_channel(program)
     for finding in findings:
         if finding.severity is Severity.ERROR:
             raise error_of(finding)
     error = refusal(program, chosen)
     if error is not None:
         raise error
+
+
+def require_one_channel(program: Program) -> None:
+    """Refuse branches that run at the same time, which no code for one channel can say.
+
+    Raises
+    ------
+    SchemaError
+        With the option that chooses a branch.
+    """
+    for executable in program.executables:
+        entity = program.model.entity(int(executable.ref))
+        if isinstance(entity, Parallel) and len(entity.branches) > 1 and not executable.is_open:
+            text = (
+                "its branches run at the same time, which no code for one channel can say: "
+                "`simulate` runs them one after another; --set "
+                f'"{executable.ref}.branches=({entity.branches[0]})" chooses one'
+            )
+            raise program.error(text, executable.ref)
 
 
 def require_any(chosen: Sequence[ResolvedWorkingstep]) -> None:
@@ -152,7 +174,9 @@ def refused_workingsteps(
     """
     if len(chosen) == len(program.workingsteps):
         for executable in program.executables:
-            fault = program.fault_of(executable.ref)
+            if executable.is_open:
+                continue
+            fault = program.fault_of(executable.ref) or _not_followed(program, executable)
             if fault is not None:
                 yield RefusedWorkingstep(
                     id=executable.id, ref=executable.ref, reason=str(fault)
@@ -161,6 +185,14 @@ def refused_workingsteps(
         error = _refusal_of(program, step)
         if error is not None:
             yield RefusedWorkingstep(id=step.id, ref=step.ref, reason=str(error))
+
+
+def _not_followed(program: Program, executable: ProgramLine) -> SchemaError | None:
+    """Error about an executable that no run follows; None for one that can run."""
+    is_faulty = program.fault_of(executable.ref) is not None
+    if is_faulty or is_followed(program.model.entity(int(executable.ref))):
+        return None
+    return program.error(not_followed(executable.keyword), executable.ref)
 
 
 def _refusal_of(program: Program, step: ResolvedWorkingstep) -> SchemaError | None:

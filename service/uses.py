@@ -12,7 +12,7 @@ from optimiser.formulate import OptimisationTask
 from optimiser.optimise import optimise_program
 from optimiser.source import Source, along_paths, from_features
 from service.chosen import load_material_named, machine_for, material_for, require_axes
-from service.refusals import require_any, require_usable
+from service.refusals import require_one_channel, require_usable
 from simulator.spec import MaterialMatch
 from stepnc_model.errors import StepNcError
 from stepnc_model.plausibility import refusal
@@ -69,6 +69,7 @@ def uses_of(program: Program, made: "Paths | StepNcError") -> tuple[Use, ...]:
     any_match = match if isinstance(match, MaterialMatch) else load_material_named(ANY_MATERIAL)
     missing = match if isinstance(match, str) else ""
     simulation = code or _simulation(program, any_match)
+    code = code or _channels(program)
     # What stops a path may stop the advice too; estimates alone would not show it.
     source = along_paths if paths else from_features
     advice = _advice(program, any_match, source)
@@ -113,6 +114,15 @@ def _code(program: Program, paths: "Paths") -> str:
     return ""
 
 
+def _channels(program: Program) -> str:
+    """Reason why code for one channel cannot say what runs; empty where it can."""
+    try:
+        require_one_channel(program)
+    except StepNcError as error:
+        return str(error)
+    return ""
+
+
 def _simulation(program: Program, match: MaterialMatch) -> str:
     """Reason why a program with NC code cannot be run; empty where it can."""
     from simulator.machine.tooling import loaded_tool  # noqa: PLC0415 (numpy)
@@ -129,7 +139,6 @@ def _simulation(program: Program, match: MaterialMatch) -> str:
 def _advice(program: Program, match: MaterialMatch, source: Source) -> str:
     """Reason why feeds cannot be advised; empty where they can."""
     try:
-        require_any(program.workingsteps)
         require_usable(program, program.workingsteps, program.findings())
         optimise_program(
             program,

@@ -488,7 +488,7 @@ def optimise(
     roughness_quantile: float = ...,
     free: Literal['feed', 'depth', 'speed'] | Iterable[Literal['feed', 'depth', 'speed']] = ...,
     workingsteps: str | Path | Iterable[str | Path] = ...,
-    profile: Literal['optimisation', 'standard'] = ...,
+    profile: Literal['optimisation', 'standard'] | None = ...,
     records: Literal['all', 'none'] = ...,
     nc_control: Literal['canonical', 'linuxcnc', 'fanuc', 'haas', 'sinumerik', 'heidenhain'] | None = ...,
     is_exact_path: bool = ...,

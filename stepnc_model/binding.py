@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import chain, islice
 from typing import Any, TypeVar, cast
 
-from stepnc_model.entities.catalogue import BY_ARITY, class_of, classes
+from stepnc_model.entities.catalogue import BY_ARITY, class_of, classes, flattened
 from stepnc_model.entities.conversion import (
     AttributeSlot,
     ConversionRemark,
@@ -306,9 +306,13 @@ def _printed(file: Part21File, id: int) -> ConsistentRecord | None:
 
 def _read(file: Part21File, id: int) -> tuple[type[Entity], tuple[Value, ...]] | None:
     """Class and parameters of an instance that can be bound, or None."""
-    if id not in file or file.keyword(id) not in classes():
+    if id not in file:
         return None
     try:
+        if not file.keyword(id):
+            return flattened(dict(file.parts(id)))
+        if file.keyword(id) not in classes():
+            return None
         values = file.parameters(id)
     except Part21Error:
         return None
@@ -429,7 +433,7 @@ def _unknown_findings(file: Part21File) -> Iterator[Finding]:
     unknown: dict[str, list[int]] = {}
     for id in file.ids():
         keyword = file.keyword(id) or _complex_name(file, id)
-        if keyword not in classes():
+        if keyword not in classes() and _read(file, id) is None:
             unknown.setdefault(keyword, []).append(id)
     for keyword, ids in unknown.items():
         count = f" ({len(ids)} instances)" if len(ids) > 1 else ""

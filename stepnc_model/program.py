@@ -336,6 +336,8 @@ class Program:
         last: dict[int, int] = {}
         found: list[ResolvedWorkingstep] = []
         for executable in self.executables:
+            if executable.is_open:
+                continue
             try:
                 step = self._workingstep(executable)
             except SchemaError as fault:

@@ -59,6 +59,8 @@ def _example(slot: AttributeSlot) -> str:
     """Value of an attribute as it is typed."""
     if slot.items is not None:
         return f"({_example(slot.items)},...)"
+    if slot.plain == (str,):
+        return "'TEXT'"
     is_number = bool(slot.plain) or slot.enumeration is not None
     if is_number or any(issubclass(each, _NUMBERED) for each in slot.references):
         return "VALUE"

@@ -1,10 +1,11 @@
 """Writing of optimisation advice into a program file, in one of two profiles.
 
-``optimisation`` (default)
-    The record as entities, referred to by one surplus parameter at the end of the operation.
-``standard``
+``standard`` (default)
     The record as prefixed parameters to which no instance refers: standard entities only, in
     places where no interpreter looks. A system that saves the file again may drop them.
+``optimisation`` (default where a program holds such entities)
+    The record as entities, referred to by one surplus parameter at the end of the operation. A
+    reader that takes the entities of the standard only stops at them.
 
 An AP238 file takes profile ``standard`` only: the parameters become representation items of
 action properties of the workplan (:mod:`stepnc_model.ap238.writing`).
@@ -140,6 +141,13 @@ def records(program: Program) -> dict[int, AdviceRecord]:
         int(step.operation_ref): find_record(program, step) for step in program.workingsteps
     }
     return {number: record for number, record in found.items() if record is not None}
+
+
+def usual_profile(program: Program) -> FileProfile:
+    """Profile of a program's records where none is chosen: that in which it is written."""
+    ours = (*(name for name in RECORD_KEYWORDS if name.endswith("OPTIMISATION")), *ANSWERS)
+    is_own = any(program.file.ids_of(keyword) for keyword in ours)
+    return FileProfile.OPTIMISATION if is_own else FileProfile.STANDARD
 
 
 def profile_for(program: Program, profile: FileProfile | None) -> FileProfile | None:

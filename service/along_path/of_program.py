@@ -14,13 +14,13 @@ from service.chosen import require_axes
 from service.paths.toolpaths import paths_of, with_feeds
 from service.progress import Tell, silent
 from service.requests.advice import AdviceRequest
-from service.simulation.setup import PreparedRun, prepared_program
+from service.simulation.setup import PreparedRun, prepared_program, same_id
 from stepnc_model.post import block_feeds
 from stepnc_model.post.blocks import Block
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.dialects import with_exact_stops, write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Program
+from stepnc_model.program import Program, ResolvedWorkingstep
 
 
 def along_program(
@@ -46,12 +46,7 @@ def along_program(
         When the machine cannot run the program.
     """
     require_axes(plan.machine)
-    least = least_feed(request)
-    bounds = {
-        advice.workingstep.id: replace(found, least=least)
-        for advice in plan.advices
-        if advice.status is AdviceStatus.ADVISED and (found := bounds_of(advice)) is not None
-    }
+    bounds = _bounds(program, plan, least_feed(request))
 
     def prepare(margin: float) -> PreparedRun:
         return prepared_program(
@@ -63,6 +58,28 @@ def along_program(
 
     task = replace(task_of(request, plan.machine), keeps_traces=keeps_traces)
     return along_path(PathSource(prepare=prepare, bounds=bounds_at), task, tell=tell)
+
+
+def _bounds(program: Program, plan: Plan, least: float) -> dict[str, CutBounds]:
+    """Bounds along the path by the id of the workingstep, by which a run tells them apart.
+
+    Raises
+    ------
+    SchemaError
+        If an id stands for workingsteps with different operations.
+    """
+    bounds: dict[str, CutBounds] = {}
+    first: dict[str, ResolvedWorkingstep] = {}
+    for advice in plan.advices:
+        found = bounds_of(advice) if advice.status is AdviceStatus.ADVISED else None
+        if found is None:
+            continue
+        step = advice.workingstep
+        other = first.setdefault(step.id, step)
+        if other.operation_ref != step.operation_ref:
+            raise program.error(same_id(step, other, "operation"), step.ref, "its_id")
+        bounds.setdefault(step.id, replace(found, least=least))
+    return bounds
 
 
 def nc_lines_along(

@@ -27,6 +27,10 @@ else:
     Commands = object
 
 
+_EMPTY = re.compile(r"--[a-z-]+=")
+"""Option that is typed without its value."""
+
+
 class CommandParser(argparse.ArgumentParser):
     """Parser of one command; its options are added on first use, to keep start-up fast."""
 
@@ -47,6 +51,8 @@ class CommandParser(argparse.ArgumentParser):
     def parse_known_args(self, *args: Any, **words: Any) -> Any:
         """Parse known arguments after adding the options; note which of them are outputs."""
         self.complete()
+        if any(word == "" or _EMPTY.fullmatch(word) for word in args[0] or ()):
+            self.error("an option or name is empty: leave it out, or give its value")
         namespace, rest = super().parse_known_args(*args, **words)
         if names := output_names(self):
             namespace.output_names = names

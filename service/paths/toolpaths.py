@@ -6,6 +6,7 @@ from pathlib import Path
 
 from service.paths.remarks import tell_check, tell_remarks
 from service.progress import Progress, Tell, silent
+from service.refusals import require_one_channel
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import Setup
 from stepnc_model.errors import Finding, SchemaError
@@ -114,6 +115,7 @@ def paths_for_code(program: Program, *, keep_going: bool = False, tell: Tell = s
     StepNcError
         When a path cannot be generated or run, unless it keeps going.
     """
+    require_one_channel(program)
     error = refusal(program, program.workingsteps)
     if error is not None and not keep_going:
         raise error

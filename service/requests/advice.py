@@ -75,13 +75,15 @@ class AdviceRequest(ProgramRequest):
         ),
     ] = ()  # fmt: skip
     profile: Annotated[
-        FileProfile,
+        FileProfile | None,
         About(
-            "how advice is recorded: optimisation or standard",
+            "how advice is recorded: in entities of its own schema, optimisation, or in those "
+            "that every reader knows, standard (default: standard, or optimisation where the "
+            "program holds such entities)",
             group="what is written",
             flag="--profile",
         ),
-    ] = FileProfile.OPTIMISATION
+    ] = None
     records: Annotated[
         RecordChoice,
         About(

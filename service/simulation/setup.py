@@ -190,7 +190,7 @@ class ClampedStock:
         self._program = program
         self._machine = machine
         self._margin = margin
-        self._setups = {step.id: step.setup for step in program.workingsteps}
+        self._setups = _setups(program)
         self._maps: dict[object, StockMap | None] = {}
 
     def stock(self, workingstep: str) -> StockMap | None:
@@ -212,6 +212,27 @@ class ClampedStock:
         if self._margin > 0.0:
             return larger_stock_map(self._machine, raw, self._margin)
         return stock_map(self._machine, raw)
+
+
+def _setups(program: Program) -> dict[str, Ref[Setup] | None]:
+    """Setup of each workingstep by its id, by which a run tells them apart.
+
+    Raises
+    ------
+    SchemaError
+        If an id stands for workingsteps in two setups.
+    """
+    first: dict[str, ResolvedWorkingstep] = {}
+    for step in program.workingsteps:
+        other = first.setdefault(step.id, step)
+        if other.setup != step.setup:
+            raise program.error(same_id(step, other, "setup"), step.ref, "its_id")
+    return {name: step.setup for name, step in first.items()}
+
+
+def same_id(step: ResolvedWorkingstep, other: ResolvedWorkingstep, what: str) -> str:
+    """Reason why an id must not stand for two workingsteps."""
+    return f"'{step.id}' is also the id of {other.ref}, with another {what}"
 
 
 def loaded_tools(

@@ -160,12 +160,12 @@ class Instances:
             return is_a(keyword, name)
         return any(is_a(part, name) for part, _ in self._readable(id))
 
-    def is_weighted(self, id: int) -> bool:
-        """True if an instance is a rational curve whose weights differ."""
+    def weights(self, id: int) -> tuple[Value, ...]:
+        """Weights of a rational curve; empty where they are all the same."""
         if id not in self.file or "B_SPLINE_CURVE" not in self._complex_names(id):
-            return False
+            return ()
         weights = [w for each in self.values(id, "weights_data") for w in _items(each)]
-        return len(set(weights)) > 1
+        return tuple(weights) if len(set(weights)) > 1 else ()
 
     def _complex_names(self, id: int) -> tuple[str, ...]:
         """Entities of a complex instance; none of a simple one."""

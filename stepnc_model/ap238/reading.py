@@ -23,6 +23,7 @@ from stepnc_model.ap238.quantity import (
     measure_kind,
     number_of,
 )
+from stepnc_model.ap238.rational import rational_text
 from stepnc_model.ap238.table import (
     Converted,
     ConvertedText,
@@ -208,7 +209,9 @@ class AimReader:
             _empty(slot) if row is None else self._parameter(start, row, slot)
             for row, slot in self._columns(origin.rule)
         ])
-        self._reading.converted.append(ConvertedText.of(instance, parameters))
+        weights = self.instances.weights(origin.id)
+        rational = rational_text(instance, parameters, weights) if weights else None
+        self._reading.converted.append(rational or ConvertedText.of(instance, parameters))
 
     def _as_it_is(self, origin: Origin) -> bytes:
         """Parameters of a point in mm as the file has them; empty where they are converted.
@@ -268,8 +271,6 @@ class AimReader:
         """Reference to the entity that a place stands for."""
         if place.value is not None:
             return None
-        if self.instances.is_weighted(place.id):
-            return self._unknown(place, attribute)
         for wanted in slot.references:
             for rule in rules_for(wanted):
                 if self._paths.matches(place.id, rule):
@@ -281,8 +282,6 @@ class AimReader:
         kind = what("", 1.0)
         if place.id not in self._numbers:
             keyword = self._file.keyword(place.id) or "COMPLEX_INSTANCE"
-            if self.instances.is_weighted(place.id):
-                keyword = "RATIONAL_B_SPLINE_CURVE"
             self._numbers.new(place.id, kind)
             instance = Converted(
                 number=place.id, keyword=f"AIM_{keyword}", origin=place.id, rule=None

@@ -20,6 +20,7 @@ from stepnc_model.entities import (
     workpiece,
 )
 from stepnc_model.entities.entity import Entity
+from stepnc_model.part21.values import Value
 
 MODULES = (
     adaptive,
@@ -78,3 +79,28 @@ def _entities(module: object) -> Iterator[type[Entity]]:
             continue
         if vars(value).get("keyword"):
             yield value
+
+
+WEIGHTS = "RATIONAL_B_SPLINE_CURVE"
+"""Part of a complex instance that gives a curve its weights."""
+
+
+def flattened(
+    parts: dict[str, tuple[Value, ...]],
+) -> tuple[type[Entity], tuple[Value, ...]] | None:
+    """Class and parameters of a complex instance that is one entity with its supertypes."""
+    known = [classes()[name] for name in parts if name in classes()]
+    if not known:
+        return None
+    leaf = max(known, key=lambda cls: len(cls.__mro__))
+    if WEIGHTS in parts and leaf is geometry.BSplineCurveWithKnots:
+        leaf = geometry.RationalBSplineCurveWithKnots
+    # ISO 10303-21 writes the parts in the order of their names; parameters follow supertypes.
+    names = [
+        WEIGHTS if cls is geometry.RationalBSplineCurveWithKnots else cls.express_name().upper()
+        for cls in reversed(leaf.__mro__)
+        if issubclass(cls, Entity)
+    ]
+    if any(values for name, values in parts.items() if name not in names):
+        return None
+    return leaf, tuple(value for name in names for value in parts.get(name, ()))

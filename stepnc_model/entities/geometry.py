@@ -172,6 +172,12 @@ class BSplineCurveWithKnots(BSplineCurve):
     knot_spec: KnotType
 
 
+class RationalBSplineCurveWithKnots(BSplineCurveWithKnots, abstract=True):
+    """B-spline curve with weights: a complex instance of two subtypes of a B-spline curve."""
+
+    weights_data: tuple[float, ...]
+
+
 class Surface(RepresentationItem, abstract=True):
     """Surface, a geometric item with two parameters."""
 

@@ -3,14 +3,8 @@
 ISO 10303-42: polylines, composite and trimmed curves, circles, lines, Bezier curves and
 B-splines, and the helix of NIST's ``ex1E.stp``. Circles remain arcs; ellipses, Bezier curves
 and B-splines become chords within ``CHORD_TOLERANCE``.
-
-References
-----------
-.. [1] L. Piegl, W. Tiller, "The NURBS Book", 2nd ed., Springer 1997, algorithm A2.1 and
-   eq. (3.1): points of a B-spline curve by de Boor's recursion.
 """
 
-from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -19,9 +13,7 @@ from math import atan2, ceil, cos, dist, pi, sin
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import TrimmingPreference
 from stepnc_model.entities.geometry import (
-    BezierCurve,
     BSplineCurve,
-    BSplineCurveWithKnots,
     Circle,
     CompositeCurve,
     Ellipse,
@@ -35,100 +27,8 @@ from stepnc_model.program import Program
 from stepnc_model.toolpath.arc import chord_angle
 from stepnc_model.toolpath.frame import Frame, direction_of, frame_of, point_of
 from stepnc_model.toolpath.path import Arc, ArcPlane, Feed, Move, MoveType, Point
+from stepnc_model.toolpath.spline import spline_of
 from stepnc_model.units import rad_from_deg
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Spline:
-    """B-spline curve, given by its degree, knots and control points."""
-
-    degree: int
-    knots: tuple[float, ...]
-    poles: tuple[Point, ...]
-
-    @property
-    def spans(self) -> tuple[float, ...]:
-        """Distinct knot values of the curve, from its start to its end."""
-        return tuple(sorted(set(self.knots[self.degree : len(self.poles) + 1])))
-
-    def at(self, parameter: float) -> Point:
-        """Point of the curve at a parameter value, [1]_."""
-        degree = self.degree
-        last = len(self.poles) - 1
-        span = min(max(bisect_right(self.knots, parameter) - 1, degree), last)
-        points = list(self.poles[span - degree : span + 1])
-        for level in range(1, degree + 1):
-            for i in range(degree, level - 1, -1):
-                low = self.knots[span - degree + i]
-                width = self.knots[span + 1 + i - level] - low
-                part = (parameter - low) / width if width > 0.0 else 0.0
-                a, b = points[i - 1], points[i]
-                points[i] = (
-                    a[0] + part * (b[0] - a[0]),
-                    a[1] + part * (b[1] - a[1]),
-                    a[2] + part * (b[2] - a[2]),
-                )
-        return points[degree]
-
-
-def spline_of(program: Program, ref: Ref[Entity]) -> Spline:
-    """Read a B-spline curve.
-
-    Raises
-    ------
-    PathError
-        If it is not a B-spline, or its knots and control points do not match.
-    """
-    curve = program.get(ref)
-    if not isinstance(curve, BSplineCurve):
-        raise program.path_error("is not a B-spline curve", ref)
-    poles = tuple(point_of(program, point) for point in curve.control_points_list)
-    degree = curve.degree
-    if degree < 1 or len(poles) <= degree:
-        raise program.path_error(
-            f"degree {degree} does not suit {len(poles)} control points", ref
-        )
-    knots = _knots(program, ref, curve)
-    if any(a > b for a, b in pairwise(knots)):
-        raise program.path_error("the knots decrease: each must be at least the previous", ref)
-    if len(knots) != len(poles) + degree + 1:
-        message = (
-            f"{len(knots)} knots do not match {len(poles)} control points of degree {degree}"
-        )
-        raise program.path_error(message, ref)
-    return Spline(degree=degree, knots=knots, poles=poles)
-
-
-def _knots(program: Program, ref: Ref[Entity], curve: BSplineCurve) -> tuple[float, ...]:
-    """Knot vector; open and uniform if the curve does not give one, joints of Bezier curves."""
-    if isinstance(curve, BSplineCurveWithKnots):
-        if len(curve.knots) != len(curve.knot_multiplicities):
-            counts = (
-                f"{len(curve.knots)} knots but {len(curve.knot_multiplicities)} multiplicities"
-            )
-            raise program.path_error(counts, ref)
-        for times in curve.knot_multiplicities:
-            if not 1 <= times <= curve.degree + 1:
-                message = (
-                    f"multiplicity {times}: must be 1 to {curve.degree + 1} for this degree"
-                )
-                raise program.path_error(message, ref)
-        return tuple(
-            float(knot)
-            for knot, times in zip(curve.knots, curve.knot_multiplicities, strict=True)
-            for _ in range(times)
-        )
-    count, degree = len(curve.control_points_list), curve.degree
-    if isinstance(curve, BezierCurve):
-        if (count - 1) % degree:
-            text = f"{count} control points are not those of Bezier curves of degree {degree}"
-            raise program.path_error(text, ref)
-        pieces = (count - 1) // degree
-        joints = tuple(float(piece) for piece in range(1, pieces) for _ in range(degree))
-        return (0.0,) * (degree + 1) + joints + (float(pieces),) * (degree + 1)
-    inner = tuple(float(index) for index in range(1, count - degree))
-    return (0.0,) * (degree + 1) + inner + (float(count - degree),) * (degree + 1)
-
 
 CHORD_TOLERANCE = 1e-3
 """Greatest distance between a curve and the chords that replace it, mm."""

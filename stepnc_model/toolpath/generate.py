@@ -4,23 +4,28 @@ An executable for which no path can be made raises an error, or is passed to the
 continues with the workingsteps that do not depend on it by their geometry.
 """
 
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from typing import NoReturn
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import (
-    NonSequential,
     ProgramStop,
     RapidMovement,
     Setup,
-    Workplan,
 )
 from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import PathError, SchemaError
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, ResolvedWorkingstep
-from stepnc_model.program_listing import NOT_FOLLOWED, ProgramLine, is_followed
+from stepnc_model.program_listing import (
+    STRUCTURES,
+    WITHOUT_MOVES,
+    ProgramLine,
+    is_followed,
+    not_followed,
+)
 from stepnc_model.toolpath.explicit.operation import explicit_path, rapid_movement_path
 from stepnc_model.toolpath.hole.operation import hole_path
 from stepnc_model.toolpath.left_out import LeftOut
@@ -87,15 +92,19 @@ def generate(
     SchemaError
         Unless ``on_fault`` handles the error.
     """
-    steps = {int(step.ref): step for step in program.workingsteps}
+    # A workingstep that runs several times is there as often.
+    steps: dict[int, deque[ResolvedWorkingstep]] = {}
+    for each in program.workingsteps:
+        steps.setdefault(int(each.ref), deque()).append(each)
     skipped: int | None = None
     left_out = LeftOut(program)
     setup: Ref[Setup] | None = None
     for executable in program.executables:
+        runs = None if executable.is_open else steps.get(int(executable.ref))
+        step = runs.popleft() if runs else None
         if skipped is not None and executable.level > skipped:
             continue
         skipped = None
-        step = steps.get(int(executable.ref))
         path: ToolPath | None = None
         try:
             if step is not None:
@@ -164,8 +173,8 @@ def _other(program: Program, executable: ProgramLine) -> Iterator[ToolPath | Fun
         raise fault
     entity = program.model.entity(int(executable.ref))
     if not is_followed(entity):
-        raise program.error(NOT_FOLLOWED, executable.ref)
-    if isinstance(entity, (Workplan, NonSequential)):
+        raise program.error(not_followed(executable.keyword), executable.ref)
+    if isinstance(entity, (*STRUCTURES, *WITHOUT_MOVES)):
         return
     if isinstance(entity, RapidMovement):
         # Without a path, the control moves over the security plane to what follows.

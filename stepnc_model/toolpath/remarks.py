@@ -13,13 +13,14 @@ otherwise, or whose tools fit their holes only in inches, is read the same way, 
 """
 
 from collections.abc import Iterable, Iterator
+from typing import Any
 
 from stepnc_model.ap238.instances import Instances
 from stepnc_model.ap238.quantity import MEASURES, Units, conversion
 from stepnc_model.ap238.table import Kind
 from stepnc_model.ap238.view import AimView
 from stepnc_model.entities.enums import Hand
-from stepnc_model.entities.executables import Setup
+from stepnc_model.entities.executables import Parallel, Setup
 from stepnc_model.entities.features import RoundHole
 from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.entities.profiles import LinearPath
@@ -29,8 +30,8 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, ResolvedWorkingstep, Stock
 from stepnc_model.technology import ProgrammedQuantity, programmed
 from stepnc_model.tool import hand_of, tool_of
-from stepnc_model.toolpath.frame import feature_frame, frame_of
-from stepnc_model.toolpath.left_out import SweptBox, swept_box
+from stepnc_model.toolpath.frame import feature_frame, frame_of, surrounding_frame
+from stepnc_model.toolpath.left_out import TOUCHING, SweptBox, swept_box
 from stepnc_model.toolpath.path import ToolPath
 from stepnc_model.toolpath.task import stock_of, unused_stock
 from stepnc_model.units import mm_from_inches
@@ -50,6 +51,7 @@ def doubts(program: Program) -> Iterator[Finding]:
     """
     yield from _other_lengths(program)
     yield from _same_ids(program)
+    yield from _simultaneous(program)
     for step in program.workingsteps:
         try:
             with program.using(step.operation_ref, step.tool_ref, *step.features):
@@ -90,6 +92,15 @@ def _same_ids(program: Program) -> Iterator[Finding]:
                 "not tell them apart"
             )
             yield program.finding(Severity.WARNING, text, step.ref, "its_id")
+
+
+def _simultaneous(program: Program) -> Iterator[Finding]:
+    """Warn of branches that a control runs at the same time."""
+    for executable in program.executables:
+        entity = program.model.entity(int(executable.ref))
+        if isinstance(entity, Parallel) and len(entity.branches) > 1 and not executable.is_open:
+            text = "its branches run at the same time; here they run one after another"
+            yield program.finding(Severity.WARNING, text, executable.ref, "branches")
 
 
 def _inch_tool(program: Program, step: ResolvedWorkingstep) -> Finding | None:
@@ -256,4 +267,24 @@ def _of_path(
         "outside the stock" in finding.message for finding in path.findings
     ):
         text = "the feature lies outside the stock: its tool path meets none"
+        if box.low[2] >= stock.high[2] - TOUCHING:
+            text += _lower(program, step, stock.high[2])
         yield program.finding(Severity.WARNING, text, step.features[0], "feature_placement")
+
+
+def _lower(program: Program, step: ResolvedWorkingstep, top: float) -> str:
+    """Option that puts a feature above the stock on its top; empty where none does."""
+    try:
+        with program.using(step.features[0], step.setup):
+            placement: Any = getattr(program.get(step.features[0]), "feature_placement", None)
+            height = feature_frame(program, step.setup, step.features[0]).origin[2] - top
+            at: Any = None if placement is None else program.get(placement)
+            if at is None or height <= TOUCHING:
+                return ""
+            if not surrounding_frame(program, step.setup, step.features[0]).is_upright:
+                return ""
+            x, y, z = program.get(at.location).coordinates
+    except SchemaError:
+        return ""
+    point = f"{at.location}.coordinates=({x!r},{y!r},{z - height!r})"
+    return f'; --set "{point}" puts it on the stock, {height:.4g} mm lower'

@@ -9,6 +9,7 @@ from optimiser.problem import LimitName
 from service.records import changes_of
 from simulator.library import load_machine, match_material
 from stepnc_model import writeback
+from stepnc_model.errors import SchemaError
 from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
@@ -81,16 +82,14 @@ def test_without_a_stock_the_engagement_is_estimated_and_said() -> None:
     assert any("the stock is not known" in text for text in texts)
 
 
-def test_without_a_path_everything_is_estimated_and_said() -> None:
+def test_without_a_path_nothing_is_advised() -> None:
     """No path lies between a feature and a retract plane below it."""
     below = ("'ROUGH THE FACE',10.,$,#50", "'ROUGH THE FACE',-10.,$,#50")
-    plan = measured("paper002", OptimisationTask(), below)
-    (advice,) = plan.advices
-    assert mm_min_from_speed(after(advice).feed) == pytest.approx(290.0)
-    assert after(advice).time == pytest.approx(318.0 / 290.0 * 60.0)
-    texts = [str(finding) for finding in plan.findings]
-    said = "no tool path: length, time and engagement are estimated"
-    assert any(said in text and "retract plane must lie above" in text for text in texts)
+    with pytest.raises(SchemaError, match="retract plane must lie above"):
+        measured("paper002", OptimisationTask(), below)
+    plan = measured("paper002", OptimisationTask(keep_going=True), below)
+    assert not plan.advices
+    assert "retract plane must lie above" in plan.refused[0].reason
 
 
 def test_time_counts_the_way_through_air(bracket: Plan) -> None:

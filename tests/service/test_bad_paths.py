@@ -137,7 +137,7 @@ FEED = "#304=MILLING_TECHNOLOGY(0.0064,.TCP.,$,-40."
         (("#45=CARTESIAN_POINT('',(0.,0.,50.))", "#45=$"), "#45"),
         (instead("IF_STATEMENT('IF',$,#5,$)"), "#7 IF_STATEMENT"),
         (instead("WHILE_STATEMENT('W',$,#5)"), "#7 WHILE_STATEMENT"),
-        (instead("PARALLEL('P',(#5,#6))"), "#7 PARALLEL"),
+        (instead("WAIT_FOR_MARK('P',$)"), "#7 WAIT_FOR_MARK"),
         (instead("SELECTIVE('S',(#5,#6))"), "#7 SELECTIVE"),
         (instead("ASSIGNMENT('A',$,$)"), "#7 ASSIGNMENT"),
         (instead("TOUCH_PROBING('T',$,$)"), "#7 TOUCH_PROBING"),

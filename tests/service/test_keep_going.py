@@ -187,7 +187,7 @@ class TestGivenData:
         text = part.with_suffix(".optimised.stpnc").read_text()
         assert NO_DEPTH["_31"] in text
         assert text.count("=PLANE(") == 1
-        assert "OPTIMISATION" in text
+        assert "optimisation:mode:" in text
 
     def test_in_place_it_is_written(self, part: Path) -> None:
         part.write_bytes(program(**NO_TEETH))

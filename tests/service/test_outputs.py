@@ -81,7 +81,7 @@ class TestPlacesOfOutputs:
         answer = call(optimise_main, str(link), "--machine", "paper002", "--in-place")
         assert answer.code == 0
         assert link.is_symlink()
-        assert b"TIME_CRITICAL_OPTIMISATION" in target.read_bytes()
+        assert b"optimisation:mode:" in target.read_bytes()
 
     def test_names_that_no_system_takes_are_refused(self, tmp_path: Path, call: Call) -> None:
         part = str(PARTS / "paper002.stpnc")

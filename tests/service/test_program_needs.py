@@ -125,5 +125,14 @@ def test_what_no_run_can_follow_is_not_advised(tmp_path: Path) -> None:
     )
     part = written(tmp_path, text)
     refused = run("optimise", part, "--material", "c45")
-    assert "SELECTIVE: this kind of executable cannot be" in refused.reason
+    named = re.search(r'--set "(#\d+\.its_elements=\(#\d+\))"', refused.reason)
+    assert named is not None, refused.reason
     assert "advice: no: " in run("check", part).out
+    # What the refusal names is done: the program goes the whole way, and keeps its choice.
+    advised = tmp_path / "advised.stpnc"
+    with_choice = ("--set", named[1], "--material", "c45")
+    done = run("optimise", part, *with_choice, "-o", advised)
+    assert done.code == 0, done.reason
+    assert run("simulate", advised, *with_choice).code == 0
+    assert b"BRANCH_RELATIONSHIP" in advised.read_bytes()
+    assert run("optimise", advised, "--material", "c45").reason == refused.reason

@@ -73,31 +73,67 @@ class TestOrder:
         assert [int(each.ref) for each in program.workingsteps] == [10, 11, 12, 13]
 
     @pytest.mark.parametrize(
-        "structure",
+        ("structure", "runs"),
         [
-            "#5=PARALLEL('S',(#10,#11));",
-            "#5=SELECTIVE('S',(#10,#11));",
-            "#5=NON_SEQUENTIAL('S',(#10,#11));",
-            "#5=IF_STATEMENT('S',#71,#10,#11);",
+            ("#5=PARALLEL('S',(#10,#11));", 2),
+            ("#5=NON_SEQUENTIAL('S',(#10,#11));", 2),
+            ("#5=SELECTIVE('S',(#10,#11));", 0),
+            ("#5=IF_STATEMENT('S',#71,#10,#11);", 0),
         ],
     )
-    def test_a_structure_comes_before_what_it_contains(self, structure: str) -> None:
+    def test_a_structure_comes_before_what_it_contains(self, structure: str, runs: int) -> None:
         program = program_of(PROJECT, plan(2, 5), structure, step(10), step(11), *COMMON)
         assert ids(program) == [2, 5, 10, 11]
-        assert len(program.workingsteps) == 2
+        assert len(program.workingsteps) == runs
+        assert len(program.faults) == (runs == 0)
+
+    def test_a_choice_names_what_it_chooses_from(self) -> None:
+        choice = "#5=SELECTIVE('S',(#10,#11));"
+        program = program_of(PROJECT, plan(2, 5), choice, step(10), step(11), *COMMON)
+        assert "#10 'STEP 10' or #11 'STEP 11'" in str(only_fault(program))
+        assert '--set "#5.its_elements=(#10)"' in str(only_fault(program))
+
+    def test_a_choice_of_one_is_none(self) -> None:
+        program = program_of(PROJECT, plan(2, 5), "#5=SELECTIVE('S',(#10));", step(10), *COMMON)
+        assert len(program.workingsteps) == 1
+
+    def test_a_loop_runs_as_often_as_its_condition_holds(self) -> None:
+        # N = 0, M = 1: the body sets N to M, M to 2, so that N < 2 holds twice.
+        program = program_of(
+            PROJECT,
+            plan(2, 5, 11),
+            "#5=WHILE_STATEMENT('S',#80,#6);",
+            plan(6, 10, 7, 8),
+            "#7=ASSIGNMENT('N',#81,#82);",
+            "#8=ASSIGNMENT('M',#82,#83);",
+            "#80=COMPARISON_LESS(#81,#83);",
+            "#81=NC_VARIABLE('N',0.);",
+            "#82=NC_VARIABLE('M',1.);",
+            "#83=NC_CONSTANT('TWO',2.);",
+            *map(step, (10, 11)),
+            *COMMON,
+        )
+        assert ids(program) == [2, 5, 6, 10, 7, 8, 6, 10, 7, 8, 11]
+        assert [int(each.ref) for each in program.workingsteps] == [10, 10, 11]
+        assert [each.index for each in program.workingsteps] == [0, 1, 2]
+
+    def test_a_loop_without_end_is_refused(self) -> None:
+        with pytest.raises(SchemaError, match="more than 100000 executables"):
+            program_of(
+                PROJECT,
+                plan(2, 5),
+                "#5=WHILE_STATEMENT('S',#80,#10);",
+                "#80=COMPARISON_EQUAL(#81,#81);",
+                "#81=NC_VARIABLE('N',0.);",
+                step(10),
+                *COMMON,
+            )
 
     def test_an_if_without_else_has_one_branch(self) -> None:
         program = program_of(
             PROJECT, plan(2, 5), "#5=IF_STATEMENT('S',#71,#10,$);", step(10), *COMMON
         )
         assert ids(program) == [2, 5, 10]
-
-    def test_a_while_contains_its_body_once(self) -> None:
-        program = program_of(
-            PROJECT, plan(2, 5, 11), "#5=WHILE_STATEMENT('S',#71,#10);",
-            step(10), step(11), *COMMON,
-        )  # fmt: skip
-        assert ids(program) == [2, 5, 10, 11]
 
     def test_an_assignment_is_kept_and_machines_nothing(self) -> None:
         program = program_of(

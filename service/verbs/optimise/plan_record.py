@@ -5,7 +5,7 @@ Unchecked limits of a plan: required ones without a bound, and the risk of chatt
 Notes on depths of passes that a user sets and that do not divide the whole depth.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,7 @@ from simulator.physics.surface_spread import LIKELY
 from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.given import SetAttribute
+from stepnc_model.part21.values import Value
 from stepnc_model.program import Program
 from stepnc_model.units import (
     kw_from_watts,
@@ -91,26 +92,30 @@ def depth_notes(
     program: Program, plan: Plan, given: Iterable[SetAttribute]
 ) -> tuple[Finding, ...]:
     """Notes on depths that were set and became passes of another depth."""
-    refs = {int(each.ref) for each in given if each.attribute in DEPTHS}
-    return tuple(_notes(program, plan, refs)) if refs else ()
+    depths = {int(each.ref): each.value for each in given if each.attribute in DEPTHS}
+    return tuple(_notes(program, plan, depths)) if depths else ()
 
 
-def _notes(program: Program, plan: Plan, refs: set[int]) -> Iterator[Finding]:
+def _notes(program: Program, plan: Plan, depths: Mapping[int, Value]) -> Iterator[Finding]:
     for advice in plan.advices:
         step = advice.workingstep
         strategy = getattr(step.operation, "its_machining_strategy", None)
-        if refs & {int(ref) for ref in (step.operation_ref, strategy) if ref is not None}:
-            text = _text(advice)
+        places = (int(ref) for ref in (step.operation_ref, strategy) if ref is not None)
+        depth = next((depths[place] for place in places if place in depths), None)
+        if isinstance(depth, int | float):
+            text = _text(advice, float(depth))
             if text:
                 yield program.finding(Severity.NOTE, text, step.operation_ref)
 
 
-def _text(advice: Advice) -> str:
+def _text(advice: Advice, depth: float) -> str:
     """Number and depth of the passes as programmed; empty where the depth divides."""
     cut = advice.cut
     if cut is None or cut.kind is not CutKind.MILLING or not cut.is_depth_free:
         return ""
     given, whole = cut.programmed, cut.total_depth
+    if depth > whole * (1.0 + DIVIDES):
+        return f"a depth of {depth:g} mm is more than there is: one pass of {whole:.4g} mm"
     real = whole / given.passes
     if abs(real / given.depth - 1.0) <= DIVIDES:
         return ""

@@ -75,7 +75,7 @@ def advise_program(
     require_apart(named_place(files.kb), output, files.report, files.feeds_csv, nc_place)
     whole = _read_whole(request, files, library, tell)
     program = whole.program
-    profile = writeback.profile_for(program, _profile(request))
+    profile = _profile(request, program)
     chosen = selected(program, request.workingsteps)
     findings = program.file.findings + program.model.findings()
     possible = advisable(program, chosen, keep_going=request.keep_going)
@@ -284,6 +284,8 @@ def _write_feeds(files: AdviceFiles, along: "FeedsAlongPath | None", tell: Tell)
 def _require_sense(request: AdviceRequest, files: AdviceFiles) -> None:
     """Refuse numbers out of bounds, and options that have no effect."""
     require_bounds(request)
+    if request.is_exact_path and request.nc_control is None:
+        raise StepNcError("--exact-path is of NC code, and needs --nc")
     if request.is_along_path:
         return
     if request.levels is not None or files.feeds_csv is not None:
@@ -320,9 +322,12 @@ def _tell_conflicts(plan: Plan, tell: Tell) -> None:
         tell(f"infeasible, left as programmed: {names}")
 
 
-def _profile(request: AdviceRequest) -> FileProfile | None:
-    """Form of the records that is requested; None for no records."""
-    return None if request.records is RecordChoice.NONE else request.profile
+def _profile(request: AdviceRequest, program: Program) -> FileProfile | None:
+    """Form of the records; None for no records."""
+    if request.records is RecordChoice.NONE:
+        return None
+    chosen = request.profile or writeback.usual_profile(program)
+    return writeback.profile_for(program, chosen)
 
 
 def _task(

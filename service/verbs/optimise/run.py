@@ -18,6 +18,8 @@ def run(request: AdviceRequest, files: AdviceFiles, *, tell: Tell = silent) -> O
     StepNcError
         When a file, a name, a limit or an option is not valid; nothing is written.
     """
+    if files.dry_run and files.output is not None:
+        tell(f"--dry-run: {files.output} is not written")
     if files.file.is_dir():
         from service.verbs.optimise.folder import optimise_folder  # noqa: PLC0415 (executors)
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from stepnc_model.toolpath.curve import Spline
+from stepnc_model.toolpath.spline import Spline
 
 RAMP = 0.01
 """Greatest length of a ramp, mm."""

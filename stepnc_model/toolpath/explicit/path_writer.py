@@ -31,11 +31,11 @@ from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.values import Real, Ref, Typed
 from stepnc_model.program import Program
 from stepnc_model.toolpath.arc import length
-from stepnc_model.toolpath.curve import Spline
 from stepnc_model.toolpath.explicit.curve_writer import CurveWriter, HelixForm
 from stepnc_model.toolpath.explicit.factor_curve import SHORTEST, FactorPart, factor_curve
 from stepnc_model.toolpath.explicit.planned_path import PlannedMove, PlannedPath
 from stepnc_model.toolpath.path import Dwell, MoveType, Point
+from stepnc_model.toolpath.spline import Spline
 
 MOST_MOVES = 1000
 """Greatest number of moves of one trajectory; readers bound the curves of a chain."""

@@ -33,9 +33,10 @@ from stepnc_model.part21.values import Ref, Typed
 from stepnc_model.program import Program
 from stepnc_model.tool import Tool
 from stepnc_model.toolpath.arc import length, point_at
-from stepnc_model.toolpath.curve import Segment, Spline, path_segments, spline_of
+from stepnc_model.toolpath.curve import Segment, path_segments
 from stepnc_model.toolpath.frame import Frame, point_of
 from stepnc_model.toolpath.path import Feed, Move, MoveType, Point
+from stepnc_model.toolpath.spline import Spline, spline_of
 
 PIECES = 64
 """Least number of pieces of a path along which a curve of factors is sampled."""

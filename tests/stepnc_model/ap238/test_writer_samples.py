@@ -79,23 +79,6 @@ def test_bezier_curves_pass_their_joints() -> None:
     assert any(abs(x - 24.0) < 1e-6 and abs(y - 2.0) < 1e-6 for x, y, _ in ends)
 
 
-def test_rational_curves_with_weights_are_named() -> None:
-    pattern = (
-        r"=B_SPLINE_CURVE_WITH_KNOTS\('',(3,.*?),\.UNSPECIFIED\.,\.F\.,\.F\.,"
-        r"(\([^)]*\),\([^)]*\)),\.UNSPECIFIED\.\)"
-    )
-    weights = ",".join(["1.", "0.7", *["1."] * 9])
-    text = re.sub(
-        pattern,
-        r"=(BOUNDED_CURVE()B_SPLINE_CURVE(\1,.UNSPECIFIED.,.F.,.F.)"
-        r"B_SPLINE_CURVE_WITH_KNOTS(\2,.UNSPECIFIED.)CURVE()GEOMETRIC_REPRESENTATION_ITEM()"
-        rf"RATIONAL_B_SPLINE_CURVE(({weights}))REPRESENTATION_ITEM(''))",
-        editor_ball_splines(),
-    )
-    messages = [each.message for each in program(text).findings()]
-    assert any("RATIONAL_B_SPLINE_CURVE" in message for message in messages)
-
-
 def test_the_second_setup_is_cut_from_the_other_side() -> None:
     found = program(apt_two_setups())
     one, other = (

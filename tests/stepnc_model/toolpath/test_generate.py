@@ -83,16 +83,19 @@ def test_a_fault_ends_the_run_unless_somebody_takes_it() -> None:
     assert all(isinstance(fault, PathError) for fault in faults)
 
 
-def test_branches_are_refused_with_all_that_hangs_on_them() -> None:
+@pytest.mark.parametrize(("value", "is_cut"), [("1.", True), ("2.", False), ("$", None)])
+def test_a_branch_runs_where_its_condition_is_known(value: str, is_cut: bool | None) -> None:
     more = (
         "#900=IF_STATEMENT('IF',#901,#3,$);\n"
         "#901=COMPARISON_EQUAL(#902,#903);\n"
-        "#902=NC_VARIABLE('A',1.);\n#903=NC_CONSTANT('B',1.);"
+        f"#902=NC_VARIABLE('A',{value});\n#903=NC_CONSTANT('B',1.);"
     )
     program = edited(("(#3,#7,#4,#5,#6),$,#40,$)", "(#900,#4),$,#40,$)"), more=more)
     faults: list[SchemaError] = []
-    assert names(program, faults) == ["MILL STEP", "MILL SLOT"]
-    assert "#900 IF_STATEMENT" in str(faults[0])
+    made = names(program, faults)
+    assert made[-2:] == ["MILL STEP", "MILL SLOT"]
+    assert ("ROUGH FACE" in made) == (is_cut is True)
+    assert ["#902 NC_VARIABLE" in str(fault) for fault in faults] == [True] * (is_cut is None)
 
 
 def test_an_unusable_workingstep_says_what_it_lacks() -> None:

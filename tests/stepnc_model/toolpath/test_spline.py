@@ -1,5 +1,7 @@
 """B-splines against polynomials worked out by hand."""
 
+from math import hypot
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -8,7 +10,7 @@ from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
-from stepnc_model.toolpath.curve import Spline, spline_of
+from stepnc_model.toolpath.spline import Spline, spline_of
 from tests.every_case import every_case
 
 HEADER = (
@@ -54,6 +56,45 @@ def test_knots_of_the_file_count_by_their_multiplicity() -> None:
     assert spline.spans == (0.0, 3.0, 4.0)
     assert spline.at(1.5) == (0.5, 1.0, 0.0)
     assert spline.at(3.5) == (1.5, 1.0, 0.0)
+
+
+def rational(weights: str, points: str = "#11,#12,#13") -> str:
+    return (
+        f"(BOUNDED_CURVE()B_SPLINE_CURVE(2,({points}),{FORM})"
+        "B_SPLINE_CURVE_WITH_KNOTS((3,3),(0.,1.),.UNSPECIFIED.)CURVE()"
+        f"GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_CURVE(({weights}))"
+        "REPRESENTATION_ITEM(''))"
+    )
+
+
+@given(part=st.floats(0.0, 1.0))
+def test_a_rational_parabola_is_a_circle(part: float) -> None:
+    """Piegl and Tiller, section 7.3: the middle weight is the cosine of half the arc's angle.
+
+    The tangents at the ends of (0, 0), (1, 2), (2, 0) meet at an angle whose half has the
+    sine 1 / √5; the circle about (1, −0.5) has the radius √1.25.
+    """
+    x, y, z = read(rational(f"1.,{5.0**-0.5!r},1.")).at(part)
+    assert hypot(x - 1.0, y + 0.5) == pytest.approx(1.25**0.5)
+    assert z == 0.0
+
+
+@pytest.mark.parametrize(
+    ("weights", "message"),
+    [("1.,1.", "2 weights for 3 control points"), ("1.,0.,1.", "weight 0: must be positive")],
+)
+def test_weights_that_cannot_be_meant(weights: str, message: str) -> None:
+    with pytest.raises(PathError, match=message):
+        read(rational(weights))
+
+
+def test_a_point_may_be_a_complex_instance() -> None:
+    point = (
+        "(CARTESIAN_POINT((1.,2.,0.))GEOMETRIC_REPRESENTATION_ITEM()POINT()"
+        "REPRESENTATION_ITEM(''))"
+    )
+    text = f"{PARABOLA.replace('#12', '#15')};\n#15={point}"
+    assert read(text).at(0.5) == read(PARABOLA).at(0.5)
 
 
 @every_case(

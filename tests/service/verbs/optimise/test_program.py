@@ -1,5 +1,6 @@
 """One function per verb: what they read, refuse and write."""
 
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,8 @@ from service.verbs.optimise.plan_result import ProgramAdvice
 from simulator.errors import UnknownMachine, UnknownMaterial
 from stepnc_model.errors import SchemaError, Severity, StepNcError, WriteError
 from stepnc_model.file_profile import FileProfile
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.program import Program
 from tests.asking import AskedAdvice, asked_advice
 from tests.checked import check
 
@@ -212,6 +215,41 @@ def test_records_convert_there_and_back(paper: Path, profile: FileProfile) -> No
     stepnc.convert(there, profile=profile.value, output=back)
     assert check(there).is_usable
     assert check(back).is_usable
+
+
+def keywords(path: Path) -> Counter[str]:
+    file = Part21File.from_bytes(path.read_bytes())
+    return Counter(file.keyword(number) for number in file.ids())
+
+
+@pytest.mark.parametrize("name", ["paper002.stpnc", "shaft.stpnc"])
+def test_a_strict_reader_takes_the_program_as_optimise_writes_it(
+    name: str, tmp_path: Path
+) -> None:
+    # What NIST's parser takes: entities of the standard, in their own number of parameters.
+    before, after = copy_of(name, tmp_path), tmp_path / "after"
+    assert stepnc.optimise(before, output=after).is_advised
+    added = keywords(after) - keywords(before)
+    assert added["NUMERIC_PARAMETER"] > 0
+    technologies = {"MILLING_TECHNOLOGY", "TURNING_TECHNOLOGY"}
+    assert set(added) <= {"NUMERIC_PARAMETER", "DESCRIPTIVE_PARAMETER"} | technologies
+    assert schemas_of(before) == schemas_of(after)
+    program = Program.load(after)
+    assert [step.operation.its_optimisation for step in program.workingsteps] == [
+        None for _ in program.workingsteps
+    ]
+
+
+def test_a_program_with_a_record_in_entities_keeps_that_form(paper: Path) -> None:
+    once, twice = paper.with_name("once"), paper.with_name("twice")
+    stepnc.optimise(paper, output=once, profile="optimisation")
+    stepnc.optimise(once, output=twice)
+    assert once.read_bytes() == twice.read_bytes()
+    assert keywords(twice)["TIME_CRITICAL_OPTIMISATION"] > 0
+
+
+def schemas_of(path: Path) -> bytes:
+    return next(line for line in path.read_bytes().split(b"\n") if b"FILE_SCHEMA" in line)
 
 
 def test_a_program_is_not_converted_onto_itself(paper: Path) -> None:

@@ -12,9 +12,9 @@ from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from stepnc_model.toolpath.arc import length
-from stepnc_model.toolpath.curve import Spline
 from stepnc_model.toolpath.explicit.trajectory import PIECES, MoveSpeeds, pace_of, paced
 from stepnc_model.toolpath.path import Arc, Feed, Move, MoveType
+from stepnc_model.toolpath.spline import Spline
 from tests.every_case import every_case
 
 HEADER = (
