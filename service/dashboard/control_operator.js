@@ -133,7 +133,7 @@ export function operatorCard(ask, alarms) {
     el("div", { class: "orders" }, hold, resume,
       el("label", { class: "most", for: slider.id }, el("span", {}, "Override at most ", state), slider),
       el("span", { class: "small", id: "no-emergency-stop" }, el("strong", {}, "Not an emergency stop."),
-        " Hold acts on the feed alone, within a tenth of a second of being read; rapids end first.")),
+        " Hold acts on the feed alone, within a tenth of a second; a rapid goes on to its end.")),
     note,
     el("div", { class: "row" }, el("span", {}, "Remaining, at the programmed feeds ", remaining),
       el("span", {}, "Finished about ", finish), alarms.sound, alarms.notify),
@@ -154,9 +154,9 @@ export function operatorCard(ask, alarms) {
     /** Show the status of the run, at a pace. */
     show(status, isOver) {
       if (status?.override_ceiling_percent) slider.max = Math.floor(status.override_ceiling_percent);
-      const left = isOver ? 0 : status?.remaining_s;
+      const isEnded = isOver || Boolean(status?.is_stopped), left = isEnded ? null : status?.remaining_s;
       remaining.textContent = duration(left);
-      finish.textContent = !status || isOver ? "–" : status.is_held ? "held"
+      finish.textContent = !status || isEnded ? "–" : status.is_held ? "held"
         : status.pace ? new Date(Date.now() + 1000 * left / status.pace).toLocaleTimeString("en-GB") : "at once";
     },
     warn(events) {

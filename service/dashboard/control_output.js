@@ -23,7 +23,7 @@ const SMALL = {
   ],
   "control-run": [
     ["power_kw", "Drive power", "kW", 2],
-    ["motor_power_kw", "Motor power available", "kW", 2],
+    ["motor_power_kw", "Available power", "kW", 2],
     ["force_expected_n", "Expected force", "N", 0],
     ["force_measured_n", "Measured force", "N", 0],
     ["removal_rate_cm3_min", "Removal rate", "cm³/min", 1],
@@ -32,6 +32,8 @@ const SMALL = {
   ],
 };
 const BAR_TOP = 1.5;
+/** share of the set point above which bar and lamp say so; noise about the set point stays below */
+const NEAR = 1.02;
 /** values of a machine at rest, regardless of its last sample */
 const AT_REST = { feed_actual_mm_min: 0, feed_per_tooth_mm: 0, removal_rate_cm3_min: 0, force_measured_n: 0,
   force_predicted_n: 0, power_kw: 0, power_predicted_kw: 0 };
@@ -41,6 +43,12 @@ const OFF = { feed_advised_mm_min: null };
 /** Return the words on a force above its set point, with number and time. */
 function overWords({ over_set_point_percent: percent, over_set_point_s: seconds }) {
   return `OVER SET POINT ${fixed(percent, 0)} % for ${fixed(Math.floor(seconds), 0)} s`;
+}
+
+/** Return the force as a share of its set point; null if one of them is not known. */
+function shareOf(status) {
+  const force = status?.force_measured_n, aim = status?.force_set_point_n;
+  return Number.isFinite(force) && aim ? Math.max(force, 0) / aim : null;
 }
 
 function named(name, words, unit, kind) {
@@ -118,12 +126,12 @@ export class Output {
 
   showForce(status) {
     const force = status?.force_measured_n, aim = status?.force_set_point_n;
-    const share = Number.isFinite(force) && aim ? Math.max(force, 0) / aim : null;
+    const share = shareOf(status);
     const of = aim ? `of ${fixed(aim, 0)} N set point` : "no set point";
     this.put(this.forceText, !Number.isFinite(force) ? "–"
       : `${fixed(force, 0)} N ${of}${share === null ? "" : `, ${fixed(100 * share, 0)} %`}`);
     this.fillBar.style.transform = `scaleX(${Math.min(share ?? 0, BAR_TOP) / BAR_TOP})`;
-    const tone = share > 1.1 ? "over" : share > 1.02 ? "near" : "";
+    const tone = share > 1.1 ? "over" : share > NEAR ? "near" : "";
     this.bar.className = `meter ${tone}`;
     this.bar.setAttribute("aria-valuenow", number(100 * (share ?? 0), 3));
   }
@@ -132,7 +140,8 @@ export class Output {
     const [tone, word] = !status ? ["idle", "NO RUN"] : isAtRest ? ["idle", "AT REST"]
       : status.is_overloaded ? ["over", "OVER POWER"]
         : status.over_set_point_s ? ["over", overWords(status)]
-          : status.is_override_followed === false ? ["over", "NOT FOLLOWED"] : ["safe", "SAFE"];
+          : status.is_override_followed === false ? ["over", "NOT FOLLOWED"]
+            : shareOf(status) > NEAR ? ["near", "ABOVE SET POINT"] : ["safe", "SAFE"];
     if (this.lampWord.textContent === word) return;
     // Numbers that count on are not announced each time.
     if (word.split(" ")[0] !== this.lampWord.textContent.split(" ")[0]) announce(`limits: ${word}`);

@@ -134,12 +134,14 @@ function limits(step) {
   const used = ({ value, bound, sense, safety_factor: safety }) =>
     (sense === "at least" ? bound / value : safety * value / bound);
   const sorted = [...step.limits].sort((a, b) => used(b) - used(a));
-  const told = step.advised ? "as advised" : "as programmed";
+  // An exceeded limit of a step that the plan leaves alone is not one of the plan.
+  const isOfPlan = Boolean(step.advised) || step.status === "infeasible";
+  const told = step.advised ? "as advised" : isOfPlan ? "as programmed" : "as programmed, not of this plan";
   return el("table", {}, el("caption", {}, `Limits ${told}, nearest first`),
     el("thead", {}, el("tr", {}, ["Limit", "Value and bound", "Use", "Margin"].map((title, at) =>
       el("th", { scope: "col", class: at % 2 ? "n" : undefined }, title)))),
     el("tbody", {}, sorted.map((limit) => {
-      const share = used(limit), isOver = limit.margin < -1e-6, isNear = limit.margin < 1e-3;
+      const share = used(limit), isOver = isOfPlan && limit.margin < -1e-6, isNear = limit.margin < 1e-3;
       const name = limitWords(limit.name, step);
       return el("tr", {},
         el("th", { scope: "row" }, limit.name === step.active_limit && isNear ? el("b", {}, name) : name),

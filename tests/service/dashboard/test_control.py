@@ -198,3 +198,21 @@ def test_an_alarm_stays_until_it_is_acknowledged(page: Page) -> None:
     expect(page.locator("#alarms")).to_be_hidden()
     page.locator("#alarm-sound").click()
     expect(page.locator("#alarm-sound")).to_have_attribute("aria-pressed", "true")
+
+
+def test_a_force_above_its_set_point_is_never_green(page: Page) -> None:
+    """Sampled in each frame, from the cut into a work that is twice as hard."""
+    running(page, pace=1.0)
+    page.evaluate(
+        """() => { window.seen = { above: 0, green: 0 };
+        new MutationObserver(() => {
+          const share = Number(/([0-9]+) %$/.exec(document.getElementById("out-force").textContent)?.[1]);
+          if (!(share > 103)) return;
+          window.seen.above += 1;
+          if (document.getElementById("lamp").classList.contains("safe")) window.seen.green += 1;
+        }).observe(document.getElementById("glance"), { childList: true, subtree: true }); }"""
+    )
+    page.locator("#switch-off").click()
+    set_input(page, "hardness_percent", "1000")
+    until(lambda: page.evaluate("window.seen.above") > 3)
+    assert page.evaluate("window.seen.green") == 0
