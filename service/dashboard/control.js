@@ -8,6 +8,7 @@ import { Freshness, Output } from "/dashboard/control_output.js";
 import { bookOf, paceField, programPanes, startPanes, trialPanes } from "/dashboard/control_panes.js";
 import { Plots } from "/dashboard/control_plots.js";
 import { PLACES, Run, newest, refusals } from "/dashboard/control_run.js";
+import { addKey } from "/dashboard/keys.js";
 import { programTitle } from "/dashboard/records.js";
 
 const SOURCES = [["trial", "Trial cut"], ["control-run", "Program"]];
@@ -311,6 +312,8 @@ async function open() {
   const going = await newest(isProgram ? ["control-run"] : undefined);
   await (going ? join(going) : idle(isProgram ? "control-run" : "trial"));
 }
+
+addKey("h", "hold the feed of the program shown", () => byId("hold").click());
 
 // Enable starting only now, because a run started earlier would not be shown.
 open().then(() => { state.isReady = true; showState(); })

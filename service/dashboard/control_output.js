@@ -2,6 +2,7 @@
 
 import { announce, byId, el, figure, fixed, number } from "/dashboard/app.js";
 import { switchField } from "/dashboard/control_fields.js";
+import { measured, placesOf, unitOf } from "/dashboard/units.js";
 
 const FEEDS = [
   ["feed_programmed_mm_min", "Programmed feed", "mm/min"],
@@ -52,7 +53,7 @@ function shareOf(status) {
 }
 
 function named(name, words, unit, kind) {
-  const node = figure(words, "–", unit, kind);
+  const node = figure(words, "–", unitOf(unit), kind);
   const value = node.querySelector(".value");
   value.id = `out-${name}`;
   node.dataset.name = name;
@@ -96,7 +97,7 @@ export class Output {
   shape(kind) {
     if (kind === this.kind) return;
     this.kind = kind;
-    this.smalls = SMALL[kind].map(([name, words, unit, places]) => ({ name, places, ...named(name, words, unit, "") }));
+    this.smalls = SMALL[kind].map(([name, words, unit, places]) => ({ name, unit, places, ...named(name, words, unit, "") }));
     this.small.replaceChildren(...this.smalls.map((each) => each.node));
   }
 
@@ -105,15 +106,15 @@ export class Output {
     const isAtRest = isOver || Boolean(last?.is_stopped);
     const status = last && { ...last, ...(isAtRest ? AT_REST : {}), ...(last.is_on === false ? OFF : {}) };
     this.node.classList.toggle("over-now", isOver || !status);
-    const feeds = FEEDS.map(([name]) => status?.[name]);
+    const feeds = FEEDS.map(([name, , unit]) => measured(status?.[name], unit));
     this.feeds.forEach((each, at) => each.put(fixed(feeds[at], Math.abs(feeds[at]) < 100 && at < 3 ? 1 : 0)));
-    for (const each of this.smalls) each.put(fixed(status?.[each.name], each.places));
+    for (const { name, unit, places, put } of this.smalls) put(fixed(measured(status?.[name], unit), placesOf(places, unit)));
     this.showForce(status);
     this.put(this.holding, !status ? "–" : (status.holding || "nothing"));
     this.showLamp(status, isAtRest);
     this.glance.hidden = !status || isOver;
     this.glance.className = `glance ${this.lamp.classList[1]}`;
-    this.put(this.glance, `${this.lampWord.textContent} · ${fixed(feeds[2], 0)} mm/min · `
+    this.put(this.glance, `${this.lampWord.textContent} · ${fixed(feeds[2], 0)} ${unitOf("mm/min")} · `
       + `${fixed(status?.force_measured_n, 0)} N`);
     const warning = status?.depth_warning ? `Warning: ${status.depth_warning}` : "";
     if (this.depth.textContent !== warning) {

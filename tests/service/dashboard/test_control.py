@@ -206,10 +206,12 @@ def test_a_force_above_its_set_point_is_never_green(page: Page) -> None:
     page.evaluate(
         """() => { window.seen = { above: 0, green: 0 };
         new MutationObserver(() => {
-          const share = Number(/([0-9]+) %$/.exec(document.getElementById("out-force").textContent)?.[1]);
+          const force = document.getElementById("out-force").textContent;
+          const share = Number(/([0-9]+) %$/.exec(force)?.[1]);
           if (!(share > 103)) return;
           window.seen.above += 1;
-          if (document.getElementById("lamp").classList.contains("safe")) window.seen.green += 1;
+          const lamp = document.getElementById("lamp");
+          if (lamp.classList.contains("safe")) window.seen.green += 1;
         }).observe(document.getElementById("glance"), { childList: true, subtree: true }); }"""
     )
     page.locator("#switch-off").click()
