@@ -64,8 +64,8 @@ async function compare() {
 }
 
 async function show(result, ids) {
-  const trade = el("div", { id: "compare-trade", role: "img", "aria-label": "time and energy of each plan" });
-  const times = el("div", { id: "compare-times", role: "img", "aria-label": "time of each workingstep by plan" });
+  const trade = el("div", { id: "compare-trade", role: "figure", "aria-label": "time and energy of each plan" });
+  const times = el("div", { id: "compare-times", role: "figure", "aria-label": "time of each workingstep by plan" });
   const table = el("table", { id: "compare-steps" });
   const whole = el("input", { type: "checkbox", id: "compare-whole", checked: isWhole, onchange: () => { isWhole = whole.checked; steps(table, result); } });
   fill(found,

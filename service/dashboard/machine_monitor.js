@@ -57,7 +57,7 @@ export function showMonitor(place, name, { programs, prediction = "" }) {
     onchange: () => choose(choice.value) }, el("option", { value: "" }, "none"));
   const span = el("select", { id: "real-window", onchange: () => chart?.follow(Number(span.value)) },
     WINDOWS.map(([seconds, text]) => el("option", { value: seconds }, text)));
-  const drawn = el("div", { class: "chart", id: "real-chart", role: "img",
+  const drawn = el("div", { class: "chart", id: "real-chart", role: "figure",
     "aria-label": "position, feed, spindle power and total power over time, measured and predicted" });
   const table = el("div", { id: "comparison" });
   const hold = () => { isHeld = true; }, release = () => { isHeld = false; };

@@ -65,7 +65,7 @@ export function showRun(place, first, told = () => {}) {
     oninput: () => goTo(Number(slider.value)) });
   const atLine = el("label", { class: "at no-print", hidden: true, id: "at-line" },
     el("span", { id: "at-words" }, "State at the end of the run"), slider);
-  const drawn = el("div", { class: "chart", id: "run-chart", role: "img",
+  const drawn = el("div", { class: "chart", id: "run-chart", role: "figure",
     "aria-label": "power by component, feed commanded and actual, cutting force over time" });
   const outcome = el("div", { id: "results" });
   const hold = () => { isHeld = true; }, release = () => { isHeld = false; };

@@ -1,4 +1,4 @@
-"""axe-core, from a pinned package, on every page: nothing serious, light and dark, wide and narrow."""
+"""axe-core on every page: nothing serious, light and dark, on a wide screen and on a phone."""
 
 from importlib.resources import files
 from importlib.util import find_spec
