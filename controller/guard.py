@@ -68,6 +68,8 @@ class OverrideReason(StrEnum):
     OFF = "switched off"
     INHIBITED = "the program inhibits the override"
     STOPPED = "stopped"
+    OPERATOR = "the operator"
+    OPERATOR_HOLD = "held by the operator"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

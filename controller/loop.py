@@ -23,7 +23,7 @@ from controller.loop_state import (
     begun,
     initial,
 )
-from controller.order_effects import obeyed
+from controller.order_effects import obeyed, operated
 from controller.orders import Order
 from controller.ports import Override, Sensor
 from controller.preview import Preview
@@ -108,7 +108,7 @@ class Loop:
         whole = self._pieces.add(reading) if is_new else reading
         if whole is None:
             # A part of a tooth period is no load of a tooth.
-            self.state = awaited(state, reading, self._law_for)
+            self.state = operated(awaited(state, reading, self._law_for))
             self._port.set(self.state.override)
             return self._cycle(reading, weight, None)
         is_tooth = whole is reading
@@ -126,7 +126,7 @@ class Loop:
             known = expected if is_known else 0.0
             ratio = log_ratio(revolution, known, expected_before=state.expected)
             state = resolved(state._replace(expected=known), reading, revolution)
-        self.state = answered(
+        state = answered(
             state,
             whole,
             revolution,
@@ -134,6 +134,7 @@ class Loop:
             force=nan if force < least else force,
             law_for=self._law_for,
         )
+        self.state = operated(state)
         self._port.set(self.state.override)
         cycle = self._cycle(reading, weight, self.state.monitor.life)
         if revolution is None:

@@ -24,6 +24,10 @@ class LoopSettings:
 
     criterion: Criterion = Criterion.TC
     is_on: bool = True
+    is_held: bool = False
+    """Whether the operator holds the feed."""
+    most: float = inf
+    """Greatest override that the operator allows."""
     power_factor: float = 1.0
     """Share of the motor's power that may be used."""
     set_point: float | None = None
@@ -45,6 +49,8 @@ class LoopSettings:
         ):
             if not 0.0 < value < inf:
                 raise ValueError(f"{thing} {value:g} must be positive and finite")
+        if not self.most > 0.0:
+            raise ValueError(f"greatest override {self.most:g} must be positive")
         if self.look_ahead < 0:
             raise ValueError(f"look-ahead {self.look_ahead} must be at least 0")
 

@@ -425,7 +425,7 @@ def _followed(
     if monitor.is_worn and monitor.over.seconds > WORN_PATIENCE and is_least:
         least = f"{monitor.share:.3g} times the set point even at the least feed"
         return _stopped(state, f"the force is {least}: {monitor.cause}")
-    below = state.below + 1 if got.override < keep.floor else 0
+    below = state.below + 1 if got.override < min(keep.floor, state.settings.most) else 0
     if below > BELOW:
         percent = 100.0 * keep.floor
         text = f"the force is too high even at {percent:.3g} % of the programmed feed"

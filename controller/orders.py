@@ -53,7 +53,31 @@ class MotorPowerTo:
             raise ValueError(f"motor power × {self.factor:g}: it must be positive")
 
 
-Order = SwitchTo | CriterionTo | MotorPowerTo
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FeedHoldTo:
+    """Order to hold the feed, or to resume it."""
+
+    is_held: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OverrideAtMost:
+    """Order to bound the override from above; the guard may keep it lower.
+
+    Raises
+    ------
+    ValueError
+        When the bound is not positive and finite.
+    """
+
+    most: float
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.most < inf:
+            raise ValueError(f"override at most {self.most:g}: it must be positive")
+
+
+Order = SwitchTo | CriterionTo | MotorPowerTo | FeedHoldTo | OverrideAtMost
 
 
 class EventKind(StrEnum):

@@ -8,7 +8,16 @@ from dataclasses import dataclass
 from math import inf, isfinite
 from typing import Any
 
-from controller.orders import CriterionTo, EventKind, LoopEvent, MotorPowerTo, SwitchTo
+from controller.guard import OverrideReason
+from controller.orders import (
+    CriterionTo,
+    EventKind,
+    FeedHoldTo,
+    LoopEvent,
+    MotorPowerTo,
+    OverrideAtMost,
+    SwitchTo,
+)
 from service.control.run import ControlRun, Session
 from service.control.setup import hardness_against
 from service.requests.fields import loaded, require_bounds
@@ -64,6 +73,12 @@ class ControlStatus(SessionStatus):
     """Flank wear of the tool as estimated from the forces, in mm; None: not known."""
     flank_wear_deviation_mm: float | None
     """Standard deviation of that estimate, in mm."""
+    remaining_s: float
+    """Time that remains at the programmed feeds, in s."""
+    override_ceiling_percent: float
+    """Top of the override band, which the operator cannot raise, in per cent."""
+    is_held: bool
+    """Whether the operator holds the feed."""
     is_tool_change_due: bool
     """Whether the loop asks for a tool change."""
     is_done: bool
@@ -124,6 +139,11 @@ class LiveControl:
         hardness = hardness_against(self.session.plan.material)
         material = None if changes.material is None else hardness(changes.material)
         loop = self.session.loop
+        self._require_most(changes.override_most_percent)
+        if changes.is_held is not None:
+            loop.order(FeedHoldTo(is_held=changes.is_held))
+        if changes.override_most_percent is not None:
+            loop.order(OverrideAtMost(most=0.01 * changes.override_most_percent))
         if mode is not None:
             loop.order(CriterionTo(criterion=mode))
         if changes.is_on is not None:
@@ -141,6 +161,22 @@ class LiveControl:
             self._say(f"workpiece material {changes.material}: k_c {100.0 * material:.3g} %")
         if material is not None or changes.hardness_percent is not None:
             self._hide(HiddenQuantity.HARDNESS, self._hardness * self._material)
+
+    def _holding(self) -> str:
+        """Return what limits the feed now; empty after the end."""
+        if self._is_done:
+            return ""
+        is_held = self.session.loop.state.settings.is_held
+        return OverrideReason.OPERATOR_HOLD.value if is_held else self.session.holdings.words
+
+    def _require_most(self, percent: float | None) -> None:
+        """Refuse a bound of the override above the band of the guard."""
+        band = self.session.loop.state.settings.band
+        if percent is not None and percent > 100.0 * band.ceiling:
+            raise StepNcError(
+                f"override_most_percent {percent:g} %: the guard allows at most "
+                f"{100.0 * band.ceiling:g} %"
+            )
 
     def status(self) -> ControlStatus:
         """Return the status snapshot of the run."""
@@ -175,9 +211,12 @@ class LiveControl:
             is_override_followed=not loop.state.following.is_astray,
             flank_wear_mm=None if life is None else life.flank_wear,
             flank_wear_deviation_mm=None if life is None else life.uncertainty,
+            remaining_s=(1.0 - machine.share) * machine.course.duration,
+            override_ceiling_percent=100.0 * settings.band.ceiling,
+            is_held=settings.is_held and not self._is_done,
             is_tool_change_due=monitor.tool in monitor.worn
             or (loop.state.is_stopped and monitor.is_worn),
-            holding="" if self._is_done else session.holdings.words,
+            holding=self._holding(),
             level=session.holdings.level.value,
             criterion=settings.criterion,
             is_on=settings.is_on,
@@ -187,8 +226,8 @@ class LiveControl:
 
     @property
     def is_waiting(self) -> bool:
-        """Always False, because a stopped run ends (see ``session.runner.LiveSession``)."""
-        return False
+        """True while the operator holds the feed (see ``session.runner.LiveSession``)."""
+        return self.session.loop.state.settings.is_held and not self._is_done
 
     def obey(self, order: Mapping[str, Any]) -> None:
         """Apply the changes of an order (:class:`service.session.runner.LiveSession`)."""
@@ -199,7 +238,13 @@ class LiveControl:
     def snapshot(self) -> dict[str, Any]:
         """Return the status with the requested inputs; the machine's true state may differ."""
         status, session = self.status(), self.session
-        held = {"mode": status.criterion.value, "is_on": status.is_on}
+        most = min(100.0 * session.loop.state.settings.most, status.override_ceiling_percent)
+        held = {
+            "mode": status.criterion.value,
+            "is_on": status.is_on,
+            "is_held": status.is_held,
+            "override_most_percent": most,
+        }
         usual = {**UNCHANGED, "material": session.plan.material.material.name}
         tools = {each.workingstep.id: each.tool.id for each in session.advices if each}
         return {

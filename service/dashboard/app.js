@@ -1,9 +1,13 @@
 // Shared by all pages: frame, requests, event streams, formatting of numbers.
 
+import { listen } from "/dashboard/keys.js";
+import { isInch, toggleUnits } from "/dashboard/units.js";
+
 const PAGES = [
   ["plan", "Plan"], ["control", "Control"], ["machine", "Machine"],
   ["factory", "Factory"], ["verify", "Verify"], ["knowledge", "Knowledge"], ["jobs", "Jobs"],
 ];
+const MANUAL = "/manual/index.html";
 const KEY = "stepnc.key", THEME = "stepnc.theme";
 /** HTTP status codes of a service that is starting or stopping */
 const AWAY = [502, 503, 504];
@@ -290,19 +294,27 @@ function frame() {
   const at = location.pathname.split("/").pop().replace(".html", "");
   const links = PAGES.map(([name, text]) => el("a", { href: `/dashboard/${name}.html`,
     "aria-current": name === at ? "page" : undefined }, text));
-  const toggle = el("button", { class: "plain", "aria-label": "switch between light and dark", title: "switch between light and dark",
-    onclick: () => {
-      localStorage.setItem(THEME, theme() ? "light" : "dark");
-      theme();
-      document.dispatchEvent(new Event("theme"));
-    } }, "◐");
+  const turn = () => {
+    localStorage.setItem(THEME, theme() ? "light" : "dark");
+    theme();
+    document.dispatchEvent(new Event("theme"));
+  };
+  const toggle = el("button", { class: "plain", "aria-label": "switch between light and dark",
+    title: "switch between light and dark", onclick: turn }, "◐");
+  const units = el("button", { class: "plain small", id: "units-shown", title: "switch between metric and inch",
+    "aria-label": `units: ${isInch() ? "inch" : "metric"}`, onclick: toggleUnits }, isInch() ? "inch" : "mm");
+  const showKeys = listen(el, PAGES, [["m", "manual", () => { location.href = MANUAL; }],
+    ["u", "metric or inch", toggleUnits], ["d", "light or dark", turn]]);
+  const keys = el("button", { class: "plain", id: "keys", "aria-label": "keyboard map", title: "keyboard map (?)",
+    onclick: showKeys }, "?");
   const bar = el("header", { class: "bar" },
     el("a", { class: "brand", href: "/dashboard/plan.html" },
       el("img", { src: "/dashboard/icon.svg", alt: "", width: "24", height: "24" }), "stepnc"),
     el("nav", { "aria-label": "pages" }, links),
     el("div", { class: "right" },
       el("button", { class: "plain small", id: "key", hidden: !keptKey(), onclick: changeKey }, "Key"),
-      el("a", { class: "small", href: "/v1/openapi.json" }, "API"), toggle));
+      el("a", { class: "small", id: "manual", href: MANUAL }, "Manual"),
+      el("a", { class: "small", href: "/v1/openapi.json" }, "API"), units, keys, toggle));
   document.body.prepend(el("a", { class: "skip", href: "#main" }, "skip to content"), bar);
   document.body.append(el("div", { id: "said", class: "unseen", role: "status", "aria-live": "polite" }));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {

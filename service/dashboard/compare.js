@@ -3,6 +3,7 @@
 import { announce, api, byId, el, fill, fixed, moment, number, tell } from "/dashboard/app.js";
 import { colour, layout, plot } from "/dashboard/charts.js";
 import { allPrograms, framed, programTitle } from "/dashboard/records.js";
+import { measured, unitOf } from "/dashboard/units.js";
 
 const asked = new URLSearchParams(location.search);
 /** Colours that the colour-blind can tell apart (Okabe and Ito, 2008), and marks that need none. */
@@ -63,8 +64,8 @@ async function compare() {
 }
 
 async function show(result, ids) {
-  const trade = el("div", { id: "compare-trade", role: "img", "aria-label": "time and energy of each plan" });
-  const times = el("div", { id: "compare-times", role: "img", "aria-label": "time of each workingstep by plan" });
+  const trade = el("div", { id: "compare-trade", role: "figure", "aria-label": "time and energy of each plan" });
+  const times = el("div", { id: "compare-times", role: "figure", "aria-label": "time of each workingstep by plan" });
   const table = el("table", { id: "compare-steps" });
   const whole = el("input", { type: "checkbox", id: "compare-whole", checked: isWhole, onchange: () => { isWhole = whole.checked; steps(table, result); } });
   fill(found,
@@ -107,11 +108,11 @@ function steps(table, { plans, workingsteps }) {
     if (isWhole || new Set(group.map(like)).size > 1) rows.push(group);
   }
   fill(table, el("caption", { class: "unseen" }, "Workingsteps in each plan"),
-    el("thead", {}, el("tr", {}, ["Workingstep", "Plan", "Feed mm/min", "rpm", "Depth mm × passes", "Limit", "Ideal Ra µm", "Time s"].map((text, at) =>
+    el("thead", {}, el("tr", {}, ["Workingstep", "Plan", `Feed ${unitOf("mm/min")}`, "rpm", "Depth mm × passes", "Limit", "Ideal Ra µm", "Time s"].map((text, at) =>
       el("th", { scope: "col", class: [2, 3, 4, 6, 7].includes(at) ? "n" : "" }, text)))),
     rows.length ? rows.map((group) => el("tbody", {}, group.map((step, at) => el("tr", {},
       at ? null : el("th", { scope: "rowgroup", rowspan: String(group.length) }, step.workingstep),
-      el("td", {}, step.plan), el("td", { class: "n" }, step.feed_mm_min === null ? "–" : fixed(step.feed_mm_min, 1)),
+      el("td", {}, step.plan), el("td", { class: "n" }, step.feed_mm_min === null ? "–" : fixed(measured(step.feed_mm_min, "mm/min"), 1)),
       el("td", { class: "n" }, step.spindle_rpm === null ? "–" : fixed(step.spindle_rpm, 0)),
       el("td", { class: "n" }, (step.depth_x_passes ?? "–").replace("x", "×")), el("td", {}, step.active_limit),
       el("td", { class: "n" }, step.roughness_ra_um === null ? "–" : number(step.roughness_ra_um)),

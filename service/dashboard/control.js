@@ -3,10 +3,12 @@
 import { announce, api, byId, duration, el, fill, fixed, moment, tell } from "/dashboard/app.js";
 import { boundsOf } from "/dashboard/control_fields.js";
 import { Log } from "/dashboard/control_log.js";
+import { Alarms, operatorCard, question } from "/dashboard/control_operator.js";
 import { Freshness, Output } from "/dashboard/control_output.js";
 import { bookOf, paceField, programPanes, startPanes, trialPanes } from "/dashboard/control_panes.js";
 import { Plots } from "/dashboard/control_plots.js";
 import { PLACES, Run, newest, refusals } from "/dashboard/control_run.js";
+import { addKey } from "/dashboard/keys.js";
 import { programTitle } from "/dashboard/records.js";
 
 const SOURCES = [["trial", "Trial cut"], ["control-run", "Program"]];
@@ -14,17 +16,18 @@ const SOURCES = [["trial", "Trial cut"], ["control-run", "Program"]];
 const state = { kind: "trial", run: null, draft: {}, panes: null, fresh: null, stop: "", program: "",
   refused: "" };
 const output = new Output(ask), fresh = new Freshness(), plots = new Plots(), pace = paceField(ask);
-const log = new Log((events) => plots.mark(events));
+const alarms = new Alarms(), operator = operatorCard(ask, alarms);
+const log = new Log((events) => { plots.mark(events); alarm(events); });
 let book = null, machines = [], materials = [];
 
 // -- requests -----------------------------------------------------------------------------------
 
-const fields = () => [...(state.panes?.fields ?? []), output.isOn, output.mode, pace];
+const fields = () => [...(state.panes?.fields ?? []), ...operator.fields, output.isOn, output.mode, pace];
 
 /** Change an input of the run, or of the run to be started. */
-function ask(name, value) {
+function ask(name, value, isAtOnce = false) {
   const { run } = state;
-  if (run && !run.isOver) { run.ask(name, value); return; }
+  if (run && !run.isOver) { run.ask(name, value, isAtOnce); return; }
   const field = fields().find((each) => each.spec.name === name);
   const { low, high } = field.spec;
   if (typeof value === "number" && low !== undefined && !(low <= value && value <= high)) {
@@ -73,6 +76,9 @@ async function order(json) {
 
 async function end() {
   const { run } = state;
+  const isSure = await question("end-question", "End this run?",
+    "It cannot be continued afterwards. Hold stops the feed and can be resumed.", "End it", "Go on");
+  if (!isSure || run.isOver) return;
   if (run.kind === "trial" && run.job.state === "running" && run.status) { await order({ end: true }); return; }
   await api(`${run.place}/cancel`, { method: "POST" }).catch((error) => tell(byId("trouble"), error));
 }
@@ -94,6 +100,7 @@ function showFields() {
     state.panes?.enable(isFree);
     pace.enable(isFree);
     output.mode.enable(isFree);
+    operator.fields[0].enable(isFree && Boolean(isLive));
   }
   output.isOn.enable(isFree && (isLive || state.kind === "trial"));
   if (held) state.panes?.fit(held);
@@ -112,6 +119,7 @@ function condition() {
   if (run.isOver) return [run.kind === "trial" ? "Ended" : "Program finished", "soft", ""];
   if (!status) return ["Preparing", "warn", job.message];
   if (job.is_cancelling) return ["Ending", "warn", ""];
+  if (status.is_held) return ["Held", "warn", "the feed is held by the operator"];
   return status.is_done ? ["Writing results", "warn", ""] : ["Running", "good", ""];
 }
 
@@ -133,6 +141,7 @@ function showState() {
 function showStatus() {
   const { run } = state, status = run?.status ?? null;
   output.show(status, Boolean(run?.isOver));
+  operator.show(status, Boolean(run?.isOver));
   showFields();
   showState();
   const shown = state.panes?.told;
@@ -166,6 +175,12 @@ const HEAR = {
   },
 };
 
+/** Raise the alarms of the run shown; only those of a running one are told aloud. */
+function alarm(events) {
+  alarms.show(state.run?.job.id ?? "", events, Boolean(state.run) && !state.run.isOver);
+  operator.warn(events);
+}
+
 function noteStop(event) {
   if (["stop", "breakage", "lost"].includes(event.kind)) state.stop = event.text;
 }
@@ -176,6 +191,7 @@ function noteStop(event) {
 async function shape() {
   const { kind, run } = state, isLive = run && !run.isOver;
   output.shape(kind);
+  operator.node.classList.toggle("of-trial", kind === "trial");
   for (const [name, button] of Object.entries(sources)) {
     button.setAttribute("aria-pressed", String(name === kind));
   }
@@ -279,8 +295,8 @@ fill(byId("main"),
     el("span", { class: "row tight" }, runState, runName),
     el("span", { class: "clock" }, el("span", { class: "soft" }, "machine time "), time),
     el("span", { class: "row tight commands" }, pace.node, begin, cutter, finish)),
-  el("div", { id: "trouble" }), stopped, fresh.node,
-  el("div", { class: "panel" }, el("div", { class: "seen" }, output.node, plots.node),
+  el("div", { id: "trouble" }), alarms.node, stopped, fresh.node,
+  el("div", { class: "panel" }, el("div", { class: "seen" }, operator.node, output.node, plots.node),
     el("div", { class: "set" }, panes, log.node)), output.glance);
 
 async function open() {
@@ -296,6 +312,8 @@ async function open() {
   const going = await newest(isProgram ? ["control-run"] : undefined);
   await (going ? join(going) : idle(isProgram ? "control-run" : "trial"));
 }
+
+addKey("h", "hold the feed of the program shown", () => byId("hold").click());
 
 // Enable starting only now, because a run started earlier would not be shown.
 open().then(() => { state.isReady = true; showState(); })

@@ -2,6 +2,7 @@
 
 import { announce, byId, el, figure, fixed, number } from "/dashboard/app.js";
 import { switchField } from "/dashboard/control_fields.js";
+import { measured, placesOf, unitOf } from "/dashboard/units.js";
 
 const FEEDS = [
   ["feed_programmed_mm_min", "Programmed feed", "mm/min"],
@@ -23,7 +24,7 @@ const SMALL = {
   ],
   "control-run": [
     ["power_kw", "Drive power", "kW", 2],
-    ["motor_power_kw", "Motor power available", "kW", 2],
+    ["motor_power_kw", "Available power", "kW", 2],
     ["force_expected_n", "Expected force", "N", 0],
     ["force_measured_n", "Measured force", "N", 0],
     ["removal_rate_cm3_min", "Removal rate", "cm³/min", 1],
@@ -32,6 +33,8 @@ const SMALL = {
   ],
 };
 const BAR_TOP = 1.5;
+/** share of the set point above which bar and lamp say so; noise about the set point stays below */
+const NEAR = 1.02;
 /** values of a machine at rest, regardless of its last sample */
 const AT_REST = { feed_actual_mm_min: 0, feed_per_tooth_mm: 0, removal_rate_cm3_min: 0, force_measured_n: 0,
   force_predicted_n: 0, power_kw: 0, power_predicted_kw: 0 };
@@ -43,8 +46,14 @@ function overWords({ over_set_point_percent: percent, over_set_point_s: seconds 
   return `OVER SET POINT ${fixed(percent, 0)} % for ${fixed(Math.floor(seconds), 0)} s`;
 }
 
+/** Return the force as a share of its set point; null if one of them is not known. */
+function shareOf(status) {
+  const force = status?.force_measured_n, aim = status?.force_set_point_n;
+  return Number.isFinite(force) && aim ? Math.max(force, 0) / aim : null;
+}
+
 function named(name, words, unit, kind) {
-  const node = figure(words, "–", unit, kind);
+  const node = figure(words, "–", unitOf(unit), kind);
   const value = node.querySelector(".value");
   value.id = `out-${name}`;
   node.dataset.name = name;
@@ -88,7 +97,7 @@ export class Output {
   shape(kind) {
     if (kind === this.kind) return;
     this.kind = kind;
-    this.smalls = SMALL[kind].map(([name, words, unit, places]) => ({ name, places, ...named(name, words, unit, "") }));
+    this.smalls = SMALL[kind].map(([name, words, unit, places]) => ({ name, unit, places, ...named(name, words, unit, "") }));
     this.small.replaceChildren(...this.smalls.map((each) => each.node));
   }
 
@@ -97,15 +106,15 @@ export class Output {
     const isAtRest = isOver || Boolean(last?.is_stopped);
     const status = last && { ...last, ...(isAtRest ? AT_REST : {}), ...(last.is_on === false ? OFF : {}) };
     this.node.classList.toggle("over-now", isOver || !status);
-    const feeds = FEEDS.map(([name]) => status?.[name]);
+    const feeds = FEEDS.map(([name, , unit]) => measured(status?.[name], unit));
     this.feeds.forEach((each, at) => each.put(fixed(feeds[at], Math.abs(feeds[at]) < 100 && at < 3 ? 1 : 0)));
-    for (const each of this.smalls) each.put(fixed(status?.[each.name], each.places));
+    for (const { name, unit, places, put } of this.smalls) put(fixed(measured(status?.[name], unit), placesOf(places, unit)));
     this.showForce(status);
     this.put(this.holding, !status ? "–" : (status.holding || "nothing"));
     this.showLamp(status, isAtRest);
     this.glance.hidden = !status || isOver;
     this.glance.className = `glance ${this.lamp.classList[1]}`;
-    this.put(this.glance, `${this.lampWord.textContent} · ${fixed(feeds[2], 0)} mm/min · `
+    this.put(this.glance, `${this.lampWord.textContent} · ${fixed(feeds[2], 0)} ${unitOf("mm/min")} · `
       + `${fixed(status?.force_measured_n, 0)} N`);
     const warning = status?.depth_warning ? `Warning: ${status.depth_warning}` : "";
     if (this.depth.textContent !== warning) {
@@ -118,12 +127,12 @@ export class Output {
 
   showForce(status) {
     const force = status?.force_measured_n, aim = status?.force_set_point_n;
-    const share = Number.isFinite(force) && aim ? Math.max(force, 0) / aim : null;
+    const share = shareOf(status);
     const of = aim ? `of ${fixed(aim, 0)} N set point` : "no set point";
     this.put(this.forceText, !Number.isFinite(force) ? "–"
       : `${fixed(force, 0)} N ${of}${share === null ? "" : `, ${fixed(100 * share, 0)} %`}`);
     this.fillBar.style.transform = `scaleX(${Math.min(share ?? 0, BAR_TOP) / BAR_TOP})`;
-    const tone = share > 1.1 ? "over" : share > 1.02 ? "near" : "";
+    const tone = share > 1.1 ? "over" : share > NEAR ? "near" : "";
     this.bar.className = `meter ${tone}`;
     this.bar.setAttribute("aria-valuenow", number(100 * (share ?? 0), 3));
   }
@@ -132,7 +141,8 @@ export class Output {
     const [tone, word] = !status ? ["idle", "NO RUN"] : isAtRest ? ["idle", "AT REST"]
       : status.is_overloaded ? ["over", "OVER POWER"]
         : status.over_set_point_s ? ["over", overWords(status)]
-          : status.is_override_followed === false ? ["over", "NOT FOLLOWED"] : ["safe", "SAFE"];
+          : status.is_override_followed === false ? ["over", "NOT FOLLOWED"]
+            : shareOf(status) > NEAR ? ["near", "ABOVE SET POINT"] : ["safe", "SAFE"];
     if (this.lampWord.textContent === word) return;
     // Numbers that count on are not announced each time.
     if (word.split(" ")[0] !== this.lampWord.textContent.split(" ")[0]) announce(`limits: ${word}`);

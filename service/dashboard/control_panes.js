@@ -14,6 +14,11 @@ const MILLING = { full: "full: a slot", up: "up: conventional", down: "down: cli
   symmetric: "symmetric: the middle" };
 const LAWS = { "log-pi": "log PI", "pi": "PI", "fuzzy": "fuzzy", "self-tuning": "self-tuning",
   "mrac": "model reference (MRAC)", "mpc": "predictive (MPC)", "none": "none: only monitoring" };
+/** disturbances that are set before the start, as in the option --disturb */
+const DISTURBANCES = [["kc:1.3", "k_c 30 % above the catalogue's"], ["depth:+50%@12s", "depth, from 12 s on"],
+  ["hardness:+30%@12s", "k_c, from 12 s on"], ["tooth:1@12s", "the first tooth breaks"],
+  ["wear:0.05mm/min", "flank wear in each minute of cutting"], ["silence:2s@12s", "no force readings for 2 s"],
+  ["override:80%@12s", "the axes run 80 %, whatever is commanded"], ["line:off@12s", "the connection breaks"]];
 const PACES = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
 
 /** Read inputs and control laws from the OpenAPI document of the service. */
@@ -112,6 +117,8 @@ export function startPanes(book, { programs, advices, machines, materials }) {
   const material = choice("material", "workpiece material",
     [["", "as in the program"], ...materialOptions(materials, true)]);
   const law = choice("law", "control law", book.laws.map((each) => [each, LAWS[each] ?? each]));
+  const disturbances = el("input", { id: "in-disturbances", type: "text", placeholder: "kc:1.3 depth:+50%@12s",
+    "aria-describedby": "disturbances-help" });
   const preview = checkField({ name: "has_preview", words: "use a preview of the cut ahead" }, () => {});
   const recorded = checkField({ name: "is_recorded", words: "record the outcome in the knowledge base" }, () => {});
   const fields = [program, machine, material, law, preview, recorded];
@@ -121,13 +128,16 @@ export function startPanes(book, { programs, advices, machines, materials }) {
   program.enable(!isEmpty);
   return {
     fields,
-    nodes: [pane("input", "Input", fields, isEmpty ? el("p", { class: "banner warn", id: "no-programs" },
+    nodes: [pane("input", "Input", fields, el("label", { for: disturbances.id }, "disturbances, unknown to the loop", disturbances),
+      el("details", { class: "small" }, el("summary", {}, "What can be disturbed"), el("ul", { id: "disturbances-help" },
+        DISTURBANCES.map(([word, text]) => el("li", {}, el("code", {}, word), ` ${text}`)))), isEmpty ? el("p", { class: "banner warn", id: "no-programs" },
       "No programs yet: ", el("a", { href: "/dashboard/plan.html" }, "upload one"), ".") : null)],
     isEmpty,
     /** Return the body for POST /v1/control-runs. */
     body() {
       const [kind, id] = program.read().split(":");
       return { [`${kind}_id`]: id, machine: machine.read(), material: material.read(), law: law.read(),
+        disturbances: disturbances.value.split(/[\s,;]+/).filter(Boolean),
         has_preview: preview.node.firstChild.checked, is_recorded: recorded.node.firstChild.checked };
     },
     /** Fill the form from the request of another run. */
@@ -135,6 +145,7 @@ export function startPanes(book, { programs, advices, machines, materials }) {
       const source = request.advice_id ? `advice:${request.advice_id}` : `program:${request.program_id}`;
       if ([...program.select.options].some((option) => option.value === source)) program.show(source);
       for (const field of fields.slice(1)) field.show(request[field.spec.name]);
+      disturbances.value = (request.disturbances ?? []).join(" ");
     },
     fit() {},
     enable() {},

@@ -81,11 +81,12 @@ export class Run {
     this.hear.status(this.status);
   }
 
-  /** Request another value shortly; several requests are sent together. */
-  ask(name, value) {
+  /** Request another value, shortly or at once; several requests are sent together. */
+  ask(name, value, isAtOnce = false) {
     this.asked.set(name, { value, sentAt: null });
     clearTimeout(this.soon);
-    this.soon = setTimeout(() => this.send(), DEBOUNCE_MS);
+    if (isAtOnce) this.send();
+    else this.soon = setTimeout(() => this.send(), DEBOUNCE_MS);
     this.hear.status(this.status);
   }
 

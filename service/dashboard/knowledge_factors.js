@@ -87,7 +87,7 @@ export async function factors(place, { review, told }) {
       fill(inside, el("p", { class: "empty", id: "no-factors" }, "No correction yet: “Review” compares measured with expected forces and proposes a factor for each machine, material and tool."), left);
       return;
     }
-    const chart = el("div", { class: "chart", id: "factor-plot", role: "img",
+    const chart = el("div", { class: "chart", id: "factor-plot", role: "figure",
       "aria-label": "factor on k_c of each machine, material and tool, with the interval of 9 in 10 next runs; the table below lists the numbers" });
     fill(inside,
       el("ul", { class: "keys", "aria-label": "marks" },

@@ -25,8 +25,8 @@ export async function outcomePlots(place, found) {
   const runs = [...new Set(outcomes.map((each) => each.run))];
   const choice = el("select", { id: "quantity", onchange: () => { wanted = choice.value; draw(); } },
     Object.entries(QUANTITIES).map(([name, [title]]) => el("option", { value: name, selected: name === wanted }, title)));
-  const scatter = el("div", { class: "chart", id: "scatter", role: "img" });
-  const over = el("div", { class: "chart", id: "over-runs", role: "img" });
+  const scatter = el("div", { class: "chart", id: "scatter", role: "figure" });
+  const over = el("div", { class: "chart", id: "over-runs", role: "figure" });
   const summed = el("p", { class: "soft small", id: "plots-words" });
   fill(place, el("section", { class: "card", "aria-labelledby": "plots-title" },
     el("div", { class: "row spread" }, el("h2", { id: "plots-title" }, "Predicted and measured values"),

@@ -2,6 +2,7 @@
 
 import { announce, el, fill, fixed, number, words } from "/dashboard/app.js";
 import { framed } from "/dashboard/records.js";
+import { measured, unitOf } from "/dashboard/units.js";
 
 const GRADES = ["violated", "wasted", "D", "C", "B", "A", "unknown"];
 const TONES = { violated: "bad", wasted: "warn", D: "bad", C: "warn", B: "good", A: "good", unknown: "soft" };
@@ -59,7 +60,7 @@ function columns(rows) {
     ["Workpiece material", [ofRow("ID", (row) => row.material),
       figures("k_c N/mm²", (side) => number(side.k_c11_n_mm2, 4), (side) => side.k_c11_n_mm2 ?? -1)]],
     ["Cutting tool", [{ label: "ID", text: (side) => side.tool || "–", isWrapped: true },
-      figures("V_c m/min", (side) => number(side.cutting_speed_m_min), (side) => side.cutting_speed_m_min ?? -1)]],
+      figures(`V_c ${unitOf("m/min")}`, (side) => number(measured(side.cutting_speed_m_min, "m/min")), (side) => side.cutting_speed_m_min ?? -1)]],
     ["Roughing f_z, mm", [
       figures("predicted", (side) => (isFinishing(side) ? "" : number(side.feed_per_tooth_predicted_mm)), (side) => side.feed_per_tooth_predicted_mm ?? -1),
       figures("evaluated", (side) => (isFinishing(side) ? "" : number(side.feed_per_tooth_evaluated_mm)), (side) => side.feed_per_tooth_evaluated_mm ?? -1)]],

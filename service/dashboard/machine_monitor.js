@@ -5,6 +5,7 @@ import { AWAY_WORDS, announce, api, byId, duration, el, fill, fixed, moment, num
 import { programOf } from "/dashboard/records.js";
 import { monitorChart, monitorKeys, WINDOWS } from "/dashboard/machine_monitor_chart.js";
 import { comparisonTable } from "/dashboard/machine_compare.js";
+import { measured, placesOf, unitOf } from "/dashboard/units.js";
 
 const FLUSH = 500, COMPARE = 2000;
 
@@ -17,12 +18,12 @@ const LAMPS = { ACTIVE: "safe", WAIT: "wait", FEED_HOLD: "wait", INTERRUPTED: "w
 
 /** Readings: id, label, unit, formatting of a row's value; large ones first. */
 const READINGS = [
-  ["real-feed-commanded", "Feed commanded", "mm/min", (row) => number(row.feed_programmed_mm_min, 4), "big"],
-  ["real-feed-actual", "Feed actual", "mm/min", (row) => number(row.feed_actual_mm_min, 4), "big"],
+  ["real-feed-commanded", "Feed commanded", unitOf("mm/min"), (row) => number(measured(row.feed_programmed_mm_min, "mm/min"), 4), "big"],
+  ["real-feed-actual", "Feed actual", unitOf("mm/min"), (row) => number(measured(row.feed_actual_mm_min, "mm/min"), 4), "big"],
   ["real-power", "Total power", "kW", (row) => fixed(kilo(row.total_power_w), 2), "big"],
-  ["real-x", "X", "mm", (row) => fixed(row.x_mm, 2)],
-  ["real-y", "Y", "mm", (row) => fixed(row.y_mm, 2)],
-  ["real-z", "Z", "mm", (row) => fixed(row.z_mm, 2)],
+  ["real-x", "X", unitOf("mm"), (row) => fixed(measured(row.x_mm, "mm"), placesOf(2, "mm"))],
+  ["real-y", "Y", unitOf("mm"), (row) => fixed(measured(row.y_mm, "mm"), placesOf(2, "mm"))],
+  ["real-z", "Z", unitOf("mm"), (row) => fixed(measured(row.z_mm, "mm"), placesOf(2, "mm"))],
   ["real-spindle", "Spindle", "rpm", (row) => number(row.spindle_speed_rpm, 4)],
   ["real-spindle-power", "Spindle power", "kW", (row) => fixed(kilo(row.spindle_power_w), 2)],
   ["real-tool", "Tool", "", (row) => (row.tool ? `T${row.tool}` : "–")],
@@ -56,7 +57,7 @@ export function showMonitor(place, name, { programs, prediction = "" }) {
     onchange: () => choose(choice.value) }, el("option", { value: "" }, "none"));
   const span = el("select", { id: "real-window", onchange: () => chart?.follow(Number(span.value)) },
     WINDOWS.map(([seconds, text]) => el("option", { value: seconds }, text)));
-  const drawn = el("div", { class: "chart", id: "real-chart", role: "img",
+  const drawn = el("div", { class: "chart", id: "real-chart", role: "figure",
     "aria-label": "position, feed, spindle power and total power over time, measured and predicted" });
   const table = el("div", { id: "comparison" });
   const hold = () => { isHeld = true; }, release = () => { isHeld = false; };

@@ -7,6 +7,7 @@ import { bar, hasShare, isOver, saying } from "/dashboard/records.js";
 import { COMPONENTS, CONDITION, EXECUTION, LAMPS, PANELS, PATH_MODE, paceWord }
   from "/dashboard/machine_words.js";
 import { results } from "/dashboard/machine_results.js";
+import { measured, placesOf, unitOf } from "/dashboard/units.js";
 
 const FLUSH = 250, STALE = 5000;
 
@@ -17,13 +18,13 @@ const END_WORDS = { succeeded: "State at the end of the run", failed: "State whe
 
 /** Readings: id, label, unit, formatting of a row's value; large ones first. */
 const READINGS = [
-  ["now-feed-commanded", "Feed commanded", "mm/min", (row) => number(row.feed_programmed_mm_min, 4), "big"],
-  ["now-feed-actual", "Feed actual", "mm/min", (row) => number(row.feed_actual_mm_min, 4), "big"],
+  ["now-feed-commanded", "Feed commanded", unitOf("mm/min"), (row) => number(measured(row.feed_programmed_mm_min, "mm/min"), 4), "big"],
+  ["now-feed-actual", "Feed actual", unitOf("mm/min"), (row) => number(measured(row.feed_actual_mm_min, "mm/min"), 4), "big"],
   ["now-power", "Power from the mains", "kW", (row) => fixed(row.total_power_w / 1000, 2), "big"],
   ["now-time", "Machine time", "", (row) => duration(row.time_s)],
-  ["now-x", "X", "mm", (row) => fixed(row.x_mm, 2)],
-  ["now-y", "Y", "mm", (row) => fixed(row.y_mm, 2)],
-  ["now-z", "Z", "mm", (row) => fixed(row.z_mm, 2)],
+  ["now-x", "X", unitOf("mm"), (row) => fixed(measured(row.x_mm, "mm"), placesOf(2, "mm"))],
+  ["now-y", "Y", unitOf("mm"), (row) => fixed(measured(row.y_mm, "mm"), placesOf(2, "mm"))],
+  ["now-z", "Z", unitOf("mm"), (row) => fixed(measured(row.z_mm, "mm"), placesOf(2, "mm"))],
   ["now-spindle", "Spindle", "rpm", (row) => number(row.spindle_speed_rpm, 4)],
   ["now-tool", "Tool", "", (row) => (row.tool ? `T${row.tool}` : "none")],
   ["now-force", "Cutting force", "N", (row) => number(row.cutting_force_n, 3)],
@@ -64,7 +65,7 @@ export function showRun(place, first, told = () => {}) {
     oninput: () => goTo(Number(slider.value)) });
   const atLine = el("label", { class: "at no-print", hidden: true, id: "at-line" },
     el("span", { id: "at-words" }, "State at the end of the run"), slider);
-  const drawn = el("div", { class: "chart", id: "run-chart", role: "img",
+  const drawn = el("div", { class: "chart", id: "run-chart", role: "figure",
     "aria-label": "power by component, feed commanded and actual, cutting force over time" });
   const outcome = el("div", { id: "results" });
   const hold = () => { isHeld = true; }, release = () => { isHeld = false; };

@@ -7,6 +7,7 @@ import { showConfirmation } from "/dashboard/plan_confirm.js";
 import { stepsCsv, stepsTable } from "/dashboard/plan_table.js";
 
 const MODES = { TC: "least time", QC: "roughness kept", EC: "least energy" };
+const CONTROL = "stepnc.control";
 let job = null, result = null;
 
 /** Create a figure `before → after`. */
@@ -22,15 +23,17 @@ function times(name, before, after, kind = "") {
   return pair(name, duration(before, longer), duration(after, longer), "", kind);
 }
 
-/** Create a figure of a saving or an increase; a saving of only a part of the program is not highlighted. */
+/** Create a figure of a saving or an increase; one in which anything stays open (`isPart`) is never green. */
 function saving(name, before, after, isPart) {
   const share = before ? (before - after) / before : null;
   const [word, colour] = share === null || Math.abs(share) < 5e-4 ? ["no change", "soft"]
     : share > 0 ? ["saved", isPart ? "soft" : "good"] : ["more", "warn"];
   return el("div", { class: "figure big" }, el("div", { class: "name" }, name),
-    el("div", {}, el("span", { class: `value ${colour}` }, share === null ? "–" : `${fixed(100 * Math.abs(share), 1)} %`),
+    el("div", {}, el("span", { class: `value ${colour}`, id: "time-saved" }, share === null ? "–" : `${fixed(100 * Math.abs(share), 1)} %`),
       el("span", { class: "unit" }, word)));
 }
+
+const isSlower = (time) => Boolean(time) && time.after > time.before;
 
 /** Whether an advice is on NC code. */
 export const isOnCode = (found) => "control" in found;
@@ -48,20 +51,30 @@ export function showResult(asked, found) {
   byId("download-feeds").hidden = !found.along_path;
   byId("compare-link").hidden = isCode;
   byId("compare-link").href = `/dashboard/compare.html?program=${job.program_id}&advice=${job.id}`;
-  byId("download-nc").disabled = !found.nc_control;
-  byId("download-nc").title = found.nc_control ? `for ${found.nc_control}` : "choose a control and optimise again";
-  byId("download-nc").textContent = found.nc_control ? `NC code, ${found.nc_control}` : "NC code";
+  showControls(found, isCode);
   showAlong(job, found.along_path);
   if (isCode) showCode(found); else showSteps(found);
+}
+
+/** Offer the control that NC code is written for; one that was simulated to the end is kept. */
+function showControls(found, isCode) {
+  const place = byId("download-control"), isFixed = isCode || Boolean(found.along_path);
+  const mine = found.nc_control ?? localStorage.getItem(CONTROL) ?? place.options[0].value;
+  place.hidden = isFixed;
+  if ([...place.options].some((option) => option.value === mine)) place.value = mine;
+  byId("download-nc").disabled = isFixed && !found.nc_control;
+  byId("download-nc").title = byId("download-nc").disabled
+    ? "feeds along the paths are written for the control chosen before optimising" : "";
+  byId("download-nc").textContent = isFixed && found.nc_control ? `NC code, ${found.nc_control}` : "NC code";
 }
 
 /** Show the advice on NC code. */
 function showCode(found) {
   const { before, after } = found.along_path.time_s, { changed, added, restored, unchanged } = found.blocks;
   byId("result-of").textContent = [found.program, found.machine, found.material, `stock in ${found.frame}`].join(" · ");
-  fill(byId("figures"), times("Machining time, simulated", before, after, "big"),
-    saving("Time", before, after, found.is_checked === false));
   const slower = found.slower_than_programmed ?? [], deep = found.depth_risks ?? [];
+  fill(byId("figures"), times("Machining time, simulated", before, after, "big"),
+    saving("Time", before, after, found.is_checked === false || slower.length > 0 || deep.length > 0));
   fill(byId("result-findings"), slower.map((text) => el("div", { class: "banner warn", role: "alert" }, text)),
     deep.length ? el("div", { class: "banner warn", role: "alert" },
       `Not fully checked: too deep in ${deep.map((each) => each.id).join(", ")}. The findings name depth and bound.`) : null,
@@ -81,7 +94,8 @@ function showSteps(found) {
   const unchecked = steps.reduce((sum, step) => sum + (step.status === "advised" ? step.unchecked?.length ?? 0 : 0), 0);
   const unlikely = found.unlikely_surfaces ?? [];
   fill(byId("figures"), times("Machining time", before, after, "big"),
-    saving(infeasible ? "Time, where feasible" : "Time", before, after, infeasible > 0 || unchecked > 0 || unlikely.length > 0),
+    saving(infeasible ? "Time, where feasible" : "Time", before, after, infeasible > 0 || unchecked > 0 || unlikely.length > 0
+      || found.confirmation?.passed.length > 0 || isSlower(found.along_path?.time_s)),
     el("div", { class: "figure" }, el("div", { class: "name" }, "Workingsteps advised"),
       el("div", {}, el("span", { class: "value" }, `${count("advised")} of ${steps.length}`),
         count("untouched") ? el("span", { class: "unit" }, `${count("untouched")} untouched`) : null)),
@@ -110,6 +124,8 @@ function showSteps(found) {
 export function showSimulated(before, after) {
   const place = byId("figures-simulated");
   if (!before || !after || !place) return;
+  // With all moves the plan may be slower than its workingsteps alone.
+  if (isSlower({ before: before.total.time_s, after: after.total.time_s })) byId("time-saved")?.classList.replace("good", "warn");
   const kj = (run) => number(run.total.energy_j.total / 1000, 4);
   fill(place, pair("Energy, simulated", kj(before), kj(after), "kJ"),
     times("Time, simulated with all moves", before.total.time_s, after.total.time_s));
@@ -140,7 +156,11 @@ function keep(text, name, type) {
 
 const DOWNLOADS = {
   "download-program": () => save(`/v1/advice/${job.id}/file`),
-  "download-nc": () => save(`/v1/advice/${job.id}/nc`),
+  "download-nc": () => {
+    const place = byId("download-control");
+    if (!place.hidden) localStorage.setItem(CONTROL, place.value);
+    return save(`/v1/advice/${job.id}/nc${place.hidden ? "" : `?control=${place.value}`}`);
+  },
   "open-report": () => show(`/v1/advice/${job.id}/report`),
   "download-json": async () => keep(JSON.stringify(await api(`/v1/advice/${job.id}`), null, 2),
     `${stem()}.advice.json`, "application/json"),

@@ -1,6 +1,7 @@
 // The table of workingsteps, sortable by its headings; each row expands to its limits.
 
 import { announce, el, fill, fixed, number, percent, words } from "/dashboard/app.js";
+import { measured, unitOf } from "/dashboard/units.js";
 
 const TURNING = /^(facing|contouring|grooving|cutting_in|threading|knurling)/;
 export const isTurning = (step) => TURNING.test(step.operation);
@@ -16,9 +17,9 @@ const saved = (step) => (step.time_s.before ?? 0) - (step.time_s.after ?? step.t
 
 const COLUMNS = [
   { key: "step", title: "Workingstep", by: (step) => step.id },
-  { key: "feed", title: "Feed, mm/min", n: true, by: (step) => set(step)?.feed_mm_min ?? -1 },
+  { key: "feed", title: `Feed, ${unitOf("mm/min")}`, n: true, by: (step) => set(step)?.feed_mm_min ?? -1 },
   { key: "speed", title: "Speed, rpm", n: true, by: (step) => set(step)?.spindle_rpm ?? -1 },
-  { key: "depth", title: "Depth, mm × passes", n: true, by: (step) => set(step)?.axial_depth_mm ?? -1 },
+  { key: "depth", title: `Depth, ${unitOf("mm")} × passes`, n: true, by: (step) => set(step)?.axial_depth_mm ?? -1 },
   { key: "time", title: "Time, s", n: true, by: saved },
   { key: "limit", title: "Limit", by: (step) => step.active_limit ?? "" },
   { key: "why", title: "Reason", by: (step) => step.reason },
@@ -66,7 +67,7 @@ export function stepsTable(table, steps) {
 
   function row(at) {
     const step = steps[at], isOpen = open === at;
-    return el("tr", { class: `step ${step.status}`, "data-at": String(at),
+    return el("tr", { class: `step ${step.status}`, role: "row", "data-at": String(at),
       "aria-selected": String(isOpen), onclick: (event) => {
         if (!event.target.closest("button") && !getSelection().toString()) choose(at, true);
       } },
@@ -74,11 +75,13 @@ export function stepsTable(table, steps) {
       el("button", { type: "button", class: "opener", "aria-expanded": String(isOpen),
         "aria-controls": isOpen ? `detail-${at}` : undefined, onclick: () => choose(at, true) }, step.id),
       el("div", { class: "under soft small" }, `${words(step.operation)} · ${step.tool}`)),
-    el("td", { class: "n" }, change(step.programmed?.feed_mm_min, step.advised?.feed_mm_min)),
-    el("td", { class: "n" }, change(step.programmed?.spindle_rpm, step.advised?.spindle_rpm)),
-    el("td", { class: "n" }, depths(step)),
-    el("td", { class: "n" }, change(step.time_s.before, step.time_s.after, (value) => fixed(value, 1))),
-    el("td", {}, mark(step)),
+    el("td", { class: "n", "data-label": COLUMNS[1].title },
+      change(step.programmed?.feed_mm_min, step.advised?.feed_mm_min, feedIn)),
+    el("td", { class: "n", "data-label": COLUMNS[2].title }, change(step.programmed?.spindle_rpm, step.advised?.spindle_rpm)),
+    el("td", { class: "n", "data-label": COLUMNS[3].title }, depths(step)),
+    el("td", { class: "n", "data-label": COLUMNS[4].title },
+      change(step.time_s.before, step.time_s.after, (value) => fixed(value, 1))),
+    el("td", { class: "limit" }, mark(step)),
     el("td", { class: "why" }, step.reason));
   }
 
@@ -96,6 +99,7 @@ export function stepsTable(table, steps) {
 }
 
 const four = (value) => number(value, 4);
+const feedIn = (value) => four(measured(value, "mm/min")), lengthIn = (value) => four(measured(value, "mm"));
 
 /** Create `before → after`, or one number where nothing changes. */
 function change(before, after, form = four) {
@@ -109,7 +113,7 @@ function change(before, after, form = four) {
 /** Format depth and passes; unknown passes of the program do not count as a change. */
 function depths({ programmed, advised }) {
   const cuts = (setting) => (!setting?.axial_depth_mm ? null
-    : number(setting.axial_depth_mm, 3) + (setting.passes ? ` × ${setting.passes}` : ""));
+    : number(measured(setting.axial_depth_mm, "mm"), 3) + (setting.passes ? ` × ${setting.passes}` : ""));
   const isSame = !programmed?.passes && programmed?.axial_depth_mm === advised?.axial_depth_mm;
   return change(cuts(isSame ? advised : programmed), cuts(advised), (text) => text ?? "–");
 }
@@ -134,18 +138,20 @@ function limits(step) {
   const used = ({ value, bound, sense, safety_factor: safety }) =>
     (sense === "at least" ? bound / value : safety * value / bound);
   const sorted = [...step.limits].sort((a, b) => used(b) - used(a));
-  const told = step.advised ? "as advised" : "as programmed";
+  // An exceeded limit of a step that the plan leaves alone is not one of the plan.
+  const isOfPlan = Boolean(step.advised) || step.status === "infeasible";
+  const told = step.advised ? "as advised" : isOfPlan ? "as programmed" : "as programmed, not of this plan";
   return el("table", {}, el("caption", {}, `Limits ${told}, nearest first`),
     el("thead", {}, el("tr", {}, ["Limit", "Value and bound", "Use", "Margin"].map((title, at) =>
       el("th", { scope: "col", class: at % 2 ? "n" : undefined }, title)))),
     el("tbody", {}, sorted.map((limit) => {
-      const share = used(limit), isOver = limit.margin < -1e-6, isNear = limit.margin < 1e-3;
+      const share = used(limit), isOver = isOfPlan && limit.margin < -1e-6, isNear = limit.margin < 1e-3;
       const name = limitWords(limit.name, step);
       return el("tr", {},
         el("th", { scope: "row" }, limit.name === step.active_limit && isNear ? el("b", {}, name) : name),
-        el("td", { class: "n" }, four(limit.value),
+        el("td", { class: "n" }, four(measured(limit.value, limit.unit)),
           limit.safety_factor === 1 ? "" : ` × ${four(limit.safety_factor)}`, limit.sense === "at least" ? " ≥ " : " ≤ ",
-          `${four(limit.bound)} ${limit.unit}`),
+          `${four(measured(limit.bound, limit.unit))} ${unitOf(limit.unit)}`),
         el("td", { class: "bar" }, el("div", { class: `meter ${isOver ? "over" : isNear ? "near" : ""}`,
           role: "img", "aria-label": `${percent(share)} of ${name} used` },
         el("div", { style: `width:${(100 * Math.min(Math.max(share, 0), 1)).toFixed(1)}%` }))),
@@ -158,9 +164,9 @@ function facts(step) {
   const tooth = limitWords("feed_per_tooth", step);
   const both = (name, form = four) => change(step.programmed?.[name], step.advised?.[name], form);
   const lines = [
-    [`${tooth[0].toUpperCase()}${tooth.slice(1)}, mm`, both("feed_per_tooth_mm")],
-    step.plunge ? ["Plunge feed, mm/min", both("plunge_feed_mm_min")] : null,
-    ["Depth of a pass, mm", both("axial_depth_mm")],
+    [`${tooth[0].toUpperCase()}${tooth.slice(1)}, ${unitOf("mm")}`, both("feed_per_tooth_mm", lengthIn)],
+    step.plunge ? [`Plunge feed, ${unitOf("mm/min")}`, both("plunge_feed_mm_min", feedIn)] : null,
+    [`Depth of a pass, ${unitOf("mm")}`, both("axial_depth_mm", lengthIn)],
     ["Motor power, kW", number(step.motor_power_kw)],
     ["Cutting force, N", number(step.cutting_force_n)],
     step.roughness_ra_um ? [`Roughness Ra, µm (${step.roughness_basis})`, number(step.roughness_ra_um)] : null,
@@ -195,10 +201,10 @@ function sentences(step) {
 function front(step) {
   if (!step.pareto.length) return null;
   return el("table", {}, el("caption", {}, "Front of time, roughness (Ra ideal, not measured) and energy"),
-    el("thead", {}, el("tr", {}, ["Time, s", "Ideal Ra, µm", "Energy, kJ", "Feed, mm/min", "Speed, rpm", "Passes"].map((title) =>
+    el("thead", {}, el("tr", {}, ["Time, s", "Ideal Ra, µm", "Energy, kJ", `Feed, ${unitOf("mm/min")}`, "Speed, rpm", "Passes"].map((title) =>
       el("th", { scope: "col", class: "n" }, title)))),
     el("tbody", {}, step.pareto.map((point) => el("tr", {}, [fixed(point.time_s, 1), number(point.roughness_ra_um),
-      number(point.energy_j / 1000, 4), four(point.feed_mm_min), four(point.spindle_rpm),
+      number(point.energy_j / 1000, 4), feedIn(point.feed_mm_min), four(point.spindle_rpm),
       String(point.passes ?? "–")].map((text) => el("td", { class: "n" }, text))))));
 }
 

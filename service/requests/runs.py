@@ -22,6 +22,9 @@ GREATEST_SEED = 2**31
 GREATEST_LOOK_AHEAD = 50
 """Longest preview, in revolutions."""
 
+GREATEST_OVERRIDE = 200.0
+"""Greatest feed override, in %."""
+
 JUNCTION_DEVIATION = 0.01
 """Default path deviation of the junction control, in mm."""
 
@@ -239,7 +242,7 @@ class ControlRequest(RunRequest):
     ] = 20.0
     override_high_percent: Annotated[
         float,
-        Interval(ge=100.0, le=200.0),
+        Interval(ge=100.0, le=GREATEST_OVERRIDE),
         About("upper end of the override band, %", unit="%", name="override band to"),
     ] = 120.0
     sensor: Annotated[
@@ -261,6 +264,17 @@ class ControlChanges(Request):
 
     mode: Annotated[Criterion | None, About("TC or QC")] = None
     is_on: Annotated[bool | None, About("whether force control is on")] = None
+    is_held: Annotated[
+        bool | None, About("whether the operator holds the feed; false resumes it")
+    ] = None
+    override_most_percent: Annotated[
+        float | None,
+        Interval(gt=0.0, le=GREATEST_OVERRIDE),
+        About(
+            "greatest override that the operator allows, at most the top of the band, %",
+            unit="%", name="override at most",
+        ),
+    ] = None  # fmt: skip
     motor_power_percent: Annotated[
         float | None,
         Percent,

@@ -7,22 +7,27 @@ are written, so their parts are cached as bytes.
 import os
 import time
 from collections import OrderedDict
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Annotated, Any
 
 import orjson
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 from starlette.routing import Match, Route
 from starlette.types import Scope
 
 from service.errors import Conflict, NotFound
 from service.jobs.task import optimised_name
+from service.requests.fields import loaded
+from service.requests.given import GIVEN
 from service.rest.advice_views import AdviceView, AdvisedView, CodeAdviceView, CurvesView
 from service.rest.asking import answered, result_file
 from service.rest.bodies import Id
+from service.rest.checks import in_turn
 from service.rest.context import InDataFolder, data_folder_of
 from service.rest.replies import (
     JSON,
@@ -38,7 +43,15 @@ from service.storage.jobs import JobKind, JobState
 from service.storage.results import CURVES, FEEDS, NC_CODE, OPTIMISED, RESULT
 from stepnc_model.post.dialect import SUFFIXES, Dialect
 
+if TYPE_CHECKING:
+    from service.verbs.post.request import PostRequest
+
 ROUTES = APIRouter(prefix="/v1/advice", tags=["advice"])
+
+OtherControl = Annotated[
+    Dialect | None,
+    Query(alias="control", description="control to write the code for; default: as requested"),
+]
 
 CSV = "text/csv; charset=utf-8"
 
@@ -249,18 +262,66 @@ async def optimised(request: Request, data_folder: InDataFolder, id: Id) -> Resp
     response_class=Response,
     responses={200: {"content": {"text/plain": {}}}},
 )
-async def nc_code(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """Download NC code for the control that was named in the request, or the rewritten code."""
+async def nc_code(
+    request: Request, data_folder: InDataFolder, id: Id, wanted: OtherControl = None
+) -> Response:
+    """Download NC code for the control of the request or for another, or the rewritten code."""
     result = (await cached_advice(request, id)).result
     control = result["nc_control"]
+    if wanted is not None and wanted.value != control:
+        return await _posted(data_folder, id, wanted, result)
     if control is None:
-        raise NotFound("NC code (ask for advice with nc_control)", id)
+        raise NotFound("NC code (name a control)", id)
     own = Path(programs.shown_name(result["program"])).suffix
     name = _name(result, own if _is_code(result) else SUFFIXES[Dialect(control)])
     file = await result_file(data_folder, id, NC_CODE)
     return file_reply(
         request, file, name=name, kind="text/plain; charset=utf-8", thing="NC code"
     )
+
+
+async def _posted(
+    data_folder: DataFolder, id: str, control: Dialect, result: dict[str, Any]
+) -> Response:
+    """Return NC code of the optimised program for a control, as the verb ``post`` writes it."""
+    if _is_code(result):
+        raise Conflict("the advice is on NC code, which is rewritten for its own control alone")
+    if result.get("along_path") is not None:
+        raise Conflict("feeds along the paths are written for the control of the request alone")
+    job = await answered(jobs.get, data_folder, id, JobKind.ADVICE)
+    program = (
+        await result_file(data_folder, id, OPTIMISED)
+        if result["is_written"]
+        else data_folder.program_file(job.program)
+    )
+
+    def code() -> bytes:
+        from service.verbs.post.request import PostFiles  # noqa: PLC0415 (numpy)
+        from service.verbs.post.run import run  # noqa: PLC0415 (numpy)
+
+        with TemporaryDirectory() as folder:
+            output = Path(folder) / f"program{control.suffix}"
+            run(
+                _post_request(job.request, control),
+                PostFiles(file=data_folder.fetched(program), output=output),
+            )
+            return output.read_bytes()
+
+    name = _name(result, SUFFIXES[control])
+    return Response(
+        await in_turn(code),
+        media_type="text/plain; charset=utf-8",
+        headers={"content-disposition": f'attachment; filename="{name}"'},
+    )
+
+
+def _post_request(words: Mapping[str, Any], control: Dialect) -> "PostRequest":
+    """Return the request of ``post`` with what the advice was told of the program."""
+    from service.verbs.post.request import PostRequest  # noqa: PLC0415 (numpy)
+
+    known = {name: words[name] for name in GIVEN if name in words}
+    is_exact = bool(words.get("is_exact_path"))
+    return loaded(PostRequest, {**known, "control": control.value, "exact_path": is_exact})
 
 
 @ROUTES.get(

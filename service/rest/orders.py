@@ -192,6 +192,10 @@ def runnable(data_folder: DataFolder, order: JobRequest) -> None:
         programs.require_file(data_folder, order.program)
     words = order.request
     library.require(data_folder, machine=words["machine"], material=words.get("material", ""))
+    from service.control.disturbances import disturbances  # noqa: PLC0415 (numpy)
+
+    # The materials among them are known to the job alone.
+    disturbances(words.get("disturbances", ()), hardness=lambda _: 1.0)
     if not order.source and (words["machine"] or words.get("workingsteps")):
         _require_possible(data_folder, order)
 

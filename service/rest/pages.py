@@ -24,6 +24,24 @@ KINDS = {
 }
 
 
+SITE, DOCS = (Path(__file__).parents[2] / name for name in ("build/site", "docs"))
+"""Manual as a site that ``make docs`` has built, and the pages that it is built from."""
+
+MANUAL_KINDS = KINDS | {
+    ".md": "text/plain; charset=utf-8",
+    ".json": "application/json",
+    ".png": "image/png",
+    ".woff2": "font/woff2",
+}
+
+# The theme of the manual has scripts in its pages; nothing comes from another host.
+MANUAL_POLICY = (
+    "default-src 'none'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; "
+    "img-src 'self' data:; connect-src 'self'; font-src 'self'; worker-src 'self' blob:; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+
+
 @ROUTES.get("/")
 async def root() -> Response:
     """Redirect to the first page of the dashboard."""
@@ -56,6 +74,36 @@ async def file(request: Request, name: str) -> Response:
     if matches(request.headers.get("if-none-match"), tag):
         return Response(status_code=304, headers=headers)
     return Response(body, media_type=KINDS[found.suffix], headers=headers)
+
+
+@ROUTES.get("/manual/{name:path}")
+async def manual(request: Request, name: str) -> Response:
+    """Serve the manual: the built site, or without it the pages that it is built from."""
+    found = await run_in_threadpool(_manual, name)
+    if found is None:
+        raise NotFound("page of the manual (it is in the folder docs of the project)", name)
+    body = await run_in_threadpool(found.read_bytes)
+    tag = f'"{hashlib.blake2b(body, digest_size=12).hexdigest()}"'
+    headers = {"etag": tag, "cache-control": "no-cache"}
+    if matches(request.headers.get("if-none-match"), tag):
+        return Response(status_code=304, headers=headers)
+    if found.suffix == ".html":
+        headers["content-security-policy"] = MANUAL_POLICY
+    kind = MANUAL_KINDS.get(found.suffix, "application/octet-stream")
+    return Response(body, media_type=kind, headers=headers)
+
+
+def _manual(name: str) -> Path | None:
+    """Path of a file of the manual; None if there is no such file in its folder."""
+    for folder, path in (
+        (SITE, name),
+        (DOCS, name.removesuffix(".html") + ".md"),
+        (DOCS, name),
+    ):
+        found = (folder / path).resolve()
+        if found.is_relative_to(folder.resolve()) and found.is_file():
+            return found if found.suffix in MANUAL_KINDS else None
+    return None
 
 
 @ROUTES.get("/favicon.ico")

@@ -128,7 +128,11 @@ def programmed_part(
         left.cut(run.cutter, points)
     found, is_wall = wall_cells(left.map)
     if not len(found.points):
-        raise ValueError("the programmed path leaves no wall in the stock")
+        raise ValueError(
+            "the programmed path leaves no wall in the stock, as when a part is only faced: a "
+            "verification compares walls and the floors between them, and has nothing to "
+            "compare here; the cycle time can still be compared"
+        )
     walls = _on_boundary(path, found, left)
     return ProgrammedPart(path=path, map=left.map, walls=walls, is_wall=is_wall)
 

@@ -6,6 +6,7 @@ from controller.orders import (
     EventKind,
     LoopEvent,
     MotorPowerTo,
+    OverrideAtMost,
     SwitchTo,
 )
 
@@ -27,3 +28,9 @@ def test_an_event_says_when_what_and_why() -> None:
 def test_a_share_of_the_power_must_be_positive(factor: float) -> None:
     with pytest.raises(ValueError, match="must be positive"):
         MotorPowerTo(factor=factor)
+
+
+@pytest.mark.parametrize("most", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_bound_of_the_override_must_be_positive(most: float) -> None:
+    with pytest.raises(ValueError, match="must be positive"):
+        OverrideAtMost(most=most)

@@ -198,6 +198,59 @@ def test_what_the_operator_switches_is_obeyed(controlled: Controlled) -> None:
     assert {"mode QC", "OFF: the programmed feed runs", "motor power 50 %"} <= set(texts)
 
 
+def test_a_held_feed_stands_until_it_is_resumed(controlled: Controlled) -> None:
+    live = begun(controlled())
+    live.taken()
+    live.change(ControlChanges(is_held=True))
+    live.advance(live.time + 2.0)
+    share = live.status().progress
+    live.advance(live.time + 30.0)
+    held = live.status()
+    assert (held.is_held, held.override_percent) == (True, 0.0)
+    assert held.feed_actual_mm_min == pytest.approx(0.0, abs=1e-6)
+    assert held.holding == "held by the operator"
+    assert held.progress == pytest.approx(share, abs=1e-6)
+    assert not held.is_stopped
+    assert live.is_waiting
+    live.change(ControlChanges(is_held=False))
+    live.advance(live.time + 0.5)
+    assert live.status().progress > share
+    assert not live.is_waiting
+    through(live)
+    assert live.status().is_done
+    assert not live.status().is_stopped
+    assert live.status().remaining_s == pytest.approx(0.0, abs=1e-6)
+
+
+def test_the_operator_lowers_the_override_but_never_raises_it_above_the_guard(
+    controlled: Controlled,
+) -> None:
+    live = begun(controlled())
+    free = live.status().override_percent
+    live.change(ControlChanges(override_most_percent=10.0))
+    live.advance(live.time + 0.5)
+    assert live.status().override_percent == pytest.approx(10.0)
+    assert live.status().holding == "the operator"
+    # Below the floor of the band, the operator is the reason: the loop does not give up.
+    live.advance(live.time + 1.0)
+    assert not live.status().is_stopped
+    live.change(ControlChanges(override_most_percent=120.0))
+    live.advance(live.time + 0.5)
+    assert live.status().override_percent <= free * 1.05
+    with pytest.raises(StepNcError, match="200 %: the guard allows at most 120 %"):
+        live.change(ControlChanges(override_most_percent=200.0))
+
+
+def test_off_the_feed_can_still_be_held_and_lowered(controlled: Controlled) -> None:
+    live = begun(controlled(law="none"))
+    live.change(ControlChanges(override_most_percent=50.0))
+    live.advance(live.time + 0.3)
+    assert live.status().override_percent == pytest.approx(50.0)
+    live.change(ControlChanges(is_held=True))
+    live.advance(live.time + 1.0)
+    assert live.status().feed_actual_mm_min < 0.01
+
+
 def test_a_drive_that_draws_too_much_is_told(controlled: Controlled) -> None:
     live = begun(controlled(law="none"))
     live.change(ControlChanges(motor_power_percent=1.0))

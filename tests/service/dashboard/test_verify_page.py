@@ -285,3 +285,15 @@ def test_a_log_of_another_program_is_told_and_another_try_is_possible(
     page.locator("#verify").click()
     expect(page.locator("#lamp")).to_have_text("NO ERROR SEEN", timeout=LATE)
     expect(page.locator("#verify-problem")).to_be_empty()
+
+
+def test_a_part_that_is_only_faced_gets_a_sentence(page: Page) -> None:
+    program = page.request.post("/v1/programs?example=paper002").json()["id"]
+    wanted = {"program_id": program, "rate_hz": 20.0}
+    run = page.request.post("/v1/simulations", data=wanted).json()["id"]
+    until(lambda: page.request.get(f"/v1/jobs/{run}").json()["state"] == "succeeded")
+    page.goto(f"{PAGE}?run={run}")
+    page.locator("#verify").click()
+    problem = page.locator("#verify-problem")
+    expect(problem).to_contain_text("as when a part is only faced", timeout=LATE)
+    keep(page, "verify-faced")

@@ -65,6 +65,10 @@ def test_program_nc_code_and_report_are_files(client: httpx.Client, done: Done) 
     code = client.get(f"/v1/advice/{done.advice}/nc")
     assert code.headers["content-type"] == "text/plain; charset=utf-8"
     assert "part.optimised.ngc" in code.headers["content-disposition"]
+    other = client.get(f"/v1/advice/{done.advice}/nc?control=heidenhain")
+    assert "BEGIN PGM" in other.text
+    assert "part.optimised.h" in other.headers["content-disposition"]
+    is_problem(client.get(f"/v1/advice/{done.advice}/nc?control=abacus"), 422)
     report = client.get(f"/v1/advice/{done.advice}/report")
     assert report.text.startswith("<!DOCTYPE html>")
     assert "sandbox" in report.headers["content-security-policy"]

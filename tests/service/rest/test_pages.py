@@ -43,3 +43,17 @@ def test_plotly_comes_from_the_installed_package(client: httpx.Client) -> None:
 )
 def test_nothing_else_is_a_page(client: httpx.Client, name: str) -> None:
     is_problem(client.get(f"/dashboard/{name}"), 404)
+
+
+def test_the_manual_comes_from_the_service(client: httpx.Client) -> None:
+    page = client.get("/manual/index.html")
+    assert page.status_code == 200
+    assert page.headers["content-type"] in {KINDS[".html"], "text/plain; charset=utf-8"}
+    assert client.get("/manual/service.md").text.startswith("#")
+
+
+@pytest.mark.parametrize(
+    "name", ["../pyproject.toml", "%2e%2e/pyproject.toml", "hooks/site.py", "none.html", ""]
+)
+def test_nothing_else_is_in_the_manual(client: httpx.Client, name: str) -> None:
+    is_problem(client.get(f"/manual/{name}"), 404)
