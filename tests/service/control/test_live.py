@@ -211,11 +211,11 @@ def test_a_held_feed_stands_until_it_is_resumed(controlled: Controlled) -> None:
     assert held.holding == "held by the operator"
     assert held.progress == pytest.approx(share, abs=1e-6)
     assert not held.is_stopped
-    assert live.is_waiting
+    assert {live.is_waiting} == {True}
     live.change(ControlChanges(is_held=False))
     live.advance(live.time + 0.5)
     assert live.status().progress > share
-    assert not live.is_waiting
+    assert {live.is_waiting} == {False}
     through(live)
     assert live.status().is_done
     assert not live.status().is_stopped
