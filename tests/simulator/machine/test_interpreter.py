@@ -60,6 +60,29 @@ def seconds(parts: Iterable[MoveStretch]) -> float:
     return sum(float((feed.length / feed.speed).sum()) for feed in feeds)
 
 
+def test_the_usual_line_is_collected_as_any_other(
+    mill: Machine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ends = [(1.0, 2.0, 3.0), (4.0, 2.0, 3.0), (4.0, 2.0, 3.0), (4.0, 0.0, -1.0)]
+    rates = (FEED, PER_REVOLUTION, FEED, FEED)
+    program = [
+        nc.SpindleOn(speed=10.0, sense=nc.SpindleDirection.CLOCKWISE),
+        HOME,
+        *(nc.Linear(end=end, rate=rate) for end, rate in zip(ends, rates, strict=True)),
+    ]
+    short = steps(mill, *program)
+    monkeypatch.setattr(interpreter._Interpreter, "_goes_on", lambda _self, _block: False)
+    long = steps(mill, *program)
+    assert kinds(short) == kinds(long)
+    for one, other in zip(stretches(short), stretches(long), strict=True):
+        assert one.segments.start.tolist() == other.segments.start.tolist()
+        assert one.segments.end.tolist() == other.segments.end.tolist()
+        assert one.segments.speed.tolist() == other.segments.speed.tolist()
+        assert one.segments.block.tolist() == other.segments.block.tolist()
+        assert np.array_equal(one.per_revolution, other.per_revolution, equal_nan=True)
+    assert [len(each.segments) for each in stretches(short)] == [3]
+
+
 @every_case(
     ("block", "acts"),
     [
