@@ -206,7 +206,7 @@ class LinuxCncMachine:
             if is_so:
                 # What the loop cannot steer must not cut on.
                 self._hold()
-                raise self._lost(text)
+                raise self._lost(f"{text}; the feed is held")
 
     def _lost(self, text: str) -> MachineSilent:
         found = MachineSilent(self.time)
