@@ -3,7 +3,8 @@
 ``component.py SOCKET`` listens on a Unix socket. One loop at a time sends lines of JSON with
 the override, and gets one with the state of the control every period. Whatever the loop sends,
 the pin has a finite value from 0 to 1, and the safe value when the loop has been silent for
-long. It starts and ends no program, and is no emergency stop.
+long.
+It starts and ends no program, and is no emergency stop.
 
 Nothing else of the project is imported: LinuxCNC's modules belong to the system's Python alone.
 Units mm, s, rev/s.

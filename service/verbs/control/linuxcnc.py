@@ -1,8 +1,8 @@
 """LinuxCNC as the machine of the closed loop, at places of the program's nominal course.
 
-The control moves; its component says where, how fast and in which line. The place on the course
-is the nearest one within the running line, because a path may come by again near itself. The
-load is that of a pin, or that of our own process behind the real motion: the force of the
+The control moves; its component says where, how fast and in which line. The place on the
+course is the nearest one within the running line, because a path may come by again near itself.
+The load is that of a pin, or that of our own process behind the real motion: the force of the
 course at the actual feed, with hidden factors on hardness and depth. Units mm, s, N, W, rev/s.
 """
 
@@ -206,7 +206,7 @@ class LinuxCncMachine:
             if is_so:
                 # What the loop cannot steer must not cut on.
                 self._hold()
-                raise self._lost(text)
+                raise self._lost(f"{text}; the feed is held")
 
     def _lost(self, text: str) -> MachineSilent:
         found = MachineSilent(self.time)
