@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from optimiser.advice import AdviceStatus, Plan
 from optimiser.formulate import OptimisationTask
+from optimiser.modes import Mode
 from optimiser.optimise import optimise_program
 from optimiser.source import along_paths
 from service.chosen import machine_for, material_for, require_axes, with_holding
@@ -322,7 +323,10 @@ def _tell_conflicts(plan: Plan, tell: Tell) -> None:
 
 def _profile(request: AdviceRequest) -> FileProfile | None:
     """Form of the records that is requested; None for no records."""
-    return None if request.records is RecordChoice.NONE else request.profile
+    # The record schema has no entity for least cost.
+    if request.records is RecordChoice.NONE or request.mode is Mode.CC:
+        return None
+    return request.profile
 
 
 def _task(
