@@ -42,7 +42,7 @@ from optimiser.speed_limits import held_speed, speed_range
 from optimiser.speed_stretch import segment_within, stretch_ends
 from optimiser.stability import stability_limits
 from simulator.library import find_window
-from simulator.physics.tool_life import tool_life
+from simulator.physics.tool_life import assumed_life, tool_life
 from simulator.spec import Machine, WorkMaterial
 
 LEAST_DEPTH = 0.1
@@ -225,17 +225,18 @@ def full_wear_rate(cut: Cut, at: CuttingConditions) -> Monomial | None:
 
     None when tool life is unknown. A drill's life does not depend on the depth of its holes.
     """
-    rate = _wear_rate(cut, at)
     window = find_window(at.material, cut.tool_kind, at.cutting_material)
-    if rate is None or window is None or window.taylor is None:
+    law = None if window is None else window.taylor or assumed_life(window)
+    if law is None:
         return None
-    law = window.taylor
     depth_exponent = 0.0 if cut.kind is CutKind.DRILLING else law.depth_exponent
     reference = law.feed**law.feed_exponent * law.depth**depth_exponent
-    return replace(
-        rate, coefficient=rate.coefficient / reference, feed_exponent=law.feed_exponent,
+    return Monomial(
+        coefficient=1.0 / (tool_life(law, pi * cut.diameter) * reference),
+        feed_exponent=law.feed_exponent,
         depth_exponent=depth_exponent,
-    )  # fmt: skip
+        speed_exponent=1.0 / law.exponent,
+    )
 
 
 def cheapest_feed(cost: Cost) -> Iterator[Limit]:

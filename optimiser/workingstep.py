@@ -419,7 +419,7 @@ def _best_speeds(
     at: Callable[[float], Setting | None],
     speeds: Iterator[float],
     cost: Callable[[Setting], float],
-    has_inner: bool,  # noqa: FBT001
+    has_inner: bool,
 ) -> Iterator[Setting]:
     """Yield settings of one stretch of speeds among which its best one is."""
     if not has_inner:

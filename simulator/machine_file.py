@@ -27,9 +27,9 @@ from simulator.holding_file import (
 from simulator.physics.spindle import curve_segments
 from simulator.planner_settings import PlannerSettings
 from simulator.spec import (
-    CostRates,
     Axis,
     AxisDrive,
+    CostRates,
     Machine,
     MachineKind,
     ModeDirection,

@@ -361,10 +361,13 @@ def _windows(file: MaterialFile) -> tuple[CuttingWindow, ...]:
     """Cutting-speed windows, each with the tool life of its cutting material."""
     lives: Mapping[CuttingMaterial, Taylor] = {
         row.cutting_material: Taylor(
-            exponent=row.exponent, constant=speed_from_m_min(row.constant_m_min),
-            feed_exponent=row.feed_exponent, depth_exponent=row.depth_exponent,
-            feed=row.feed_mm, depth=row.depth_mm,
-        )  # fmt: skip
+            exponent=row.exponent,
+            constant=speed_from_m_min(row.constant_m_min),
+            feed_exponent=row.feed_exponent,
+            depth_exponent=row.depth_exponent,
+            feed=row.feed_mm,
+            depth=row.depth_mm,
+        )
         for row in file.tool_life
     }
     return tuple(

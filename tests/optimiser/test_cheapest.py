@@ -52,6 +52,7 @@ def is_allowed(problem: Problem, feed: float, depth: float, speed: float) -> boo
     return all(limit.holds(feed, depth, speed) for limit in limits_at(problem, speed))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("feed_exponent", [0.8, 2.0])
 @pytest.mark.parametrize("free_speed", [False, True])
 def test_no_point_of_a_grid_is_cheaper(free_speed: bool, feed_exponent: float) -> None:
@@ -111,7 +112,7 @@ def test_geometric_program_has_the_same_cost(seed: int, feed_exponent: float) ->
 
 
 def test_speed_of_least_cost_is_that_of_gilbert() -> None:
-    """v = C·(n/(1−n)·C_o/(C_o·t_t + C_t))^n: W. W. Gilbert 1950; Groover, machining economics."""
+    """v = C·(n/(1−n)·C_o/(C_o·t_t + C_t))^n: Gilbert 1950, economics of machining."""
     exponent, constant = 0.25, 400.0  # speed for a life of 1 s, rev/s
     wear = Monomial(coefficient=constant ** (-1.0 / exponent), speed_exponent=1.0 / exponent)
     cap = Limit(
@@ -139,6 +140,14 @@ def test_speed_of_least_cost_is_that_of_gilbert() -> None:
     )
     book = constant * (exponent / (1.0 - exponent) * RATE / (RATE * CHANGE + PRICE)) ** exponent
     assert solve(problem, Mode.CC).setting.speed == pytest.approx(book, rel=1e-6)
+
+
+def test_floor_goes_before_the_feed_of_least_cost() -> None:
+    problem = priced(3, free_speed=False, feed_exponent=2.0)
+    dear = replace(problem, cost=replace(problem.cost, edge_price=1e9))
+    best = solved(dear)
+    floor = next(each for each in dear.limits if each.sense is BoundSide.AT_LEAST)
+    assert best.feed == pytest.approx(floor.feed_at_bound(best.depth, best.speed))
 
 
 def test_feed_of_least_cost_is_closed_form_where_it_is_no_cap() -> None:

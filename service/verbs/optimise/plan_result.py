@@ -27,6 +27,8 @@ from service.verbs.optimise.plan_record import (
     unchecked_words,
 )
 from service.verbs.optimise.result import OptimiseResult
+from simulator.library import find_window
+from simulator.physics.tool_life import ASSUMED_LIFE
 from stepnc_model.counted import counted
 from stepnc_model.errors import Finding
 from stepnc_model.units import (
@@ -300,6 +302,7 @@ def cost_words(plan: Plan) -> Iterator[str]:
     total = sum(state.money or 0.0 for _, state in priced)
     missing = len({tool for tool, state in priced if state.lives is None})
     unworn = f", wear of {counted(missing, 'tool')} of unknown life" if missing else ""
+    plain = set(_tools_of_assumed_life(plan))
     yield (
         f"cost {total:.4g} {rates.currency} of machine time and worn edges ({rates.source}); "
         f"left out: set-up, programming, material, tool changes between workingsteps{unworn}"
@@ -309,8 +312,27 @@ def cost_words(plan: Plan) -> Iterator[str]:
         if state.lives is not None:
             used[tool] = used.get(tool, 0.0) + state.lives
     if used:
-        lives = ", ".join(f"{tool} {share:.2g}" for tool, share in used.items())
-        yield f"edge lives used (catalogue's law, typically within a factor of 3): {lives}"
+        lives = ", ".join(
+            f"{tool} {share:.2g}{' (assumed)' if tool in plain else ''}"
+            for tool, share in used.items()
+        )
+        yield f"edge lives used, by a catalogue within a factor of about 6: {lives}"
+    if plain:
+        yield (
+            f"no tool life is known of {', '.join(sorted(plain))}: {ASSUMED_LIFE:g} min in the "
+            "middle of the catalogue's speeds is assumed; calibrate --table learns it"
+        )
+
+
+def _tools_of_assumed_life(plan: Plan) -> Iterator[str]:
+    """Yield the tools whose life no file states."""
+    for advice in plan.advices:
+        at, cut = advice.conditions, advice.cut
+        if at is None or cut is None:
+            continue
+        window = find_window(at.material, cut.tool_kind, at.cutting_material)
+        if window is not None and window.taylor is None:
+            yield advice.tool.id
 
 
 def _fronts(plan: Plan) -> Iterator[Item]:
