@@ -5,8 +5,10 @@ Machine rates and prices of edges are those of the machine files; speeds are fre
 
 from pathlib import Path
 
-import stepnc
 from optimiser.modes import Free, Mode
+from service.requests.advice import AdviceRequest
+from service.verbs.optimise.program import advise_program
+from service.verbs.optimise.request import AdviceFiles
 
 PARTS = Path(__file__).parents[1] / "examples" / "parts"
 CASES = (("bracket", "vmc15"), ("shaft", "lathe22"))
@@ -17,10 +19,10 @@ def main() -> None:
     print(f"{'part':<9}{'mode':<5}{'cost':>8}{'time s':>9}{'energy kJ':>11}  edge lives used")
     for part, machine in CASES:
         for mode in Mode:
-            plan = stepnc.optimise(
-                str(PARTS / f"{part}.stpnc"), mode=mode, machine=machine, material="c45",
-                free=tuple(Free), dry_run=True,
-            ).plan  # fmt: skip
+            plan = advise_program(
+                AdviceRequest(mode=mode, machine=machine, material="c45", free=tuple(Free)),
+                AdviceFiles(file=PARTS / f"{part}.stpnc", dry_run=True),
+            ).plan
             shown = [(each.tool.id, each.after or each.before) for each in plan.advices]
             used: dict[str, float] = {}
             for tool, state in shown:

@@ -242,7 +242,7 @@ def full_wear_rate(cut: Cut, at: CuttingConditions) -> Monomial | None:
 def cheapest_feed(cost: Cost) -> Iterator[Limit]:
     """Feed beyond which the wear of an edge costs more than the time that is saved.
 
-    ``(r + q·w·f^x)/f`` is least where ``(x − 1)·q·w·f^x = r``; for x ≤ 1 it falls with the feed.
+    ``(r + q·w·f^x)/f`` is least where ``(x − 1)·q·w·f^x = r``; else it falls with f.
     """
     wear = cost.wear_rate
     worn = cost.machine_rate * cost.tool_change + cost.edge_price

@@ -90,8 +90,8 @@ def optimise_program(
     """
     if task.mode is Mode.CC and machine.costs is None:
         raise OptimisationError(
-            f"mode CC: machine {machine.name} has no [cost] table with currency, rate_per_hour, "
-            "edge_change_s and the prices of edges"
+            f"mode CC: machine {machine.name} has no [cost] table: currency, "
+            "rate_per_hour, edge_change_s and the prices of edges"
         )
     findings: list[Finding] = []
     advices = []

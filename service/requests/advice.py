@@ -39,8 +39,8 @@ class AdviceRequest(ProgramRequest):
     mode: Annotated[
         Mode,
         About(
-            "TC least time, QC fastest feed that keeps the roughness, EC least energy, CC least "
-            "cost of machine time and worn edges",
+            "TC least time, QC fastest feed that keeps the roughness, EC least energy, "
+            "CC least cost of machine time and worn edges",
             flag="--mode",
         ),
     ] = Mode.TC

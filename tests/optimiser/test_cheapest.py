@@ -45,7 +45,7 @@ def money(problem: Problem, feed: float, speed: float, passes: int) -> float:
     wear = cost.wear_rate
     assert wear is not None
     used = cutting * wear.coefficient * feed**wear.feed_exponent * depth**0.3 * speed**4.0
-    return RATE * (cutting + passes * cost.link_time) + (PRICE + RATE * CHANGE) * used
+    return float(RATE * (cutting + passes * cost.link_time) + (PRICE + RATE * CHANGE) * used)
 
 
 def is_allowed(problem: Problem, feed: float, depth: float, speed: float) -> bool:
