@@ -72,6 +72,10 @@ class EvaluatedSetting:
     loads: tuple[LimitLoad, ...]
     surface: RoughnessForecast | None = None
     """Ra that a finished surface is expected to have; None where nothing is known of it."""
+    money: float | None = None
+    """Cost of machine time and worn edges, in the machine's currency; None: not stated."""
+    lives: float | None = None
+    """Tool lives used; None where tool life is unknown."""
     plunge_loads: tuple[LimitLoad, ...] = ()
     """Loads of the limits at the plunge feed, on ways down that have a feed of their own."""
     ramp_force: float = 0.0

@@ -42,7 +42,7 @@ from optimiser.speed_limits import held_speed, speed_range
 from optimiser.speed_stretch import segment_within, stretch_ends
 from optimiser.stability import stability_limits
 from simulator.library import find_window
-from simulator.physics.tool_life import tool_life
+from simulator.physics.tool_life import assumed_life, tool_life
 from simulator.spec import Machine, WorkMaterial
 
 LEAST_DEPTH = 0.1
@@ -122,6 +122,9 @@ def problem_of(cut: Cut, at: CuttingConditions, task: OptimisationTask) -> Probl
     limits = limits_of(cut, at) + stability_limits(cut, at) + holding_limits(cut, at)
     limits = _safe(limits, at)
     given = cut.programmed
+    cost = _cost(cut, at, task)
+    if task.mode is Mode.CC:
+        limits += tuple(cheapest_feed(cost))
     if Free.FEED not in task.free:
         limits += tuple(_held_feed(given.feed, sense) for sense in BoundSide)
     passes = (given.passes, given.passes)
@@ -130,7 +133,7 @@ def problem_of(cut: Cut, at: CuttingConditions, task: OptimisationTask) -> Probl
     speeds, stretches = _stretches(cut, at, task)
     return Problem(
         limits=limits,
-        cost=_cost(cut, at, task),
+        cost=cost,
         total_depth=cut.total_depth,
         passes=passes,
         speeds=speeds,
@@ -185,6 +188,11 @@ def _cost(cut: Cut, at: CuttingConditions, task: OptimisationTask) -> Cost:
     machine = at.machine
     spindle = machine.spindle
     wear = _wear_rate(cut, at) if task.tool_change > 0.0 else None
+    rates, rate, price, change = machine.costs, 0.0, 0.0, task.tool_change
+    if task.mode is Mode.CC and rates is not None:
+        wear = full_wear_rate(cut, at)
+        rate, price = rates.machine_rate, rates.edge_price(at.cutting_material)
+        change = change or rates.edge_change
     # Energy is specific force times volume, so the peak factors of the power do not apply.
     mean = replace(cut, power_diameter=None, thickest=1.0)
     return Cost(
@@ -195,8 +203,10 @@ def _cost(cut: Cut, at: CuttingConditions, task: OptimisationTask) -> Cost:
         link_time=cut.rest_time + (cut.link_length / machine.rapid if machine.rapid else 0.0),
         standby_power=machine.base_power + machine.coolant_power + spindle.idle_power,
         standby_power_per_speed=spindle.idle_power_per_speed,
-        tool_change=task.tool_change if wear is not None else 0.0,
+        tool_change=change if wear is not None else 0.0,
         wear_rate=wear,
+        machine_rate=rate,
+        edge_price=price,
     )
 
 
@@ -208,6 +218,45 @@ def _wear_rate(cut: Cut, at: CuttingConditions) -> Monomial | None:
     exponent = 1.0 / window.taylor.exponent
     life = tool_life(window.taylor, pi * cut.diameter)
     return Monomial(coefficient=1.0 / life, speed_exponent=exponent)
+
+
+def full_wear_rate(cut: Cut, at: CuttingConditions) -> Monomial | None:
+    """Tool lives used per second, ``1/T = (v_c/C)^(1/n)·(f/f_0)^x·(a/a_0)^y``.
+
+    None when tool life is unknown. A drill's life does not depend on the depth of its holes.
+    """
+    window = find_window(at.material, cut.tool_kind, at.cutting_material)
+    law = None if window is None else window.taylor or assumed_life(window)
+    if law is None:
+        return None
+    depth_exponent = 0.0 if cut.kind is CutKind.DRILLING else law.depth_exponent
+    reference = law.feed**law.feed_exponent * law.depth**depth_exponent
+    return Monomial(
+        coefficient=1.0 / (tool_life(law, pi * cut.diameter) * reference),
+        feed_exponent=law.feed_exponent,
+        depth_exponent=depth_exponent,
+        speed_exponent=1.0 / law.exponent,
+    )
+
+
+def cheapest_feed(cost: Cost) -> Iterator[Limit]:
+    """Feed beyond which the wear of an edge costs more than the time that is saved.
+
+    ``(r + q·w·f^x)/f`` is least where ``(x − 1)·q·w·f^x = r``; else it falls with f.
+    """
+    wear = cost.wear_rate
+    worn = cost.machine_rate * cost.tool_change + cost.edge_price
+    if wear is None or wear.feed_exponent <= 1.0 or worn == 0.0 or cost.machine_rate == 0.0:
+        return
+    share = (wear.feed_exponent - 1.0) * worn
+    yield Limit(
+        name=LimitName.LEAST_COST,
+        load=replace(wear, coefficient=share * wear.coefficient),
+        bound=cost.machine_rate,
+        unit="per hour",
+        scale=3600.0,
+        label="feed of least cost",
+    )
 
 
 def state_of(
@@ -225,6 +274,8 @@ def state_of(
         if each is not None and (load := roughness_load(each)) is not None
     ]
     surface = roughness_forecast(cut, at, feed=setting.feed, speed=setting.speed)
+    priced = _cost(cut, at, OptimisationTask(mode=Mode.CC))
+    is_priced = at.machine.costs is not None
     return EvaluatedSetting(
         setting=setting,
         feed=setting.feed * cut.tool.teeth * setting.speed,
@@ -240,6 +291,8 @@ def state_of(
         roughness=max(roughness, default=None),
         surface=surface if cut.is_finishing else None,
         loads=limit_loads(exact.limits_at(problem, setting.speed), point),
+        money=priced.money(setting) if is_priced else None,
+        lives=None if not is_priced or priced.wear_rate is None else priced.lives(setting),
         plunge_loads=_plunge_loads(cut, at, setting),
     )
 

@@ -12,7 +12,7 @@ from math import exp, inf, log
 
 from optimiser.errors import OptimisationError
 from optimiser.modes import Mode
-from optimiser.problem import ROUNDING, BoundSide, Limit, Problem
+from optimiser.problem import ROUNDING, BoundSide, Limit, LimitName, Problem
 
 LARGE = 20.0
 """Logarithm of a number of passes beyond any that is tried."""
@@ -36,6 +36,8 @@ class FeedCaps:
     """Greatest depth that the depth limits allow, mm."""
     speed: float
     """Spindle speed, rev/s."""
+    cheapest: Limit | None = None
+    """Feed beyond which wear costs more than the time saved; no bound, floors go before it."""
 
     def best(self, depth: float) -> float:
         """Greatest feed per tooth that all limits allow at a depth, mm; zero if none is.
@@ -61,7 +63,12 @@ class FeedCaps:
             )
         for limit in self.floors:
             lowest = max(lowest, limit.feed_at_bound(depth, self.speed))
-        return 0.0 if highest < lowest * (1.0 - ROUNDING) else highest
+        if highest < lowest * (1.0 - ROUNDING):
+            return 0.0
+        if self.cheapest is not None:
+            wanted = self.cheapest.feed_at_bound(depth, self.speed)
+            return min(highest, max(lowest, wanted))
+        return highest
 
     def passes_to_constant(self, total_depth: float) -> float:
         """Number of passes from which on no power of the depth caps the feed; no integer."""
@@ -82,9 +89,12 @@ def caps_at(limits: Iterable[Limit], speed: float) -> FeedCaps:
     others: list[Limit] = []
     floors: list[Limit] = []
     at_least = BoundSide.AT_LEAST
+    cheapest = None
     for limit in limits:
         load = limit.load
-        if load.feed_exponent == 0.0:
+        if limit.name is LimitName.LEAST_COST:
+            cheapest = limit
+        elif load.feed_exponent == 0.0:
             if limit.is_of_depth:
                 deepest = min(deepest, limit.greatest_depth(speed))
         elif limit.sense is at_least:
@@ -107,16 +117,17 @@ def caps_at(limits: Iterable[Limit], speed: float) -> FeedCaps:
         deepest=deepest,
         floors=tuple(floors),
         speed=speed,
+        cheapest=cheapest,
     )
 
 
 def least_cost(problem: Problem, mode: Mode) -> Callable[[int], float]:
-    """Return a function giving the least possible cost, s or J, for k passes or more.
+    """Return a function giving the least possible cost, s, J or currency, for k passes or more.
 
     Only feed limits that do not depend on the depth count. The time bound is the travel at the
     greatest feed rate plus the links between passes. The energy bound adds the idling of the
     spindle and the cutting work at the greatest feed per tooth, both of which fall with the
-    feed.
+    feed. The bound of the money leaves out worn edges.
     """
     cost = problem.cost
     fastest = _greatest(problem, per_tooth=False)
@@ -124,6 +135,8 @@ def least_cost(problem: Problem, mode: Mode) -> Callable[[int], float]:
     def time(passes: int) -> float:
         return cost.travel(passes) / (cost.teeth * fastest) + passes * cost.link_time
 
+    if mode is Mode.CC:
+        return lambda passes: cost.machine_rate * time(passes)
     if mode is not Mode.EC:
         return time
     feed, power = _greatest(problem, per_tooth=True), cost.motor_power
@@ -161,6 +174,7 @@ def _greatest(problem: Problem, *, per_tooth: bool) -> float:
             if limit.load.feed_exponent > 0.0
             and not limit.load.knows_depth
             and limit.sense is BoundSide.AT_MOST
+            and limit.name is not LimitName.LEAST_COST
         )
         return min(each, default=inf)
 

@@ -1,4 +1,4 @@
-"""Optimisation modes: time-critical (TC), quality-critical (QC) and energy-critical (EC).
+"""Optimisation modes: time-, quality-, energy- and cost-critical (TC, QC, EC, CC).
 
 TC
     Least machining time. A roughness stated for the surface is kept.
@@ -7,6 +7,8 @@ QC
     thickness. (Least roughness alone would mean least feed, which rubs.)
 EC
     Least energy, of the machine and of the cut itself.
+CC
+    Least cost: machine rate times time, worn edges and their changes.
 
 TC and QC are the modes of F. Ridwan, X. Xu, G. Liu, "A framework for machining optimisation
 based on STEP-NC", J. Intell. Manuf. 23 (2012) 423–441, eqs. (12)–(14), in their corrected
@@ -22,6 +24,7 @@ class Mode(StrEnum):
     TC = "TC"
     QC = "QC"
     EC = "EC"
+    CC = "CC"
 
 
 class Free(StrEnum):

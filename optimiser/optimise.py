@@ -81,7 +81,14 @@ def optimise_program(
     ------
     SchemaError
         When a selected workingstep lacks what a cut needs, unless the task keeps going.
+    OptimisationError
+        When cost is to be least and the machine states no rates.
     """
+    if task.mode is Mode.CC and machine.costs is None:
+        raise OptimisationError(
+            f"mode CC: machine {machine.name} has no [cost] table: currency, "
+            "rate_per_hour, edge_change_s and the prices of edges"
+        )
     findings: list[Finding] = []
     advices = []
     refused = []

@@ -43,6 +43,11 @@ ALIKE = 0.9
 SAME_VOLUME = 0.98
 """Least ratio of the volumes that two paths remove at which their levels count as alike."""
 
+KEPT = frozenset({
+    LimitName.PROGRAMMED_FEED, LimitName.AXIAL_DEPTH, LimitName.LEAST_COST,
+})  # fmt: skip
+"""Limits that are no loads; a feed other than the cheapest would cost more than the bound."""
+
 HALF = 0.5
 """Ratio of the lengths of one pass that no path falls below, where levels are not alike.
 
@@ -153,6 +158,8 @@ class PassCountBounds:
         The same material is cut in any number of passes. Its work per volume falls with the
         feed, and does not fall when passes become shallower and chips thinner.
         """
+        if self.task.mode is Mode.CC:
+            return cost.money(setting)
         if self.task.mode is not Mode.EC:
             return cost.time(setting)
         own = self.problem.cost
@@ -202,7 +209,7 @@ def _relaxed_limits(
         Whether levels are alike, so that loads count at all.
     """
     for limit in limits:
-        if limit.name is LimitName.PROGRAMMED_FEED or limit.name is LimitName.AXIAL_DEPTH:
+        if limit.name in KEPT:
             yield limit
         elif limit.sense is BoundSide.AT_LEAST:
             yield replace(limit, bound=limit.bound / SLACK)

@@ -27,7 +27,7 @@ from optimiser.cut import Cut
 from optimiser.errors import Infeasible
 from optimiser.formulate import LEAST_DEPTH, OptimisationTask, problem_of
 from optimiser.least_cost import least_cost
-from optimiser.modes import Free
+from optimiser.modes import Free, Mode
 from optimiser.pass_bounds import PassCountBounds, are_alike, bounds_of
 from optimiser.plunge_feed import CLOSE, PlungeOptimum, at_foot, best_plunge
 from optimiser.problem import SCALES_WITH_FORCE, BoundSide, Limit, LimitName, Problem, Setting
@@ -418,7 +418,7 @@ def _with_passes(problem: Problem, passes: int, task: OptimisationTask) -> Optim
 
 def _optimum(problem: Problem, task: OptimisationTask) -> Optimum:
     """Exact optimum, or that of the geometric program when tool wear counts."""
-    if task.tool_change == 0.0:
+    if task.tool_change == 0.0 or task.mode is Mode.CC:
         return Optimum(solution=exact.solve(problem, task.mode))
     from optimiser import program as general  # noqa: PLC0415 (cvxpy takes a second)
 

@@ -44,6 +44,7 @@ class LimitName(StrEnum):
     ROUGHNESS = "roughness"
     PROGRAMMED_FEED = "programmed_feed"
     ALLOWANCE = "reaming_allowance"
+    LEAST_COST = "least_cost"
 
     @property
     def words(self) -> str:
@@ -329,6 +330,10 @@ class Cost:
     """Time to change a worn tool, s."""
     wear_rate: Monomial | None = None
     """Tool lives used per second of cutting."""
+    machine_rate: float = 0.0
+    """Cost of machine and operator, currency/s."""
+    edge_price: float = 0.0
+    """Cost of one worn edge, currency."""
 
     def cutting_time(self, at: Setting) -> float:
         """Machining time at cutting feed, s."""
@@ -346,7 +351,26 @@ class Cost:
         """Energy drawn from the mains, J."""
         return self.energy_of(at.feed, at.depth, at.passes, at.speed)
 
+    def lives(self, at: Setting) -> float:
+        """Tool lives used by the workingstep; 0 where tool life is unknown."""
+        return self._lives(at.feed, at.depth, at.passes, at.speed)
+
+    def money(self, at: Setting) -> float:
+        """Cost of machine time, worn edges and their changes, currency."""
+        return self.money_of(at.feed, at.depth, at.passes, at.speed)
+
     # A search compares many settings, and making each would cost more than its time.
+
+    def _lives(self, feed: float, depth: float, passes: int, speed: float) -> float:
+        if self.wear_rate is None:
+            return 0.0
+        cutting = self.travel(passes) / (self.teeth * feed * speed)
+        return cutting * self.wear_rate.value(feed, depth, speed)
+
+    def money_of(self, feed: float, depth: float, passes: int, speed: float) -> float:
+        """Cost of a setting that is given by its numbers, currency."""
+        machine = self.machine_rate * self.time_of(feed, depth, passes, speed)
+        return machine + self.edge_price * self._lives(feed, depth, passes, speed)
 
     def time_of(self, feed: float, depth: float, passes: int, speed: float) -> float:
         """Time of a setting that is given by its numbers, s."""

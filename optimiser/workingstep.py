@@ -69,7 +69,8 @@ def solve(problem: Problem, mode: Mode) -> Solution:
     Parameters
     ----------
     mode : Mode
-        ``EC`` minimises energy; ``TC`` and ``QC`` minimise time (they differ in their limits).
+        ``EC`` minimises energy, ``CC`` cost; ``TC`` and ``QC`` minimise time (they differ in
+        their limits).
 
     Returns
     -------
@@ -84,7 +85,7 @@ def solve(problem: Problem, mode: Mode) -> Solution:
     """
     cost = cost_function(problem, mode)
     caps = _caps(problem, problem.speeds[0]) if len(problem.speeds) == 1 else None
-    best_in = _search(problem, cost, caps)
+    best_in = _search(problem, cost, caps, has_inner=mode is Mode.CC)
     if caps is not None and is_posynomial(problem):
         first, best = _ends_of_descent(problem, mode, caps)
     else:
@@ -106,7 +107,7 @@ Ends = tuple[Setting | None, Setting | None]
 
 def _ends_of_descent(problem: Problem, mode: Mode, caps: FeedCaps) -> Ends:
     """Search down a cost that is convex in ln k, at the only spindle speed."""
-    cost_of = problem.cost.energy_of if mode is Mode.EC else problem.cost.time_of
+    cost_of = _cost_of_numbers(problem, mode)
     speed, (fewest, most) = caps.speed, problem.passes
     fewest = max(fewest, ceil(problem.total_depth / caps.deepest - ROUNDING))
     first = None
@@ -169,8 +170,19 @@ def _ends_of_trials(
 
 
 def cost_function(problem: Problem, mode: Mode) -> Callable[[Setting], float]:
-    """Cost function that the mode minimises: time in s or energy in J."""
+    """Cost function that the mode minimises: time in s, energy in J, or money in currency."""
+    if mode is Mode.CC:
+        return problem.cost.money
     return problem.cost.energy if mode is Mode.EC else problem.cost.time
+
+
+def _cost_of_numbers(
+    problem: Problem, mode: Mode
+) -> Callable[[float, float, int, float], float]:
+    """Cost that the mode minimises, of feed, depth, passes and speed."""
+    if mode is Mode.CC:
+        return problem.cost.money_of
+    return problem.cost.energy_of if mode is Mode.EC else problem.cost.time_of
 
 
 def limits_at(problem: Problem, speed: float) -> tuple[Limit, ...]:
@@ -189,7 +201,11 @@ def conflict(problem: Problem) -> Infeasible:
     passes, speed = problem.passes[1], problem.programmed.speed
     depth = problem.depth_at(passes)
     limits = limits_at(problem, speed)
-    caps = [limit for limit in limits if limit.sense is BoundSide.AT_MOST]
+    caps = [
+        limit
+        for limit in limits
+        if limit.sense is BoundSide.AT_MOST and limit.name is not LimitName.LEAST_COST
+    ]
     floors = [limit for limit in limits if limit.sense is BoundSide.AT_LEAST]
     for limit in caps:
         if limit.is_of_depth and not limit.holds(1.0, depth, speed):
@@ -354,11 +370,16 @@ def at_depth(problem: Problem, depth: float) -> Problem:
 
 
 def _search(
-    problem: Problem, cost: Callable[[Setting], float], caps: FeedCaps | None
+    problem: Problem,
+    cost: Callable[[Setting], float],
+    caps: FeedCaps | None,
+    *,
+    has_inner: bool,
 ) -> Callable[..., Setting | None]:
     """Return a solver for a number of passes; it returns None if no setting is feasible.
 
-    The caps are those at the only speed, None when the speed may be chosen.
+    The caps are those at the only speed, None when the speed may be chosen. Time and energy are
+    least at a speed where limits meet; with ``has_inner`` the cost may be least between two.
     """
 
     def best(passes: int, depth: float | None = None) -> Setting | None:
@@ -366,10 +387,14 @@ def _search(
         if caps is not None:
             return _setting(caps, passes, depth)
         flat = at_depth(problem, depth)
+
+        def at(speed: float) -> Setting | None:
+            return _setting(_caps(flat, speed), passes, depth)
+
         found = [
             setting
-            for speed in _speed_candidates(flat, depth)
-            if (setting := _setting(_caps(flat, speed), passes, depth)) is not None
+            for part in flat.parts(depth)
+            for setting in _best_speeds(at, _speed_candidates(part, depth), cost, has_inner)
         ]
         return min(found, key=cost, default=None)
 
@@ -389,17 +414,70 @@ def _setting(caps: FeedCaps, passes: int, depth: float) -> Setting | None:
     return Setting(feed=feed, depth=depth, passes=passes, speed=caps.speed)
 
 
-def _speed_candidates(problem: Problem, depth: float) -> Iterator[float]:
-    """Spindle speeds at which the best point can lie."""
-    for part in problem.parts(depth):
-        low, high = part.speeds
-        yield low
-        yield high
-        bounding = [limit for limit in limits_at(part, high) if limit.load.feed_exponent > 0.0]
-        for first, second in combinations(bounding, 2):
-            crossing = _crossing(first, second, depth=depth, between=(low, high))
-            if crossing is not None:
-                yield crossing
+def _best_speeds(
+    at: Callable[[float], Setting | None],
+    speeds: Iterator[float],
+    cost: Callable[[Setting], float],
+    has_inner: bool,
+) -> Iterator[Setting]:
+    """Yield settings of one stretch of speeds among which its best one is."""
+    if not has_inner:
+        yield from (setting for speed in speeds if (setting := at(speed)) is not None)
+        return
+    settings = [(speed, at(speed)) for speed in sorted(set(speeds))]
+    # The ends of the feasible speeds are crossings too, so all between these are feasible.
+    feasible = [setting for _, setting in settings if setting is not None]
+    if not feasible:
+        return
+    place = min(range(len(feasible)), key=lambda row: cost(feasible[row]))
+    yield feasible[place]
+    ends = feasible[max(place - 1, 0)].speed, feasible[min(place + 1, len(feasible) - 1)].speed
+
+    def cost_at(speed: float) -> float:
+        setting = at(speed)
+        return inf if setting is None else cost(setting)
+
+    inner = at(_least_within(cost_at, *ends))
+    if inner is not None:
+        yield inner
+
+
+GOLDEN = (5.0**0.5 - 1.0) / 2.0
+
+
+def _least_within(cost: Callable[[float], float], low: float, high: float) -> float:
+    """Speed of the least cost between two; the cost is convex in ln n along the feed caps."""
+    low, high = log(low), log(high)
+    left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    at_left, at_right = cost(exp(left)), cost(exp(right))
+    # Below this width the cost, flat at its least, no longer changes.
+    while high - low > SPEED_WIDTH:
+        if at_left <= at_right:
+            high, right, at_right = right, left, at_left
+            left = high - GOLDEN * (high - low)
+            at_left = cost(exp(left))
+        else:
+            low, left, at_left = left, right, at_right
+            right = low + GOLDEN * (high - low)
+            at_right = cost(exp(right))
+    return exp(0.5 * (low + high))
+
+
+SPEED_WIDTH = 1e-8
+"""Width of ln n at which the search for the cheapest speed ends; relative error of the cost
+about its square."""
+
+
+def _speed_candidates(part: Problem, depth: float) -> Iterator[float]:
+    """Spindle speeds of one stretch at which limits meet, and its ends."""
+    low, high = part.speeds
+    yield low
+    yield high
+    bounding = [limit for limit in limits_at(part, high) if limit.load.feed_exponent > 0.0]
+    for first, second in combinations(bounding, 2):
+        crossing = _crossing(first, second, depth=depth, between=(low, high))
+        if crossing is not None:
+            yield crossing
 
 
 def _crossing(

@@ -174,6 +174,10 @@ class ToolLifeRow(FileTable, frozen=True, kw_only=True):
     exponent: TaylorExponent
     constant_m_min: CuttingSpeed
     source: str
+    feed_exponent: Annotated[float, quantity(0.0, 10.0)] = 0.8
+    depth_exponent: Annotated[float, quantity(0.0, 10.0)] = 0.3
+    feed_mm: Annotated[float, quantity(1e-4, 100.0)] = 0.2
+    depth_mm: Annotated[float, quantity(1e-3, 1e3)] = 2.0
 
 
 class FeedTable(FileTable, frozen=True, kw_only=True):
@@ -356,7 +360,12 @@ def _windows(file: MaterialFile) -> tuple[CuttingWindow, ...]:
     """Cutting-speed windows, each with the tool life of its cutting material."""
     lives: Mapping[CuttingMaterial, Taylor] = {
         row.cutting_material: Taylor(
-            exponent=row.exponent, constant=speed_from_m_min(row.constant_m_min)
+            exponent=row.exponent,
+            constant=speed_from_m_min(row.constant_m_min),
+            feed_exponent=row.feed_exponent,
+            depth_exponent=row.depth_exponent,
+            feed=row.feed_mm,
+            depth=row.depth_mm,
         )
         for row in file.tool_life
     }

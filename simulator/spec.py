@@ -249,6 +249,8 @@ class Machine:
     """Random deviation of motor powers; ``None``: unknown."""
     planner: PlannerSettings = USUAL
     """Planner of its LinuxCNC, if it has one."""
+    costs: "CostRates | None" = None
+    """Rates of machine and edges; ``None``: not stated."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -278,6 +280,31 @@ class LinearEdge:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class CostRates:
+    """Rates by which time and worn edges cost money."""
+
+    currency: str
+    machine_rate: float
+    """Machine and operator, currency/s."""
+    edge_change: float
+    """Time to change a worn edge, s."""
+    hss_edge: float
+    """Cost of a worn edge of high-speed steel, currency."""
+    carbide_edge: float
+    ceramic_edge: float
+    source: str
+
+    def edge_price(self, material: "CuttingMaterial") -> float:
+        """Cost of a worn edge, currency."""
+        prices = {
+            CuttingMaterial.HSS: self.hss_edge,
+            CuttingMaterial.CARBIDE: self.carbide_edge,
+            CuttingMaterial.CERAMIC: self.ceramic_edge,
+        }
+        return prices[material]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Taylor:
     """Constants of Taylor's tool life law, v_c · T^n = C."""
 
@@ -285,6 +312,14 @@ class Taylor:
     """Exponent n, dimensionless, 0 < n < 1."""
     constant: float
     """Constant C: the cutting speed for a life of one minute, in mm/s."""
+    feed_exponent: float = 0.8
+    """Exponent x of the feed, T ~ f^-x; customary value, ± 0.3."""
+    depth_exponent: float = 0.3
+    """Exponent y of the depth, T ~ a^-y; customary value, ± 0.2."""
+    feed: float = 0.2
+    """Feed per revolution or tooth at which C holds, mm."""
+    depth: float = 2.0
+    """Depth at which C holds, mm."""
 
 
 class CuttingMaterial(StrEnum):

@@ -481,7 +481,7 @@ def optimise(
     given: str | Path | Iterable[str | Path] = ...,
     teeth: str | Path | Iterable[str | Path] = ...,
     feed: str | Path = ...,
-    mode: Literal['TC', 'QC', 'EC'] = ...,
+    mode: Literal['TC', 'QC', 'EC', 'CC'] = ...,
     machine: str | Path = ...,
     material: str | Path = ...,
     roughness_um: float | None = ...,

@@ -29,8 +29,8 @@ code.ready.catch((error) => tell(byId("advice-problem"), error));
 function suit(isOfCode) {
   for (const each of form.querySelectorAll(".of-program")) each.hidden = isOfCode;
   for (const each of form.querySelectorAll(".of-code")) each.hidden = !isOfCode;
-  // NC code has no energy to choose by: its depths and speeds stay.
-  if (isOfCode && form.elements.mode.value === "EC") form.elements.mode.value = "TC";
+  // NC code has no energy or cost to choose by: its depths and speeds stay.
+  if (isOfCode && ["EC", "CC"].includes(form.elements.mode.value)) form.elements.mode.value = "TC";
   byId("roughness").placeholder = isOfCode ? "none" : "as in the program";
   byId("material").options[0].textContent = isOfCode ? "choose …" : "as in the program";
   showAlongFields();

@@ -6,7 +6,7 @@ import { findingsList } from "/dashboard/plan_program.js";
 import { showConfirmation } from "/dashboard/plan_confirm.js";
 import { stepsCsv, stepsTable } from "/dashboard/plan_table.js";
 
-const MODES = { TC: "least time", QC: "roughness kept", EC: "least energy" };
+const MODES = { TC: "least time", QC: "roughness kept", EC: "least energy", CC: "least cost" };
 const CONTROL = "stepnc.control";
 let job = null, result = null;
 

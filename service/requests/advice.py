@@ -39,7 +39,9 @@ class AdviceRequest(ProgramRequest):
     mode: Annotated[
         Mode,
         About(
-            "TC least time, QC fastest feed that keeps the roughness, EC energy", flag="--mode"
+            "TC least time, QC fastest feed that keeps the roughness, EC least energy, "
+            "CC least cost of machine time and worn edges",
+            flag="--mode",
         ),
     ] = Mode.TC
     machine: MachineName = ""

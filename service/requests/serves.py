@@ -57,7 +57,7 @@ SERVES: Mapping[str, Serves] = {
     "mode": Serves(
         kind=STEP_NC,
         why="NC code is advised for least time (TC), or for surfaces of a roughness (QC)",
-        is_concerned=lambda mode: str(mode).upper() == Mode.EC.value,
+        is_concerned=lambda mode: str(mode).upper() in {Mode.EC.value, Mode.CC.value},
     ),
     **{
         name: Serves(kind=NC_CODE, why=why)

@@ -116,6 +116,14 @@ class AdvisedView(View):
         default=[], description="numbers of passes that would leave other stock than programmed"
     )
     energy_j: float | None
+    cost: float | None = Field(
+        default=None,
+        description="of machine time and worn edges, in the currency of the machine; "
+        "null: its file has no cost table",
+    )
+    tool_lives_used: float | None = Field(
+        default=None, description="share of a tool life that the cut takes; null: unknown"
+    )
     time_s: BeforeAfterView
     stability: StabilityView | None = Field(
         default=None, description="null: chatter does not depend on the depth of this cut"

@@ -14,7 +14,14 @@ from pathlib import Path
 import numpy as np
 
 from simulator.calibration.cut_fit import FittedLaw
-from simulator.calibration.cut_laws import REFERENCE_CHIP, CutForceLaw, LawKind, LifeLaw
+from simulator.calibration.cut_laws import (
+    REFERENCE_CHIP,
+    REFERENCE_DEPTH,
+    REFERENCE_FEED,
+    CutForceLaw,
+    LawKind,
+    LifeLaw,
+)
 from simulator.calibration.cut_table import CutRow, kept_text
 from simulator.material_file import CALIBRATION_VERSION
 from simulator.motion.segments import Floats
@@ -102,6 +109,10 @@ def _with_life(text: str, fit: FittedLaw, law: LifeLaw) -> str:
             "exponent": float(f"{min(max(1.0 / float(mean[1]), 0.01), 0.99):.4f}"),
             "constant_m_min": float(f"{constant:.5g}"),
             "source": f"{len(fit.rows)} measured edges, at the mean {at}".rstrip(" ,at"),
+            "feed_exponent": float(f"{max(float(mean[2]), 0.0):.4f}"),
+            "depth_exponent": float(f"{max(float(mean[3]), 0.0):.4f}"),
+            "feed_mm": float(f"{seen['feed_mm'] or REFERENCE_FEED:.4g}"),
+            "depth_mm": float(f"{seen['axial_depth_mm'] or REFERENCE_DEPTH:.4g}"),
         },
     )  # fmt: skip
 

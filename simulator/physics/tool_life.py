@@ -9,13 +9,32 @@ References
 .. [2] ISO 3685: end of life at a flank wear of 0.3 mm.
 """
 
-from math import pow
+from math import pow, sqrt
 
 from simulator.physics.domain import require_positive
-from simulator.spec import Taylor
+from simulator.spec import CuttingMaterial, CuttingWindow, Taylor
 from stepnc_model.units import SECONDS_PER_MINUTE
 
 LIFE_CRITERION = 0.3  # mm, VB_B, [2]
+
+ASSUMED_LIFE = 15.0  # min, for which catalogues usually state their cutting speeds
+ASSUMED_EXPONENT = {
+    CuttingMaterial.HSS: 0.125, CuttingMaterial.CARBIDE: 0.25, CuttingMaterial.CERAMIC: 0.6,
+}  # fmt: skip
+"""Customary n by cutting material, the prior means of ``calibrate --table``."""
+
+
+def assumed_life(window: CuttingWindow) -> Taylor | None:
+    """Taylor's law assumed where none is known: 15 min in the middle of the catalogue's speeds.
+
+    Right within a factor of about 6 in nine cases of ten: ln T has a standard deviation of 1
+    between shops and 0.35 between edges. None without speeds.
+    """
+    low, high = window.min_cutting_speed, window.max_cutting_speed
+    if not low or not high:
+        return None
+    exponent = ASSUMED_EXPONENT[window.cutting_material]
+    return Taylor(exponent=exponent, constant=sqrt(low * high) * ASSUMED_LIFE**exponent)
 
 
 def tool_life(taylor: Taylor, cutting_speed: float) -> float:

@@ -205,6 +205,8 @@ def advice_record(advice: Advice) -> dict[str, Any]:
         else None,
         "roughness_probability": advice.roughness_probability,
         "energy_j": shown.energy if shown else None,
+        "cost": shown.money if shown else None,
+        "tool_lives_used": shown.lives if shown else None,
         "time_s": {
             "before": before.time if before else None,
             "after": after.time if after else None,

@@ -27,6 +27,9 @@ from service.verbs.optimise.plan_record import (
     unchecked_words,
 )
 from service.verbs.optimise.result import OptimiseResult
+from simulator.library import find_window
+from simulator.physics.tool_life import ASSUMED_LIFE
+from stepnc_model.counted import counted
 from stepnc_model.errors import Finding
 from stepnc_model.units import (
     kj_from_joules,
@@ -283,8 +286,53 @@ def _totals(plan: Plan) -> Iterator[Item]:
     yield TextLine(
         text=f"energy {before:.1f} -> {after:.1f} kJ; totals leave out {plan.left_out}"
     )
+    for text in cost_words(plan):
+        yield TextLine(text=text)
     for advice in plan.advices:
         yield TextLine(text=f"  {advice.workingstep.id}: {_reason(advice)}")
+
+
+def cost_words(plan: Plan) -> Iterator[str]:
+    """Yield the cost of a plan, what it leaves out, and the tool lives used by tool."""
+    rates = plan.machine.costs
+    shown = [(each.tool.id, each.after or each.before) for each in plan.advices]
+    priced = [(tool, state) for tool, state in shown if state and state.money is not None]
+    if rates is None or not priced:
+        return
+    total = sum(state.money or 0.0 for _, state in priced)
+    missing = len({tool for tool, state in priced if state.lives is None})
+    unworn = f", wear of {counted(missing, 'tool')} of unknown life" if missing else ""
+    plain = set(_tools_of_assumed_life(plan))
+    yield (
+        f"cost {total:.4g} {rates.currency} of machine time and worn edges ({rates.source}); "
+        f"left out: set-up, programming, material, tool changes between workingsteps{unworn}"
+    )
+    used: dict[str, float] = {}
+    for tool, state in priced:
+        if state.lives is not None:
+            used[tool] = used.get(tool, 0.0) + state.lives
+    if used:
+        lives = ", ".join(
+            f"{tool} {share:.2g}{' (assumed)' if tool in plain else ''}"
+            for tool, share in used.items()
+        )
+        yield f"edge lives used, by a catalogue within a factor of about 6: {lives}"
+    if plain:
+        yield (
+            f"no tool life is known of {', '.join(sorted(plain))}: {ASSUMED_LIFE:g} min in the "
+            "middle of the catalogue's speeds is assumed; calibrate --table learns it"
+        )
+
+
+def _tools_of_assumed_life(plan: Plan) -> Iterator[str]:
+    """Yield the tools whose life no file states."""
+    for advice in plan.advices:
+        at, cut = advice.conditions, advice.cut
+        if at is None or cut is None:
+            continue
+        window = find_window(at.material, cut.tool_kind, at.cutting_material)
+        if window is not None and window.taylor is None:
+            yield advice.tool.id
 
 
 def _fronts(plan: Plan) -> Iterator[Item]:

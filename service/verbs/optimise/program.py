@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from optimiser.advice import AdviceStatus, Plan
 from optimiser.formulate import OptimisationTask
+from optimiser.modes import Mode
 from optimiser.optimise import optimise_program
 from optimiser.source import along_paths
 from service.chosen import machine_for, material_for, require_axes, with_holding
@@ -324,7 +325,8 @@ def _tell_conflicts(plan: Plan, tell: Tell) -> None:
 
 def _profile(request: AdviceRequest, program: Program) -> FileProfile | None:
     """Form of the records; None for no records."""
-    if request.records is RecordChoice.NONE:
+    # The record schema has no entity for least cost.
+    if request.records is RecordChoice.NONE or request.mode is Mode.CC:
         return None
     chosen = request.profile or writeback.usual_profile(program)
     return writeback.profile_for(program, chosen)
