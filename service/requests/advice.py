@@ -11,6 +11,7 @@ from optimiser.modes import Free, Mode
 from optimiser.roughness import GREATEST_SHARE, LEAST_SHARE
 from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE
 from service.requests.fields import About
+from service.requests.files import KeepsState
 from service.requests.given import Name, ProgramRequest
 from simulator.motion.model_name import ControlModelName
 from stepnc_model.file_profile import FileProfile, RecordChoice
@@ -290,15 +291,7 @@ class AdviceRequest(ProgramRequest):
             group="NC code", flag="--keep", metavar="TOOL",
         ),
     ] = ()  # fmt: skip
-    keeps_state: Annotated[
-        tuple[Name, ...],
-        MaxLen(1000),
-        About(
-            "of NC code: a program that it calls by M98 or G65, that is not in its file, and "
-            "that leaves modal state and offsets as they were; repeatable",
-            group="NC code", flag="--keeps-state", metavar="PNUMBER",
-        ),
-    ] = ()  # fmt: skip
+    keeps_state: KeepsState = ()
     spindle: Annotated[
         tuple[Name, ...],
         MaxLen(1000),

@@ -3,9 +3,10 @@
 from pathlib import Path
 from typing import Annotated
 
-from annotated_types import Interval
+from annotated_types import Interval, MaxLen
 
 from service.requests.fields import About, FileUse
+from service.requests.given import Name
 from simulator.tool_files.file_unit import FileUnit
 from stepnc_model.post.dialect import Dialect
 
@@ -38,6 +39,16 @@ MostRepeats = Annotated[
         "blocks, and moves, that NC code may execute beyond those of its file, by calls, loops "
         "and repeated cycles (default: 1000000, which take about 100 MB and 10 s)",
         group="NC code", flag="--most-repeats", metavar="N",
+    ),
+]  # fmt: skip
+
+KeepsState = Annotated[
+    tuple[Name, ...],
+    MaxLen(1000),
+    About(
+        "of NC code: a program that it calls by M98 or G65, that is not in its file, and "
+        "that leaves modal state and offsets as they were; repeatable",
+        group="NC code", flag="--keeps-state", metavar="PNUMBER",
     ),
 ]  # fmt: skip
 

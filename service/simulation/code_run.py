@@ -43,7 +43,10 @@ def code_of_run(
         return as_it_is
     dialect = one_of(Dialect, request.dialect.lower(), "dialect") if request.dialect else None
     program = read_program(
-        read_bytes(request.code), dialect=dialect, most_repeats=request.most_repeats
+        read_bytes(request.code),
+        dialect=dialect,
+        most_repeats=request.most_repeats,
+        keeps_state=request.keeps_state,
     )
     given = GivenSetup(
         file=request.code,

@@ -125,6 +125,8 @@ class CodeRequest:
     """Raw part, as :func:`service.raw_stock.raw_stock_of` reads it; empty: unknown."""
     most_repeats: int | None = None
     """Blocks and moves that may be executed beyond those of the file; None: as usual."""
+    keeps_state: frozenset[int] = frozenset()
+    """Numbers of programs outside the file that leave the modal state as it was."""
     is_stock_guessed: bool = False
     findings: tuple[Finding, ...] = ()
     """Findings on the code's setup."""
@@ -184,12 +186,19 @@ def _paths_of_any_origin(
     if request.dialect or not guess.hints:
         dialect = dialect_of(request.code, request.dialect)
     found, most = guess.machine, request.most_repeats
-    program = read_program(data, dialect=dialect, machine=found, most_repeats=most)
+    kept = request.keeps_state
+    program = read_program(
+        data, dialect=dialect, machine=found, most_repeats=most, keeps_state=kept
+    )
     is_without_y = bool((np.nan_to_num(program.moves.end[:, 1]) == 0.0).all())
     if is_without_y and found is MachineType.MILL and machine.kind is MachineKind.LATHE:
         # Nothing else may show that code is for a lathe.
         program = read_program(
-            data, dialect=dialect, machine=MachineType.LATHE, most_repeats=most
+            data,
+            dialect=dialect,
+            machine=MachineType.LATHE,
+            most_repeats=most,
+            keeps_state=kept,
         )
     if program.machine is not _kind(machine):
         raise StepNcError(

@@ -4,10 +4,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Generic, TypeVar
 
+from service.numbers import program_numbers_in
 from service.program_kind import ProgramKind, kind_of_file
 from service.reading import tool_library
 from service.requests.fields import About, FileUse, Request
-from service.requests.files import MostRepeats, Report, SetupOfCode, ToolsUnit
+from service.requests.files import KeepsState, MostRepeats, Report, SetupOfCode, ToolsUnit
 from service.requests.runs import RunRequest
 from service.simulation.of_code import CodeRequest
 from service.simulation.run import RunFiles
@@ -62,6 +63,7 @@ class CodeOfRun(Request):
     tools_unit: ToolsUnit = None
     setup: SetupOfCode = None
     most_repeats: MostRepeats = None
+    keeps_state: KeepsState = ()
 
     @property
     def code(self) -> Path | None:
@@ -100,6 +102,8 @@ def placed_run(files: CodeOfRun, request: N) -> PlacedRun[N]:
         raise StepNcError("--dialect needs NC code: name it with --nc")
     if code is None and files.setup is not None:
         raise StepNcError("--setup needs NC code: a STEP-NC program has its own setup")
+    if code is None and files.keeps_state:
+        raise StepNcError("--keeps-state needs NC code: a STEP-NC program calls no other one")
     if files.tools_unit and files.tools is None:
         raise StepNcError("--tools-unit needs a tool table: name it with --tools")
     places = RunFiles(
@@ -117,6 +121,7 @@ def placed_run(files: CodeOfRun, request: N) -> PlacedRun[N]:
         tools_unit=files.tools_unit,
         stock=request.stock,
         most_repeats=files.most_repeats,
+        keeps_state=program_numbers_in(files.keeps_state),
     )
     request = replace(request, stock="")
     if code != files.file and files.file is not None:

@@ -217,9 +217,6 @@ class HeidenhainControl:
                 recorder.word = value * self.scale / (SECONDS_PER_MINUTE if per_minute else 1.0)
                 recorder.fed_by, recorder.is_fresh = recorder.block, True
                 recorder.standing &= ~MoveFlag.MACRO_FEED.value
-                if name in words.evaluated:
-                    # Its number is known, but no word of the program says it.
-                    recorder.standing |= MoveFlag.MACRO_FEED.value
         if "FZ" in words.values or "FT" in words.values:
             self._forget_feed()
         return "FMAX" in words.names or "MAX" in words.names

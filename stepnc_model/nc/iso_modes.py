@@ -141,9 +141,6 @@ class IsoModes:
             self.recorder.fed_by = self.recorder.block
         elif value is not None:
             self.set_feed(value, unit)
-            if "F" in words.evaluated:
-                # Its number is known, but no word of the program says it.
-                self.recorder.standing |= MoveFlag.MACRO_FEED.value
 
     def set_feed(self, value: float, unit: float) -> None:
         """Put the number of an F word in force, in units of a length in mm."""

@@ -72,7 +72,7 @@ class MoveFlag(IntFlag):
     NO_FEED = 1 << 8
     """No feed is in force, or it is 0."""
     MACRO_FEED = 1 << 9
-    """The feed in force is given by a variable or an expression."""
+    """The feed in force is that of a variable or an expression whose value is not known."""
     OWN_FEED = 1 << 10
     """The block holds an F word."""
     FRESH_FEED = 1 << 11
@@ -131,7 +131,7 @@ REASONS = {
     MoveFlag.ROTARY: "another axis than X, Y and Z",
     MoveFlag.CONDITIONAL: "a conditional part of the program",
     MoveFlag.NO_FEED: "no feed in force",
-    MoveFlag.MACRO_FEED: "a feed from a variable",
+    MoveFlag.MACRO_FEED: "a feed from a variable that is not known",
     MoveFlag.MACHINE: "coordinates of the machine",
     MoveFlag.FIXED: "words that act once",
     MoveFlag.POLAR: "polar or other ends",

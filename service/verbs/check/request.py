@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from service.requests.fields import About, Request
-from service.requests.files import CodeControl, MostRepeats, NamedTools, ProgramFile
+from service.requests.files import CodeControl, KeepsState, MostRepeats, NamedTools, ProgramFile
 from service.requests.given import Name, ProgramRequest
 
 
@@ -25,6 +25,7 @@ class CheckFiles(Request):
         ""
     )
     most_repeats: MostRepeats = None
+    keeps_state: KeepsState = ()
 
 
 REQUEST, FILES = CheckRequest, CheckFiles

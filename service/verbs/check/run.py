@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from service.files import read_bytes
+from service.numbers import program_numbers_in
 from service.paths.remarks import all_findings, program_remarks, tell_remarks
 from service.paths.toolpaths import Paths, paths_of
 from service.program_kind import ProgramKind, kind_for
@@ -115,7 +116,12 @@ def _paths(program: Program, kept: KeptPaths) -> Paths | StepNcError:
 def _code(request: CheckRequest, files: CheckFiles, name: str) -> CodeContents:
     """Contents and findings of NC code, which is executed."""
     data = read_bytes(files.file)
-    program = read_program(data, dialect=request.dialect, most_repeats=files.most_repeats)
+    program = read_program(
+        data,
+        dialect=request.dialect,
+        most_repeats=files.most_repeats,
+        keeps_state=program_numbers_in(files.keeps_state),
+    )
     given = GivenSetup(file=Path(name), tools=files.tools)
     setup = code_setup(program, given)
     return CodeContents(

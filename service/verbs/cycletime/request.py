@@ -8,7 +8,7 @@ from annotated_types import Interval
 
 from service.requests.advice import MachineName
 from service.requests.fields import About, FileUse, Request
-from service.requests.files import MostRepeats, NamedTools, Report, SetupOfCode
+from service.requests.files import KeepsState, MostRepeats, NamedTools, Report, SetupOfCode
 from service.requests.given import Name, ProgramRequest
 from service.requests.runs import JUNCTION_DEVIATION
 from simulator.motion.model_name import ControlModelName
@@ -64,6 +64,7 @@ class CycleTimeFiles(Request):
     """What is to be said of the log by those who got it."""
     setup: SetupOfCode = None
     most_repeats: MostRepeats = None
+    keeps_state: KeepsState = ()
     output: Annotated[
         Path | None,
         About(

@@ -9,6 +9,7 @@ import numpy as np
 
 from service.chosen import machine_for, require_axes
 from service.files import require_place, write_atomically, write_lines
+from service.numbers import program_numbers_in
 from service.paths.toolpaths import paths_of, with_feeds
 from service.program_kind import NO_TABLE, ProgramKind, kind_of_file
 from service.progress import Tell, silent
@@ -65,6 +66,7 @@ class _Source:
                 code=files.file,
                 dialect=request.dialect,
                 most_repeats=files.most_repeats,
+                keeps_state=program_numbers_in(files.keeps_state),
             ),
             RunRequest(machine=request.machine or self._machine_of_setup()),
             program=None,

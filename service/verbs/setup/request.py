@@ -6,7 +6,7 @@ from typing import Annotated
 
 from service.requests.advice import MachineName, MaterialName
 from service.requests.fields import About, FileUse, Request
-from service.requests.files import CodeControl, MostRepeats, ToolsUnit
+from service.requests.files import CodeControl, KeepsState, MostRepeats, ToolsUnit
 from service.requests.given import RawPart, raw_part_in
 
 
@@ -40,6 +40,7 @@ class SetupFiles(Request):
         ),
     ] = ""  # fmt: skip
     most_repeats: MostRepeats = None
+    keeps_state: KeepsState = ()
     output: Annotated[
         Path | None,
         About(

@@ -2,6 +2,7 @@
 
 from service.chosen import load_material_named
 from service.files import read_bytes, require_place, write_atomically
+from service.numbers import program_numbers_in
 from service.program_kind import ProgramKind, kind_for
 from service.progress import Tell, silent
 from service.simulation.code_setup import GivenSetup, code_setup
@@ -36,7 +37,10 @@ def run(request: SetupRequest, files: SetupFiles, *, tell: Tell = silent) -> Set
     if request.machine:
         load_machine(request.machine)
     program = read_program(
-        read_bytes(files.file), dialect=request.dialect, most_repeats=files.most_repeats
+        read_bytes(files.file),
+        dialect=request.dialect,
+        most_repeats=files.most_repeats,
+        keeps_state=program_numbers_in(files.keeps_state),
     )
     given = GivenSetup(
         file=files.file,

@@ -5,7 +5,14 @@ from pathlib import Path
 from typing import Annotated
 
 from service.requests.fields import About, FileUse, Request
-from service.requests.files import CodeControl, KeepsGoing, MostRepeats, NamedTools, ProgramFile
+from service.requests.files import (
+    CodeControl,
+    KeepsGoing,
+    KeepsState,
+    MostRepeats,
+    NamedTools,
+    ProgramFile,
+)
 from service.requests.given import ProgramRequest
 
 
@@ -24,6 +31,7 @@ class ToolPathFiles(Request):
     file: ProgramFile
     tools: NamedTools = None
     most_repeats: MostRepeats = None
+    keeps_state: KeepsState = ()
     plot: Annotated[
         Path | None,
         About(

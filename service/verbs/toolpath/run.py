@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from service.files import read_bytes, require_place, write_atomically
+from service.numbers import program_numbers_in
 from service.paths.toolpaths import paths_of, with_remarks
 from service.program_kind import NO_TABLE, ProgramKind, kind_for
 from service.progress import Tell, silent
@@ -60,6 +61,9 @@ def _code(request: ToolPathRequest, files: ToolPathFiles) -> CodePathResult:
         raise StepNcError("--stock of NC code is only drawn: name a picture with --plot")
     stock = raw_stock_of(request.stock).bounds if request.stock else None
     program = read_program(
-        read_bytes(files.file), dialect=request.dialect, most_repeats=files.most_repeats
+        read_bytes(files.file),
+        dialect=request.dialect,
+        most_repeats=files.most_repeats,
+        keeps_state=program_numbers_in(files.keeps_state),
     )
     return CodePathResult(name=files.file.name, program=program, stock=stock)

@@ -82,15 +82,23 @@ def test_what_is_not_known_stays_unknown(name: str) -> None:
     assert isnan(moves(UNKNOWN[name]).end[-1, 0])
 
 
-def test_blocks_with_parameters_are_not_split_and_their_feeds_stay() -> None:
+def test_blocks_with_parameters_are_not_split() -> None:
     found = moves("Q1 = 10\nQ2 = 100\nL X+Q1 F200\nL Y+5 FQ2\nL X+20\nL X+30 F50\n")
     with_end, with_feed, behind, plain = range(1, 5)
-    assert found.is_advisable.tolist()[1:] == [True, False, False, True]
+    assert found.is_advisable.tolist()[1:] == [True, True, True, True]
     assert found.flags[with_end] & MoveFlag.MACRO
     assert not found.is_splittable[with_end]
-    assert found.flags[with_feed] & MoveFlag.MACRO_FEED
-    assert found.flags[behind] & MoveFlag.MACRO_FEED
+    assert found.flags[with_feed] & MoveFlag.MACRO
+    assert not found.is_splittable[with_feed]
+    assert (found.word[[with_feed, behind]] * 60.0).round(9).tolist() == [100.0, 100.0]
     assert found.is_splittable[plain]
+
+
+def test_a_feed_of_an_unknown_parameter_stays() -> None:
+    found = moves("L X+10 F200\nL Y+5 FQ2\nL X+20\nL X+30 F50\n")
+    assert found.is_advisable.tolist()[1:] == [True, False, False, True]
+    assert found.flags[2] & MoveFlag.MACRO_FEED
+    assert found.flags[3] & MoveFlag.MACRO_FEED
 
 
 def test_without_advice_all_bytes_stay() -> None:

@@ -170,7 +170,55 @@ def test_a_feed_from_a_variable_refuses_the_advice_before_it() -> None:
     code = ISO + b"F#1\nG1 X5\nX6\n"
     result = rewritten(code, Dialect.LINUXCNC, (6, (1.0,), (20.0,)))
     assert result.data == code
-    assert result.unchanged[0].reason == "a feed from a variable"
+    assert result.unchanged[0].reason == "a feed from a variable that is not known"
+
+
+@every_case(
+    ("code", "block", "wanted"),
+    [
+        ("{}G1 X5. F#9\nX9. F50.\n", 6, "{}G1 X5. F80.\nX9. F50.\n"),
+        ("{}G1 X5. F[#9*2] M8\nX9. F50.\n", 6, "{}G1 X5. F80. M8\nX9. F50.\n"),
+        # Where it is in force a word at the move suffices; the word that sets it stays.
+        ("{}G1 X5. F#9\nX9.\nX12. F50.\n", 7, "{}G1 X5. F#9\nX9. F80.\nX12. F50.\n"),
+        # What follows without advice would need the value of the variable again.
+        ("{}G1 X5. F#9\nX9.\n", 6, "{}G1 X5. F#9\nX9.\n"),
+    ],
+)
+def test_a_known_feed_from_a_variable_gives_way_to_a_word(
+    code: str, block: int, wanted: str
+) -> None:
+    head = ISO.decode().replace("F100", "F100.") + "#9=60.\n"
+    result = rewritten(code.format(head).encode(), Dialect.FANUC, (block, (1.0,), (80.0,)))
+    assert result.data.decode() == wanted.format(head)
+
+
+KLARTEXT = "0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S900\n2 M3\nQ1 = 60\nL X+0 Y+0 Z-1 F100\n"
+ISO_HEAD = "G21 G90\nT1 M6\nS900 M3\n{}\nG0 X0 Y0 Z-1\n"
+
+
+@every_case(
+    ("control", "code", "word"),
+    [
+        (Dialect.LINUXCNC, ISO_HEAD.format("#<cut>=60") + "G1 X5 {}\nX9 F50\n", "F#<cut>"),
+        (Dialect.SINUMERIK, ISO_HEAD.format("R1=60") + "G1 X5 {}\nX9 F50\n", "F=R1"),
+        (Dialect.HEIDENHAIN, KLARTEXT + "L X+5 {}\nL X+9 F50\n", "FQ1"),
+    ],
+)
+def test_feeds_of_variables_by_control(control: Dialect, code: str, word: str) -> None:
+    result = rewritten(code.format(word).encode(), control, (5, (1.0,), (80.0,)))
+    again = read_program(result.data, dialect=control).moves
+    assert result.changed == 1
+    assert word.encode() not in result.data
+    assert again.word[-2:] * 60.0 == pytest.approx([80.0, 50.0])
+
+
+def test_calls_with_different_feeds_get_the_least_advice() -> None:
+    code = b"O1\n" + ISO + b"G65 P2 F60.\nG65 P2 F90.\nG1 X9. F50.\nM30\nO2\n"
+    code += b"G1 X5. F#9\nG0 X0\nM99\n"
+    block = code.split(b"\n").index(b"G1 X5. F#9")
+    advice = ((block, (1.0,), (120.0,)), (block, (1.0,), (100.0,)))
+    result = rewritten(code, Dialect.FANUC, *advice)
+    assert result.data == code.replace(b"F#9", b"F100.")
 
 
 @pytest.mark.parametrize(

@@ -95,7 +95,9 @@ def test_options_of_programs_are_refused_with_code(
         stepnc.check(file, **words)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("words", [{"dialect": "haas"}, {"most_repeats": 9}])
+@pytest.mark.parametrize(
+    "words", [{"dialect": "haas"}, {"most_repeats": 9}, {"keeps_state": ("P9",)}]
+)
 def test_options_of_code_are_refused_with_a_program(words: dict[str, object]) -> None:
     with pytest.raises(StepNcError, match="cannot be used with a STEP-NC program"):
         stepnc.check(PARTS / "paper002.stpnc", **words)  # type: ignore[arg-type]

@@ -157,7 +157,9 @@ def test_options_of_programs_are_refused_with_code(
         stepnc.toolpath(code, **words)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("words", [{"dialect": "haas"}, {"most_repeats": 9}])
+@pytest.mark.parametrize(
+    "words", [{"dialect": "haas"}, {"most_repeats": 9}, {"keeps_state": ("P9",)}]
+)
 def test_options_of_code_are_refused_with_programs(words: dict[str, object]) -> None:
     with pytest.raises(StepNcError, match="cannot be used with a STEP-NC program"):
         stepnc.toolpath(BRACKET, **words)  # type: ignore[arg-type]
