@@ -65,7 +65,7 @@ def test_the_usual_line_is_collected_as_any_other(
 ) -> None:
     ends = [(1.0, 2.0, 3.0), (4.0, 2.0, 3.0), (4.0, 2.0, 3.0), (4.0, 0.0, -1.0)]
     rates = (FEED, PER_REVOLUTION, FEED, FEED)
-    program = [
+    program: list[nc.Block] = [
         nc.SpindleOn(speed=10.0, sense=nc.SpindleDirection.CLOCKWISE),
         HOME,
         *(nc.Linear(end=end, rate=rate) for end, rate in zip(ends, rates, strict=True)),
