@@ -15,6 +15,7 @@ from types import MappingProxyType
 from optimiser import workingstep as exact
 from optimiser.advice import EvaluatedSetting, LimitLoad, ParetoPoint
 from optimiser.conditions import CuttingConditions
+from optimiser.convex import TIE
 from optimiser.cut import Cut, CutKind
 from optimiser.errors import Infeasible
 from optimiser.holding import chuck_limits, holding_limits
@@ -446,4 +447,4 @@ def _measures(state: EvaluatedSetting) -> tuple[float, float, float]:
 
 def _beats(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
     """True if the first point is nowhere worse than the second, up to rounding."""
-    return all(a <= b * (1.0 + exact.TIE) for a, b in zip(one, other, strict=True))
+    return all(a <= b * (1.0 + TIE) for a, b in zip(one, other, strict=True))

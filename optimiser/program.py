@@ -18,11 +18,12 @@ from math import inf
 
 import cvxpy as cp
 
+from optimiser.convex import TIE
 from optimiser.errors import Infeasible, OptimisationError, SolverFailed
 from optimiser.least_cost import least_cost
 from optimiser.modes import Mode
 from optimiser.problem import BoundSide, Limit, LimitName, Monomial, Problem, Setting
-from optimiser.workingstep import TIE, conflict, is_posynomial, limits_at
+from optimiser.workingstep import conflict, is_posynomial, limits_at
 
 ROWS = (8, 24)
 """Sizes of compiled programs, in limits; a smaller one is faster to set and solve."""

@@ -21,6 +21,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from math import ceil, exp, inf, log
 
+from optimiser.convex import TIE, least_of_convex, least_within
 from optimiser.errors import Infeasible
 from optimiser.least_cost import FeedCaps, caps_at, least_cost
 from optimiser.modes import Mode
@@ -36,9 +37,6 @@ from optimiser.problem import (
 )
 from stepnc_model.counted import counted
 from stepnc_model.units import rpm_from_rev_s
-
-TIE = 1e-9
-"""Relative difference of cost below which two settings are equally good."""
 
 BISECTIONS = 80
 """Halvings that bring any bracket of ln n below the rounding of a float."""
@@ -130,18 +128,6 @@ def _ends_of_descent(problem: Problem, mode: Mode, caps: FeedCaps) -> Ends:
     if passes == fewest:
         return first, first
     return first, _setting(caps, passes, problem.depth_at(passes))
-
-
-def least_of_convex(cost: Callable[[int], float], low: int, high: int, *, guess: int) -> int:
-    """Least number in [low, high] at which a convex cost stops falling, found from a guess."""
-    at = min(max(guess, low), high)
-    here = cost(at)
-    is_falling = False
-    while at < high and (after := cost(at + 1)) < here * (1.0 - TIE):
-        at, here, is_falling = at + 1, after, True
-    while not is_falling and at > low and here >= (before := cost(at - 1)) * (1.0 - TIE):
-        at, here = at - 1, before
-    return at
 
 
 def _ends_of_trials(
@@ -437,35 +423,9 @@ def _best_speeds(
         setting = at(speed)
         return inf if setting is None else cost(setting)
 
-    inner = at(_least_within(cost_at, *ends))
+    inner = at(least_within(cost_at, *ends))
     if inner is not None:
         yield inner
-
-
-GOLDEN = (5.0**0.5 - 1.0) / 2.0
-
-
-def _least_within(cost: Callable[[float], float], low: float, high: float) -> float:
-    """Speed of the least cost between two; the cost is convex in ln n along the feed caps."""
-    low, high = log(low), log(high)
-    left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    at_left, at_right = cost(exp(left)), cost(exp(right))
-    # Below this width the cost, flat at its least, no longer changes.
-    while high - low > SPEED_WIDTH:
-        if at_left <= at_right:
-            high, right, at_right = right, left, at_left
-            left = high - GOLDEN * (high - low)
-            at_left = cost(exp(left))
-        else:
-            low, left, at_left = left, right, at_right
-            right = low + GOLDEN * (high - low)
-            at_right = cost(exp(right))
-    return exp(0.5 * (low + high))
-
-
-SPEED_WIDTH = 1e-8
-"""Width of ln n at which the search for the cheapest speed ends; relative error of the cost
-about its square."""
 
 
 def _speed_candidates(part: Problem, depth: float) -> Iterator[float]:

@@ -12,6 +12,7 @@ from math import inf, isinf
 from pathlib import Path
 from typing import Annotated
 
+from simulator.cost_file import CostTable, cost_table
 from simulator.handling_file import (
     DeviationTable,
     HandlingTable,
@@ -24,7 +25,6 @@ from simulator.planner_settings import PlannerSettings
 from simulator.spec import (
     Axis,
     AxisDrive,
-    CostRates,
     Machine,
     MachineKind,
     ModeDirection,
@@ -284,48 +284,6 @@ class PlannerTable(FileTable, frozen=True, kw_only=True):
         )
 
 
-class CostTable(FileTable, frozen=True, kw_only=True):
-    """The ``[cost]`` table: what an hour and a worn edge cost."""
-
-    currency: str
-    rate_per_hour: Annotated[float, quantity(0.0, 1e6)]
-    edge_change_s: Annotated[float, quantity(0.0, 86_400.0)]
-    hss_edge_price: Annotated[float, quantity(0.0, 1e6)]
-    carbide_edge_price: Annotated[float, quantity(0.0, 1e6)]
-    ceramic_edge_price: Annotated[float, quantity(0.0, 1e6)]
-    source: str
-
-    @property
-    def rates(self) -> CostRates:
-        """Rates in canonical units."""
-        return CostRates(
-            currency=self.currency,
-            machine_rate=self.rate_per_hour / SECONDS_PER_HOUR,
-            edge_change=self.edge_change_s,
-            hss_edge=self.hss_edge_price,
-            carbide_edge=self.carbide_edge_price,
-            ceramic_edge=self.ceramic_edge_price,
-            source=self.source,
-        )
-
-
-SECONDS_PER_HOUR = 3600.0
-
-
-def _cost_table(rates: CostRates | None) -> CostTable | None:
-    if rates is None:
-        return None
-    return CostTable(
-        currency=rates.currency,
-        rate_per_hour=round(rates.machine_rate * SECONDS_PER_HOUR, 9),
-        edge_change_s=rates.edge_change,
-        hss_edge_price=rates.hss_edge,
-        carbide_edge_price=rates.carbide_edge,
-        ceramic_edge_price=rates.ceramic_edge,
-        source=rates.source,
-    )
-
-
 class MachineFile(FileTable, frozen=True, kw_only=True):
     """A whole machine file."""
 
@@ -438,7 +396,7 @@ def machine_toml(machine: Machine, *, notes: Sequence[str] = ()) -> str:
         spindle=_spindle_table(machine.spindle, machine.source),
         axis=tuple(_axis_row(axis, machine.source) for axis in machine.axes),
         handling=None if machine.handling is None else handling_table(machine.handling),
-        cost=_cost_table(machine.costs),
+        cost=cost_table(machine.costs),
         deviation=None if machine.deviation is None else deviation_table(machine.deviation),
         linuxcnc=PlannerTable(
             max_feed_override=machine.planner.max_feed_override,

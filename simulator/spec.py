@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from math import inf
 
+from simulator.cost_rates import CostRates
 from simulator.planner_settings import USUAL, PlannerSettings
 from simulator.surface_law import SurfaceSpread
 from simulator.work_holding import Holding
@@ -249,7 +250,7 @@ class Machine:
     """Random deviation of motor powers; ``None``: unknown."""
     planner: PlannerSettings = USUAL
     """Planner of its LinuxCNC, if it has one."""
-    costs: "CostRates | None" = None
+    costs: CostRates | None = None
     """Rates of machine and edges; ``None``: not stated."""
 
 
@@ -277,31 +278,6 @@ class LinearEdge:
     k_re: float = 0.0
     k_ac: float = 0.0
     k_ae: float = 0.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CostRates:
-    """Rates by which time and worn edges cost money."""
-
-    currency: str
-    machine_rate: float
-    """Machine and operator, currency/s."""
-    edge_change: float
-    """Time to change a worn edge, s."""
-    hss_edge: float
-    """Cost of a worn edge of high-speed steel, currency."""
-    carbide_edge: float
-    ceramic_edge: float
-    source: str
-
-    def edge_price(self, material: "CuttingMaterial") -> float:
-        """Cost of a worn edge, currency."""
-        prices = {
-            CuttingMaterial.HSS: self.hss_edge,
-            CuttingMaterial.CARBIDE: self.carbide_edge,
-            CuttingMaterial.CERAMIC: self.ceramic_edge,
-        }
-        return prices[material]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,6 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from benchmarks.problems import random_problem
+from optimiser.convex import least_of_convex
 from optimiser.errors import Infeasible, OptimisationError
 from optimiser.least_cost import least_cost
 from optimiser.modes import Mode
@@ -25,7 +26,6 @@ from optimiser.workingstep import (
     Solution,
     conflict,
     cost_function,
-    least_of_convex,
     limits_at,
     saving_of_one_more,
     solve,

@@ -8,8 +8,11 @@ import pytest
 import stepnc
 from simulator.library import load_material
 from simulator.material_file import MaterialFile
+from simulator.physics.tool_life import tool_life
+from simulator.spec import CuttingMaterial
 from simulator.toml_file import read_toml
 from stepnc_model.errors import StepNcError
+from stepnc_model.units import speed_from_m_min
 
 HEAD = "feed_mm,axial_depth_mm,cutting_force_n"
 CUTS = ("0.1,2,420", "0.15,2,570", "0.2,2,700", "0.25,2,830", "0.3,2,950", "0.35,2,1060")
@@ -111,3 +114,29 @@ def test_a_law_that_loses_to_a_simpler_rule_is_written_only_when_forced(tmp_path
 def test_a_table_needs_its_material(tmp_path: Path) -> None:
     with pytest.raises(StepNcError, match="--material"):
         stepnc.calibrate(table=_table(tmp_path / "t.csv", *CUTS))
+
+
+def test_exponents_of_tool_life_are_written_for_plans(tmp_path: Path) -> None:
+    """Lives of a made shop, T = 20 min·(v/200)^−4·(f/0.2)^−1.6·(a/2)^−0.3."""
+    rows = [
+        f"{v},{f},{a},{20.0 * (v / 200.0) ** -4.0 * (f / 0.2) ** -1.6 * (a / 2.0) ** -0.3:.4f}"
+        for v in (160.0, 200.0, 250.0)
+        for f in (0.1, 0.2, 0.4)
+        for a in (1.0, 3.0)
+    ]
+    out = tmp_path / "own.toml"
+    head = "cutting_speed_m_min,feed_mm,axial_depth_mm,life_min"
+    table = _table(tmp_path / "lives.csv", *rows, head=head)
+    stepnc.calibrate(table=table, material="c45", output=str(out))
+    law = next(
+        each.taylor
+        for each in load_material(str(out)).windows
+        if each.cutting_material is CuttingMaterial.CARBIDE and each.taylor is not None
+    )
+    assert law.feed_exponent == pytest.approx(1.6, abs=0.15)
+    assert law.depth_exponent == pytest.approx(0.3, abs=0.1)
+    # The life that a plan reads at another cut is the shop's.
+    life = tool_life(law, speed_from_m_min(180.0)) / 60.0
+    life *= (0.3 / law.feed) ** -law.feed_exponent * (1.5 / law.depth) ** -law.depth_exponent
+    made = 20.0 * (180.0 / 200.0) ** -4.0 * 1.5**-1.6 * 0.75**-0.3
+    assert life == pytest.approx(made, rel=0.1)
