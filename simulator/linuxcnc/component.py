@@ -44,7 +44,7 @@ def set_point(wanted: object) -> float | None:
     return min(max(float(wanted), 0.0), 1.0) if math.isfinite(wanted) else None
 
 
-class Loop:
+class LoopLine:
     """Connection to the loop, if there is one; running state."""
 
     def __init__(self, path: str) -> None:
@@ -185,7 +185,7 @@ def main() -> None:
     import linuxcnc  # noqa: PLC0415
 
     # The socket exists before HAL waits no longer for this component.
-    loop = Loop(sys.argv[1])
+    loop = LoopLine(sys.argv[1])
     pins = _pins(hal)
     # The task starts after the HAL files are read.
     control: Control | None = None

@@ -75,7 +75,6 @@ def _obeyed(order: str, *words: Any) -> str:
     command = linuxcnc.command()
     values = [getattr(linuxcnc, word) if isinstance(word, str) else word for word in words]
     getattr(command, order)(*values)
-    command.wait_complete()
     return ""
 
 

@@ -93,7 +93,7 @@ class LinuxCncMachine:
         self._link, self._load, self._efficiency = link, load, efficiency
         self._hidden = hidden
         self._changes = sorted(hidden.changes, key=lambda each: each.time)
-        self._places = Places(course)
+        self._places = CoursePlaces(course)
         self._begun = nan
         self._progress, self._turned = 0.0, 0.0
         self._operator = nan
@@ -307,7 +307,7 @@ class LinuxCncMachine:
         self._link.send(words)
 
 
-class Places:
+class CoursePlaces:
     """Search of the place on a course, within the line that runs."""
 
     def __init__(self, course: NominalCourse) -> None:

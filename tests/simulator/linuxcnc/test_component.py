@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from simulator.linuxcnc.component import Loop, set_point
+from simulator.linuxcnc.component import LoopLine, set_point
 
 
 @pytest.mark.parametrize(
@@ -24,12 +24,12 @@ def test_what_is_no_number_is_no_set_point(wanted: object) -> None:
     assert set_point(wanted) is None
 
 
-Connected = tuple[Loop, socket.socket]
+Connected = tuple[LoopLine, socket.socket]
 
 
 @pytest.fixture
 def connected(tmp_path: Path) -> Iterator[Connected]:
-    loop = Loop(str(tmp_path / "s"))
+    loop = LoopLine(str(tmp_path / "s"))
     with closing(loop), socket.socket(socket.AF_UNIX) as line:
         line.connect(str(tmp_path / "s"))
         loop.accept()

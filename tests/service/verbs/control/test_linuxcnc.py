@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from service.verbs.control.linuxcnc import (
+    CoursePlaces,
     LinuxCncMachine,
     Load,
-    Places,
     require_adaptive,
     require_process,
 )
@@ -192,7 +192,7 @@ def test_the_place_is_within_the_line_that_runs() -> None:
     there = straight(lines=2)
     position = there.position.copy()
     position[CELLS // 2 :, 0] = position[: CELLS // 2, 0][::-1]
-    places = Places(replace(there, position=position))
+    places = CoursePlaces(replace(there, position=position))
     at = (5.0, 0.0, 0.0)
     assert places.nearest(state_of(position=at, line=1), 0.0)[0] == pytest.approx(0.5, abs=0.01)
     assert places.nearest(state_of(position=at, line=2), 0.0)[0] == pytest.approx(3.5, abs=0.01)
