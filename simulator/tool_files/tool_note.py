@@ -1,8 +1,8 @@
 """Tool data in one comment of NC code, in the manners of the usual postprocessors.
 
 The patterns are those of Autodesk's posts (Fusion, HSMWorks), Mastercam, SolidCAM, CamBam,
-FreeCAD, Vectric (VCarve, Aspire), Estlcam, and of programs for Heidenhain and Sinumerik
-controls. Lengths without a unit are in the unit of the program; fractions are inches.
+FreeCAD, Vectric (VCarve, Aspire), Estlcam, Carbide Create, and of programs for Heidenhain and
+Sinumerik controls. Lengths without a unit are in the unit of the program; fractions are inches.
 """
 
 import re
@@ -78,6 +78,13 @@ ANGLE = re.compile(
     rf"\b(?:taper|angle|tip angle)\s*[-:=]?\s*(?P<angle>{_NUMBER})\s*(?:deg|°)?", re.I
 )
 
+STATED_MILL = re.compile(
+    rf"^TOOL/MILL\s*,\s*(?P<diameter>{_NUMBER})\s*,\s*(?P<corner>{_NUMBER})\s*,"
+    rf"\s*{_NUMBER}\s*,\s*(?P<taper>{_NUMBER})\s*$",
+    re.I,
+)
+"""Diameter, corner radius, height and taper in degrees, as CutViewer reads a mill."""
+
 SHAPED = re.compile(
     r"thread\s*mill|t-?slot|slot\s?cutter|dovetail|lollipop|undercut|v-?bit|v-?carv|engrav|saw\b|"
     r"probe|form\s?mill|barrel|drag\s?knife|laser|spindle",
@@ -137,6 +144,9 @@ def note_of(text: str, *, line: int, unit: float) -> ToolNote:
     >>> note_of("T1 | 1/2 FLAT ENDMILL | H1 | DIA 0.5", line=1, unit=25.4).diameter
     12.7
     """
+    stated = STATED_MILL.match(text.strip())
+    if stated:
+        return _stated_mill(stated, text, line=line, unit=unit)
     plain = text.replace("{", "(").replace("}", ")")
     number = _number(plain)
     bare = OFFSETS.sub(" ", plain)
@@ -167,6 +177,20 @@ def note_of(text: str, *, line: int, unit: float) -> ToolNote:
         is_bull=re.search(r"\bbull", lower) is not None,
         is_shaped=SHAPED.search(plain) is not None,
         is_named=is_named,
+    )
+
+
+def _stated_mill(found: re.Match[str], text: str, *, line: int, unit: float) -> ToolNote:
+    """Mill of a ``TOOL/MILL`` comment; one that tapers has a shape that is not taken."""
+    diameter, corner = unit * float(found["diameter"]), unit * float(found["corner"])
+    return ToolNote(
+        line=line,
+        text=text,
+        diameter=diameter or None,
+        corner_radius=corner,
+        kind=ToolKind.ENDMILL,
+        is_shaped=float(found["taper"]) != 0.0,
+        is_named=True,
     )
 
 

@@ -41,6 +41,7 @@ def sizes(found: CodeTools) -> dict[int, float]:
         ("solidcam.nc", {1: 10.0, 2: 6.0}),
         ("heidenhain.h", {7: 10.0, 12: 10.0}),
         ("sinumerik.mpf", {1: 10.0}),
+        ("carbide_create.nc", {102: 3.18}),
     ],
 )
 def test_programs_in_the_manner_of_posts(post: str, diameters: dict[int, float]) -> None:

@@ -103,3 +103,12 @@ def test_klartext_defines_a_radius() -> None:
     assert found is not None
     assert (found.number, found.diameter) == (12, 10.0)
     assert defined_note("5 TOOL CALL 12 Z", line=5, unit=1.0) is None
+
+
+def test_a_stated_mill_has_its_four_numbers() -> None:
+    flat = note_of("TOOL/MILL,3.18, 0.00, 0.000, 0.0", line=1, unit=1.0)
+    assert (flat.diameter, flat.corner_radius, flat.is_shaped) == (3.18, 0.0, False)
+    assert flat.is_of_tool
+    ball = note_of("TOOL/MILL, .25, .125, 1., 0", line=1, unit=25.4)
+    assert (ball.diameter, ball.corner_radius) == (6.35, 3.175)
+    assert note_of("TOOL/MILL,0.1,0.05,0.0,30.0", line=1, unit=1.0).is_shaped

@@ -101,3 +101,18 @@ def test_options_of_programs_are_refused_with_code(
 def test_options_of_code_are_refused_with_a_program(words: dict[str, object]) -> None:
     with pytest.raises(StepNcError, match="cannot be used with a STEP-NC program"):
         stepnc.check(PARTS / "paper002.stpnc", **words)  # type: ignore[arg-type]
+
+
+def test_an_external_program_that_keeps_the_state_leaves_feeds_to_advise(
+    tmp_path: Path,
+) -> None:
+    code = tmp_path / "a.nc"
+    code.write_text(
+        "%\nO1\nG21 G90 G17 G54\nT1 M6\nS5000 M3\nM98 P9000\nG0 X0 Y0\nZ5.\nG1 Z-2. F500.\n"
+        "X60.\nM30\n%\n"
+    )
+    lost, kept = stepnc.check(code), stepnc.check(code, keeps_state=["P9000"])
+    assert isinstance(lost, CodeContents)
+    assert isinstance(kept, CodeContents)
+    assert sum(each.advisable for each in lost.counts) == 0
+    assert sum(each.advisable for each in kept.counts) == 2
