@@ -10,16 +10,9 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 from simulator.material_file import Rake, SpeedWindow
-from simulator.spec import (
-    CuttingMaterial,
-    DepthWindow,
-    DrillPoint,
-    FeedWindow,
-    ReamingAllowance,
-    ToolGrade,
-    ToolKind,
-)
+from simulator.spec import CuttingMaterial, ToolGrade, ToolKind
 from simulator.toml_file import FileTable, KeyFault, quantity, read_toml, require_window
+from simulator.tool_windows import DepthWindow, DrillPoint, FeedWindow, ReamingAllowance
 from stepnc_model.units import rad_from_deg
 
 ANY_GROUP = "*"

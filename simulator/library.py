@@ -35,13 +35,13 @@ from simulator.spec import (
     CuttingWindow,
     Machine,
     MaterialMatch,
-    ReamingAllowance,
     ToolConstruction,
     ToolGrade,
     ToolKind,
     WorkMaterial,
 )
 from simulator.toml_file import FileTable, quantity, read_toml, read_toml_head
+from simulator.tool_windows import ReamingAllowance
 
 DATA = Path(__file__).with_name("data")
 """Folder with the files of the library."""

@@ -20,6 +20,7 @@ from simulator.handling_file import (
     handling_table,
 )
 from simulator.holding_file import HoldingRow, holding_row, require_distinct, require_kind
+from simulator.mode_file import ModeRow, modes_toml
 from simulator.physics.spindle import curve_segments
 from simulator.planner_settings import PlannerSettings
 from simulator.spec import (
@@ -27,11 +28,8 @@ from simulator.spec import (
     AxisDrive,
     Machine,
     MachineKind,
-    ModeDirection,
     Spindle,
     SpindlePoint,
-    VibratingPart,
-    VibrationMode,
 )
 from simulator.toml_file import (
     FileTable,
@@ -45,8 +43,6 @@ from simulator.toml_file import (
 from stepnc_model.units import (
     kw_from_watts,
     mm_min_from_speed,
-    n_mm_from_n_um,
-    n_um_from_n_mm,
     nm_from_nmm,
     nmm_from_nm,
     rev_s_from_rpm,
@@ -89,10 +85,6 @@ Friction = Annotated[float, quantity(0, 1)]
 Preload = Annotated[float, quantity(0, 1_000_000, "N")]
 Viscous = Annotated[float, quantity(0, 100, "N·m·s/rad")]
 GearRatio = Annotated[float, quantity(0.01, 1_000)]
-Frequency = Annotated[float, quantity(1, 50_000, "Hz")]
-Damping = Annotated[float, quantity(1e-4, 0.5)]
-Stiffness = Annotated[float, quantity(0.001, 10_000, "N/µm")]
-ModeDiameter = Annotated[float, quantity(0.01, 2_000, "mm")]
 
 UNLIMITED_POWER = watts_from_kw(MOST_KW)
 """W, stands for the motor power that a source does not give: no cut reaches it"""
@@ -236,40 +228,6 @@ class AxisRow(FileTable, frozen=True, kw_only=True):
         )
 
 
-class ModeRow(FileTable, frozen=True, kw_only=True):
-    """One ``[[mode]]`` row; a mode of a tool names the tool or its diameter."""
-
-    part: VibratingPart
-    tool: str = ""
-    tool_diameter_mm: ModeDiameter | None = None
-    direction: ModeDirection
-    frequency_hz: Frequency
-    damping_ratio: Damping
-    stiffness_n_um: Stiffness
-    source: str
-
-    def __post_init__(self) -> None:
-        is_named = bool(self.tool.strip()) or self.tool_diameter_mm is not None
-        if self.part is VibratingPart.TOOL and not is_named:
-            raise KeyFault("tool", "missing; expected the tool's id, or tool_diameter_mm")
-        if self.part is VibratingPart.WORKPIECE and is_named:
-            raise KeyFault("tool", "a mode of the workpiece belongs to no tool")
-
-    @property
-    def mode(self) -> VibrationMode:
-        """Mode in canonical units."""
-        return VibrationMode(
-            part=self.part,
-            tool=self.tool.strip(),
-            tool_diameter=self.tool_diameter_mm,
-            direction=self.direction,
-            natural_frequency=self.frequency_hz,
-            damping_ratio=self.damping_ratio,
-            stiffness=n_mm_from_n_um(self.stiffness_n_um),
-            source=self.source,
-        )
-
-
 class PlannerTable(FileTable, frozen=True, kw_only=True):
     """The ``[linuxcnc]`` table: what the INI file of its control says."""
 
@@ -408,12 +366,6 @@ def machine_toml(machine: Machine, *, notes: Sequence[str] = ()) -> str:
     return "\n".join((*lines, *written(content))) + "\n" + modes_toml(machine.modes)
 
 
-def modes_toml(modes: Sequence[VibrationMode]) -> str:
-    """TOML text of measured modes, a ``[[mode]]`` table each; ends a machine file."""
-    rows = [("", "[[mode]]", *written(_mode_row(mode))) for mode in modes]
-    return "".join(f"{line}\n" for row in rows for line in row)
-
-
 def _comment(line: str) -> str:
     """A line that TOML takes as a comment."""
     return "".join(sign if sign.isprintable() else " " for sign in line)
@@ -474,19 +426,6 @@ def _drive_table(drive: AxisDrive, source: str) -> DriveTable:
         efficiency=drive.efficiency,
         regeneration=drive.regeneration,
         source=source,
-    )
-
-
-def _mode_row(mode: VibrationMode) -> ModeRow:
-    return ModeRow(
-        part=mode.part,
-        tool=mode.tool,
-        tool_diameter_mm=mode.tool_diameter,
-        direction=mode.direction,
-        frequency_hz=mode.natural_frequency,
-        damping_ratio=mode.damping_ratio,
-        stiffness_n_um=shortest(mode.stiffness, n_um_from_n_mm, n_mm_from_n_um),
-        source=mode.source,
     )
 
 

@@ -11,6 +11,7 @@ from math import inf
 from simulator.cost_rates import CostRates
 from simulator.planner_settings import USUAL, PlannerSettings
 from simulator.surface_law import SurfaceSpread
+from simulator.tool_windows import DepthWindow, DrillPoint, FeedWindow
 from simulator.work_holding import Holding
 
 
@@ -380,49 +381,6 @@ class ToolKind(StrEnum):
     TURNING = "turning"
     GROOVING = "grooving"
     THREADING = "threading"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DrillPoint:
-    """Point geometry of a tool that cuts with its end."""
-
-    thrust_share: float
-    """Thrust of the lips over their tangential force times sin κ."""
-    chisel_ratio: float
-    """Length of the chisel edge over the diameter, c/D; 0 without chisel edge."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FeedWindow:
-    """Engagement for which the feeds per tooth of a milling cutter are valid."""
-
-    width_ratio: float
-    """Greatest a_e/D for which the feeds are valid."""
-    slot_factor: float
-    """Factor on the feeds in a full slot."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DepthWindow:
-    """Engagement for which the depths of a milling cutter are valid."""
-
-    width_ratio: float
-    """Greatest a_e/D for which the depths are valid."""
-    slot_ratio: float
-    """Greatest axial depth over the diameter in a full slot."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReamingAllowance:
-    """Allowance on the diameter for reamers up to a diameter."""
-
-    up_to: float
-    """Greatest diameter of these reamers, mm."""
-    least: float
-    """Least allowance on the diameter, mm; with less the edges rub."""
-    greatest: float
-    """Greatest allowance on the diameter, mm."""
-    source: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -31,7 +31,8 @@ from simulator.physics.milling import RADIAL_SHARE
 from simulator.physics.tooth_forces import arcs_of
 from simulator.physics.turning import turning_forces
 from simulator.removal.stations import StationKind, Stations
-from simulator.spec import DrillPoint, Kienzle
+from simulator.spec import Kienzle
+from simulator.tool_windows import DrillPoint
 from stepnc_model.units import NMM_S_PER_WATT
 
 STOPPED = "cut with a stopped spindle: its force is not modelled"

@@ -30,7 +30,8 @@ from simulator.physics.domain import (
     require_teeth,
 )
 from simulator.physics.drive import Value
-from simulator.spec import DrillPoint, Kienzle, ToolKind
+from simulator.spec import Kienzle, ToolKind
+from simulator.tool_windows import DrillPoint
 from stepnc_model.units import rad_from_deg
 
 CUSTOMARY_EDGE_ANGLE = rad_from_deg(59.0)  # half of the customary point angle of 118°

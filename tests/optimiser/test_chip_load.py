@@ -11,7 +11,7 @@ from optimiser.chip_load import GREATEST_THINNING, feed_factor
 from optimiser.formulate import OptimisationTask
 from optimiser.problem import BoundSide, LimitName
 from simulator.physics.engagement import unidirectional
-from simulator.spec import FeedWindow
+from simulator.tool_windows import FeedWindow
 from tests.every_case import every_case
 from tests.optimiser.plans import advice_of, after, before, measured, plan_of
 

@@ -10,7 +10,8 @@ from optimiser.cut import CriticalPlace, Cut, CutKind
 from optimiser.problem import Setting
 from simulator.physics import drilling, milling, turning
 from simulator.physics.engagement import Engagement, full_immersion, unidirectional
-from simulator.spec import DrillPoint, Kienzle, ToolKind
+from simulator.spec import Kienzle, ToolKind
+from simulator.tool_windows import DrillPoint
 from stepnc_model.tool import Tool
 from tests.every_case import every_case
 from tests.oracles.cutting import drilling_thrust

@@ -17,7 +17,8 @@ from simulator.physics.drilling import (
     drilling_torque,
     lip_thrust,
 )
-from simulator.spec import CuttingMaterial, DrillPoint, Kienzle, ToolKind
+from simulator.spec import CuttingMaterial, Kienzle, ToolKind
+from simulator.tool_windows import DrillPoint
 from stepnc_model.units import nm_from_nmm, rad_from_deg
 from tests.every_case import every_case
 from tests.oracles.cutting import drilling_thrust

@@ -11,7 +11,8 @@ from simulator.physics.drilling import (
     DrillingCut,
     drilling_torque,
 )
-from simulator.spec import DrillPoint, Kienzle
+from simulator.spec import Kienzle
+from simulator.tool_windows import DrillPoint
 from stepnc_model.units import nm_from_nmm
 from tests.every_case import every_case
 from tests.oracles.cutting import drilling_thrust

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from simulator import handling_file as between
 from simulator import holding_file as read_as
 from simulator import machine_file as allowed
+from simulator import mode_file as modes
 from simulator.library import load_machine, machine_names
 from simulator.machine_file import MachineFile, machine_toml
 from simulator.material_file import MaterialHead
@@ -94,16 +95,16 @@ NAMES = TEXTS.map(str.strip).filter(bool)
 TOOL_MODES = st.fixed_dictionaries({
     "part": st.just(VibratingPart.TOOL),
     "tool": NAMES,
-    "tool_diameter": maybe(within(allowed.ModeDiameter)),
+    "tool_diameter": maybe(within(modes.ModeDiameter)),
 })
 WORK_MODES = st.just({"part": VibratingPart.WORKPIECE})
 MODES = st.builds(
     lambda of, **numbers: VibrationMode(**of, **numbers),
     TOOL_MODES | WORK_MODES,
     direction=st.sampled_from(ModeDirection),
-    natural_frequency=within(allowed.Frequency),
-    damping_ratio=within(allowed.Damping),
-    stiffness=within(allowed.Stiffness).map(n_mm_from_n_um),
+    natural_frequency=within(modes.Frequency),
+    damping_ratio=within(modes.Damping),
+    stiffness=within(modes.Stiffness).map(n_mm_from_n_um),
     source=TEXTS,
 )
 

@@ -6,7 +6,7 @@ from service.rendering.columns import Column
 from service.rendering.view import Fact, Findings, ResultView, Table, TextLine
 from service.verbs.result import Result
 from simulator.calibration.modal_fit import ModalFit
-from simulator.machine_file import modes_toml
+from simulator.mode_file import modes_toml
 from simulator.spec import VibrationMode
 from stepnc_model.errors import Finding
 from stepnc_model.units import n_um_from_n_mm

@@ -9,12 +9,8 @@ from service.verbs.taptest.result import TapTestResult
 from simulator.calibration.modal_fit import ModalFit, fitted_modes, read_response
 from simulator.errors import CalibrationError
 from simulator.library import load_machine
-from simulator.machine_file import (
-    Damping,
-    Frequency,
-    Stiffness,
-    machine_toml,
-)
+from simulator.machine_file import machine_toml
+from simulator.mode_file import Damping, Frequency, Stiffness
 from simulator.spec import Machine, ModeDirection, VibratingPart, VibrationMode
 from simulator.toml_file import complaint
 from stepnc_model.errors import Finding, Severity, StepNcError

@@ -15,7 +15,7 @@ from simulator.machine.tooth_loads import bent, wall_forces
 from simulator.physics.spindle import available_power
 from simulator.physics.strength import end_mill
 from simulator.removal.stations import StationKind, Stations
-from simulator.spec import FeedWindow
+from simulator.tool_windows import FeedWindow
 from tests.optimiser.cuts import CARBIDE, CUT
 
 SPINDLE = 60.0

@@ -28,7 +28,8 @@ from simulator.physics.turning import (
     turning_forces,
 )
 from simulator.removal.stations import StationKind, Stations, air
-from simulator.spec import DrillPoint, Kienzle
+from simulator.spec import Kienzle
+from simulator.tool_windows import DrillPoint
 from tests.oracles.cutting import drilling_thrust
 
 STEEL = Kienzle(k_c11=1500.0, m_c=0.22)

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from simulator.physics import drilling, kinematics
 from simulator.physics.drilling import LIPS_ONLY, DrillingCut, chisel_factors
-from simulator.spec import DrillPoint, Kienzle
+from simulator.spec import Kienzle
+from simulator.tool_windows import DrillPoint
 from tests.oracles import cutting as oracle
 
 STEEL = Kienzle(k_c11=1500.0, m_c=0.22)
