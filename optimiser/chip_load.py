@@ -11,7 +11,8 @@ from math import pi
 from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind
 from simulator.physics.engagement import conventional
-from simulator.spec import CuttingMaterial, FeedWindow, ToolGrade, ToolKind
+from simulator.spec import CuttingMaterial, ToolGrade, ToolKind
+from simulator.tool_windows import FeedWindow
 
 GREATEST_THINNING = 4.0
 """Greatest factor on the catalogue feed, a customary bound of CAM systems.

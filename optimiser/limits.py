@@ -28,8 +28,9 @@ from simulator.library import reaming_allowances
 from simulator.physics.drilling import LIPS_ONLY
 from simulator.physics.spindle import CurveSegment, curve_segments
 from simulator.physics.strength import end_mill
-from simulator.spec import DrillPoint, ToolGrade, ToolKind
+from simulator.spec import ToolGrade, ToolKind
 from simulator.tool_kind import correction_of
+from simulator.tool_windows import DrillPoint
 from stepnc_model.units import kw_from_watts, mm_min_from_speed, nm_from_nmm
 
 DEEPER = 1.01

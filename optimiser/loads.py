@@ -13,7 +13,8 @@ from optimiser.cut import CriticalPlace, Cut, CutKind
 from optimiser.problem import Monomial
 from simulator.physics import drilling, kinematics, milling, power, turning
 from simulator.physics.flutes import WALL, CuttingEdges, ForceLaw
-from simulator.spec import DrillPoint, Kienzle
+from simulator.spec import Kienzle
+from simulator.tool_windows import DrillPoint
 
 LEAST = 1e-9
 """Least value of a load, mm; a straight edge without a chip at the wall would give zero."""

@@ -27,7 +27,7 @@ from simulator.physics.engagement import conventional
 from simulator.physics.spindle import curve_segments
 from simulator.physics.strength import end_mill
 from simulator.removal.stations import StationKind, Stations
-from simulator.spec import DrillPoint, FeedWindow
+from simulator.tool_windows import DrillPoint, FeedWindow
 from stepnc_model.units import NMM_S_PER_WATT
 
 RAMP = 0.01
