@@ -76,11 +76,11 @@ class LiveSamples:
         self._count = 0
 
     def begin(self, workingsteps: Sequence[str]) -> None:
-        """Store the workingstep ids (:class:`service.simulation.gathering.SampleWatcher`)."""
+        """Store the workingstep ids, as a ``SampleWatcher`` does."""
         self._workingsteps = workingsteps
 
     def add(self, samples: Samples) -> None:
-        """Write samples as rows (:class:`service.simulation.gathering.SampleWatcher`).
+        """Write samples as rows, as a ``SampleWatcher`` does.
 
         Raises
         ------
