@@ -14,9 +14,9 @@ from unittest.mock import patch
 
 from optimiser import optimise as advising
 from optimiser.advice import Plan
-from optimiser.conditions import PermittedDeflection
-from optimiser.formulate import OptimisationTask
+from optimiser.cuts.conditions import PermittedDeflection
 from optimiser.modes import Free
+from optimiser.planning.formulate import OptimisationTask
 from simulator import library
 from simulator.library import load_machine, match_material
 from simulator.spec import (
@@ -30,7 +30,7 @@ from simulator.spec import (
 from stepnc_model.entities.milling import BottomAndSideFinishMilling, SideFinishMilling
 from stepnc_model.errors import Finding
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.programs.program import Program, ResolvedWorkingstep
 
 BRACKET = Path(__file__).parents[1] / "examples" / "parts" / "bracket.stpnc"
 FINISHES = (SideFinishMilling, BottomAndSideFinishMilling)

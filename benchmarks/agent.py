@@ -25,12 +25,12 @@ import numpy as np
 import uvicorn
 import uvloop
 
-from service.agent.run import listening
-from simulator.agent.adapters import AdapterAddress, AdapterIntake, listen_to
-from simulator.agent.agent import Agent
-from simulator.agent.http import application
-from simulator.agent.machine_model import machine_model
-from simulator.agent.model import DeviceModel
+from extras.agent.model.adapters import AdapterAddress, AdapterIntake, listen_to
+from extras.agent.model.agent import Agent
+from extras.agent.model.http import application
+from extras.agent.model.machine_model import machine_model
+from extras.agent.model.model import DeviceModel
+from extras.agent.run import listening
 from simulator.library import load_machine
 
 CONNECTIONS = 4

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from optimiser.advice import Plan
-from optimiser.problem import LimitName
+from optimiser.solver.problem import LimitName
 from service.along_path.run import FeedsAlongPath
 from service.requests.advice import AdviceRequest
 from service.requests.runs import SimulationRequest

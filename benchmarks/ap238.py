@@ -19,7 +19,7 @@ from pathlib import Path
 from benchmarks.part21 import BYTES_PER_MB, KIB_PER_MIB
 from stepnc_model.ap238.export import to_ap238
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.generate import generate
 
 POINTS = 20

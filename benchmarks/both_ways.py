@@ -18,11 +18,11 @@ from optimiser.along_path.bounds import bounds_of
 from optimiser.along_path.caps import CutBounds
 from optimiser.along_path.tool_bounds import bounds_of_tool
 from service.along_path.course import Part, PathSource
-from service.along_path.of_program import along_program
+from service.along_path.program_feeds import along_program
 from service.along_path.run import FeedsAlongPath, along_path
 from service.along_path.task import task_of
-from service.paths.toolpaths import paths_of
-from service.reading import read_program
+from service.programs.reading import read_program
+from service.programs.toolpaths import paths_of
 from service.requests.advice import AdviceRequest
 from service.simulation.code_paths import CodeBlocks, CodePaths
 from service.verbs.optimise.plan_result import ProgramAdvice
@@ -31,12 +31,12 @@ from service.verbs.optimise.request import AdviceFiles
 from simulator.removal.cutter import THREADS, Cutter, Insert, shape_of
 from simulator.spec import CuttingMaterial
 from simulator.tool_kind import edge_material, tool_kind
-from simulator.tool_table import TableTool
+from simulator.tools.tool_table import TableTool
 from stepnc_model.nc.program import read_program as read_code
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.neutral import tool_numbers
-from stepnc_model.program import Program, Stock
-from stepnc_model.tool import tool_of
+from stepnc_model.programs.program import Program, Stock
+from stepnc_model.programs.tool import tool_of
 from stepnc_model.toolpath.task import stock_of
 
 PARTS = Path(__file__).parents[1] / "examples" / "parts"

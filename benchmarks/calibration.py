@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 import stepnc
-from simulator.calibration.cut_fit import CutPrediction
+from extras.calibration.model.cut_fit import CutPrediction
 from simulator.library import load_material
 from simulator.physics.surface import RA_FLOOR, corner_coefficient
 from simulator.physics.surface_spread import forecast, unmeasured_spread

@@ -17,21 +17,21 @@ from functools import cache
 from math import inf, pi, radians
 from typing import Any
 
-from optimiser import workingstep as exact
-from optimiser.conditions import CuttingConditions, tool_grade
-from optimiser.cut import Cut, CutKind
+from optimiser.bounds.required_limits import unchecked_limits
+from optimiser.bounds.speed_limits import why_no_speed
+from optimiser.cuts.conditions import CuttingConditions, tool_grade
+from optimiser.cuts.cut import Cut, CutKind
 from optimiser.errors import Infeasible
-from optimiser.formulate import OptimisationTask, problem_of, state_of
 from optimiser.modes import Free, Mode
-from optimiser.problem import Setting
-from optimiser.required import unchecked_limits
+from optimiser.planning.formulate import OptimisationTask, problem_of, state_of
 from optimiser.safety import safety_factor
-from optimiser.speed_limits import why_no_speed
+from optimiser.solver import workingstep as exact
+from optimiser.solver.problem import Setting
 from simulator.library import DATA, load_machine, load_material, material_names
 from simulator.physics.engagement import unidirectional
 from simulator.spec import CuttingMaterial, ToolKind
-from simulator.tool_table import why_unsuited
-from stepnc_model.tool import Tool
+from simulator.tools.tool_table import why_unsuited
+from stepnc_model.programs.tool import Tool
 
 DIAMETERS = (1.0, 12.0, 160.0)
 """Diameters of the tools, or of the bar that is turned, mm."""

@@ -13,10 +13,10 @@ import numpy as np
 
 from benchmarks.control_step import step_cost
 from controller.laws.choice import LawName
-from controller.preview import LOOK_AHEAD
-from simulator.plant.controlled import Instrumentation
+from controller.signals.preview import LOOK_AHEAD
+from simulator.plant.controlled_machine import Instrumentation
 from simulator.plant.dynamometer import Instrument
-from simulator.plant.hidden import HiddenTruth
+from simulator.plant.hidden_behaviour import HiddenTruth
 from tests.closed_loop.trials import (
     GUARDED,
     KNOWN,

@@ -20,8 +20,8 @@ import numpy as np
 import pyarrow as pa
 
 from benchmarks.local_cluster import LocalCluster, end, running_cluster
-from service.dataset.folder import PARTITION, DatasetFolder
-from service.dataset.run import make_dataset
+from extras.learning.dataset_folder import PARTITION, DatasetFolder
+from extras.learning.dataset_run import make_dataset
 from service.execution.executors import processes
 from service.progress import silent
 

@@ -16,14 +16,14 @@ from typing import Any
 
 import numpy as np
 
-from controller.law import ControlLaw, Situation
 from controller.laws.choice import LawName
-from controller.ports import Reading
-from controller.preview import LOOK_AHEAD
+from controller.laws.law import ControlLaw, Situation
+from controller.signals.ports import Reading
+from controller.signals.preview import LOOK_AHEAD
 from service.control.run import prepare
 from service.requests.runs import ControlRequest
 from service.simulation.run import RunFiles
-from simulator.plant.controlled import ControlledMachine
+from simulator.plant.controlled_machine import ControlledMachine
 from tests.closed_loop.trials import KNOWN, LAWS, Trial, law_of, loop, machine, run
 
 BRACKET = Path(__file__).parents[1] / "examples" / "parts" / "bracket.stpnc"

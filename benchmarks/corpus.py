@@ -22,7 +22,7 @@ from pathlib import Path
 from benchmarks.end_to_end import filled, ways
 from benchmarks.end_to_end import table as way_table
 from service.cli.main import main as stepnc
-from service.exit_codes import BAD_INPUT, OK
+from service.errors import BAD_INPUT, OK
 from service.files import read_bytes
 from stepnc_model.ap238.view import is_aim
 from stepnc_model.errors import StepNcError

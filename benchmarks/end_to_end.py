@@ -17,7 +17,7 @@ from pathlib import Path
 from time import perf_counter
 
 from service.cli.main import main as stepnc
-from service.exit_codes import OK
+from service.errors import OK
 
 READY = re.compile(r"^ready: stepnc optimise (.*)$", re.MULTILINE)
 TABLE_OF = re.compile(r"a table with tools? ([^;\n]*)")

@@ -24,13 +24,13 @@ from tempfile import TemporaryDirectory
 
 import simpy
 
-from service.factory.replications import run_shop
-from simulator.factory.machining import MachiningPlan
-from simulator.factory.measures import Level, Quantity
-from simulator.factory.records import Listeners
-from simulator.factory.shop import Shop
-from simulator.factory.shop_file import read_shop
-from simulator.factory.streams import Streams
+from extras.factory.model.machining import MachiningPlan
+from extras.factory.model.measures import Level, Quantity
+from extras.factory.model.records import Listeners
+from extras.factory.model.shop import Shop
+from extras.factory.model.shop_file import read_shop
+from extras.factory.model.streams import Streams
+from extras.factory.replications import run_shop
 
 MACHINES, HOURS = 50, 4_000.0
 

@@ -4,8 +4,8 @@ The path is a pocket of rounded rings, cut at N stations, with caps that vary al
 accelerations of three axes. The linear programs maximise the sum of b; the cone program
 minimises the time itself. toppra knows one curvature at a station, so that where arcs begin and
 end its problem lacks the limits of one side: that is its violation. Violations are the greatest
-excess over any limit by :mod:`optimiser.certificate`. The sweep with tangential limits is
-compared with a streaming read of the same numbers, the least of several runs each.
+excess over any limit by :mod:`optimiser.feed_profile.certificate`. The sweep with tangential
+limits is compared with a streaming read of the same numbers, the least of several runs each.
 ``python -m benchmarks.feed_profile --stations 1000 10000``
 """
 
@@ -20,9 +20,9 @@ import numpy as np
 
 from benchmarks.feed_paths import AXES, pocket, wavy_caps
 from benchmarks.toppra_peer import toppra_squares
-from optimiser.certificate import certify
-from optimiser.path_grid import path_grid, problem_on
-from optimiser.profile import (
+from optimiser.feed_profile.certificate import certify
+from optimiser.feed_profile.path_grid import path_grid, problem_on
+from optimiser.feed_profile.profile import (
     AxisLimit,
     Floats,
     NamedCaps,
@@ -30,8 +30,13 @@ from optimiser.profile import (
     profile_of,
     tangential_limit,
 )
-from optimiser.profile_program import acceleration_limits, bounds, scale_of, solver_profile
-from optimiser.sweep import sweep, sweep_axes
+from optimiser.feed_profile.profile_program import (
+    acceleration_limits,
+    bounds,
+    scale_of,
+    solver_profile,
+)
+from optimiser.feed_profile.sweep import sweep, sweep_axes
 
 STATIONS = (1_000, 10_000, 100_000, 1_000_000)
 

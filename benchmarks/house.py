@@ -35,23 +35,23 @@ PRODUCT = (
 )  # fmt: skip
 
 ALLOWED = {
-    "optimiser.profile.smooth_limit": "problems without jumps, by hand",
-    "optimiser.profile.tangential_limit": "problems made by hand",
-    "optimiser.profile_program.solver_profile": "judge in tests",
+    "optimiser.feed_profile.profile.smooth_limit": "problems without jumps, by hand",
+    "optimiser.feed_profile.profile.tangential_limit": "problems made by hand",
+    "optimiser.feed_profile.profile_program.solver_profile": "judge in tests",
     "kbe.migrations.versions.0001_outcomes.upgrade": "Alembic calls it by this name",
     "kbe.migrations.versions.0002_identity.upgrade": "Alembic calls it by this name",
     "service.rest.app.application": "the application by itself, for tests and other servers",
     "service.rest.app.openapi": "the document by itself, for the pages",
     "simulator.machine.samples.Rotation": "codes of a column, for readers of samples",
     "simulator.machine.samples.TravelDirection": "codes of columns, for readers of samples",
-    "simulator.linuxcnc.bench.run_programs": "a real control, in tests and benchmarks",
-    "simulator.linuxcnc.component.set_point": "of the component that LinuxCNC runs",
-    "simulator.linuxcnc.component.LoopLine": "of the component that LinuxCNC runs",
-    "simulator.linuxcnc.component.Control": "of the component that LinuxCNC runs",
-    "simulator.linuxcnc.component.main": "LinuxCNC runs it as a HAL component",
-    "simulator.linuxcnc.session.main": "runs in that control's namespaces",
+    "extras.linuxcnc.bench.run_programs": "a real control, in tests and benchmarks",
+    "extras.linuxcnc.component.set_point": "of the component that LinuxCNC runs",
+    "extras.linuxcnc.component.LoopLine": "of the component that LinuxCNC runs",
+    "extras.linuxcnc.component.Control": "of the component that LinuxCNC runs",
+    "extras.linuxcnc.component.main": "LinuxCNC runs it as a HAL component",
+    "extras.linuxcnc.session.main": "runs in that control's namespaces",
     "simulator.motion.segments.arc": "paths made by hand, beside lines",
-    "stepnc_model.writeback.records": "reads what is written, for scripts",
+    "stepnc_model.editing.writeback.records": "reads what is written, for scripts",
 }
 """public names that nothing reaches, with the reason why they stay; 20 at most"""
 

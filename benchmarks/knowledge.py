@@ -17,7 +17,7 @@ import pytest
 from kbe.queries import EVERYTHING
 from kbe.rows import outcome_row
 from kbe.store import Store, open_store
-from service.knowledge.evaluated import summary
+from service.knowledge.evaluation_table import summary
 from stepnc_model.outcome import ProcessOutcome
 from tests.postgres import started_server
 from tests.service.shop import outcomes

@@ -23,8 +23,8 @@ import pyarrow as pa
 from pyarrow import parquet
 
 import stepnc
-from service.dataset.folder import SCHEMA
-from service.dataset.run import make_dataset
+from extras.learning.dataset_folder import SCHEMA
+from extras.learning.dataset_run import make_dataset
 from service.execution.executors import processes
 from service.progress import silent
 

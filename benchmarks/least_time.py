@@ -16,22 +16,22 @@ from unittest.mock import patch
 
 from optimiser import optimise as advising
 from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, Plan
-from optimiser.conditions import CuttingConditions
-from optimiser.cut import Cut
-from optimiser.formulate import OptimisationTask, problem_of, state_of
+from optimiser.bounds.plunge_feed import CLOSE, holding, plunge_limits, with_plunge_feed
+from optimiser.cuts.conditions import CuttingConditions
+from optimiser.cuts.cut import Cut
 from optimiser.modes import Mode
-from optimiser.passes import AdviceContext, PassCountOptimum, best_of
-from optimiser.plunge_feed import CLOSE, holding, plunge_limits, with_plunge_feed
-from optimiser.problem import ROUNDING, BoundSide, Limit, Problem, Setting
-from optimiser.workingstep import limits_at
-from service.confirm import confirm
-from service.confirmation import ConfirmedStep
-from service.records import changes_of
+from optimiser.planning.formulate import OptimisationTask, problem_of, state_of
+from optimiser.planning.passes import AdviceContext, PassCountOptimum, best_of
+from optimiser.solver.problem import ROUNDING, BoundSide, Limit, Problem, Setting
+from optimiser.solver.workingstep import limits_at
+from service.programs.advice_records import changes_of
+from service.simulation.confirm import confirm
+from service.simulation.confirmation import ConfirmedStep
 from simulator.library import load_machine, match_material
-from stepnc_model import writeback
-from stepnc_model.file_profile import FileProfile
+from stepnc_model.editing import writeback
+from stepnc_model.editing.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 
 PARTS = Path(__file__).parents[1] / "examples" / "parts"
 SAMPLES = (

@@ -22,8 +22,7 @@ from scipy.spatial import KDTree
 import stepnc
 from benchmarks.linuxcnc_faults import print_ends
 from benchmarks.linuxcnc_loop import print_runs
-from simulator.library import load_machine
-from simulator.linuxcnc.bench import (
+from extras.linuxcnc.bench import (
     FASTER,
     LinuxCncFailed,
     ProgramRun,
@@ -31,6 +30,7 @@ from simulator.linuxcnc.bench import (
     reason_why_not,
     run_programs,
 )
+from simulator.library import load_machine
 from simulator.machine.interpreter import interpret
 from simulator.machine.samples import Episode
 from simulator.machine.virtual import MachineSetup, VirtualMachine
@@ -39,7 +39,7 @@ from simulator.motion.linuxcnc_planner import PlannedMotion
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import Floats, Kinematics, Motion, Segments, axis_limits
 from simulator.spec import Machine, MachineKind
-from stepnc_model.nc.exact import ZERO, read_exactly
+from stepnc_model.nc.exact_reading import ZERO, read_exactly
 from stepnc_model.nc.neutral_blocks import stream_blocks
 from stepnc_model.post.blocks import Block, MachineType
 from stepnc_model.post.dialect import Dialect

@@ -16,9 +16,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import stepnc
+from extras.linuxcnc.bench import LoopBench, bench_with_loop
+from extras.linuxcnc.configuration import SAFE
 from simulator.library import load_machine
-from simulator.linuxcnc.bench import LoopBench, bench_with_loop
-from simulator.linuxcnc.configuration import SAFE
 
 PART = Path(__file__).parents[1] / "examples" / "parts" / "paper002.stpnc"
 PROGRAMMED = 123.787 / 60.0

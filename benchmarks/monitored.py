@@ -18,8 +18,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from pyarrow import parquet
 
+from service.recording.request import RecordingRequest
 from service.recording.run import record
-from service.requests.recording import RecordingRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, simulate
 from simulator.motion.segments import Floats

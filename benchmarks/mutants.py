@@ -175,7 +175,7 @@ def make_clone(folder: Path) -> Clone:
 def compile_kernels(clone: Clone) -> None:
     """Take over compiled kernels and compile others.
 
-    Their files are named by a digest of the bytecode (:mod:`simulator.kernels.identity`): one
+    Their files are named by a digest of the bytecode (:mod:`simulator.kernels.store`): one
     with a fault finds none and is compiled.
     """
     (clone.folder / KERNELS).mkdir(exist_ok=True)

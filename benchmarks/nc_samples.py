@@ -16,7 +16,7 @@ import numpy as np
 
 from service.requests.advice import AdviceRequest
 from service.requests.runs import SimulationRequest
-from service.simulation.of_code import CodeRequest
+from service.simulation.code_simulation import CodeRequest
 from service.simulation.run import RunFiles, Simulation, simulate
 from service.verbs.optimise.code import optimise_code
 from service.verbs.optimise.code_result import CodeAdvice

@@ -19,18 +19,18 @@ from typing import TextIO
 
 import numpy as np
 
-from service.chosen import material_for
-from service.factory.cycles import PartCycles
-from service.factory.parts_file import COLUMNS
-from service.factory.run import run_factory
-from service.requests.factory import FactoryRequest
-from simulator.factory.cycle import PartCycle, drawn_energies
-from simulator.factory.interpolated import SettingRange, SettingsDesign
+from extras.factory.cycles import PartCycles
+from extras.factory.model.cycle import PartCycle, drawn_energies
+from extras.factory.model.interpolation import SettingRange, SettingsDesign
+from extras.factory.parts_file import COLUMNS
+from extras.factory.requests import FactoryRequest
+from extras.factory.run import run_factory
+from service.programs.machine_choice import material_for
 from simulator.library import load_machine
 from simulator.motion.segments import Floats
-from stepnc_model.cut_settings import CutSettings
+from stepnc_model.editing.cut_settings import CutSettings
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.units import seconds_from_ms, speed_from_m_s
 
 EXAMPLES = Path(__file__).parents[1] / "examples"

@@ -10,7 +10,7 @@ from functools import partial
 from math import pi
 from random import Random
 
-from stepnc_model.nc.exact import read
+from stepnc_model.nc.exact_reading import read
 from stepnc_model.post.blocks import (
     Block,
     Circular,

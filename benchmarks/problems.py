@@ -5,9 +5,17 @@ from dataclasses import dataclass, replace
 from math import pi
 from random import Random
 
-from optimiser.cut import CriticalPlace
-from optimiser.loads import DepthCurve, ForceKind
-from optimiser.problem import BoundSide, Cost, Limit, LimitName, Monomial, Problem, Setting
+from optimiser.bounds.loads import DepthCurve, ForceKind
+from optimiser.cuts.cut import CriticalPlace
+from optimiser.solver.problem import (
+    BoundSide,
+    Cost,
+    Limit,
+    LimitName,
+    Monomial,
+    Problem,
+    Setting,
+)
 from simulator.physics.engagement import unidirectional
 from simulator.physics.flutes import CuttingEdges, ForceLaw
 

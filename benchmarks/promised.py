@@ -14,9 +14,9 @@ from itertools import chain
 from pathlib import Path
 
 from optimiser.modes import Free, Mode
-from service.confirmation import Confirmation, Figure
 from service.requests.advice import AdviceRequest
-from service.requests.given import Units
+from service.requests.program_facts import Units
+from service.simulation.confirmation import Confirmation, Figure
 from service.verbs.optimise.program import advise_program as optimise
 from service.verbs.optimise.request import AdviceFiles
 from stepnc_model.errors import StepNcError

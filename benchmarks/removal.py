@@ -16,7 +16,7 @@ import manifold3d
 from simulator.motion.segments import Segments, lines
 from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 BLOCK = Stock(low=(0.0, 0.0, -30.0), high=(100.0, 100.0, 0.0))
 CELL = 0.1

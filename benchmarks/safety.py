@@ -14,18 +14,18 @@ from pathlib import Path
 import numpy as np
 
 from optimiser.advice import Advice, AdviceStatus, Plan
-from optimiser.formulate import OptimisationTask
+from optimiser.cuts.source import along_paths
 from optimiser.optimise import optimise_program
-from optimiser.problem import SCALES_WITH_FORCE, LimitName
-from optimiser.source import along_paths
-from service.confirm import confirm
-from service.confirmation import Confirmation
-from service.records import changes_of
+from optimiser.planning.formulate import OptimisationTask
+from optimiser.solver.problem import SCALES_WITH_FORCE, LimitName
+from service.programs.advice_records import changes_of
+from service.simulation.confirm import confirm
+from service.simulation.confirmation import Confirmation
 from simulator.library import load_machine, match_material
-from stepnc_model import writeback
-from stepnc_model.file_profile import FileProfile
+from stepnc_model.editing import writeback
+from stepnc_model.editing.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 
 BRACKET = Path(__file__).parents[1] / "examples" / "parts" / "bracket.stpnc"
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from pyarrow import parquet
 
 from service.requests.runs import SimulationRequest
-from service.simulation.of_code import CodeRequest
+from service.simulation.code_simulation import CodeRequest
 from service.simulation.run import RunFiles, simulate
 from simulator.motion.model_name import ControlModelName
 

@@ -26,15 +26,15 @@ import numpy as np
 import uvicorn
 
 import stepnc
-from service.agent.play import begun, play
-from service.agent.run import PublishedRun, listening, published_run
-from service.requests.agent import AgentRequest
-from service.simulation.of_code import CodeRequest
+from extras.agent.model.http import application
+from extras.agent.play import begun, play
+from extras.agent.requests import AgentRequest
+from extras.agent.run import PublishedRun, listening, published_run
+from service.simulation.code_simulation import CodeRequest
 from service.simulation.run import RunFiles
-from simulator.agent.http import application
 from simulator.errors import CalibrationError
+from simulator.files.machine_file import machine_toml
 from simulator.library import load_machine
-from simulator.machine_file import machine_toml
 from simulator.motion.model_name import ControlModelName
 from simulator.spec import Machine
 from stepnc_model.units import mm_from_inches

@@ -4,7 +4,7 @@ import warnings
 
 import numpy as np
 
-from optimiser.profile import AxisLimit, Floats, ProfileProblem
+from optimiser.feed_profile.profile import AxisLimit, Floats, ProfileProblem
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # of escape sequences in its docstrings

@@ -15,12 +15,12 @@ from pathlib import Path
 
 import stepnc
 from benchmarks.corpus import CORPUS
-from service.reading import read_program
+from service.programs.reading import read_program
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import SchemaError
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, ResolvedWorkingstep
-from stepnc_model.technology import programmed
+from stepnc_model.programs.program import Program, ResolvedWorkingstep
+from stepnc_model.programs.technology import programmed
 from stepnc_model.toolpath.generate import workingstep_path
 from stepnc_model.toolpath.path import Move
 

@@ -25,7 +25,7 @@ from benchmarks.logged_path.cycle_time import (
 from benchmarks.logged_path.rebuild import Rebuilt, rebuilt
 from benchmarks.logged_path.sampled_path import shifted, stations
 from benchmarks.logged_path.smart_mill import RAPID, SAMPLE_TIME, SmartRun, read_smart_run
-from simulator.calibration.features import (
+from extras.calibration.model.features import (
     Calibration,
     Parameter,
     ParameterPrior,
@@ -33,9 +33,15 @@ from simulator.calibration.features import (
     design,
     powers,
 )
-from simulator.calibration.fit import fitted
-from simulator.calibration.measured_run import Component
-from simulator.calibration.simulated import Skill, compared, estimated_lag, mean_power, skill
+from extras.calibration.model.fit import fitted
+from extras.calibration.model.measured_run import Component
+from extras.calibration.model.simulated_features import (
+    Skill,
+    compared,
+    estimated_lag,
+    mean_power,
+    skill,
+)
 from simulator.machine.spindle_course import SpindleCourse, ramped, standing
 from simulator.motion.control import ExactStop
 from simulator.motion.segments import AxisLimits, Floats, Ints

@@ -18,15 +18,15 @@ import numpy as np
 import pyarrow as pa
 from pyarrow import parquet
 
-from service.requests.verification import VerificationRequest
-from service.verification.facts import DeviationSpot, surface_deviations
-from service.verification.prepared import PreparedProgram, prepared
-from service.verification.run import Verification, verified
+from extras.verification.facts import DeviationSpot, surface_deviations
+from extras.verification.model.sweep import FAR
+from extras.verification.preparation import PreparedProgram, prepared
+from extras.verification.requests import VerificationRequest
+from extras.verification.run import Verification, verified
 from simulator.motion.control import control_model
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import Bools, Floats, Ints, axis_limits
 from simulator.removal.cutter import Cutter, Insert
-from simulator.verification.sweep import FAR
 
 BRACKET = Path(__file__).parents[1] / "examples" / "parts" / "bracket.stpnc"
 SHAFT = BRACKET.with_name("shaft.stpnc")

@@ -24,7 +24,7 @@ import numpy as np
 
 from optimiser.along_path.caps import CapName
 from service.files import read_bytes
-from service.program_kind import ProgramKind, kind_of
+from service.inputs.program_kind import ProgramKind, kind_of
 from service.requests.advice import AdviceRequest
 from service.simulation.code_setup import CodeSetup, GivenSetup, code_setup
 from service.verbs.optimise.code import optimise_code

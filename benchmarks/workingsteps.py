@@ -9,10 +9,11 @@ import time
 from random import Random
 
 from benchmarks.problems import random_problem
-from optimiser import program, workingstep
 from optimiser.errors import Infeasible
 from optimiser.modes import Mode
-from optimiser.problem import Problem
+from optimiser.solver import geometric_program as program
+from optimiser.solver import workingstep
+from optimiser.solver.problem import Problem
 
 COUNT = 10_000
 """Workingsteps that are drawn."""

@@ -1,16 +1,16 @@
 """Result of one control cycle: reading, commanded override and its reason. Units: N.
 
-Forces are the equivalent forces that the loop controls (:mod:`controller.equivalent`); divided
-by the weight they are the real ones.
+Forces are the equivalent forces that the loop controls
+(:mod:`controller.states.equivalent_force`); divided by the weight they are the real ones.
 """
 
 from typing import NamedTuple
 
 from controller.guard import AllowedOverride
-from controller.monitor import NOT_OVER, OverTime
+from controller.monitoring.monitor import NOT_OVER, OverTime
+from controller.monitoring.tool_life import ToolLife
 from controller.orders import LoopEvent
-from controller.signal import Revolution
-from controller.tool_life import ToolLife
+from controller.signals.signal import Revolution
 from simulator.reading import Reading
 from stepnc_model.tuples import quick_replace
 

@@ -16,9 +16,9 @@ The threshold is the breakage force over the sudden ratio, or 1.5 times the set 
 is less. The override is kept so low that the force measured now would stay below it, but not
 below the least chip, where the edge would rub and not cut; and the feed is held within one
 tooth period when a tooth exceeds it. Against the set point, a tooth
-counts with its excess over its usual share (:mod:`controller.overload`), against the breakage
-force with its full force. Where the program inhibits the override there is no guarantee. Units:
-s, N.
+counts with its excess over its usual share (:mod:`controller.monitoring.overload`), against the
+breakage force with its full force. Where the program inhibits the override there is no
+guarantee. Units: s, N.
 """
 
 from dataclasses import dataclass

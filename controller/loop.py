@@ -1,20 +1,27 @@
 """Control loop: repeats sensor, signal processing, state transition and override.
 
 A cycle is a tooth period: within it an overload is noticed; once a revolution the law decides
-(:mod:`controller.loop_state`). The loop knows only its interfaces, :mod:`controller.ports`; the
-machine behind them may be virtual. Mutable state. Units: mm, s, N, W, rev/s.
+(:mod:`controller.states.loop_state`). The loop knows only its interfaces,
+:mod:`controller.signals.ports`; the machine behind them may be virtual. Mutable state. Units:
+mm, s, N, W, rev/s.
 """
 
 from collections.abc import Sequence
 from functools import cache
 from math import nan
 
-from controller import overload
 from controller.cycle import LoopCycle
-from controller.equivalent import equivalent, weighed
-from controller.estimate import log_ratio
-from controller.loop_settings import LoopSettings, LoopStep
-from controller.loop_state import (
+from controller.monitoring import overload
+from controller.monitoring.tool_life import ToolLife
+from controller.orders import Order
+from controller.signals.estimate import log_ratio
+from controller.signals.ports import Override, Sensor
+from controller.signals.preview import Preview
+from controller.signals.signal import Collector, ToothJoiner, tooth_periods
+from controller.signals.source import Source
+from controller.states.equivalent_force import equivalent, weighed
+from controller.states.loop_settings import LoopSettings, LoopStep
+from controller.states.loop_state import (
     LEAST_WAY,
     LawFor,
     LoopState,
@@ -23,14 +30,8 @@ from controller.loop_state import (
     begun,
     initial,
 )
-from controller.order_effects import obeyed, operated
-from controller.orders import Order
-from controller.ports import Override, Sensor
-from controller.preview import Preview
-from controller.signal import Collector, ToothJoiner, tooth_periods
-from controller.source import Source
-from controller.supervision import resolved, supervised
-from controller.tool_life import ToolLife
+from controller.states.order_effects import obeyed, operated
+from controller.states.supervision import resolved, supervised
 from simulator.reading import Reading
 
 IMPLAUSIBLE = 5.0

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from math import inf, isfinite, isnan
 
 from controller.cycle import LoopCycle
-from controller.estimate import RatioEstimate, counted
-from controller.monitor import NOT_OVER, OverTime
-from controller.signal import Revolution
-from controller.tool_life import ToolLife
+from controller.monitoring.monitor import NOT_OVER, OverTime
+from controller.monitoring.tool_life import ToolLife
+from controller.signals.estimate import RatioEstimate, counted
+from controller.signals.signal import Revolution
 
 
 @dataclass(kw_only=True)

@@ -10,11 +10,11 @@ from math import inf
 
 import numpy as np
 
-from optimiser import loads
 from optimiser.advice import Advice, EvaluatedSetting, LimitLoad
-from optimiser.cut import Cut
-from optimiser.limits import STRAIGHT_DOWN
-from optimiser.problem import BoundSide, LimitName
+from optimiser.bounds import loads
+from optimiser.bounds.limits import STRAIGHT_DOWN
+from optimiser.cuts.cut import Cut
+from optimiser.solver.problem import BoundSide, LimitName
 from simulator.reading import Floats
 from simulator.spec import Kienzle
 

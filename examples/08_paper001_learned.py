@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 
 import stepnc
-from service.dataset.run import make_dataset
-from service.learning.models import ModelKind
+from extras.learning.dataset_run import make_dataset
+from extras.learning.models import ModelKind
 
 PARTS = Path(__file__).resolve().parent / "parts"
 DESIGN = f"""program = "{PARTS / "paper003_pocket.stpnc"}"

@@ -13,9 +13,9 @@ import pyarrow as pa
 from pyarrow import compute, parquet
 
 import stepnc
-from service.dataset.run import make_dataset
-from service.learning import source
-from service.verbs.learn.result import factor_text
+from extras.learning import source
+from extras.learning.dataset_run import make_dataset
+from extras.learning.verbs.learn.result import factor_text
 
 DESIGN = f"""program = "{Path(__file__).resolve().parent}/parts/paper003_pocket.stpnc"
 machine = "paper003"

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from math import exp, log
 
-from stepnc_model.counted import counted
 from stepnc_model.outcome import LearnedCorrection
+from stepnc_model.plurals import counted
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -20,8 +20,8 @@
 ``place`` is a file, or the address of a server without its password.
 """
 
-from stepnc_model.counted import counted
 from stepnc_model.errors import StepNcError
+from stepnc_model.plurals import counted
 
 
 class KnowledgeError(StepNcError):

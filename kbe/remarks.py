@@ -23,8 +23,8 @@ from math import hypot, sqrt
 from kbe.acceptance import AcceptanceBounds
 from kbe.factor import factor_at, interval
 from kbe.statistics import DeviationStatistics, Evaluated
-from stepnc_model.counted import counted
 from stepnc_model.outcome import LearnedCorrection, ProcessOutcome
+from stepnc_model.plurals import counted
 
 PASSED = 1.05
 """Share of the bound above which the force has violated it."""

@@ -4,23 +4,23 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from optimiser.conditions import CuttingConditions
-from optimiser.cut import Cut
-from optimiser.holding import HoldingLoad
+from optimiser.bounds.holding import HoldingLoad
+from optimiser.bounds.required_limits import UncheckedLimit
+from optimiser.bounds.roughness import LEAST_SHARE
+from optimiser.bounds.stability import ChatterRisk, Stability, risk_of
+from optimiser.cuts.conditions import CuttingConditions
+from optimiser.cuts.cut import Cut
 from optimiser.modes import Mode
-from optimiser.problem import BoundSide, Limit, LimitName, Setting
-from optimiser.required import UncheckedLimit
-from optimiser.roughness import LEAST_SHARE
 from optimiser.safety import USUAL_QUANTILE
-from optimiser.stability import ChatterRisk, Stability, risk_of
+from optimiser.solver.problem import BoundSide, Limit, LimitName, Setting
 from simulator.physics.surface_spread import LIKELY, RoughnessForecast
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Finding
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import ResolvedWorkingstep
-from stepnc_model.technology import Programmed
-from stepnc_model.tool import Tool
+from stepnc_model.programs.program import ResolvedWorkingstep
+from stepnc_model.programs.technology import Programmed
+from stepnc_model.programs.tool import Tool
 
 
 class AdviceStatus(StrEnum):

@@ -12,7 +12,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import isfinite
 
-from optimiser import workingstep as exact
 from optimiser.advice import (
     Advice,
     AdviceStatus,
@@ -20,33 +19,38 @@ from optimiser.advice import (
     Plan,
     RefusedWorkingstep,
 )
-from optimiser.asked_of_holding import holding_findings, with_holding
-from optimiser.conditions import CuttingConditions, PermittedDeflection, tool_grade
-from optimiser.cut import Cut
+from optimiser.bounds.holding import holding_load
+from optimiser.bounds.limits import is_bent
+from optimiser.bounds.plunge_feed import plunge_fault, plunge_findings
+from optimiser.bounds.required_limits import (
+    unchecked_limits,
+    why_impossible,
+    why_thread_impossible,
+)
+from optimiser.bounds.roughness import LAND_SHARE, is_dry, required_roughness, roughness_load
+from optimiser.bounds.speed_limits import why_thread_too_fast, why_too_fast
+from optimiser.bounds.stability import RISK, estimate_texts, stability_of
+from optimiser.bounds.tolerance import permitted_deflection
+from optimiser.cuts.conditions import CuttingConditions, PermittedDeflection, tool_grade
+from optimiser.cuts.cut import Cut
+from optimiser.cuts.feature_cuts import mean_diameter
+from optimiser.cuts.source import CutSource, WiperCutSource, why_elsewhere
 from optimiser.errors import Infeasible, OptimisationError
-from optimiser.estimated import mean_diameter
-from optimiser.formulate import OptimisationTask, front_of, problem_of, state_of
-from optimiser.holding import holding_load
-from optimiser.limits import is_bent
 from optimiser.modes import Free, Mode
-from optimiser.passes import AdviceContext, best_of, untried_words
-from optimiser.plunge_feed import plunge_fault, plunge_findings
-from optimiser.problem import Problem
-from optimiser.reasons import passed_limits, plunge_reason, reason_of
-from optimiser.required import unchecked_limits, why_impossible, why_thread_impossible
-from optimiser.roughness import LAND_SHARE, is_dry, required_roughness, roughness_load
-from optimiser.source import CutSource, WiperCutSource, why_elsewhere
-from optimiser.speed_limits import why_thread_too_fast, why_too_fast
-from optimiser.stability import RISK, estimate_texts, stability_of
-from optimiser.tolerance import permitted_deflection
+from optimiser.planning.formulate import OptimisationTask, front_of, problem_of, state_of
+from optimiser.planning.holding_demand import holding_findings, with_holding
+from optimiser.planning.passes import AdviceContext, best_of, untried_words
+from optimiser.planning.reasons import passed_limits, plunge_reason, reason_of
+from optimiser.solver import workingstep as exact
+from optimiser.solver.problem import Problem
 from simulator.spec import CuttingMaterial, Machine, MachineKind, MaterialMatch
 from simulator.tool_kind import edge_material
+from stepnc_model.editing.record_edit import NO_LIMITS, RecordLimits, record_limits
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError
-from stepnc_model.program import Program, ResolvedWorkingstep
-from stepnc_model.record_edit import NO_LIMITS, RecordLimits, record_limits
-from stepnc_model.technology import Programmed, programmed
-from stepnc_model.tool import Tool, tool_of
+from stepnc_model.programs.program import Program, ResolvedWorkingstep
+from stepnc_model.programs.technology import Programmed, programmed
+from stepnc_model.programs.tool import Tool, tool_of
 from stepnc_model.units import um_from_mm
 
 _Outcome = Advice | RefusedWorkingstep | None

@@ -41,3 +41,7 @@ def safety_factor(spread: float, quantile: float) -> float:
     from statistics import NormalDist  # noqa: PLC0415 (15 ms of a start)
 
     return exp(NormalDist().inv_cdf(quantile) * log(1.0 + spread))
+
+
+USUAL_RISE = 3.0
+"""Feed over the programmed one, at most, unless the user permits more."""

@@ -96,3 +96,7 @@ class Unavailable(ServiceError):
 
 class MissingArgument(StepNcError):
     """A command was called without what it needs."""
+
+
+OK, USAGE, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED = 0, 2, 3, 4, 5, 6
+"""Exit codes; ``USAGE`` is argparse's; with ``NOTHING_ADVISED`` nothing was written."""

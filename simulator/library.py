@@ -25,10 +25,11 @@ from pathlib import Path
 from typing import Annotated
 
 from simulator.errors import LibraryError, UnknownMachine, UnknownMaterial
-from simulator.grade_file import ANY_GROUP, read_allowances, read_grades, read_tools
-from simulator.machine_file import read_machine
-from simulator.machine_xml import read_machine_xml
-from simulator.material_file import MaterialHead, read_material
+from simulator.files.grade_file import ANY_GROUP, read_allowances, read_grades, read_tools
+from simulator.files.machine_file import read_machine
+from simulator.files.machine_xml import read_machine_xml
+from simulator.files.material_file import MaterialHead, read_material
+from simulator.files.toml_file import FileTable, quantity, read_toml, read_toml_head
 from simulator.spec import (
     Certainty,
     CuttingMaterial,
@@ -40,7 +41,6 @@ from simulator.spec import (
     ToolKind,
     WorkMaterial,
 )
-from simulator.toml_file import FileTable, quantity, read_toml, read_toml_head
 from simulator.tool_windows import ReamingAllowance
 
 DATA = Path(__file__).with_name("data")
@@ -79,7 +79,7 @@ def load_machine(name_or_path: str) -> Machine:
     ----------
     name_or_path : str
         ``vmc15``, or a file ``my.toml``, or a file ``my.xml`` in the format of
-        :mod:`simulator.machine_xml`.
+        :mod:`simulator.files.machine_xml`.
 
     Raises
     ------

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from simulator.physics.cutting import ForceCorrection, rake_factor, speed_factor
 from simulator.spec import CuttingMaterial, ToolGrade, ToolKind, WorkMaterial
-from stepnc_model.tool import Tool
+from stepnc_model.programs.tool import Tool
 
 KINDS = {
     "FACEMILL": ToolKind.FACEMILL,

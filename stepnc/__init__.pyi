@@ -8,12 +8,20 @@ from typing import Literal
 from service.verbs.result import Result as Result
 from stepnc_model.errors import StepNcError as StepNcError
 
-from service.verbs.blockfit.result import BlockFitResult as BlockFitResult
-from service.verbs.blocktest.result import BlockTestResult as BlockTestResult
-from service.verbs.calibrate.cuts import CutsResult as CutsResult
-from service.verbs.calibrate.cuts import CutsResult as CutsResult
-from service.verbs.calibrate.result import CalibrationResult as CalibrationResult
-from service.verbs.calibrate.tool_life import ToolLifeResult as ToolLifeResult
+from extras.agent.verbs.record.result import RecordingResult as RecordingResult
+from extras.calibration.verbs.blockfit.result import BlockFitResult as BlockFitResult
+from extras.calibration.verbs.blocktest.result import BlockTestResult as BlockTestResult
+from extras.calibration.verbs.calibrate.cuts import CutsResult as CutsResult
+from extras.calibration.verbs.calibrate.cuts import CutsResult as CutsResult
+from extras.calibration.verbs.calibrate.result import CalibrationResult as CalibrationResult
+from extras.calibration.verbs.calibrate.tool_life import ToolLifeResult as ToolLifeResult
+from extras.calibration.verbs.taptest.result import TapTestResult as TapTestResult
+from extras.factory.verbs.factory.result import ShopResult as ShopResult
+from extras.learning.verbs.dataset.result import DatasetReport as DatasetReport
+from extras.learning.verbs.learn.result import LearnResult as LearnResult
+from extras.learning.verbs.predict.result import PredictResult as PredictResult
+from extras.learning.verbs.score.result import ScoreResult as ScoreResult
+from extras.verification.verbs.verify.result import VerificationResult as VerificationResult
 from service.verbs.canonical.result import CanonicalResult as CanonicalResult
 from service.verbs.check.result import CodeContents as CodeContents
 from service.verbs.check.result import ProgramContents as ProgramContents
@@ -21,8 +29,6 @@ from service.verbs.compare.result import ComparisonResult as ComparisonResult
 from service.verbs.control.result import ControlResult as ControlResult
 from service.verbs.convert.result import ConvertResult as ConvertResult
 from service.verbs.cycletime.result import CycleTimeResult as CycleTimeResult
-from service.verbs.dataset.result import DatasetReport as DatasetReport
-from service.verbs.factory.result import ShopResult as ShopResult
 from service.verbs.kbe.add.result import AddResult as AddResult
 from service.verbs.kbe.content import ContentResult as ContentResult
 from service.verbs.kbe.content import ContentResult as ContentResult
@@ -42,25 +48,19 @@ from service.verbs.kbe.write.result import WriteResult as WriteResult
 from service.verbs.keys.create.result import NewKeyResult as NewKeyResult
 from service.verbs.keys.list.result import KeysResult as KeysResult
 from service.verbs.keys.revoke.result import RevokedResult as RevokedResult
-from service.verbs.learn.result import LearnResult as LearnResult
 from service.verbs.library import EntryResult as EntryResult
 from service.verbs.library import EntryResult as EntryResult
 from service.verbs.library import ListingResult as ListingResult
 from service.verbs.library import ListingResult as ListingResult
 from service.verbs.optimise.result import OptimiseResult as OptimiseResult
 from service.verbs.post.result import PostResult as PostResult
-from service.verbs.predict.result import PredictResult as PredictResult
-from service.verbs.record.result import RecordingResult as RecordingResult
 from service.verbs.result import ServedResult as ServedResult
 from service.verbs.result import ServedResult as ServedResult
 from service.verbs.result import ServedResult as ServedResult
-from service.verbs.score.result import ScoreResult as ScoreResult
 from service.verbs.setup.result import SetupResult as SetupResult
 from service.verbs.simulate.result import SimulateResult as SimulateResult
-from service.verbs.taptest.result import TapTestResult as TapTestResult
 from service.verbs.toolpath.result import CodePathResult as CodePathResult
 from service.verbs.toolpath.result import ToolPathResult as ToolPathResult
-from service.verbs.verify.result import VerificationResult as VerificationResult
 
 def agent(
     file: str | Path | None = ...,

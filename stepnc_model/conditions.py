@@ -8,7 +8,6 @@ import operator
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
-from stepnc_model.binding import Model
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import Assignment
 from stepnc_model.entities.measures import (
@@ -28,6 +27,7 @@ from stepnc_model.entities.measures import (
 )
 from stepnc_model.errors import SchemaError
 from stepnc_model.part21.values import Ref
+from stepnc_model.programs.binding import Model
 
 MAX_DEPTH = 100
 """Greatest nesting of a condition; one that contains itself would have no end."""

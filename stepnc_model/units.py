@@ -7,7 +7,8 @@ and rpm.
 A :class:`UnitProfile` gives the units in which a program writes its feeds and speeds. ISO
 14649-10 §4.2.1 prescribes m/s for speeds and rev/s for spindles when the file names no unit.
 Many public files use other units, so another profile is chosen by the user, or by
-:mod:`stepnc_model.plausibility` where it is the only one that makes all numbers plausible.
+:mod:`stepnc_model.programs.plausibility` where it is the only one that makes all numbers
+plausible.
 """
 
 from dataclasses import dataclass, replace

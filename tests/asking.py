@@ -4,19 +4,19 @@ from pathlib import Path
 
 from controller.laws.choice import LawName
 from controller.orders import Criterion
-from controller.preview import LOOK_AHEAD
+from controller.signals.preview import LOOK_AHEAD
 from optimiser.modes import Free, Mode
 from optimiser.safety import USUAL_QUANTILE
 from service.requests.advice import AdviceRequest
 from service.requests.fields import member_of
-from service.requests.given import Units
+from service.requests.program_facts import Units
 from service.requests.runs import ControlRequest, ForceView, SensorChoice, SimulationRequest
-from service.simulation.of_code import CodeRequest
+from service.simulation.code_simulation import CodeRequest
 from service.simulation.run import RunFiles
 from service.verbs.optimise.request import AdviceFiles
 from simulator.machine.noise_kind import NoiseKind
 from simulator.motion.model_name import ControlModelName
-from stepnc_model.file_profile import FileProfile
+from stepnc_model.editing.file_profile import FileProfile
 from stepnc_model.post.dialect import Dialect
 
 AskedAdvice = tuple[AdviceRequest, AdviceFiles]

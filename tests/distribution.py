@@ -21,8 +21,8 @@ OWN_SERVERS = (
 
 LONGEST = (
     # A real control runs by the clock, and leaves the cores to the other workers.
-    "tests/simulator/linuxcnc/test_samples.py",
-    "tests/simulator/linuxcnc/test_bench.py",
+    "tests/extras/linuxcnc/test_samples.py",
+    "tests/extras/linuxcnc/test_bench.py",
     "tests/service/rest/",
     "tests/service/rest/test_serve_database.py",
     "tests/service/rest/test_serve.py",

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.logged_path.sampled_path import PathSamples
-from simulator.calibration.measured_run import Component, read_columns
+from extras.calibration.model.measured_run import Component, read_columns
 from simulator.errors import CalibrationError
 from simulator.motion.segments import Bools, Floats
 from stepnc_model.units import watts_from_kw

@@ -1,7 +1,7 @@
 """Model of the feed axes that follow the override with a nominal first-order lag.
 
-Corners, blocks and feed drives that differ from :class:`~controller.law.Plant` make the axes
-run at another override than this model; the override that they really ran is measured. The
+Corners, blocks and feed drives that differ from :class:`~controller.laws.law.Plant` make the
+axes run at another override than this model; the override that they really ran is measured. The
 force that would have been measured with the modelled axes, ``F·(mean/actual)^p``, is therefore
 known, and a law that uses it instead of F sees a plant of exactly the nominal lag: it neither
 winds up while a corner slows the axes nor oscillates when the real lag differs. In PID control
@@ -19,7 +19,7 @@ References
 from math import exp, expm1, log
 from typing import NamedTuple
 
-from controller.law import Plant, Situation
+from controller.laws.law import Plant, Situation
 from stepnc_model.tuples import quick_replace
 
 FARTHEST = log(20.0)

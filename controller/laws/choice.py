@@ -3,8 +3,8 @@
 from enum import StrEnum
 from typing import Any
 
-from controller.law import ControlLaw, Plant
 from controller.laws.fuzzy import Fuzzy
+from controller.laws.law import ControlLaw, Plant
 from controller.laws.log_pi import LogPI
 from controller.laws.model_reference import ModelReference
 from controller.laws.open_loop import OpenLoop

@@ -27,7 +27,6 @@ from bisect import bisect_right
 from dataclasses import dataclass, field
 from math import exp, log
 
-from controller.law import Plant, Situation
 from controller.laws.axes import (
     Axes,
     moved,
@@ -37,6 +36,7 @@ from controller.laws.axes import (
     standing,
     within,
 )
+from controller.laws.law import Plant, Situation
 
 UNIT = log(2.0)
 """Logarithm of the force ratio that counts as a large error."""
@@ -76,7 +76,7 @@ class Fuzzy:
         return FuzzyState(axes=resting(override), error=0.0)
 
     def decide(self, state: FuzzyState, at: Situation) -> tuple[FuzzyState, float]:
-        """Decide the next override; see :class:`~controller.law.ControlLaw`."""
+        """Decide the next override; see :class:`~controller.laws.law.ControlLaw`."""
         axes = moved(state.axes, standing(at), lag=self.plant.lag)
         error = shortfall(axes, at, exponent=self.plant.exponent)
         step = inferred(error / UNIT, (error - state.error) / UNIT)

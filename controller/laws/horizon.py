@@ -25,7 +25,7 @@ from math import exp, expm1
 import numpy as np
 from scipy import sparse
 
-from controller.ports import Floats
+from controller.signals.ports import Floats
 
 LENGTH = 20
 """Length H of the horizon, revolutions: nearly seven lags of a usual drive."""

@@ -19,7 +19,6 @@ References
 from dataclasses import dataclass, field
 from math import exp
 
-from controller.law import Plant, Situation
 from controller.laws.axes import (
     Axes,
     moved,
@@ -30,6 +29,7 @@ from controller.laws.axes import (
     standing,
     within,
 )
+from controller.laws.law import Plant, Situation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,7 +45,7 @@ class LogPI:
         return resting(override)
 
     def decide(self, state: Axes, at: Situation) -> tuple[Axes, float]:
-        """Decide the next override; see :class:`~controller.law.ControlLaw`."""
+        """Decide the next override; see :class:`~controller.laws.law.ControlLaw`."""
         axes = moved(state, standing(at), lag=self.plant.lag)
         error = shortfall(axes, at, exponent=self.plant.exponent)
         goal = axes.mean * exp(error / self.plant.exponent)

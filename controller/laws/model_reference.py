@@ -22,8 +22,8 @@ References
 from dataclasses import dataclass, field
 from math import exp, log
 
-from controller.law import Plant, Situation
 from controller.laws.axes import Axes, moved, resting, shortfall, standing, within
+from controller.laws.law import Plant, Situation
 
 GAIN_BAND = (0.5, 2.0)
 """Range of θ_1 over its nominal value."""
@@ -67,7 +67,7 @@ class ModelReference:
     def decide(
         self, state: ModelReferenceState, at: Situation
     ) -> tuple[ModelReferenceState, float]:
-        """Decide the next override; see :class:`~controller.law.ControlLaw`."""
+        """Decide the next override; see :class:`~controller.laws.law.ControlLaw`."""
         override = standing(at)
         axes = moved(state.axes, override, lag=self.plant.lag)
         deviation = -shortfall(axes, at, exponent=self.plant.exponent)

@@ -31,7 +31,6 @@ from typing import Any
 import numpy as np
 import osqp
 
-from controller.law import Plant, Situation
 from controller.laws.horizon import (
     LENGTH,
     Horizon,
@@ -41,7 +40,8 @@ from controller.laws.horizon import (
     remaining,
     vectors,
 )
-from controller.ports import Floats
+from controller.laws.law import Plant, Situation
+from controller.signals.ports import Floats
 
 LEARNING = 0.4
 """Filter gain: share of the deviation of a measured ln K that is adopted."""

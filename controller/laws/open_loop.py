@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from controller.law import Situation
 from controller.laws.axes import within
+from controller.laws.law import Situation
 
 PROGRAMMED = 1.0
 """Override of the programmed feed."""

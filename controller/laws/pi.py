@@ -20,7 +20,6 @@ References
 from dataclasses import dataclass, field
 from math import exp
 
-from controller.law import Plant, Situation
 from controller.laws.axes import (
     Axes,
     moved,
@@ -30,6 +29,7 @@ from controller.laws.axes import (
     standing,
     within,
 )
+from controller.laws.law import Plant, Situation
 
 GREATEST = 1.0
 """Greatest relative excess of force over set point that is used, so the feed never stops."""
@@ -59,7 +59,7 @@ class PI:
         return PIState(axes=resting(override), error=0.0)
 
     def decide(self, state: PIState, at: Situation) -> tuple[PIState, float]:
-        """Decide the next override; see :class:`~controller.law.ControlLaw`."""
+        """Decide the next override; see :class:`~controller.laws.law.ControlLaw`."""
         plant = self.plant
         axes = moved(state.axes, standing(at), lag=plant.lag)
         error = max(1.0 - exp(-shortfall(axes, at, exponent=plant.exponent)), -GREATEST)

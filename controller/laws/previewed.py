@@ -29,8 +29,8 @@ from dataclasses import dataclass, field, replace
 from math import exp, log
 from typing import Generic, TypeVar
 
-from controller.law import ControlLaw, Plant, Situation
 from controller.laws.axes import Axes, moved, quickening, ran, resting, sent, standing, within
+from controller.laws.law import ControlLaw, Plant, Situation
 
 S = TypeVar("S")
 
@@ -83,7 +83,7 @@ class Previewed(Generic[S]):
     def decide(
         self, state: PreviewedState[S] | PlainState[S], at: Situation
     ) -> tuple[PreviewedState[S] | PlainState[S], float]:
-        """Decide the next override; see :class:`~controller.law.ControlLaw`."""
+        """Decide the next override; see :class:`~controller.laws.law.ControlLaw`."""
         if not at.ahead or at.expected <= 0.0 or max(at.ahead) <= 0.0:
             return self._alone(state, at)
         forward = self._forward(at)

@@ -14,7 +14,6 @@ References
 from dataclasses import dataclass, field, replace
 from math import exp, log
 
-from controller.law import Plant, Situation
 from controller.laws.axes import (
     FARTHEST,
     Axes,
@@ -26,6 +25,7 @@ from controller.laws.axes import (
     standing,
     within,
 )
+from controller.laws.law import Plant, Situation
 from controller.laws.load import LoadEstimate, first_load, learned, learned_load
 
 EXPONENT_BAND = (0.7, 1.2)
@@ -61,7 +61,7 @@ class SelfTuning:
         return SelfTuningState(axes=axes, way=log(axes.last), load=None)
 
     def decide(self, state: SelfTuningState, at: Situation) -> tuple[SelfTuningState, float]:
-        """Decide the next override; see :class:`~controller.law.ControlLaw`."""
+        """Decide the next override; see :class:`~controller.laws.law.ControlLaw`."""
         axes = moved(state.axes, standing(at), lag=self.plant.lag)
         way = log(ran(at))
         load = self._learned(state, log(at.force), way)

@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Iterator
 
 from docs.hooks.markdown import block, code, page, table
-from service import exit_codes
+from service import errors as exit_codes
 from service.cli.commands import parser
 from service.cli.interrupts import INTERRUPTED
 

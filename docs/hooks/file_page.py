@@ -1,6 +1,6 @@
 """The page of the files that a user may write, and their JSON Schemas for editors.
 
-Both follow from the declarations of :mod:`simulator.toml_file`.
+Both follow from the declarations of :mod:`simulator.files.toml_file`.
 """
 
 import json
@@ -11,14 +11,14 @@ import msgspec
 from msgspec import inspect
 
 from docs.hooks.markdown import code, first_line, page, table
-from simulator.factory.design_file import DesignTable
-from simulator.factory.shop_tables import ShopFile
-from simulator.grade_file import GradeFile
-from simulator.holding_file import HoldingFile
-from simulator.machine_file import MachineFile
-from simulator.material_file import MaterialFile
-from simulator.toml_file import FileTable
-from simulator.tool_table import ToolFile
+from extras.factory.model.design_file import DesignTable
+from extras.factory.model.shop_tables import ShopFile
+from simulator.files.grade_file import GradeFile
+from simulator.files.holding_file import HoldingFile
+from simulator.files.machine_file import MachineFile
+from simulator.files.material_file import MaterialFile
+from simulator.files.toml_file import FileTable
+from simulator.tools.tool_table import ToolFile
 
 INTRODUCTION = """Machines, materials, tools, work-holding and shops are small TOML
 files. A name that ends in `.toml` or has a slash is a file of yours, any other is one

@@ -5,11 +5,11 @@ from typing import Any
 
 from fastapi import FastAPI
 
-from service.agent.run_routes import with_runs
-from service.agent.shop import ShopAgent
-from service.problem import plain_problem
+from extras.agent.model.http import application
+from extras.agent.run_routes import with_runs
+from extras.agent.shop import ShopAgent
 from service.rest.replies import problem_reply
-from simulator.agent.http import application
+from service.web.problem import plain_problem
 
 BASE = "/mtconnect"
 

@@ -14,13 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from extras.brep.tessellation import ALL, Choice, Tessellation, tessellate
-from service.brep.bodies import SolidPlace, sag_within
+from service.inputs.program_bodies import SolidPlace, sag_within
 from simulator.motion.segments import Floats
 from simulator.removal.mesh_stock import edges_of
-from stepnc_model.counted import counted
 from stepnc_model.errors import Part21Error, StepNcError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref, Typed, Value
+from stepnc_model.plurals import counted
 
 HEAD = (
     b"ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\n"

@@ -16,8 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from service.extras import has_package, how_to_install
-from service.process_limits import ProcessLimits, limit_process
+from service.optional_packages import has_package, how_to_install
+from service.processes.process_limits import ProcessLimits, limit_process
 from simulator.motion.segments import Floats, Ints
 from stepnc_model.errors import StepNcError
 

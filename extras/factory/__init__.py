@@ -1,1 +1,1 @@
-"""Virtual factory: a shop of machines that run programs, with its jobs and routes."""
+"""Virtual factory: a shop of machines that run programs."""

@@ -2,4 +2,4 @@
 
 from service.storage.jobs import JobKind
 
-WORK = ((JobKind.FACTORY, "service.jobs.produce:run"),)
+WORK = ((JobKind.FACTORY, "extras.factory.shop_job:run"),)

@@ -7,17 +7,17 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Path, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
+from extras.factory.live import require_failure
+from extras.factory.model.shop_file import content_of
+from extras.factory.requests import FactoryChanges, FactoryOrder
+from extras.factory.run import STATES
+from extras.factory.shop_job import FIGURES, STATE_LOG, TABLES, table_of
+from extras.factory.shop_sources import checked_shop, sample_shops, source_of_order
+from extras.factory.state_log import state_bars
 from extras.factory.views import SampleShopView, StatesView
 from service.errors import Conflict, NotFound, Unreadable
-from service.factory.asked import checked_shop, sample_shops, source_of_order
-from service.factory.live import require_failure
-from service.factory.run import STATES
-from service.factory.state_log import state_bars
-from service.jobs.produce import FIGURES, STATE_LOG, TABLES, table_of
 from service.live.series import open_series
-from service.requests.factory import FactoryChanges, FactoryOrder
 from service.requests.fields import loaded
-from service.rest.asking import answered
 from service.rest.bodies import Id
 from service.rest.context import (
     InDataFolder,
@@ -32,10 +32,10 @@ from service.rest.results import (
     live_folder,
     read_in_turn,
 )
+from service.rest.storage_queries import answered
 from service.storage import jobs
 from service.storage.folder import DataFolder
 from service.storage.jobs import Job, JobKind, JobRequest
-from simulator.factory.shop_file import content_of
 
 RUNS = APIRouter(prefix="/v1/factories", tags=["factories"])
 SHOPS = APIRouter(prefix="/v1/shops", tags=["factories"])

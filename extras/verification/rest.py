@@ -4,10 +4,12 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
+from extras.verification.facts import read_map
+from extras.verification.run import FIT
+from extras.verification.stored_request import StoredVerificationRequest
 from extras.verification.views import SurfaceMapView, VerificationView, map_view
 from service.errors import Unreadable
-from service.numbers import numbers_in
-from service.requests.stored_verification import StoredVerificationRequest
+from service.inputs.numbers import numbers_in
 from service.rest.bodies import Id
 from service.rest.context import InDataFolder
 from service.rest.orders import LOGS, missing_fields, runnable
@@ -18,8 +20,6 @@ from service.storage import jobs, library
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobKind, JobRequest
 from service.storage.results import LOG, PLACES, SURFACE
-from service.verification.facts import read_map
-from service.verification.run import FIT
 
 VERIFICATIONS = APIRouter(prefix="/v1/verifications", tags=["verifications"])
 

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from pydantic import ConfigDict, Field
 
+from extras.verification.facts import SurfaceMap
 from service.rest.views import FindingView, View
-from service.verification.facts import SurfaceMap
 
 
 class SurfaceView(View):

@@ -2,9 +2,9 @@
 
 from optimiser.advice import Advice
 from optimiser.along_path.caps import CapName, CutBounds
-from optimiser.limits import STRAIGHT_DOWN, depth_at_shoulder
-from optimiser.plunge_feed import permitted_plunge
-from optimiser.problem import BoundSide, LimitName
+from optimiser.bounds.limits import STRAIGHT_DOWN, depth_at_shoulder
+from optimiser.bounds.plunge_feed import permitted_plunge
+from optimiser.solver.problem import BoundSide, LimitName
 
 FIXED = {
     LimitName.ROUGHNESS: CapName.ROUGHNESS,

@@ -15,12 +15,12 @@ from math import inf, pi
 
 import numpy as np
 
-from optimiser.along_path.held import held_feeds
-from optimiser.chip_load import GREATEST_THINNING, catalogue_feed
-from optimiser.conditions import CuttingConditions
-from optimiser.cut import Cut, CutKind
-from optimiser.hardest import LEAST_RATIO, bending, chip_sines, width_ratios
-from optimiser.limits import drill_point, force_factor, is_bent
+from optimiser.along_path.holding_limits import held_feeds
+from optimiser.bounds.chip_load import GREATEST_THINNING, catalogue_feed
+from optimiser.bounds.limits import drill_point, force_factor, is_bent
+from optimiser.cuts.conditions import CuttingConditions
+from optimiser.cuts.cut import Cut, CutKind
+from optimiser.cuts.hardest_places import LEAST_RATIO, bending, chip_sines, width_ratios
 from simulator.motion.segments import Bools, Floats, Ints
 from simulator.physics.drilling import chisel_factors, constant_thrust
 from simulator.physics.engagement import conventional

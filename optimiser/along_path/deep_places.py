@@ -1,7 +1,8 @@
 """Places where a mill cuts deeper than its tool allows at the width that it meets.
 
-The rule is that of a workingstep (:func:`optimiser.limits.depth_limits`), asked at the places
-of a path. No feed makes a place less deep, so that the depth bounds no feed here: it is told.
+The rule is that of a workingstep (:func:`optimiser.bounds.limits.depth_limits`), asked at the
+places of a path. No feed makes a place less deep, so that the depth bounds no feed here: it is
+told.
 """
 
 from collections.abc import Iterator, Mapping
@@ -12,11 +13,11 @@ import numpy as np
 from optimiser.advice import LimitLoad
 from optimiser.along_path.caps import CutBounds
 from optimiser.along_path.stretch import PathStretch
-from optimiser.cut import CutKind
-from optimiser.formulate import limit_loads
-from optimiser.hardest import width_ratios
-from optimiser.limits import DEEPER, depth_limits
-from optimiser.problem import LimitName
+from optimiser.bounds.limits import DEEPER, depth_limits
+from optimiser.cuts.cut import CutKind
+from optimiser.cuts.hardest_places import width_ratios
+from optimiser.planning.formulate import limit_loads
+from optimiser.solver.problem import LimitName
 from simulator.motion.segments import Floats, Ints
 from simulator.removal.stations import StationKind, stretch_lengths
 

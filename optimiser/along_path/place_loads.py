@@ -12,16 +12,16 @@ import numpy as np
 
 from optimiser.advice import LimitLoad
 from optimiser.along_path.caps import NAMES, CapName, CutBounds
-from optimiser.along_path.carried import BrokenBound
+from optimiser.along_path.filter_transfer import BrokenBound
 from optimiser.along_path.pieces import FeedPieces
 from optimiser.along_path.runs import OWN, WRITTEN
 from optimiser.along_path.stretch import PathStretch, met_caps
-from optimiser.cut import Cut, CutKind
-from optimiser.formulate import limit_loads
-from optimiser.hardest import PathContacts, bending, with_hardest
-from optimiser.holding import chuck_limits, holding_limits
-from optimiser.limits import machine_limits, segment_at, spindle_limits, tool_limits
-from optimiser.problem import BoundSide, LimitName, Setting
+from optimiser.bounds.holding import chuck_limits, holding_limits
+from optimiser.bounds.limits import machine_limits, segment_at, spindle_limits, tool_limits
+from optimiser.cuts.cut import Cut, CutKind
+from optimiser.cuts.hardest_places import PathContacts, bending, with_hardest
+from optimiser.planning.formulate import limit_loads
+from optimiser.solver.problem import BoundSide, LimitName, Setting
 from simulator.removal.stations import StationKind, Stations
 
 HELD = frozenset({

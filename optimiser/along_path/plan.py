@@ -16,9 +16,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from optimiser.along_path.caps import NAMES, NUMBER, CapName
-from optimiser.along_path.carried import BrokenBound, excess, most_broken
 from optimiser.along_path.deep_places import DeepPlaces, with_deep_places
-from optimiser.along_path.free import FASTEST_ALONE, FreeProfile, FreeTask, free_profile
+from optimiser.along_path.filter_transfer import BrokenBound, excess, most_broken
+from optimiser.along_path.free_profile import FASTEST_ALONE, FreeProfile, FreeTask, free_profile
 from optimiser.along_path.pieces import (
     Executions,
     FeedPieces,
@@ -29,7 +29,7 @@ from optimiser.along_path.pieces import (
 from optimiser.along_path.place_loads import broken_bounds, lost_times, worst_bounds
 from optimiser.along_path.runs import MachineFeeds, commands_of, own_caps, written_caps
 from optimiser.along_path.stretch import PathStretch, PlaceCaps, place_caps
-from optimiser.levels import best_levels
+from optimiser.feed_profile.levels import best_levels
 from simulator.motion.segments import Bools, Floats, Ints
 from simulator.motion.smoothing import smoothing_of
 from stepnc_model.post.block_feeds import BlockPart

@@ -22,8 +22,8 @@ from optimiser.along_path.caps import (
     station_caps,
     unbounded,
 )
-from optimiser.cut import CutKind
-from optimiser.limits import DEEPER
+from optimiser.bounds.limits import DEEPER
+from optimiser.cuts.cut import CutKind
 from simulator.motion.path_limits import (
     CENTRIPETAL_SHARE,
     block_lengths,

@@ -9,25 +9,25 @@ from dataclasses import dataclass, replace
 from math import isinf
 
 from optimiser.along_path.caps import CapName, CutBounds
-from optimiser.chip_load import catalogue_feed
-from optimiser.conditions import BarGrip, CuttingConditions, PermittedDeflection
-from optimiser.cut import Cut, CutKind, Texture
+from optimiser.bounds.chip_load import catalogue_feed
+from optimiser.bounds.limits import depth_at_shoulder
+from optimiser.bounds.plunge_feed import permitted_plunge
+from optimiser.bounds.roughness import surface_limits
+from optimiser.bounds.speed_limits import SourcedBound, cutting_speed_window
+from optimiser.bounds.tolerance import GREATEST_AT_WALL
+from optimiser.cuts.conditions import BarGrip, CuttingConditions, PermittedDeflection
+from optimiser.cuts.cut import Cut, CutKind, Texture
 from optimiser.errors import Infeasible
-from optimiser.limits import depth_at_shoulder
 from optimiser.optimise import DEFAULT_QUALITY
-from optimiser.plunge_feed import permitted_plunge
-from optimiser.problem import BoundSide, Limit, LimitName, Setting
-from optimiser.roughness import surface_limits
 from optimiser.safety import safety_factor
-from optimiser.speed_limits import SourcedBound, cutting_speed_window
-from optimiser.tolerance import GREATEST_AT_WALL
+from optimiser.solver.problem import BoundSide, Limit, LimitName, Setting
 from simulator.library import find_window
 from simulator.removal.cutter import ENDS, THREADS, Cutter, Insert
 from simulator.spec import Machine, ToolGrade, ToolKind, WorkMaterial
-from simulator.tool_table import TableTool, grade_of_table_tool, why_unsuited
+from simulator.tools.tool_table import TableTool, grade_of_table_tool, why_unsuited
 from simulator.work_holding import Holding
 from stepnc_model.errors import Finding, Severity
-from stepnc_model.tool import Tool
+from stepnc_model.programs.tool import Tool
 from stepnc_model.units import um_from_mm
 
 TEXTURES = {

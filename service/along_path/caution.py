@@ -15,7 +15,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from optimiser.along_path.cautious import (
+from optimiser.along_path.change_bounds import (
     is_straight_down,
     is_straight_up,
     plunge_feeds,
@@ -23,7 +23,7 @@ from optimiser.along_path.cautious import (
     risen,
 )
 from optimiser.along_path.stretch import PathStretch
-from optimiser.greatest_rise import USUAL_RISE
+from optimiser.safety import USUAL_RISE
 from service.along_path.misuse import MisuseWatch
 from service.simulation.detour import BRIDGE
 from service.simulation.line_spans import spans

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from optimiser.along_path.tool_bounds import KnownOfJob
-from optimiser.conditions import grip_of_bar
-from service.knowledge.corrected import factors_for_tools, finding_of
-from service.raw_stock import raw_stock_of
+from optimiser.cuts.conditions import grip_of_bar
+from service.knowledge.plan_corrections import factors_for_tools, finding_of
+from service.programs.raw_stock import raw_stock_of
 from service.requests.advice import AdviceRequest
 from service.simulation.code_paths import CodePaths
 from simulator.physics.holding import LEAST_LEFT, usable_speed

@@ -9,7 +9,7 @@ import numpy as np
 from service.along_path.plan_run import LimitStretch
 from service.along_path.run import FeedsAlongPath
 from service.along_path.trace import PathSignal, PathTrace
-from service.buckets import BucketedRun
+from service.plots.buckets import BucketedRun
 from simulator.motion.segments import Floats, Ints
 
 MOST_BUCKETS = 1000

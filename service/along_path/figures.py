@@ -8,8 +8,8 @@ import plotly.graph_objects as go
 from service.along_path.plan_run import LimitStretch
 from service.along_path.run import FeedsAlongPath
 from service.along_path.trace import PathSignal, PathTrace
-from service.buckets import BucketedRun
-from service.panels import (
+from service.plots.buckets import BucketedRun
+from service.plots.panels import (
     BLUE,
     CLEAR,
     FAINT,

@@ -11,16 +11,16 @@ from enum import StrEnum
 
 import numpy as np
 
-from optimiser.along_path.cautious import is_straight_down
+from optimiser.along_path.change_bounds import is_straight_down
 from optimiser.along_path.stretch import PathStretch
-from optimiser.plunge import is_core
+from optimiser.cuts.plunge_engagement import is_core
 from service.simulation.line_spans import spans
 from simulator.library import reaming_allowances
 from simulator.motion.segments import Bools, Ints, Segments
 from simulator.removal.cutter import ENDS, Cutter, Insert
 from simulator.removal.stations import StationKind
 from simulator.spec import ToolKind
-from simulator.tool_table import TableTool, reaches_centre
+from simulator.tools.tool_table import TableTool, reaches_centre
 from stepnc_model.errors import Finding, Severity
 
 Meets = Callable[[Segments, Ints, Cutter | Insert, float], Ints]

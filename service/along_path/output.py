@@ -6,7 +6,7 @@ from typing import Any
 from service.along_path.run import AlongPathStep, FeedsAlongPath
 from service.rendering.columns import Change, Column
 from service.rendering.view import Item, Table, TextLine
-from stepnc_model.counted import counted
+from stepnc_model.plurals import counted
 from stepnc_model.units import kw_from_watts, mm_min_from_speed, um_from_mm
 
 STEP: tuple[Column[AlongPathStep], ...] = (

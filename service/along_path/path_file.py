@@ -5,12 +5,12 @@ from pathlib import Path
 
 from service.along_path.course import BlockLog
 from service.along_path.run import FeedsAlongPath
-from service.paths.toolpaths import paths_of, with_feeds
+from service.programs.toolpaths import paths_of, with_feeds
+from stepnc_model.editing.file_profile import FileProfile
 from stepnc_model.errors import Finding
-from stepnc_model.file_profile import FileProfile
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.post.planned_paths import planned_paths
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.explicit.path_writer import write_paths
 
 

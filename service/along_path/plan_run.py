@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from optimiser.along_path.carried import slower_pieces
+from optimiser.along_path.filter_transfer import slower_pieces
 from optimiser.along_path.plan import (
     PERMITTED,
     BlockFeeds,

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from optimiser.along_path.caps import CapName
 from optimiser.along_path.deep_places import DeepPlaces
-from optimiser.along_path.free import FASTEST_ALONE, FreeProfile, FreeTask
+from optimiser.along_path.free_profile import FASTEST_ALONE, FreeProfile, FreeTask
 from optimiser.along_path.pieces import PieceRules
 from optimiser.along_path.plan import (
     PERMITTED,
@@ -23,13 +23,13 @@ from optimiser.along_path.plan import (
     lowered,
 )
 from optimiser.along_path.runs import MachineFeeds
-from optimiser.along_path.slower import slower_part
-from optimiser.reasons import broken_words
+from optimiser.along_path.slow_parts import slower_part
+from optimiser.planning.reasons import broken_words
 from service.along_path.course import PathSource, stretches_of
 from service.along_path.plan_run import LimitStretch, PartTotals, PlanRun, run_plan
 from service.along_path.trace import PathTrace
-from service.overload_bounds import overload_bounds
 from service.progress import Tell, Ticker, silent
+from service.simulation.line_spans import overload_bounds
 from simulator.machine.totals import Total
 from simulator.motion.segments import ControlModel, axis_limits
 from simulator.spec import Machine

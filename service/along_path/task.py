@@ -1,6 +1,6 @@
 """Task of planning feeds along paths, from a request."""
 
-from optimiser.along_path.free import FreeTask
+from optimiser.along_path.free_profile import FreeTask
 from service.along_path.run import AlongPathTask
 from service.requests.advice import AdviceRequest
 from simulator.motion.control import control_model

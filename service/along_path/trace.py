@@ -10,7 +10,7 @@ from math import ceil
 
 import numpy as np
 
-from service.buckets import BucketedRun, Buckets
+from service.plots.buckets import BucketedRun, Buckets
 from simulator.machine.samples import Episode
 from simulator.machine.sensing import sensed
 from simulator.motion.segments import Floats

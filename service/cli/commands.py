@@ -16,7 +16,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from service.exit_codes import BAD_INPUT, INFEASIBLE, OK, USAGE
+from service.errors import BAD_INPUT, INFEASIBLE, OK, USAGE
 from service.requests.fields import Request, output_path
 from service.verbs.call import Verb, verbs
 from service.verbs.result import Result, ServedResult
@@ -149,7 +149,7 @@ def _run_verb(verb: Verb, options: argparse.Namespace) -> int:
 
 def _print(result: Result, files: Request, *, is_json: bool) -> None:
     """Print a result as JSON, or in the format that its files name where they name no file."""
-    from service.output_format import OutputFormat
+    from service.outputs.output_format import OutputFormat
     from service.requests.output import OutputFiles
     from service.terminal import write_out
 
@@ -306,7 +306,7 @@ def _print_completion(shell: str) -> int:
 
 def _run(options: argparse.Namespace) -> int:
     """Run a command and turn the project's errors into exit codes."""
-    from service.extras import missing_extras_named
+    from service.optional_packages import missing_extras_named
     from service.terminal import OutputFault, drop_out, prepare, tell
     from stepnc_model.errors import StepNcError
 

@@ -32,8 +32,8 @@ from math import isfinite
 from typing import Any
 
 from controller.orders import Criterion, CriterionTo, MotorPowerTo, Order, SwitchTo
-from simulator.plant.controlled import Instrumentation
-from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
+from simulator.plant.controlled_machine import Instrumentation
+from simulator.plant.hidden_behaviour import HiddenChange, HiddenQuantity, HiddenTruth
 from stepnc_model.errors import StepNcError
 
 WORD = re.compile(r"(?P<what>[a-z]+):(?P<value>[^@]*)(?:@(?P<time>[^@]*))?")

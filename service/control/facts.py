@@ -11,7 +11,7 @@ from optimiser.advice import Advice
 from service.control.disturbances import time_of
 from service.control.holding import ends_of
 from service.control.run import ControlRun
-from stepnc_model.counted import counted
+from stepnc_model.plurals import counted
 
 STAYED = 0.1
 """Share of the cutting time above the set point from which the force counts as staying above;

@@ -17,12 +17,12 @@ import numpy as np
 import plotly.graph_objects as go
 
 from controller.orders import EventKind, LoopEvent
-from service.buckets import BucketedRun
 from service.control.disturbances import time_of
 from service.control.facts import ControlRow, disturbed
 from service.control.run import ControlRun
 from service.control.trace import ControlSignal
-from service.panels import (
+from service.plots.buckets import BucketedRun
+from service.plots.panels import (
     BLUE,
     DIM,
     GREEN,

@@ -10,13 +10,13 @@ from math import inf, isfinite
 
 from controller.cycle import LoopCycle
 from controller.guard import OverrideReason, aimed
-from controller.loop_settings import LoopSettings
+from controller.monitoring.threshold import AlarmLevel
 from controller.orders import Criterion, EventKind
 from controller.reference import FEED_LIMITS, Reference, reference_of
-from controller.set_point import wanted
-from controller.threshold import AlarmLevel
+from controller.states.loop_settings import LoopSettings
+from controller.states.set_point import wanted
 from optimiser.advice import Advice, EvaluatedSetting
-from optimiser.problem import BoundSide, LimitName
+from optimiser.solver.problem import BoundSide, LimitName
 
 NO_CHIPS = "no chips"
 TOP = "top of the override band"

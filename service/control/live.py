@@ -20,9 +20,7 @@ from controller.orders import (
 )
 from service.control.run import ControlRun, Session
 from service.control.setup import hardness_against
-from service.requests.fields import loaded, require_bounds
-from service.requests.runs import ControlChanges
-from service.session.runner import (
+from service.live.runner import (
     CM3_MIN,
     LiveRows,
     RunUpdate,
@@ -31,9 +29,11 @@ from service.session.runner import (
     over_percent,
     over_seconds,
 )
+from service.requests.fields import loaded, require_bounds
+from service.requests.runs import ControlChanges
 from simulator.library import material_names
 from simulator.physics.spindle import available_power
-from simulator.plant.hidden import HiddenChange, HiddenQuantity
+from simulator.plant.hidden_behaviour import HiddenChange, HiddenQuantity
 from stepnc_model.errors import StepNcError
 from stepnc_model.units import kw_from_watts, mm_min_from_speed
 
@@ -230,7 +230,7 @@ class LiveControl:
         return self.session.loop.state.settings.is_held and not self._is_done
 
     def obey(self, order: Mapping[str, Any]) -> None:
-        """Apply the changes of an order (:class:`service.session.runner.LiveSession`)."""
+        """Apply the changes of an order (:class:`service.live.runner.LiveSession`)."""
         if order:
             self.change(loaded(ControlChanges, order))
             self._asked |= order

@@ -6,21 +6,21 @@ from math import isfinite, pi
 
 import numpy as np
 
-from controller.estimate import force_ratio
 from controller.record import RunRecord
+from controller.signals.estimate import force_ratio
 from optimiser.advice import Advice, EvaluatedSetting
-from optimiser.cut import Cut, CutKind
-from optimiser.region import region_of
-from optimiser.roughness import roughness_forecast, roughness_load
-from service.control.planned import PlannedWorkingstep
+from optimiser.bounds.roughness import roughness_forecast, roughness_load
+from optimiser.cuts.cut import Cut, CutKind
+from optimiser.cuts.region import region_of
+from service.control.expected_results import PlannedWorkingstep
 from service.control.run import ControlRun
-from service.records import immersion
+from service.programs.advice_records import immersion
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.optimisation import FaceMillingImmersion
 from stepnc_model.errors import SchemaError
 from stepnc_model.outcome import Context, EvaluatedQuantity, FeatureFacts, ProcessOutcome
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.programs.program import Program, ResolvedWorkingstep
 
 INSPECTION = 0.05
 """Standard deviation of an inspected roughness, as a share; typical of a stylus instrument."""

@@ -6,23 +6,22 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from controller.cycle import LoopCycle
-from controller.equivalent import equivalent
 from controller.errors import MachineLost
-from controller.estimate import RatioEstimate
 from controller.guard import OverrideBand
 from controller.laws.choice import LawName, law_named
 from controller.loop import Loop
-from controller.loop_settings import LoopSettings
 from controller.orders import Criterion, EventKind, LoopEvent
 from controller.record import Recorder, RunRecord
-from controller.source import DrivePower, Dynamometer, Source
+from controller.signals.estimate import RatioEstimate
+from controller.signals.source import DrivePower, Dynamometer, Source
+from controller.states.equivalent_force import equivalent
+from controller.states.loop_settings import LoopSettings
 from optimiser.advice import Advice, Plan
 from optimiser.modes import Mode
-from service.buckets import BucketedRun
 from service.control.disturbances import TimedOrder, disturbances
+from service.control.expected_results import PlannedWorkingstep, planned_steps, with_hardest
 from service.control.holding import HoldTallies, HoldTally
 from service.control.loads import CutKey, Loads, key_of, read_loads
-from service.control.planned import PlannedWorkingstep, planned_steps, with_hardest
 from service.control.setup import (
     advices_in_order,
     hardness_against,
@@ -33,22 +32,23 @@ from service.control.setup import (
     steps_of,
 )
 from service.control.trace import COLUMNS, ControlTrace
-from service.paths.remarks import tell_remarks
+from service.live.runner import Moment
+from service.outputs.run_file import RunFile
+from service.plots.buckets import BucketedRun
+from service.programs.remarks import tell_remarks
 from service.progress import Tell, Ticker, bar, silent
 from service.requests.fields import require_bounds
 from service.requests.runs import ControlRequest, SensorChoice, SimulationRequest
-from service.run_file import RunFile
-from service.session.runner import Moment
 from service.simulation.drive import LoopMachine
 from service.simulation.run import RunFiles, waiting_machine
 from simulator.errors import MachineSilent
-from simulator.plant.controlled import ControlledMachine, Instrumentation, TrueState
-from simulator.plant.recorded import RecordedMachine, RecordedSignals
+from simulator.plant.controlled_machine import ControlledMachine, Instrumentation, TrueState
+from simulator.plant.recorded_machine import RecordedMachine, RecordedSignals
 from simulator.reading import Reading
 from simulator.spec import Machine, MaterialMatch
-from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, StepNcError
-from stepnc_model.program import Program
+from stepnc_model.plurals import counted
+from stepnc_model.programs.program import Program
 
 CHIP_FORCES = {
     SensorChoice.DYNAMOMETER: 10.0,
@@ -278,7 +278,7 @@ class VirtualSensor:
         self._machine = machine
 
     def read(self) -> Reading | None:
-        """Return the next reading (:class:`controller.ports.Sensor`)."""
+        """Return the next reading (:class:`controller.signals.ports.Sensor`)."""
         try:
             return self._machine.read()
         except MachineSilent as silent_:

@@ -6,34 +6,34 @@ from dataclasses import replace
 
 import numpy as np
 
-from controller.loop_settings import LoopStep
-from controller.preview import Preview
 from controller.reference import Reference, reference_of
+from controller.signals.preview import Preview
+from controller.states.loop_settings import LoopStep
 from optimiser.advice import Advice, Plan
-from optimiser.cut import CutKind
-from optimiser.formulate import OptimisationTask
+from optimiser.cuts.cut import CutKind
+from optimiser.cuts.source import from_features
 from optimiser.modes import Mode
 from optimiser.optimise import optimise_program
+from optimiser.planning.formulate import OptimisationTask
 from optimiser.safety import LEAST_QUANTILE
-from optimiser.source import from_features
-from service.chosen import library_material
+from service.control.expected_results import PlannedWorkingstep
 from service.control.loads import ReferenceLoad
-from service.control.planned import PlannedWorkingstep
-from service.knowledge.corrected import factors_for
+from service.knowledge.plan_corrections import factors_for
+from service.programs.machine_choice import library_material
 from service.progress import Tell, Ticker, bar
-from service.simulation.gathering import require_sense
 from service.simulation.run import place_in
+from service.simulation.run_collector import require_sense
 from service.simulation.setup import PreparedRun
 from simulator.errors import ProgramFault, SimulationError
 from simulator.machine.interpreter import interpret
 from simulator.machine.samples import Episode
 from simulator.machine.virtual import VirtualMachine
 from simulator.plant.course import NominalCourse, course_of
-from simulator.plant.hidden import HiddenQuantity, HiddenTruth
+from simulator.plant.hidden_behaviour import HiddenQuantity, HiddenTruth
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import StepNcError
-from stepnc_model.program import Program
-from stepnc_model.technology import ProgrammedQuantity, programmed
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.technology import ProgrammedQuantity, programmed
 from stepnc_model.units import mm_min_from_speed
 
 MOST_SECONDS = 86_400.0

@@ -15,11 +15,11 @@ import numpy as np
 
 from controller.cycle import LoopCycle
 from controller.orders import LoopEvent
-from service.buckets import BucketedRun, Buckets
 from service.control.holding import HoldTallies
-from service.run_file import ColumnKind, RunColumn, RunFile, Values, words_of
-from service.session.runner import Moment
-from simulator.plant.controlled import TrueState
+from service.live.runner import Moment
+from service.outputs.run_file import ColumnKind, RunColumn, RunFile, Values, words_of
+from service.plots.buckets import BucketedRun, Buckets
+from simulator.plant.controlled_machine import TrueState
 from simulator.plant.course import NominalCourse
 
 ROWS = 8192

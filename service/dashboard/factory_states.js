@@ -1,6 +1,6 @@
 // States of machines: colours as in the report of a shop, and times of a shop in words.
 
-/** colour of each state, as in service/factory/figures.py; every colour stands beside its name */
+/** colour of each state, as in extras/factory/figures.py; every colour stands beside its name */
 export const COLOURS = {
   "machining": "#009E73",
   "batch set-up": "#0072B2",

@@ -6,7 +6,7 @@ const FIGURES = [
   ["time_s", "Time, s"], ["cutting_force_n", "Force, N"], ["thrust_n", "Thrust, N"],
   ["deflection_um", "Deflection, µm"], ["cutting_power_w", "Cutting, W"], ["drive_power_w", "Drive, W"],
 ];
-const PASSED = 1.01;  // ratio to the bound, as in service/confirmation.py
+const PASSED = 1.01;  // ratio to the bound, as in service/simulation/confirmation.py
 
 /** Show the comparison; hide it if it was not requested. */
 export function showConfirmation(confirmation) {

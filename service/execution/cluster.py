@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import urlsplit
 
 from service.execution.executors import Pools
-from service.extras import how_to_install
+from service.optional_packages import how_to_install
 from stepnc_model.errors import StepNcError
 
 if TYPE_CHECKING:

@@ -26,7 +26,7 @@ from time import monotonic
 from types import FrameType
 from typing import Any, TypeVar, cast
 
-from service.lifeline import end_with_parent, starting
+from service.processes.lifeline import end_with_parent, starting
 from stepnc_model.errors import StepNcError
 
 MOST_PROCESSES = 64

@@ -18,16 +18,16 @@ from typing import Any, TypeVar
 from kbe.errors import StoreFull
 from service.errors import StorageFull, Unavailable
 from service.extra_parts import declared
-from service.extras import missing_extras_named
 from service.jobs.task import RunningJob, clear
-from service.lifeline import end_with_parent
 from service.live.journal import has_room
-from service.problem import plain_problem, problem_of
-from service.process_limits import GIB, ProcessLimits, limit_process
+from service.optional_packages import missing_extras_named
+from service.processes.lifeline import end_with_parent
+from service.processes.process_limits import GIB, ProcessLimits, limit_process
 from service.storage import jobs
 from service.storage.folder import FolderAddress, known_data_folder
 from service.storage.jobs import Job, JobKind, JobState
 from service.storage.results import LARGE, UNFINISHED
+from service.web.problem import plain_problem, problem_of
 from stepnc_model.errors import StepNcError, WriteError
 
 T = TypeVar("T")

@@ -10,7 +10,7 @@ from service.verbs.call import verbs
 for name in WORK.values():
     resolve_name(name)
 for name in (
-    "service.paths.toolpaths",
+    "service.programs.toolpaths",
     "service.verbs.optimise.code",
     *(verbs()[stored.name].module("run") for stored in STORED.values()),
 ):

@@ -28,7 +28,6 @@ from typing import IO, Any
 
 import structlog
 
-from service import log_lines
 from service.errors import Conflict, Unavailable
 from service.files import write_atomically
 from service.ids import new_id
@@ -36,12 +35,13 @@ from service.jobs import child
 from service.jobs.task import clear
 from service.knowledge.verbs import require_usable
 from service.live.journal import storing
-from service.problem import plain_problem
-from service.process_limits import GIB, ProcessLimits
+from service.processes import log_lines
+from service.processes.process_limits import GIB, ProcessLimits
 from service.storage import jobs
 from service.storage.folder import DataFolder, FolderAddress, known_data_folder
 from service.storage.jobs import Job, JobState
 from service.storage.results import UNFINISHED
+from service.web.problem import plain_problem
 from stepnc_model.units import hours_from_seconds
 
 LOOK = 0.05

@@ -8,8 +8,8 @@ from service.control.live import LiveControl
 from service.control.record import keep
 from service.control.run import prepare
 from service.jobs.task import RunningJob, samples_place
+from service.live.runner import LiveRunner
 from service.requests.runs import ControlRequest
-from service.session.runner import LiveRunner
 from service.simulation.run import RunFiles
 from service.storage.results import REPORT
 from service.trial.request import TrialRequest

@@ -11,12 +11,12 @@ from typing import Any, TypeVar
 import orjson
 
 from service.errors import NotFound, Unavailable
-from service.extras import has_package
 from service.files import with_names, write_atomically
 from service.live.journal import LiveFolder
+from service.optional_packages import has_package
 from service.progress import share_in
 from service.requests.fields import R, loaded
-from service.requests.given import ProgramRequest, StockFile
+from service.requests.program_facts import ProgramRequest, StockFile
 from service.storage import files, jobs
 from service.storage.files import FileKind
 from service.storage.folder import DataFolder

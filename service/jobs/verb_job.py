@@ -11,10 +11,10 @@ from typing import Protocol, runtime_checkable
 
 from service.errors import NotFound
 from service.extra_parts import declared
-from service.extras import has_package
 from service.files import naming
 from service.jobs.stored_verb import StoredVerb
 from service.jobs.task import RunningJob
+from service.optional_packages import has_package
 from service.recording.logged_run import AgentRun, keep_run
 from service.requests.fields import Request
 from service.requests.knowledge import EvaluationRequest, ReviewRequest

@@ -2,7 +2,7 @@
 
 A place is an SQLite file or the address of a PostgreSQL database, see
 :mod:`service.knowledge.place`. Each function opens it, performs one operation, and closes it.
-The evaluation table is computed in :mod:`service.knowledge.evaluated`, proposals in
+The evaluation table is computed in :mod:`service.knowledge.evaluation_table`, proposals in
 :mod:`service.knowledge.review`.
 """
 
@@ -21,9 +21,9 @@ from kbe.factor import SAFE, factor_at
 from kbe.queries import EVERYTHING, Selection, StoredCorrection
 from kbe.store import Store, open_store, open_to_read
 from service.knowledge.place import is_usual, make_folder
-from stepnc_model.counted import counted
 from stepnc_model.errors import StepNcError
 from stepnc_model.outcome import Context, LearnedCorrection, ProcessOutcome
+from stepnc_model.plurals import counted
 
 CENTURY = timedelta(days=36_525)
 

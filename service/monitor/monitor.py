@@ -17,7 +17,7 @@ import structlog
 
 from service.live.series import TIME, Series
 from service.monitor.freshness import ArrivalTimes, Freshness
-from service.monitor.observed import AT_REST, ObservedMoment, ObservedRun, RunTracker
+from service.monitor.observed_run import AT_REST, ObservedMoment, ObservedRun, RunTracker
 from service.monitor.ring import RowRing
 from service.monitor.signals import READ, SIGNALS, signals_of
 from service.monitor.source import MonitorSource

@@ -17,11 +17,11 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pyarrow as pa
 
+from service.outputs.run_file import RunFile
 from service.progress import Tell, silent
+from service.recording.request import RecordingRequest
 from service.recording.run import file_columns, file_values, record
 from service.recording.table import POSITIONS, TABLES, batches, headings
-from service.requests.recording import RecordingRequest
-from service.run_file import RunFile
 from simulator.client.columns import (
     EXECUTION,
     RUNNING,
@@ -34,8 +34,8 @@ from simulator.client.columns import (
 from simulator.client.connection import AgentClient, ClientObservation
 from simulator.errors import AgentError
 from simulator.motion.segments import Floats
-from stepnc_model.counted import counted
 from stepnc_model.errors import StepNcError
+from stepnc_model.plurals import counted
 
 TOOL, WORKINGSTEP = "tool_number", "workingstep"
 DOCUMENTS = frozenset({".xml"})

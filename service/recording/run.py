@@ -18,10 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from service.progress import Tell, silent
-from service.requests.fields import require_bounds
-from service.requests.recording import RecordingRequest
-from service.run_file import (
+from service.outputs.run_file import (
     ColumnKind,
     CsvRows,
     RunColumn,
@@ -30,6 +27,9 @@ from service.run_file import (
     require_suffix,
     words_of,
 )
+from service.progress import Tell, silent
+from service.recording.request import RecordingRequest
+from service.requests.fields import require_bounds
 from simulator.client.columns import (
     EXECUTION,
     RUNNING,
@@ -41,8 +41,8 @@ from simulator.client.columns import (
 )
 from simulator.client.connection import AgentClient, ClientObservation, StreamPart
 from simulator.errors import AgentError
-from stepnc_model.counted import counted
 from stepnc_model.errors import StepNcError, WriteError
+from stepnc_model.plurals import counted
 
 if TYPE_CHECKING:
     from io import BufferedWriter

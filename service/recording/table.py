@@ -15,10 +15,10 @@ import pyarrow as pa
 from pyarrow import csv as arrow_csv
 
 from service.files import require_regular
-from service.parquet_pieces import parquet_file, parquet_pieces
+from service.outputs.parquet_pieces import parquet_file, parquet_pieces
 from simulator.client.columns import EXECUTION, RUNNING, TIME
 from simulator.motion.segments import Floats
-from simulator.plant.recorded import RecordedSignals
+from simulator.plant.recorded_machine import RecordedSignals
 from stepnc_model.errors import StepNcError
 
 TABLES = frozenset({".parquet", ".csv"})

@@ -17,7 +17,7 @@ from itertools import groupby
 from math import isfinite
 from typing import Any, Generic, TypeVar, cast
 
-from service.flat_file import FileColumn, Row, Value
+from service.outputs.flat_file import FileColumn, Row, Value
 from stepnc_model.errors import Finding
 
 R = TypeVar("R")

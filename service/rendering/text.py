@@ -14,8 +14,8 @@ from typing import Any
 
 from service.rendering.columns import Column, R, visible
 from service.terminal import clean
-from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, Severity
+from stepnc_model.plurals import counted
 
 GAP = "  "
 

@@ -6,15 +6,14 @@ from typing import Annotated
 
 from annotated_types import Interval, Len, MaxLen
 
-from optimiser.greatest_rise import USUAL_RISE
+from optimiser.bounds.roughness import GREATEST_SHARE, LEAST_SHARE
 from optimiser.modes import Free, Mode
-from optimiser.roughness import GREATEST_SHARE, LEAST_SHARE
-from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE
+from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE, USUAL_RISE
 from service.requests.fields import About
 from service.requests.files import KeepsState
-from service.requests.given import Name, ProgramRequest
+from service.requests.program_facts import Name, ProgramRequest
 from simulator.motion.model_name import ControlModelName
-from stepnc_model.file_profile import FileProfile, RecordChoice
+from stepnc_model.editing.file_profile import FileProfile, RecordChoice
 from stepnc_model.post.dialect import Dialect
 
 MachineName = Annotated[

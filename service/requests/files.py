@@ -6,7 +6,7 @@ from typing import Annotated
 from annotated_types import Interval, MaxLen
 
 from service.requests.fields import About, FileUse
-from service.requests.given import Name
+from service.requests.program_facts import Name
 from simulator.tool_files.file_unit import FileUnit
 from stepnc_model.post.dialect import Dialect
 

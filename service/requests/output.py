@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from service.output_format import OutputFormat, format_of
+from service.outputs.output_format import OutputFormat, format_of
 from service.requests.fields import About, FileUse, Request
 from stepnc_model.errors import StepNcError
 

@@ -8,12 +8,12 @@ from annotated_types import Interval, MaxLen
 
 from controller.laws.choice import LawName
 from controller.orders import Criterion
-from controller.preview import LOOK_AHEAD
+from controller.signals.preview import LOOK_AHEAD
 from service.ids import PATTERN
 from service.live.playback import LEAST, MOST, checked_pace
 from service.requests.advice import MachineName, MaterialName
 from service.requests.fields import LONGEST_NAME, About, Request
-from service.requests.given import Name, ProgramRequest
+from service.requests.program_facts import Name, ProgramRequest
 from simulator.machine.noise_kind import NoiseKind
 from simulator.motion.model_name import ControlModelName
 
@@ -299,3 +299,14 @@ class ControlChanges(Request):
         Interval(ge=LEAST, le=MOST),
         About("simulated seconds per wall-clock second"),
     ] = None
+
+
+StockId = Annotated[
+    OptionalId,
+    About("an uploaded raw part (`kind=stock`), an STL or STEP file, in place of stock"),
+]
+StockSolid = Annotated[
+    str,
+    MaxLen(LONGEST_NAME),
+    About("the solid of a raw part with several, by its place in the file or its name"),
+]

@@ -5,8 +5,7 @@ from typing import Annotated
 
 from service.requests.advice import AdviceRequest
 from service.requests.fields import About
-from service.requests.runs import OptionalId
-from service.requests.stored_stock import StockId, StockSolid
+from service.requests.runs import OptionalId, StockId, StockSolid
 from simulator.tool_files.file_unit import FileUnit
 
 

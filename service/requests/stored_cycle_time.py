@@ -5,7 +5,7 @@ from typing import Annotated
 
 from service.requests.advice import MachineName
 from service.requests.fields import About
-from service.requests.given import ProgramRequest
+from service.requests.program_facts import ProgramRequest
 from service.requests.runs import MonitorName, OptionalId
 from simulator.motion.model_name import ControlModelName
 

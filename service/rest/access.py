@@ -17,17 +17,17 @@ from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.errors import Forbidden, TooLarge, Unauthorised, Unreadable
-from service.known_hosts import known_hosts
-from service.problem import plain_problem, problem_of, retry_after
-from service.rest.asking import answered
 from service.rest.logs import RequestLog
 from service.rest.metrics import count
 from service.rest.rate import RateLimit, SharedRateLimit
 from service.rest.rights import LOOKING, is_protected, require, role_for
 from service.rest.settings import Settings
+from service.rest.storage_queries import answered
 from service.storage import keys
 from service.storage.folder import DataFolder
 from service.storage.keys import Key, Role
+from service.web.known_hosts import known_hosts
+from service.web.problem import plain_problem, problem_of, retry_after
 from stepnc_model.errors import StepNcError
 
 LOG = structlog.get_logger("rest")

@@ -23,9 +23,8 @@ from starlette.types import Scope
 from service.errors import Conflict, NotFound
 from service.jobs.task import optimised_name
 from service.requests.fields import loaded
-from service.requests.given import GIVEN
+from service.requests.program_facts import GIVEN
 from service.rest.advice_views import AdviceView, AdvisedView, CodeAdviceView, CurvesView
-from service.rest.asking import answered, result_file
 from service.rest.bodies import Id
 from service.rest.checks import in_turn
 from service.rest.context import InDataFolder, data_folder_of
@@ -37,6 +36,7 @@ from service.rest.replies import (
     tag_of,
     tagged,
 )
+from service.rest.storage_queries import answered, result_file
 from service.storage import jobs, programs
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobKind, JobState

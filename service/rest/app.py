@@ -12,12 +12,11 @@ from fastapi.openapi.utils import get_openapi
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
-from service import log_lines
 from service.extra_parts import declared
 from service.knowledge.verbs import require_usable
-from service.lifeline import end_with_parent
 from service.monitor.monitor import MonitorSet
-from service.problem import plain_problem, problem_of, retry_after
+from service.processes import log_lines
+from service.processes.lifeline import end_with_parent
 from service.rest import (
     advice,
     comparisons,
@@ -42,6 +41,7 @@ from service.rest.settings import Settings, handed_on
 from service.rest.streams import StreamHub
 from service.storage.folder import DataFolder, known_data_folder, open_data_folder
 from service.storage.library import LibrarySection
+from service.web.problem import plain_problem, problem_of, retry_after
 from stepnc_model.errors import StepNcError
 
 LOG = structlog.get_logger("app")

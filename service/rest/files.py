@@ -8,7 +8,6 @@ from starlette.concurrency import run_in_threadpool
 
 from service.errors import Unreadable
 from service.files import naming
-from service.rest.asking import answered
 from service.rest.bodies import Id
 from service.rest.checks import in_turn
 from service.rest.context import (
@@ -22,11 +21,12 @@ from service.rest.context import (
     settings_of,
 )
 from service.rest.replies import file_reply, json_reply, moment
+from service.rest.storage_queries import answered
+from service.rest.upload_content import require_content
 from service.rest.uploads import pieces
 from service.rest.views import PageView, View
 from service.storage import files
 from service.storage.files import FileKind, FileUpload, StoredFile
-from service.verification.inputs import require_content
 
 ROUTES = APIRouter(prefix="/v1/files", tags=["verifications"])
 

@@ -10,11 +10,11 @@ from starlette.concurrency import run_in_threadpool
 from service.errors import ServiceError
 from service.jobs.runner import is_alive
 from service.live.journal import has_room
-from service.rest.asking import answered
 from service.rest.context import data_folder_of, owner_of, settings_of
 from service.rest.metrics import JOBS, TYPE, exposition
 from service.rest.programs import samples
 from service.rest.replies import json_reply
+from service.rest.storage_queries import answered
 from service.storage import jobs
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobState

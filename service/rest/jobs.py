@@ -5,12 +5,12 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from service.rest.asking import answered
 from service.rest.bodies import Id
 from service.rest.context import InDataFolder, OnPage, key_of
 from service.rest.replies import json_reply
 from service.rest.results import EVENTS, jobs_reply, stream_reply
 from service.rest.rights import require, role_to_end
+from service.rest.storage_queries import answered
 from service.rest.views import JobView, PageView, job_view
 from service.storage import jobs
 from service.storage.jobs import JobKind, JobState

@@ -11,11 +11,11 @@ from service.errors import Conflict
 from service.live.journal import append
 from service.requests.fields import dumped
 from service.requests.runs import ControlChanges
-from service.rest.asking import answered
 from service.rest.bodies import Id, TrialChanges
 from service.rest.context import InDataFolder
 from service.rest.replies import json_reply
 from service.rest.results import live_folder
+from service.rest.storage_queries import answered
 from service.storage import jobs
 from service.storage.folder import DataFolder
 from service.storage.jobs import Job, JobKind, JobState

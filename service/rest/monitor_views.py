@@ -4,7 +4,7 @@ from math import isnan
 from typing import Any
 
 from service.monitor.monitor import MonitorStatus
-from service.monitor.observed import Comparison, ObservedRun, StepComparison
+from service.monitor.observed_run import Comparison, ObservedRun, StepComparison
 from service.rest.replies import moment
 
 

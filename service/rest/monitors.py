@@ -10,7 +10,7 @@ from starlette.concurrency import run_in_threadpool
 from service.errors import NotFound
 from service.ids import PATTERN
 from service.monitor.monitor import MachineMonitor
-from service.monitor.observed import compared, predicted_steps
+from service.monitor.observed_run import compared, predicted_steps
 from service.rest.context import InDataFolder, hub_of, monitors_of
 from service.rest.monitor_stream import MonitorReader
 from service.rest.monitor_views import comparison_view, monitor_view, status_view

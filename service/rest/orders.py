@@ -15,19 +15,19 @@ from fastapi import Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from kbe.rows import utc
-from optimiser.source import why_elsewhere
+from optimiser.cuts.source import why_elsewhere
 from service.errors import NotFound, Unreadable
 from service.files import read_bytes
+from service.inputs.numbers import tool_numbers_in
+from service.inputs.program_kind import ProgramKind
 from service.monitor.monitor import MonitorSet
-from service.numbers import tool_numbers_in
-from service.program_kind import ProgramKind
-from service.reading import read_completed, selected
+from service.programs.reading import read_completed, selected
 from service.recording.logged_run import DOCUMENTS
 from service.recording.table import TABLES
 from service.requests.fields import loaded
-from service.requests.given import GIVEN, ProgramRequest, StockFile
+from service.requests.kind_options import OF_PATHS, changed_values, require_options_served
 from service.requests.knowledge import SelectionRequest
-from service.requests.serves import OF_PATHS, changed_values, require_options_served
+from service.requests.program_facts import GIVEN, ProgramRequest, StockFile
 from service.requests.stored_advice import StoredAdviceRequest
 from service.rest.checks import reading_in_turn
 from service.rest.context import data_folder_of, idempotency_of, key_of

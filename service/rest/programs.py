@@ -7,18 +7,17 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from service.code_check import checked_code
 from service.errors import Unreadable
 from service.files import read_bytes
-from service.program_kind import ProgramKind, kind_of
+from service.inputs.program_kind import ProgramKind, kind_of
 from service.rendering.columns import dump
 from service.requests.fields import dumped
-from service.requests.given import ISO, Name, Units
+from service.requests.program_facts import ISO, Name, Units
 from service.requests.stored_advice import StoredAdviceRequest
 from service.rest.advice_views import CodeContentsView
-from service.rest.asking import answered
 from service.rest.bodies import Id
 from service.rest.checks import CheckCache, in_turn
+from service.rest.code_check import checked_code
 from service.rest.context import (
     ByOwner,
     IdempotencyHeader,
@@ -31,6 +30,7 @@ from service.rest.context import (
 from service.rest.orders import advisable, queued
 from service.rest.replies import file_reply, json_reply, matches, tagged
 from service.rest.results import jobs_reply
+from service.rest.storage_queries import answered
 from service.rest.uploads import pieces
 from service.rest.views import (
     ContentsView,

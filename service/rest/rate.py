@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from math import inf
 
 from service.errors import TooMany, Unavailable
-from service.rest.asking import ASKING
+from service.rest.storage_queries import ASKING
 from service.storage import rates
 from service.storage.connection import Database
 

@@ -14,7 +14,6 @@ from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from service.requests import fields
-from service.rest.asking import answered
 from service.rest.bodies import Id, RequestBody
 from service.rest.context import ByOwner, IdempotencyHeader, InDataFolder, OnPage, monitors_of
 from service.rest.orders import Require, agent_url, nothing, order, queued
@@ -35,6 +34,7 @@ from service.rest.results import (
     status_reply,
     stream_reply,
 )
+from service.rest.storage_queries import answered
 from service.rest.views import PLACES, JobView, PageView, SeriesView, View, job_view
 from service.storage import jobs
 from service.storage.jobs import JobKind

@@ -15,9 +15,9 @@ from starlette.concurrency import run_in_threadpool
 from service.errors import Conflict, NotFound, Unreadable
 from service.live.journal import LiveFolder, read_on
 from service.live.series import TIME, Series, Window, open_series, window
-from service.rest.asking import answered
 from service.rest.context import data_folder_of, hub_of, page_reply
 from service.rest.replies import json_reply, tag_of, tagged
+from service.rest.storage_queries import answered
 from service.rest.views import job_view
 from service.storage import jobs
 from service.storage.folder import DataFolder

@@ -13,13 +13,12 @@ import structlog
 from uvicorn.config import STARTUP_FAILURE
 from uvicorn.supervisors import Multiprocess
 
-from service import log_lines
 from service.errors import Forbidden
-from service.extras import has_package, how_to_install
-from service.http_protocol import BoundedHttpProtocol
 from service.jobs import runner
-from service.lifeline import starting
 from service.monitor.source import MonitorSource
+from service.optional_packages import has_package, how_to_install
+from service.processes import log_lines
+from service.processes.lifeline import starting
 from service.rest.metrics import SHARED
 from service.rest.settings import Settings
 from service.rest.web_config import WebConfig
@@ -31,7 +30,7 @@ from service.storage.folder import (
     open_data_folder,
     require_shared_files,
 )
-from service.web_server import WebServer
+from service.web.http_protocol import BoundedHttpProtocol, WebServer
 from stepnc_model.errors import StepNcError
 
 LOG = structlog.get_logger("serve")

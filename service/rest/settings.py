@@ -6,9 +6,9 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 from service.errors import Unavailable
-from service.known_hosts import LOOPBACK
 from service.monitor.source import MonitorSource
 from service.storage.folder import FolderAddress
+from service.web.known_hosts import LOOPBACK
 
 VARIABLE = "STEPNC_SERVE"
 """Environment variable that passes the settings from process to process."""

@@ -8,11 +8,11 @@ from fastapi import APIRouter, Query, Request, Response
 from service.errors import Conflict
 from service.live.path import shown_path
 from service.live.series import open_series
-from service.rest.asking import answered
 from service.rest.bodies import Id
 from service.rest.context import InDataFolder
 from service.rest.replies import json_reply
 from service.rest.results import live_folder, read_in_turn
+from service.rest.storage_queries import answered
 from service.rest.views import PathView
 from service.storage import jobs
 from service.storage.folder import DataFolder

@@ -19,8 +19,8 @@ import structlog
 from service.errors import NotFound, ServiceError, TooMany
 from service.live.journal import LiveFolder, read_on
 from service.live.series import open_series
-from service.rest.asking import answered
 from service.rest.metrics import STREAMS
+from service.rest.storage_queries import answered
 from service.rest.views import job_view
 from service.storage import jobs
 from service.storage.folder import DataFolder

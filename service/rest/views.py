@@ -4,10 +4,10 @@ from typing import Any, Generic, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from service.inputs.program_kind import ProgramKind
 from service.monitor.freshness import Freshness
 from service.monitor.monitor import ConnectionState
-from service.monitor.observed import StepState
-from service.program_kind import ProgramKind
+from service.monitor.observed_run import StepState
 from service.rest.replies import moment
 from service.storage.jobs import Job, JobKind, JobState
 from service.storage.programs import StoredProgram

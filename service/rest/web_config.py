@@ -4,7 +4,7 @@ import signal
 
 import uvicorn
 
-from service import log_lines
+from service.processes import log_lines
 from service.rest.settings import handed_on
 
 

@@ -13,8 +13,8 @@ from re import IGNORECASE, compile
 
 import numpy as np
 
-from service.raw_stock import GivenStock, larger_stock_map, raw_stock_of, stock_map
-from service.requests.given import RawPart
+from service.programs.raw_stock import GivenStock, larger_stock_map, raw_stock_of, stock_map
+from service.requests.program_facts import RawPart
 from service.simulation.detour import Detour
 from service.simulation.line_spans import spans
 from service.simulation.setup import CountedIterator, PreparedRun
@@ -24,9 +24,9 @@ from simulator.machine.virtual import LoadedTool, StockMap
 from simulator.motion.segments import Bools, Floats, Ints
 from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.engage import MillingStock
-from simulator.removal.kept_marches import KeptMarches
+from simulator.removal.march_cache import KeptMarches
 from simulator.spec import Machine, MachineKind, MaterialMatch
-from simulator.tool_table import TableTool
+from simulator.tools.tool_table import TableTool
 from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.nc.compensation import tool_moves
 from stepnc_model.nc.fed_blocks import DEFINED_CYCLES, cycle_feed_blocks

@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from service.files import read_bytes
-from service.reading import one_of
+from service.programs.reading import one_of
 from service.simulation.code_setup import GivenSetup, code_setup
-from service.simulation.of_code import CodeRequest
+from service.simulation.code_simulation import CodeRequest
 from service.simulation.setup_file import setup_of
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.nc.program import read_program

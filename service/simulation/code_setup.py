@@ -12,9 +12,9 @@ from shlex import quote
 
 import numpy as np
 
-from service.chosen import DEFAULT_LATHE, DEFAULT_MILL
-from service.requests.given import RawPart, StockFile
-from service.simulation.of_code import with_called_tools
+from service.programs.machine_choice import DEFAULT_LATHE, DEFAULT_MILL
+from service.requests.program_facts import RawPart, StockFile
+from service.simulation.code_simulation import with_called_tools
 from service.simulation.placement import (
     frame_of_stock,
     in_guessed_stock,
@@ -23,20 +23,20 @@ from service.simulation.placement import (
 )
 from service.simulation.setup_file import SetupFile
 from simulator.errors import LibraryError
-from simulator.plausible_tools import ToolGuess, ToolUse, plausible_tools
 from simulator.removal.cutter import ENDS, Cutter
 from simulator.spec import WorkMaterial
 from simulator.tool_files.code_tools import CodeTools, against_table, tools_of_code
 from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.read import ToolLibrary, read_tools
-from simulator.tool_table import TableTool, ToolRow
+from simulator.tools.plausible_tools import ToolGuess, ToolUse, plausible_tools
+from simulator.tools.tool_table import TableTool, ToolRow
 from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.nc.cut_extents import CutExtents, cut_extents
 from stepnc_model.nc.moves import MoveFlag, MoveKind
 from stepnc_model.nc.program import NcProgram
 from stepnc_model.nc.stated_stock import stated_stock
 from stepnc_model.post.blocks import MachineType
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 BOX, BAR = "X0,Y0,Z0,X1,Y1,Z1", "DIAMETER,Z0,Z1"
 

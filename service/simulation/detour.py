@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 
 from simulator.machine.interpreter import Numbered
 from stepnc_model.post.blocks import Circular, Linear, Rapid, ThreadingMove, ToolChange
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 from stepnc_model.toolpath.path import Point
 
 BRIDGE = 0

@@ -4,9 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from simulator.plant.controlled import TrueState
+from simulator.plant.controlled_machine import TrueState
 from simulator.plant.course import NominalCourse
-from simulator.plant.hidden import HiddenChange, HiddenTruth
+from simulator.plant.hidden_behaviour import HiddenChange, HiddenTruth
 from simulator.reading import Reading
 from simulator.spec import Machine
 

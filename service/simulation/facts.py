@@ -11,7 +11,7 @@ References
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from service.overload_bounds import overload_bounds
+from service.simulation.line_spans import overload_bounds
 from service.simulation.run import Simulation
 from simulator.machine.totals import Total
 from stepnc_model.errors import StepNcError

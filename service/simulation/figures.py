@@ -9,8 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 import plotly.graph_objects as go
 
-from service.buckets import BucketedRun
-from service.panels import (
+from service.plots.buckets import BucketedRun
+from service.plots.panels import (
     BLUE,
     DIM,
     GREEN,
@@ -25,7 +25,7 @@ from service.panels import (
     line,
 )
 from service.simulation.facts import SimulationRow
-from service.simulation.gathering import SimulationSignal
+from service.simulation.run_collector import SimulationSignal
 from stepnc_model.units import SECONDS_PER_MINUTE, WATTS_PER_KILOWATT
 
 AXES = (

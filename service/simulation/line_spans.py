@@ -3,7 +3,8 @@
 import numpy as np
 
 from simulator.motion.segments import Ints
-from stepnc_model.counted import counted
+from simulator.spec import Machine
+from stepnc_model.plurals import counted
 
 MOST_SPANS = 6
 """Greatest number of ranges of lines that a message lists."""
@@ -24,3 +25,9 @@ def spans(lines: Ints) -> str:
     )
     word = "line" if len(lines) == 1 else "lines"
     return f"{word} {', '.join(spans[:MOST_SPANS])}{more}"
+
+
+def overload_bounds(machine: Machine) -> str:
+    """Bounds of a machine whose excess counts as overload, in words."""
+    force, drive = machine.max_cutting_force, "the spindle drive's continuous power"
+    return drive if force is None else f"{drive} or the permitted force of {force:.0f} N"

@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from service.numbers import stock_in
-from service.requests.given import RawPart
-from service.simulation.of_code import with_called_tools
+from service.inputs.numbers import stock_in
+from service.requests.program_facts import RawPart
+from service.simulation.code_simulation import with_called_tools
 from simulator.motion.segments import Bools, Floats
 from simulator.removal.cutter import Cutter
 from simulator.tool_files.read import ToolLibrary

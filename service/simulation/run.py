@@ -9,20 +9,25 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from service.buckets import BucketedRun
-from service.chosen import require_axes
 from service.files import require_places, write_atomically
-from service.numbers import numbers_in
-from service.paths.remarks import tell_remarks
+from service.inputs.numbers import numbers_in
+from service.outputs.run_file import require_suffix
+from service.plots.buckets import BucketedRun
+from service.programs.machine_choice import require_axes
+from service.programs.raw_stock import file_of_stock
+from service.programs.remarks import tell_remarks
 from service.progress import Tell, Ticker, bar, silent
-from service.raw_stock import file_of_stock
 from service.requests.fields import require_bounds
-from service.requests.given import KEPT_SUFFIX, RawPart
+from service.requests.program_facts import KEPT_SUFFIX, RawPart
 from service.requests.runs import ForceView, SimulationRequest
-from service.run_file import require_suffix
-from service.simulation.gathering import RunCollector, SampleWatcher, TimelineFile, TraceKeeper
-from service.simulation.of_code import CodeRequest, from_code
+from service.simulation.code_simulation import CodeRequest, from_code
 from service.simulation.placement import in_guessed_stock
+from service.simulation.run_collector import (
+    RunCollector,
+    SampleWatcher,
+    TimelineFile,
+    TraceKeeper,
+)
 from service.simulation.setup import PreparedRun, from_program, prepared_program
 from simulator.errors import SimulationError
 from simulator.machine.deviation import SeededDeviation
@@ -42,9 +47,9 @@ from simulator.removal.lathe import TurningStock
 from simulator.removal.stock_file import stock_bytes
 from simulator.spec import Machine, MaterialMatch
 from simulator.tool_files.read import ToolLibrary
-from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError, WriteError
-from stepnc_model.program import Program
+from stepnc_model.plurals import counted
+from stepnc_model.programs.program import Program
 from stepnc_model.units import mm_from_um
 
 if TYPE_CHECKING:

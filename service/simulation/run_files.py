@@ -4,13 +4,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Generic, TypeVar
 
-from service.numbers import program_numbers_in
-from service.program_kind import ProgramKind, kind_of_file
-from service.reading import tool_library
+from service.inputs.numbers import program_numbers_in
+from service.inputs.program_kind import ProgramKind, kind_of_file
+from service.programs.reading import tool_library
 from service.requests.fields import About, FileUse, Request
 from service.requests.files import KeepsState, MostRepeats, Report, SetupOfCode, ToolsUnit
 from service.requests.runs import RunRequest
-from service.simulation.of_code import CodeRequest
+from service.simulation.code_simulation import CodeRequest
 from service.simulation.run import RunFiles
 from stepnc_model.errors import StepNcError
 

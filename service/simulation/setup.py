@@ -5,17 +5,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, TypeVar
 
-from service.chosen import machine_for, material_for
-from service.paths.toolpaths import paths_of, with_feeds
-from service.program_needs import needs_of
-from service.progress import Tell
-from service.raw_stock import (
+from service.programs.machine_choice import machine_for, material_for
+from service.programs.needs import needs_of
+from service.programs.raw_stock import (
     GivenStock,
     larger_stock_map,
     raw_triangles,
     stock_map,
 )
-from service.reading import read_completed
+from service.programs.reading import read_completed
+from service.programs.toolpaths import paths_of, with_feeds
+from service.progress import Tell
 from service.requests.runs import RunRequest
 from simulator.machine.interpreter import Numbered
 from simulator.machine.tooling import loaded_tool
@@ -27,9 +27,9 @@ from stepnc_model.entities.executables import Setup
 from stepnc_model.errors import Finding, SchemaError
 from stepnc_model.nc.program import NcProgram
 from stepnc_model.part21.values import Ref
-from stepnc_model.plausibility import refusal
 from stepnc_model.post.neutral import blocks_of, tool_numbers
-from stepnc_model.program import Program, ResolvedWorkingstep, Stock
+from stepnc_model.programs.plausibility import refusal
+from stepnc_model.programs.program import Program, ResolvedWorkingstep, Stock
 from stepnc_model.toolpath.task import stock_of
 
 T = TypeVar("T")

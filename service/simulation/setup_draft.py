@@ -4,15 +4,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 
-from service.requests.given import StockFile
+from service.requests.program_facts import StockFile
 from service.simulation.code_setup import CodeSetup, GivenSetup
 from service.simulation.placement import frame_of_stock
 from service.simulation.setup_file import Guessed
-from simulator.plausible_tools import ToolGuess
-from simulator.toml_file import changed_keys
+from simulator.files.toml_file import changed_keys
 from simulator.tool_files.file_unit import FileUnit
-from simulator.tool_table import ToolRow
-from simulator.usual_teeth import usual_teeth
+from simulator.tools.plausible_tools import ToolGuess
+from simulator.tools.tool_table import ToolRow
+from simulator.tools.usual_teeth import usual_teeth
 from stepnc_model.nc.program import NcProgram
 from stepnc_model.nc.remarks import NO_UNIT
 

@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
 
-from service.numbers import stock_in
-from service.requests.given import RawPart, StockFile
+from service.inputs.numbers import stock_in
+from service.requests.program_facts import RawPart, StockFile
 from simulator.errors import LibraryError
-from simulator.plausible_tools import ToolGuess
-from simulator.toml_file import FileTable, KeyFault, read_toml
+from simulator.files.toml_file import FileTable, KeyFault, read_toml
 from simulator.tool_files.file_unit import FileUnit
-from simulator.tool_table import TableTool, ToolRow, tool_of_row
+from simulator.tools.plausible_tools import ToolGuess
+from simulator.tools.tool_table import TableTool, ToolRow, tool_of_row
 from stepnc_model.errors import Finding, Severity, StepNcError
 
 SUFFIX = ".setup.toml"

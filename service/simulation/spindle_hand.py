@@ -12,7 +12,7 @@ import numpy as np
 from service.simulation.line_spans import spans
 from simulator.removal.cutter import ENDS
 from simulator.spec import ToolKind
-from simulator.tool_table import TableTool
+from simulator.tools.tool_table import TableTool
 from stepnc_model.entities.enums import HandOfToolType
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.nc.neutral_blocks import FED

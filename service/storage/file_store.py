@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from service.errors import Unavailable
-from service.extras import how_to_install
+from service.optional_packages import how_to_install
 from stepnc_model.errors import StepNcError
 
 FRESH = 1.0

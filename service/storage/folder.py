@@ -15,11 +15,11 @@ from pathlib import Path
 from stat import S_IMODE, S_ISLNK
 
 from service.errors import NotFound, Unavailable
-from service.extras import how_to_install
 from service.files import write_atomically
 from service.ids import is_id, new_id
 from service.knowledge.place import named_place
 from service.live.journal import storing
+from service.optional_packages import how_to_install
 from service.storage.connection import Database
 from service.storage.database import FileDatabase
 from service.storage.file_store import FileStore, is_store

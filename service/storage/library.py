@@ -3,6 +3,7 @@
 Names from clients are only looked up; they are never used as paths.
 """
 
+import fcntl
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -11,11 +12,10 @@ from enum import StrEnum
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from service.chosen import load_material_named
 from service.errors import Conflict, NotFound, PreconditionFailed, TooLarge, Unreadable
 from service.files import write_atomically
 from service.live.journal import storing
-from service.storage.file_lock import locked
+from service.programs.machine_choice import load_material_named
 from service.storage.folder import DataFolder
 from simulator.errors import LibraryError, UnknownMachine
 from simulator.library import (
@@ -26,6 +26,19 @@ from simulator.library import (
 )
 from simulator.spec import Machine, WorkMaterial
 from stepnc_model.errors import StepNcError
+
+LOCK = ".lock"
+"""Name of the lock file in the folder; it is never deleted."""
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Acquire the lock of a folder, waiting if necessary, and hold it."""
+    with (folder / LOCK).open("wb") as file:
+        # Freed when the file is closed, also when the process dies.
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
 
 NAME = "^[a-z0-9][a-z0-9_-]{0,63}$"
 """Regular expression of names of machines and materials of the shop."""

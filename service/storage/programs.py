@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from service.errors import Conflict, NotFound
 from service.files import write_atomically
 from service.ids import new_id
-from service.program_kind import ProgramKind
+from service.inputs.program_kind import ProgramKind
 from service.storage.connection import StoredRow
 from service.storage.folder import DataFolder
 from service.storage.idempotency import IdempotencyKey, made_before, remember

@@ -25,15 +25,16 @@ from typing import Any
 
 import numpy as np
 
-from controller.loop_settings import LoopStep
 from controller.orders import Criterion
-from controller.preview import Preview
 from controller.reference import ForceBound, Reference
-from optimiser.problem import LimitName
-from service.reading import one_of
+from controller.signals.preview import Preview
+from controller.states.loop_settings import LoopStep
+from optimiser.solver.problem import LimitName
+from service.programs.reading import one_of
 from simulator.library import find_grade, load_material, material_names
 from simulator.motion.segments import Floats
 from simulator.physics import flank, kinematics
+from simulator.physics.cutting import cutting_power, motor_power
 from simulator.physics.engagement import (
     Engagement,
     bilateral,
@@ -44,7 +45,6 @@ from simulator.physics.engagement import (
 )
 from simulator.physics.kinematics import spindle_speed
 from simulator.physics.milling import MillingCut, mean_force, mean_specific_force
-from simulator.physics.power import cutting_power, motor_power
 from simulator.plant.course import EngagedTeeth, NominalCourse, Singles, peak_over_mean
 from simulator.spec import CuttingMaterial, Kienzle, ToolKind
 from stepnc_model.errors import StepNcError

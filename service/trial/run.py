@@ -31,8 +31,6 @@ from controller.cycle import LoopCycle
 from controller.guard import OverrideBand
 from controller.laws.choice import LawName, law_named
 from controller.loop import Loop
-from controller.loop_settings import LoopSettings
-from controller.loop_state import STANDING
 from controller.orders import (
     Criterion,
     CriterionTo,
@@ -41,11 +39,13 @@ from controller.orders import (
     MotorPowerTo,
     SwitchTo,
 )
-from controller.source import Dynamometer
-from optimiser.problem import LimitName
+from controller.signals.source import Dynamometer
+from controller.states.loop_settings import LoopSettings
+from controller.states.loop_state import STANDING
+from optimiser.solver.problem import LimitName
 from service.control.holding import NO_CHIPS, HoldTallies, OverrideLimits, reason
 from service.control.trace import ControlTrace
-from service.session.runner import (
+from service.live.runner import (
     CM3_MIN,
     LiveRows,
     Moment,
@@ -67,9 +67,9 @@ from service.trial.inputs import (
     step_of,
     trial_cut,
 )
-from simulator.plant.controlled import ControlledMachine, Instrumentation, TrueState
+from simulator.plant.controlled_machine import ControlledMachine, Instrumentation, TrueState
 from simulator.plant.dynamometer import DYNAMOMETER
-from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
+from simulator.plant.hidden_behaviour import HiddenChange, HiddenQuantity, HiddenTruth
 from simulator.reading import Reading
 from stepnc_model.units import kw_from_watts, mm_min_from_speed, watts_from_kw
 
@@ -109,14 +109,14 @@ class TrialMachine:
         return truth._replace(power=truth.power / self.efficiency)
 
     def read(self) -> Reading | None:
-        """Return the next reading (:class:`controller.ports.Sensor`)."""
+        """Return the next reading (:class:`controller.signals.ports.Sensor`)."""
         raw = self._machine.read()
         if raw is None:
             return None
         return raw._replace(time=self._begin + raw.time, power=raw.power / self.efficiency)
 
     def set(self, override: float, /) -> None:
-        """Command an override (:class:`controller.ports.Override`)."""
+        """Command an override (:class:`controller.signals.ports.Override`)."""
         self._machine.set(override)
 
 

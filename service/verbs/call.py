@@ -37,8 +37,8 @@ from service.requests.fields import (
     member_of,
     require_bounds,
 )
+from service.requests.kind_options import require_options_served
 from service.requests.output import OutputFiles
-from service.requests.serves import require_options_served
 from service.verbs.result import DoneResult, Result
 from stepnc_model.errors import StepNcError
 
@@ -218,7 +218,7 @@ def _require_served(
     for field in fields:
         program = getattr(files, field.name, None)
         if field.about.use is FileUse.PROGRAM and isinstance(program, Path):
-            from service.program_kind import ProgramKind, kind_of_file  # noqa: PLC0415 (help)
+            from service.inputs.program_kind import ProgramKind, kind_of_file  # noqa: PLC0415 (help)
 
             kind = ProgramKind.STEP_NC if program.is_dir() else kind_of_file(program)
             require_options_served(named, kind, flags=flags)

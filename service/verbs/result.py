@@ -5,8 +5,8 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from service.exit_codes import OK
-from service.output_format import OutputFormat, format_of
+from service.errors import OK
+from service.outputs.output_format import OutputFormat, format_of
 from service.rendering.columns import Change, Column
 from service.rendering.view import Fact, ResultView, TextLine
 from stepnc_model.errors import StepNcError
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import plotly.graph_objects as go
     import pyarrow as pa
 
-    from service.flat_file import FileColumn, Row
+    from service.outputs.flat_file import FileColumn, Row
 
 WIDE = 10_000
 """Characters per line of a text that no terminal limits."""
@@ -111,7 +111,7 @@ class Result:
         place = Path(path)
         form = form or format_of(place)
         if form is OutputFormat.PARQUET:
-            from service.flat_file import Format, write_rows  # noqa: PLC0415
+            from service.outputs.flat_file import Format, write_rows  # noqa: PLC0415
 
             write_rows(place, *self._rows(), form=Format.PARQUET)
         else:
@@ -136,7 +136,7 @@ class Result:
             case OutputFormat.HTML:
                 return self.page()
             case OutputFormat.CSV:
-                from service.flat_file import csv_lines  # noqa: PLC0415
+                from service.outputs.flat_file import csv_lines  # noqa: PLC0415
 
                 return "\n".join(csv_lines(*self._rows()))
         raise StepNcError(f"{form.value} is not text")

@@ -1,8 +1,8 @@
 """Columns of a machine's observations, named as the virtual machine names its own.
 
 A row stands for a moment at which a numeric observation came; other columns hold their last
-value. The names are those of :mod:`simulator.timeline`, so that whatever reads a simulated run
-reads a recorded one; data items without such a column have one by their id.
+value. The names are those of :mod:`simulator.machine.timeline`, so that whatever reads a
+simulated run reads a recorded one; data items without such a column have one by their id.
 
 Observations of a document of MTConnect streams in a file, without its device model.
 

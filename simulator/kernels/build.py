@@ -24,7 +24,7 @@ import llvmlite.binding as llvm
 import numba
 
 from simulator.kernels import link
-from simulator.kernels.identity import is_kernel, is_reordered, names_of
+from simulator.kernels.store import is_kernel, is_reordered, names_of
 
 
 def object_code(

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulator.kernels import link, store
-from simulator.kernels.identity import digest
+from simulator.kernels.store import digest
 
 Parameters = ParamSpec("Parameters")
 Function = TypeVar("Function", bound=Callable[..., object])

@@ -1,7 +1,7 @@
 """Samples of the virtual machine's sensors, and the time spans from which they are taken.
 
-There is one row per sample. Units mm, s, N, W, rev/s; :mod:`simulator.timeline` defines the
-names and units used outside.
+There is one row per sample. Units mm, s, N, W, rev/s; :mod:`simulator.machine.timeline` defines
+the names and units used outside.
 
 An episode is a time span of the machine's run in closed form: all values are known at any time.
 During an episode the tool, the coolant and the workingstep do not change, and the axes move

@@ -12,11 +12,11 @@ from simulator.physics.strength import end_mill
 from simulator.removal.cutter import THREADS, Cutter, shape_of
 from simulator.spec import CuttingMaterial, Taylor, ToolGrade, ToolKind, WorkMaterial
 from simulator.tool_kind import correction_of, edge_material, tool_kind
-from simulator.tool_table import TableTool, grade_for, grade_of_table_tool
+from simulator.tools.tool_table import TableTool, grade_for, grade_of_table_tool
 from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
-from stepnc_model.tool import tool_of
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.tool import tool_of
 
 
 def loaded_tool(

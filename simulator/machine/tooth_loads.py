@@ -15,7 +15,7 @@ from simulator.machine.transients import entry_share
 from simulator.motion.segments import Bools, Floats, Ints
 from simulator.physics import flank
 from simulator.physics.flutes import CuttingEdges, ForceLaw
-from simulator.physics.known_places import wall_at
+from simulator.physics.force_cache import wall_at
 from simulator.physics.tooth_forces import (
     Places,
     forces,

@@ -10,7 +10,7 @@ import numpy as np
 from simulator.errors import OutOfTravel, ProgramFault
 from simulator.motion.segments import AXES, Floats, Ints, Segments
 from simulator.spec import Machine, MachineKind
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 from stepnc_model.toolpath.arc_columns import to_quadrants
 
 Zero = tuple[float, float, float]

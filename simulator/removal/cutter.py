@@ -36,8 +36,8 @@ from stepnc_model.entities.turning_tools import (
     TurningMachineCuttingTool,
 )
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
-from stepnc_model.tool import Tool, tool_of, user_tool_for
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.tool import Tool, tool_of, user_tool_for
 from stepnc_model.units import rad_from_deg
 
 

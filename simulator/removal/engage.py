@@ -14,7 +14,6 @@ import numpy as np
 from simulator.motion.segments import Floats, Segments
 from simulator.removal.collision import MOST, Collision
 from simulator.removal.cutter import Cutter, CutterProfile, cylinder, profile_of
-from simulator.removal.kept_marches import KeptMarches
 from simulator.removal.march import (
     AXIAL,
     CHIP,
@@ -44,6 +43,7 @@ from simulator.removal.march import (
     VOLUME,
     marched,
 )
+from simulator.removal.march_cache import KeptMarches
 from simulator.removal.rim import past
 from simulator.removal.ring import RimTool
 from simulator.removal.stations import StationKind, Stations
@@ -60,7 +60,7 @@ from simulator.removal.trial import (
     rows_of,
 )
 from simulator.removal.zmap import ZMap, cell_size, zmap_of
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 WINDOW = 10.0
 """Number of cells of path over which the volume lost by the map is a reliable measure."""

@@ -33,7 +33,7 @@ from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.lathe_carve import AxialGrid, InsertOutline, bore, carve
 from simulator.removal.lathe_windows import Removed, Windows, grouped, windows_of
 from simulator.removal.stations import StationKind, Stations
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 from stepnc_model.units import rad_from_deg
 
 LEAST_ANGLE = rad_from_deg(5.0)

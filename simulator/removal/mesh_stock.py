@@ -17,7 +17,7 @@ from simulator.motion.segments import Floats
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from simulator.removal.zmap import HeightGrid, cell_size, zmap_of
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 from stepnc_model.units import rad_from_deg
 
 CELL = 0.01

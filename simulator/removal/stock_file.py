@@ -16,7 +16,7 @@ from simulator.motion.segments import Floats
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import BarRadii, TurningStock
 from simulator.removal.zmap import MOST_CELLS, HeightGrid, zmap_of_heights
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 from stepnc_model.zip_member import DAMAGES, read_member
 
 VERSION = 1

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulator.motion.segments import Floats
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 MOST_CELLS = 4_000_000
 """Largest number of cells in a map whose cell size is not given."""

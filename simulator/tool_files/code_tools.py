@@ -10,13 +10,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from simulator.errors import LibraryError
-from simulator.plausible_tools import ToolGuess
 from simulator.spec import ToolKind
 from simulator.tool_files.file_unit import ALIKE, other_size
 from simulator.tool_files.placed_row import FileValue, PlacedRow, assumed, left_out, placed_row
 from simulator.tool_files.tool_note import ToolNote, defined_note, note_of
-from simulator.tool_table import TURNED, TableTool, ToolRow, tool_of_row
-from simulator.usual_teeth import usual_teeth
+from simulator.tools.plausible_tools import ToolGuess
+from simulator.tools.tool_table import TURNED, TableTool, ToolRow, tool_of_row
+from simulator.tools.usual_teeth import usual_teeth
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.nc.comments import CalledTool, CodeComment, remarks_of
 from stepnc_model.nc.program import NcProgram

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from simulator.errors import LibraryError
 from simulator.tool_files.placed_row import FileValue, PlacedRow, ToolRows, placed_row
-from simulator.tool_table import ToolRow
+from simulator.tools.tool_table import ToolRow
 
 SEPARATORS = ",;\t"
 

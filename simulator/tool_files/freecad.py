@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from simulator.errors import LibraryError
+from simulator.files.toml_file import read_text
 from simulator.spec import ToolKind
-from simulator.toml_file import read_text
 from simulator.tool_files.file_unit import FileUnit
 from simulator.tool_files.json_text import list_in, object_in, parsed_json, shown
 from simulator.tool_files.placed_row import (

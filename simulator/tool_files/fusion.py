@@ -26,7 +26,7 @@ from simulator.tool_files.placed_row import (
     left_out,
     placed_row,
 )
-from simulator.tool_table import TURNED, ToolHand
+from simulator.tools.tool_table import TURNED, ToolHand
 from stepnc_model.errors import Finding
 from stepnc_model.units import MM_PER_FOOT, MM_PER_M
 

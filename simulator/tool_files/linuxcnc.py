@@ -31,7 +31,7 @@ from simulator.tool_files.placed_row import (
     placed_row,
 )
 from simulator.tool_files.tool_words import TEETH, kind_in
-from simulator.tool_table import ToolHand
+from simulator.tools.tool_table import ToolHand
 from stepnc_model.errors import Finding
 
 WORDS = "TPXYZABCUVWDIJQ"

@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from simulator.errors import LibraryError
+from simulator.files.toml_file import converted
 from simulator.spec import CuttingMaterial
-from simulator.toml_file import converted
 from simulator.tool_files.file_unit import FileUnit
-from simulator.tool_table import ToolRow
+from simulator.tools.tool_table import ToolRow
 from stepnc_model.errors import Finding, Severity
 
 EDGE_WORDS = {

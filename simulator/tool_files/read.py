@@ -1,8 +1,8 @@
 """Tools of a file by their numbers, whatever its format.
 
 The content tells the format, not the name of the file: TOML and CSV with the columns of
-:mod:`simulator.tool_table`, LinuxCNC's ``tool.tbl``, libraries of Fusion (JSON, or ``.tools``),
-of HSMWorks (``.hsmlib``) and of FreeCAD (``.fctl``, ``.fctb``).
+:mod:`simulator.tools.tool_table`, LinuxCNC's ``tool.tbl``, libraries of Fusion (JSON, or
+``.tools``), of HSMWorks (``.hsmlib``) and of FreeCAD (``.fctl``, ``.fctb``).
 """
 
 from collections.abc import Iterator
@@ -13,7 +13,7 @@ from pathlib import Path
 from zipfile import ZipFile
 
 from simulator.errors import LibraryError
-from simulator.toml_file import read_bounded
+from simulator.files.toml_file import read_bounded
 from simulator.tool_files.csv_table import is_heading, is_passed, read_csv
 from simulator.tool_files.file_unit import FileUnit, other_size
 from simulator.tool_files.freecad import read_freecad
@@ -22,7 +22,7 @@ from simulator.tool_files.hsmworks import read_hsmworks
 from simulator.tool_files.json_text import parsed_json
 from simulator.tool_files.linuxcnc import is_tool_line, read_linuxcnc
 from simulator.tool_files.placed_row import PlacedRow, ToolRows, assumed
-from simulator.tool_table import TableTool, read_tool_rows, tool_of_row
+from simulator.tools.tool_table import TableTool, read_tool_rows, tool_of_row
 from stepnc_model.errors import Finding
 from stepnc_model.zip_member import DAMAGES, read_member
 

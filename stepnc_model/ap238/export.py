@@ -13,8 +13,8 @@ References
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from stepnc_model.ap238.body_transfer import BODY, CONTEXT, ITEMS, Carried, carried, with_bodies
 from stepnc_model.ap238.building import Builder, Unsayable
-from stepnc_model.ap238.carrying import BODY, CONTEXT, ITEMS, Carried, carried, with_bodies
 from stepnc_model.ap238.drafting import AimDraft
 from stepnc_model.ap238.instances import Instances, references
 from stepnc_model.ap238.requirements import SCHEMA

@@ -10,9 +10,9 @@ import re
 from collections import deque
 from dataclasses import dataclass, field
 
-from stepnc_model.ap238.following import PathFollower, Place
 from stepnc_model.ap238.instances import Instances, references
 from stepnc_model.ap238.numbering import AimNumbering, what
+from stepnc_model.ap238.orientation import upright
 from stepnc_model.ap238.quantity import (
     MEASURES,
     AimMeasure,
@@ -24,6 +24,7 @@ from stepnc_model.ap238.quantity import (
     number_of,
 )
 from stepnc_model.ap238.rational import rational_text
+from stepnc_model.ap238.reference_paths import PathFollower, Place
 from stepnc_model.ap238.table import (
     Converted,
     ConvertedText,
@@ -37,7 +38,6 @@ from stepnc_model.ap238.table import (
     rules,
     rules_for,
 )
-from stepnc_model.ap238.upright import upright
 from stepnc_model.ap238.vendor_arc import with_vendor_arcs
 from stepnc_model.entities.conversion import AttributeSlot, slots_of
 from stepnc_model.entities.geometry import CartesianPoint

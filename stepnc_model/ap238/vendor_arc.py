@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from math import cos, isfinite, pi, sin
 from typing import Any
 
-from stepnc_model.ap238.following import PathFollower
 from stepnc_model.ap238.instances import Instances
+from stepnc_model.ap238.reference_paths import PathFollower
 from stepnc_model.ap238.table import Converted, ConvertedText
 from stepnc_model.errors import Severity
 from stepnc_model.part21.values import Enumeration, Real, Ref, Value

@@ -11,10 +11,10 @@ from functools import cached_property
 from math import isclose
 from typing import Self
 
-from stepnc_model.ap238.carrying import BODY, carried, with_bodies
-from stepnc_model.ap238.following import Place
+from stepnc_model.ap238.body_transfer import BODY, carried, with_bodies
 from stepnc_model.ap238.quantity import MEASURES, conversion, is_measured, measure_kind
 from stepnc_model.ap238.reading import AimReader
+from stepnc_model.ap238.reference_paths import Place
 from stepnc_model.ap238.table import Converted, ConvertedText, Kind
 from stepnc_model.errors import Finding
 from stepnc_model.part21.reader import Part21File

@@ -15,10 +15,10 @@ from itertools import pairwise
 
 from stepnc_model.ap238.building import Builder, aim_number
 from stepnc_model.ap238.drafting import LISTS, AimDraft
-from stepnc_model.ap238.following import RULE, Place
 from stepnc_model.ap238.instances import Instances
 from stepnc_model.ap238.quantity import MEASURES, conversion, measure_kind
 from stepnc_model.ap238.reading import AimReader
+from stepnc_model.ap238.reference_paths import RULE, Place
 from stepnc_model.ap238.table import (
     Converted,
     Ending,

@@ -3,7 +3,7 @@
 The order of the fields, supertypes first, is the order of the parameters in a Part 21 file.
 Attributes that point to an instance hold a :class:`~stepnc_model.part21.values.Ref`, never the
 entity itself, so that circular and dangling references cause no problems; they are resolved by
-:class:`stepnc_model.binding.Model`.
+:class:`stepnc_model.programs.binding.Model`.
 
 Plain ``@dataclass`` is not used because it generates and compiles five methods per class,
 which takes half a millisecond each, and about three hundred classes are loaded before

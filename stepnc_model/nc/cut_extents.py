@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stepnc_model.nc.moves import MoveKind, NcMoves
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 from stepnc_model.toolpath.arc_columns import FIRST, SECOND, arms, to_quadrants
 
 Floats = NDArray[np.float64]

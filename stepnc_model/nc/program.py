@@ -13,10 +13,10 @@ from functools import cached_property
 import numpy as np
 
 from stepnc_model.errors import Finding, PostError
+from stepnc_model.nc.control_guess import recognise
 from stepnc_model.nc.heidenhain_control import HeidenhainControl
 from stepnc_model.nc.iso_control import IsoControl
 from stepnc_model.nc.moves import UNADVISED, FeedMode, MoveFlag, MoveKind, NcMoves
-from stepnc_model.nc.recognise import recognise
 from stepnc_model.nc.remarks import Remarks
 from stepnc_model.nc.sinumerik_control import SinumerikControl
 from stepnc_model.nc.text import NcText, text_of

@@ -16,7 +16,7 @@ from stepnc_model.errors import Finding, Severity
 from stepnc_model.nc.program import NcProgram
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 _NUMBER = rb"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
 

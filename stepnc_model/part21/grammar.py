@@ -9,8 +9,8 @@ slashes would take 4 GB. Longer text is scanned in several runs.
 
 import re
 
-from stepnc_model.counted import counted
 from stepnc_model.part21.places import Slips, SyntaxSlip, error_at
+from stepnc_model.plurals import counted
 
 COMMENT = rb"(?>/\*(?s:.*?)\*/)"
 """Comment; within it ``/*`` is plain text."""

@@ -23,15 +23,15 @@ from functools import cached_property
 from heapq import merge
 from typing import Self
 
-from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, FindingList, SchemaError, Severity
+from stepnc_model.part21.compression import unpacked
 from stepnc_model.part21.grammar import closing, skip_blank
 from stepnc_model.part21.index import Index, InstanceRecord, Part, parse_record, part_spans
 from stepnc_model.part21.places import Lines, SyntaxSlip, error_at
 from stepnc_model.part21.structure import FileStructure, Statement, read_structure
 from stepnc_model.part21.tokens import is_tidy, tidy_values
-from stepnc_model.part21.unpacked import unpacked
 from stepnc_model.part21.values import Value
+from stepnc_model.plurals import counted
 
 MASK = 0x80
 """Bit set in a masked apostrophe, whose byte then is that of its meaning in ISO 8859-1."""

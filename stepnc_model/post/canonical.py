@@ -20,8 +20,8 @@ from dataclasses import dataclass
 from math import copysign, dist, isfinite
 from typing import Any
 
-from stepnc_model.counted import counted
 from stepnc_model.errors import PostError
+from stepnc_model.plurals import counted
 from stepnc_model.post.blocks import (
     Block,
     Circular,

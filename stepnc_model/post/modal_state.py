@@ -25,9 +25,9 @@ from stepnc_model.post.blocks import (
     SpindleOn,
     SurfaceSpeed,
 )
-from stepnc_model.program import Program
-from stepnc_model.technology import Number, Programmed, ProgrammedQuantity, programmed
-from stepnc_model.tool import Tool, hand_of, is_described, tool_of
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.technology import Number, Programmed, ProgrammedQuantity, programmed
+from stepnc_model.programs.tool import Tool, hand_of, is_described, tool_of
 from stepnc_model.toolpath.path import Feed
 
 COOLANTS = {

@@ -44,8 +44,8 @@ from stepnc_model.post.blocks import (
 )
 from stepnc_model.post.modal_state import ModalState, conditions, constant_speed, coolant_of
 from stepnc_model.post.path_tolerance import path_tolerance
-from stepnc_model.program import Program
-from stepnc_model.tool import is_described, tool_name, tool_of
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.tool import is_described, tool_name, tool_of
 from stepnc_model.toolpath.path import (
     LEFT_OUT,
     CannedCycle,

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from stepnc_model.entities.entity import Entity, attributes
 from stepnc_model.entities.measures import TolerancedLengthMeasure
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, ResolvedWorkingstep
-from stepnc_model.tolerance import written_tolerance
+from stepnc_model.programs.program import Program, ResolvedWorkingstep
+from stepnc_model.programs.tolerance import written_tolerance
 
 FINISHING = 0.01
 """Greatest path tolerance of a final surface, and the one where nothing is known, mm."""

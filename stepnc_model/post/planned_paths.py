@@ -29,7 +29,7 @@ from stepnc_model.post.blocks import (
 )
 from stepnc_model.post.modal_state import conditions
 from stepnc_model.post.neutral import unsplit
-from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.programs.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.explicit.operation import path_frames
 from stepnc_model.toolpath.explicit.planned_path import MovePart, PlannedMove, PlannedPath
 from stepnc_model.toolpath.path import Dwell, Feed, Function, Move, MoveType, Step, ToolPath

@@ -23,7 +23,7 @@ from stepnc_model.entities.geometry import (
     TrimmedCurve,
 )
 from stepnc_model.part21.values import Ref, Typed
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.arc import chord_angle
 from stepnc_model.toolpath.frame import Frame, direction_of, frame_of, point_of
 from stepnc_model.toolpath.path import Arc, ArcPlane, Feed, Move, MoveType, Point

@@ -32,7 +32,7 @@ from stepnc_model.entities.features import (
 )
 from stepnc_model.entities.geometry import Placement
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.path import Point, cross, dot, plus, times
 from stepnc_model.units import rad_from_deg
 

@@ -18,8 +18,8 @@ from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import PathError, SchemaError
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, ResolvedWorkingstep
-from stepnc_model.program_listing import (
+from stepnc_model.programs.program import Program, ResolvedWorkingstep
+from stepnc_model.programs.program_listing import (
     STRUCTURES,
     WITHOUT_MOVES,
     ProgramLine,
@@ -28,8 +28,8 @@ from stepnc_model.program_listing import (
 )
 from stepnc_model.toolpath.explicit.operation import explicit_path, rapid_movement_path
 from stepnc_model.toolpath.hole.operation import hole_path
-from stepnc_model.toolpath.left_out import LeftOut
 from stepnc_model.toolpath.milling.operation import milling_path
+from stepnc_model.toolpath.omissions import LeftOut
 from stepnc_model.toolpath.path import Function, ToolPath
 from stepnc_model.toolpath.task import job_of
 from stepnc_model.toolpath.turning.operation import turning_path

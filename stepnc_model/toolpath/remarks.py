@@ -27,11 +27,11 @@ from stepnc_model.entities.profiles import LinearPath
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, ResolvedWorkingstep, Stock
-from stepnc_model.technology import ProgrammedQuantity, programmed
-from stepnc_model.tool import hand_of, tool_of
+from stepnc_model.programs.program import Program, ResolvedWorkingstep, Stock
+from stepnc_model.programs.technology import ProgrammedQuantity, programmed
+from stepnc_model.programs.tool import hand_of, tool_of
 from stepnc_model.toolpath.frame import feature_frame, frame_of, surrounding_frame
-from stepnc_model.toolpath.left_out import TOUCHING, SweptBox, swept_box
+from stepnc_model.toolpath.omissions import TOUCHING, SweptBox, swept_box
 from stepnc_model.toolpath.path import ToolPath
 from stepnc_model.toolpath.task import stock_of, unused_stock
 from stepnc_model.units import mm_from_inches

@@ -19,7 +19,7 @@ from stepnc_model.entities.geometry import (
     RationalBSplineCurveWithKnots,
 )
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.frame import point_of
 from stepnc_model.toolpath.path import Point, times
 

@@ -7,15 +7,15 @@ running state, one object per workingstep.
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from stepnc_model.editing.record_edit import find_record
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import Setup
 from stepnc_model.entities.geometry import Block, ElementarySurface, RightCircularCylinder
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, PathError, SchemaError, Severity
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, ResolvedWorkingstep, Stock
-from stepnc_model.record_edit import find_record
-from stepnc_model.tool import Tool, tool_of
+from stepnc_model.programs.program import Program, ResolvedWorkingstep, Stock
+from stepnc_model.programs.tool import Tool, tool_of
 from stepnc_model.toolpath.frame import (
     Frame,
     feature_frame,

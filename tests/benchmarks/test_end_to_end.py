@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks.corpus import FOLDERS, programs
 from benchmarks.end_to_end import Said, run, table, way
-from service.exit_codes import BAD_INPUT
+from service.errors import BAD_INPUT
 from tests.stepnc_model.ap238.mutations import mutated
 from tests.stepnc_model.ap238.writer_samples import SAMPLES, TOOLS, editor_drilling
 

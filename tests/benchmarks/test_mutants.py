@@ -13,7 +13,11 @@ from benchmarks.house import ROOT
 from benchmarks.mutants import Clone, Verdict
 from benchmarks.rings import Stage, imports, stages
 
-SAMPLES = ("controller/overload.py", "kbe/statistics.py", "simulator/physics/power.py")
+SAMPLES = (
+    "controller/monitoring/overload.py",
+    "kbe/statistics.py",
+    "simulator/physics/cutting.py",
+)
 
 
 @pytest.fixture(scope="module")

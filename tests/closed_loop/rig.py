@@ -8,20 +8,20 @@ from typing import Any
 import numpy as np
 
 from controller.cycle import LoopCycle
-from controller.law import ControlLaw, Plant, Situation
+from controller.laws.law import ControlLaw, Plant, Situation
 from controller.laws.log_pi import LogPI
 from controller.loop import Loop
-from controller.loop_settings import LoopSettings, LoopStep
 from controller.orders import EventKind, LoopEvent
-from controller.ports import Floats, Reading
-from controller.preview import Preview
 from controller.reference import ForceBound, Reference
-from controller.source import Dynamometer, Source
-from optimiser.problem import LimitName
-from simulator.plant.controlled import ControlledMachine, Instrumentation
+from controller.signals.ports import Floats, Reading
+from controller.signals.preview import Preview
+from controller.signals.source import Dynamometer, Source
+from controller.states.loop_settings import LoopSettings, LoopStep
+from optimiser.solver.problem import LimitName
+from simulator.plant.controlled_machine import ControlledMachine, Instrumentation
 from simulator.plant.course import NominalCourse
 from simulator.plant.dynamometer import DYNAMOMETER, POWER_METER, Acquisition, Instrument
-from simulator.plant.hidden import HiddenTruth
+from simulator.plant.hidden_behaviour import HiddenTruth
 from tests.simulator.plant.courses import EXPONENT
 
 SET_POINT = 400.0
@@ -66,7 +66,7 @@ class Watched:
         self._instrument = Acquisition(by, np.random.default_rng(seed))
 
     def read(self) -> Reading | None:
-        """See :class:`controller.ports.Sensor`."""
+        """See :class:`controller.signals.ports.Sensor`."""
         reading = self._machine.read()
         if reading is None:
             return None
@@ -90,11 +90,11 @@ class Hostile:
     wishes: tuple[float, ...]
 
     def begin(self, _override: float) -> int:
-        """See :class:`controller.law.ControlLaw`."""
+        """See :class:`controller.laws.law.ControlLaw`."""
         return 0
 
     def decide(self, state: int, _at: Situation) -> tuple[int, float]:
-        """See :class:`controller.law.ControlLaw`."""
+        """See :class:`controller.laws.law.ControlLaw`."""
         return state + 1, self.wishes[state % len(self.wishes)]
 
 

@@ -12,13 +12,13 @@ import numpy as np
 
 from controller.laws.choice import LawName, law_named
 from controller.loop import Loop
-from controller.loop_settings import LoopSettings, LoopStep
 from controller.orders import EventKind
-from controller.source import Dynamometer
+from controller.signals.source import Dynamometer
+from controller.states.loop_settings import LoopSettings, LoopStep
 from service.control.setup import preview_of
-from simulator.plant.controlled import ControlledMachine, Instrumentation
+from simulator.plant.controlled_machine import ControlledMachine, Instrumentation
 from simulator.plant.course import NominalCourse
-from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
+from simulator.plant.hidden_behaviour import HiddenChange, HiddenQuantity, HiddenTruth
 
 WITHIN = 3.0
 """revolutions in which a lost tooth is to be found"""

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from controller.guard import OverrideBand, OverrideReason
-from controller.loop_settings import LoopSettings
 from controller.orders import EventKind
-from controller.ports import Floats
 from controller.reference import Reference
+from controller.signals.ports import Floats
+from controller.states.loop_settings import LoopSettings
 from simulator.plant.course import NominalCourse
 from simulator.plant.dynamometer import DYNAMOMETER, Instrument
-from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
+from simulator.plant.hidden_behaviour import HiddenChange, HiddenQuantity, HiddenTruth
 from tests.closed_loop.rig import SET_POINT, Rig, rig, step
 from tests.simulator.plant.courses import EXPONENT, course
 

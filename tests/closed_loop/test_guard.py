@@ -10,11 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from controller.guard import SUDDEN_RATIO, OverrideBand
-from controller.loop_settings import LoopSettings
-from controller.source import DrivePower, Source
+from controller.signals.source import DrivePower, Source
+from controller.states.loop_settings import LoopSettings
 from simulator.plant.course import EngagedTeeth, NominalCourse, pattern
 from simulator.plant.dynamometer import DYNAMOMETER
-from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
+from simulator.plant.hidden_behaviour import HiddenChange, HiddenQuantity, HiddenTruth
 from tests.closed_loop.rig import BREAKAGE, Hostile, Rig, reference, rig, step
 from tests.simulator.plant.courses import EXPONENT, FEED, course
 

@@ -12,8 +12,8 @@ import pytest
 
 from controller.laws.choice import LawName
 from controller.orders import Criterion
-from controller.preview import LOOK_AHEAD
-from simulator.plant.hidden import HiddenTruth
+from controller.signals.preview import LOOK_AHEAD
+from simulator.plant.hidden_behaviour import HiddenTruth
 from tests.closed_loop.trials import (
     GAINS,
     GUARDED,

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from controller.guard import OverrideReason
 from controller.orders import EventKind
-from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
+from simulator.plant.hidden_behaviour import HiddenChange, HiddenQuantity, HiddenTruth
 from tests.closed_loop.rig import SET_POINT, Rig, rig
 from tests.closed_loop.test_disturbances import cut, kinds
 from tests.simulator.plant.courses import EXPONENT, SPEED, TEETH, course

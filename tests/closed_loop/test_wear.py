@@ -5,9 +5,9 @@ from math import inf
 import pytest
 
 from controller.guard import OverrideBand
-from controller.loop_settings import LoopSettings
 from controller.orders import EventKind
-from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
+from controller.states.loop_settings import LoopSettings
+from simulator.plant.hidden_behaviour import HiddenChange, HiddenQuantity, HiddenTruth
 from tests.closed_loop.rig import SET_POINT, Rig, reference, rig, step
 from tests.closed_loop.test_disturbances import cut, kinds
 from tests.simulator.plant.courses import course

@@ -14,20 +14,20 @@ from typing import Any, Protocol
 import numpy as np
 
 from controller.guard import OverrideBand
-from controller.law import ControlLaw, Plant, Situation
 from controller.laws.choice import LawName, law_named
+from controller.laws.law import ControlLaw, Plant, Situation
 from controller.loop import Loop
-from controller.loop_settings import LoopSettings, LoopStep
 from controller.orders import Criterion, EventKind
-from controller.ports import Override, Sensor
-from controller.preview import Preview
 from controller.reference import Reference
-from controller.source import Dynamometer
+from controller.signals.ports import Override, Sensor
+from controller.signals.preview import Preview
+from controller.signals.source import Dynamometer
+from controller.states.loop_settings import LoopSettings, LoopStep
 from simulator.motion.segments import Floats
-from simulator.plant.controlled import ControlledMachine, Instrumentation
+from simulator.plant.controlled_machine import ControlledMachine, Instrumentation
 from simulator.plant.course import NominalCourse
 from simulator.plant.dynamometer import DYNAMOMETER
-from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
+from simulator.plant.hidden_behaviour import HiddenChange, HiddenQuantity, HiddenTruth
 from tests.simulator.plant.courses import EXPONENT, LAND_SHARE, SPEED, TEETH, course
 
 LAWS = tuple(name for name in LawName if name is not LawName.NONE)

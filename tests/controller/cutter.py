@@ -8,9 +8,9 @@ from math import pi
 
 import numpy as np
 
-from controller.ports import Floats
-from controller.preview import Expected
-from controller.signal import Revolution
+from controller.signals.ports import Floats
+from controller.signals.preview import Expected
+from controller.signals.signal import Revolution
 from simulator.physics.tooth_means import Arcs
 from tests.controller.shown import REVOLUTION, SPINDLE_SPEED
 

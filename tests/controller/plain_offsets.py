@@ -4,9 +4,9 @@ from math import inf, pi
 
 import numpy as np
 
-from controller.offset_fit import ITERATIONS, NEAR, START_ANGLES, START_RADII, STEP
-from controller.ports import Floats
-from controller.tooth_shares import ToothShares
+from controller.monitoring.offset_fit import ITERATIONS, NEAR, START_ANGLES, START_RADII, STEP
+from controller.signals.ports import Floats
+from controller.signals.tooth_shares import ToothShares
 from simulator.physics.tooth_means import LOST, Periods
 
 

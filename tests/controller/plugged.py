@@ -9,15 +9,15 @@ import numpy as np
 
 from controller.cycle import LoopCycle
 from controller.errors import MachineLost
-from controller.law import ControlLaw, Plant, Situation
+from controller.laws.law import ControlLaw, Plant, Situation
 from controller.loop import Loop
-from controller.loop_settings import LoopSettings, LoopStep
 from controller.orders import EventKind, LoopEvent
-from controller.ports import Reading, Sensor
-from controller.preview import Preview
 from controller.reference import ForceBound, Reference
-from controller.source import Dynamometer
-from optimiser.problem import LimitName
+from controller.signals.ports import Reading, Sensor
+from controller.signals.preview import Preview
+from controller.signals.source import Dynamometer
+from controller.states.loop_settings import LoopSettings, LoopStep
+from optimiser.solver.problem import LimitName
 from simulator.physics.tooth_means import Arcs
 
 SPINDLE_SPEED = 50.0
@@ -60,7 +60,7 @@ class Told:
         self._count = 0
 
     def read(self) -> Reading | None:
-        """See :class:`controller.ports.Sensor`."""
+        """See :class:`controller.signals.ports.Sensor`."""
         given = next(self._readings, None)
         if given is None:
             if self._is_lost:
@@ -80,7 +80,7 @@ class Port:
     overrides: list[float] = field(default_factory=list)
 
     def set(self, override: float, /) -> None:
-        """See :class:`controller.ports.Override`."""
+        """See :class:`controller.signals.ports.Override`."""
         self.overrides.append(override)
 
 
@@ -92,10 +92,10 @@ class Wishing:
     told: list[Situation] = field(default_factory=list)
 
     def begin(self, _override: float) -> None:
-        """See :class:`controller.law.ControlLaw`."""
+        """See :class:`controller.laws.law.ControlLaw`."""
 
     def decide(self, state: None, at: Situation) -> tuple[None, float]:
-        """See :class:`controller.law.ControlLaw`."""
+        """See :class:`controller.laws.law.ControlLaw`."""
         self.told.append(at)
         return state, self.wish
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from controller.ports import Floats, Reading
-from controller.signal import Revolution
+from controller.signals.ports import Floats, Reading
+from controller.signals.signal import Revolution
 
 SPINDLE_SPEED = 50.0
 """rev/s"""

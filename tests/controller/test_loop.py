@@ -5,12 +5,12 @@ import pytest
 
 from controller.errors import MachineLost
 from controller.guard import OverrideBand, OverrideReason
-from controller.law import Plant
-from controller.loop_settings import LoopSettings, LoopStep
+from controller.laws.law import Plant
 from controller.orders import Criterion, CriterionTo, EventKind, MotorPowerTo, SwitchTo
-from controller.ports import Reading
 from controller.reference import ForceBound, Reference
-from optimiser.problem import LimitName
+from controller.signals.ports import Reading
+from controller.states.loop_settings import LoopSettings, LoopStep
+from optimiser.solver.problem import LimitName
 from tests.controller.plugged import (
     PERIOD,
     SET_POINT,

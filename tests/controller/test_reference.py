@@ -13,15 +13,15 @@ from controller.reference import (
     reference_of,
 )
 from optimiser.advice import Advice, EvaluatedSetting, LimitLoad
-from optimiser.formulate import OptimisationTask
-from optimiser.loads import cutting_force, shank_force, wall_force
+from optimiser.bounds.loads import cutting_force, shank_force, wall_force
+from optimiser.cuts.source import from_features
 from optimiser.modes import Mode
 from optimiser.optimise import optimise_program
-from optimiser.problem import BoundSide, Limit, LimitName, Monomial
-from optimiser.source import from_features
+from optimiser.planning.formulate import OptimisationTask
+from optimiser.solver.problem import BoundSide, Limit, LimitName, Monomial
 from simulator.library import load_machine, match_material
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"

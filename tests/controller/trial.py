@@ -13,8 +13,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from controller.law import ControlLaw, Situation
-from controller.ports import Floats
+from controller.laws.law import ControlLaw, Situation
+from controller.signals.ports import Floats
 
 S = TypeVar("S")
 

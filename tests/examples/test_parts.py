@@ -17,9 +17,9 @@ from stepnc_model.entities.technology import MillingTechnology
 from stepnc_model.entities.turning import ThreadStrategy, UnidirectionalTurning
 from stepnc_model.entities.turning_tools import TurningThreadingTool
 from stepnc_model.part21.values import Ref, Value
-from stepnc_model.program import Program
-from stepnc_model.technology import ProgrammedQuantity, programmed
-from stepnc_model.tool import tool_of
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.technology import ProgrammedQuantity, programmed
+from stepnc_model.programs.tool import tool_of
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 PAPER003 = ["paper003_case1", "paper003_case2", "paper003_pocket"]

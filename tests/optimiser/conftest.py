@@ -3,7 +3,7 @@
 import pytest
 
 from optimiser.advice import Plan
-from optimiser.formulate import OptimisationTask
+from optimiser.planning.formulate import OptimisationTask
 from tests.optimiser.plans import measured
 
 

@@ -5,13 +5,13 @@ from functools import cache
 from pathlib import Path
 
 from optimiser.advice import Advice, EvaluatedSetting, Plan
-from optimiser.formulate import OptimisationTask
+from optimiser.cuts.source import from_features
 from optimiser.modes import Free
 from optimiser.optimise import optimise_program
-from optimiser.source import from_features
+from optimiser.planning.formulate import OptimisationTask
 from simulator.library import load_machine, match_material
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 USUAL = {

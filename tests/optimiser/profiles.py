@@ -3,8 +3,8 @@
 import numpy as np
 
 from benchmarks.feed_paths import AXES, PATHS, wavy_caps
-from optimiser.path_grid import PathGrid, path_grid, problem_on
-from optimiser.profile import AxisLimit, Floats, NamedCaps, ProfileProblem
+from optimiser.feed_profile.path_grid import PathGrid, path_grid, problem_on
+from optimiser.feed_profile.profile import AxisLimit, Floats, NamedCaps, ProfileProblem
 
 
 def grid_of(name: str, *, step: float = 0.5, greatest_turn: float = 0.1) -> PathGrid:

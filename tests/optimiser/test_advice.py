@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 from optimiser.advice import AdviceStatus, LimitLoad, Plan
-from optimiser.formulate import OptimisationTask
 from optimiser.optimise import optimise_program
-from optimiser.problem import BoundSide, Limit, LimitName, Monomial
+from optimiser.planning.formulate import OptimisationTask
+from optimiser.solver.problem import BoundSide, Limit, LimitName, Monomial
 from simulator.library import load_machine, match_material
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 
 PART = Path(__file__).parents[2] / "examples" / "parts" / "bracket.stpnc"
 

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.clamped import assumed_stock, words_of
-from optimiser.measured import MeasuredCuts
-from optimiser.tolerance import left_by_path
+from optimiser.bounds.tolerance import left_by_path
+from optimiser.cuts.fixtured_stock import assumed_stock, words_of
+from optimiser.cuts.path_cuts import MeasuredCuts
 from simulator.library import load_machine, load_material
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 
 CORPUS = Path(__file__).parents[3] / "shared" / "corpus" / "iso14649"
 PARTS = Path(__file__).parents[2] / "examples" / "parts"

@@ -1,8 +1,8 @@
 """Which mills may go straight down into the solid."""
 
-from optimiser.formulate import OptimisationTask
+from optimiser.planning.formulate import OptimisationTask
 from stepnc_model.errors import Severity
-from stepnc_model.tool import tool_of
+from stepnc_model.programs.tool import tool_of
 from tests.optimiser.plans import advice_of, after, edited, measured
 
 OPEN = ("ROUGH OPEN POCKET", "FINISH OPEN POCKET")

@@ -9,10 +9,18 @@ import pytest
 
 from benchmarks.problems import random_problem
 from optimiser.errors import Infeasible
-from optimiser.formulate import cheapest_feed
 from optimiser.modes import Mode
-from optimiser.problem import BoundSide, Cost, Limit, LimitName, Monomial, Problem, Setting
-from optimiser.workingstep import limits_at, solve
+from optimiser.planning.formulate import cheapest_feed
+from optimiser.solver.problem import (
+    BoundSide,
+    Cost,
+    Limit,
+    LimitName,
+    Monomial,
+    Problem,
+    Setting,
+)
+from optimiser.solver.workingstep import limits_at, solve
 
 RATE, CHANGE, PRICE = 75.0 / 3600.0, 120.0, 6.0
 

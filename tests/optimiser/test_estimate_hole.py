@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.cut import Cut, CutKind
-from optimiser.estimate import CLEARANCE, hole_cut
+from optimiser.cuts.cut import Cut, CutKind
+from optimiser.cuts.feature_estimate import CLEARANCE, hole_cut
 from simulator.spec import ToolKind
 from stepnc_model.errors import Finding, SchemaError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
-from stepnc_model.tool import tool_of
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.tool import tool_of
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 END = "ENDSEC;\nEND-ISO-10303-21;"

@@ -6,9 +6,9 @@ import pytest
 
 from benchmarks.problems import random_problem
 from optimiser.errors import OptimisationError
-from optimiser.least_cost import FeedCaps, caps_at
-from optimiser.problem import BoundSide, Limit
-from optimiser.workingstep import limits_at
+from optimiser.solver.least_cost import FeedCaps, caps_at
+from optimiser.solver.problem import BoundSide, Limit
+from optimiser.solver.workingstep import limits_at
 
 
 def allowed(limits: tuple[Limit, ...], depth: float, speed: float) -> float:

@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 from optimiser.advice import Advice, ParetoPoint
-from optimiser.formulate import POINTS, OptimisationTask
 from optimiser.modes import Free, Mode
 from optimiser.optimise import optimise_program
+from optimiser.planning.formulate import POINTS, OptimisationTask
 from simulator.library import load_machine, match_material
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 

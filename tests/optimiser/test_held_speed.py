@@ -6,8 +6,8 @@ from math import pi
 import pytest
 
 from optimiser.advice import AdviceStatus, Plan
-from optimiser.formulate import OptimisationTask
 from optimiser.optimise import optimise_program
+from optimiser.planning.formulate import OptimisationTask
 from simulator.library import load_machine, match_material
 from simulator.spec import Machine
 from stepnc_model.errors import Severity

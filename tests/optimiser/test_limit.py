@@ -6,7 +6,7 @@ from random import Random
 import pytest
 
 from benchmarks.problems import random_problem
-from optimiser.problem import ROUNDING, BoundSide, Limit, LimitName, Monomial, SpeedCurve
+from optimiser.solver.problem import ROUNDING, BoundSide, Limit, LimitName, Monomial, SpeedCurve
 from tests.every_case import every_case
 
 FORCE = Monomial(coefficient=2000.0, offset=30.0, feed_exponent=0.75, depth_exponent=1.0)

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.source import why_elsewhere
+from optimiser.cuts.source import why_elsewhere
 from simulator.library import load_machine
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 

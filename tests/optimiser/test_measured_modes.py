@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 
-from optimiser.stability import measured_modes, what_is_measured
+from optimiser.bounds.stability import measured_modes, what_is_measured
 from simulator.library import load_machine
 from simulator.spec import Machine, ModeDirection, VibratingPart, VibrationMode
-from tests.optimiser.cuts import CUT, DRILLED, TURNED
+from tests.optimiser.sample_cuts import CUT, DRILLED, TURNED
 
 MODE = VibrationMode(
     part=VibratingPart.TOOL,

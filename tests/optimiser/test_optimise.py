@@ -11,11 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from optimiser.advice import Advice, AdviceStatus, Plan
-from optimiser.formulate import OptimisationTask
+from optimiser.cuts.source import from_features
 from optimiser.modes import Free, Mode
 from optimiser.optimise import DEFAULT_QUALITY, optimise_program
-from optimiser.problem import LimitName
-from optimiser.source import from_features
+from optimiser.planning.formulate import OptimisationTask
+from optimiser.solver.problem import LimitName
 from simulator.library import load_machine, match_material
 from simulator.physics.surface_spread import RoughnessForecast
 from stepnc_model.toolpath.arc import length

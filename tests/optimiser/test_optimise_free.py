@@ -5,9 +5,9 @@ from math import pi, sqrt
 import pytest
 
 from optimiser.advice import AdviceStatus, Plan
-from optimiser.formulate import OptimisationTask
 from optimiser.modes import Free
-from optimiser.problem import LimitName
+from optimiser.planning.formulate import OptimisationTask
+from optimiser.solver.problem import LimitName
 from tests.optimiser.plans import (
     ALL_FREE,
     advice_of,

@@ -3,16 +3,16 @@
 import pytest
 
 from optimiser.advice import AdviceStatus, Plan
-from optimiser.formulate import OptimisationTask
 from optimiser.optimise import optimise_program
-from optimiser.problem import LimitName
-from service.records import changes_of
+from optimiser.planning.formulate import OptimisationTask
+from optimiser.solver.problem import LimitName
+from service.programs.advice_records import changes_of
 from simulator.library import load_machine, match_material
-from stepnc_model import writeback
+from stepnc_model.editing import writeback
+from stepnc_model.editing.file_profile import FileProfile
 from stepnc_model.errors import SchemaError
-from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.units import mm_min_from_speed
 from tests.optimiser.plans import (
     USUAL,

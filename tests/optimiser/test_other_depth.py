@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.tried_path import with_depth
+from optimiser.cuts.path_trial import with_depth
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.programs.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.generate import workingstep_path
 from stepnc_model.toolpath.path import Point
 

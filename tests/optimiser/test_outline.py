@@ -4,10 +4,10 @@ from math import pi, sqrt
 
 import pytest
 
-from optimiser.region import BoundarySize, circle_outline, closed_outline, open_outline
+from optimiser.cuts.region import BoundarySize, circle_outline, closed_outline, open_outline
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 
 PROGRAM = """ISO-10303-21;
 HEADER;

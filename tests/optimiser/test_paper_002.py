@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from optimiser.conditions import CuttingConditions
-from optimiser.cut import Cut, CutKind
-from optimiser.limits import limits_of, power_load, segment_at, spindle_limits
+from optimiser.bounds.limits import limits_of, power_load, segment_at, spindle_limits
+from optimiser.cuts.conditions import CuttingConditions
+from optimiser.cuts.cut import Cut, CutKind
 from optimiser.modes import Mode
-from optimiser.problem import Cost, LimitName, Problem, Setting
-from optimiser.workingstep import (
+from optimiser.solver.problem import Cost, LimitName, Problem, Setting
+from optimiser.solver.workingstep import (
     solve,
     widened,
 )
 from simulator.library import load_machine, load_material
 from simulator.physics.engagement import Engagement, bilateral, full_immersion, unidirectional
 from simulator.spec import CuttingMaterial, ToolKind
-from stepnc_model.tool import Tool
+from stepnc_model.programs.tool import Tool
 from stepnc_model.units import speed_from_m_min
 from tests.every_case import every_case
 

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.estimate import path_length
+from optimiser.cuts.feature_estimate import path_length
 from stepnc_model.entities.operations import ToolpathList
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 
 CORPUS = Path(__file__).parents[3] / "shared" / "corpus" / "iso14649"
 PARTS = Path(__file__).parents[2] / "examples" / "parts"

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import pytest
 
-from optimiser.cut import Cut, PlungeEngagement
-from optimiser.plunge_feed import CLOSE, PlungeOptimum, best_plunge, with_plunge_feed
-from optimiser.problem import Setting
+from optimiser.bounds.plunge_feed import CLOSE, PlungeOptimum, best_plunge, with_plunge_feed
+from optimiser.cuts.cut import Cut, PlungeEngagement
+from optimiser.solver.problem import Setting
 from simulator.physics.engagement import full_immersion
-from tests.optimiser.cuts import CARBIDE, CUT
+from tests.optimiser.sample_cuts import CARBIDE, CUT
 
 BENT = replace(CARBIDE, deflection=replace(CARBIDE.deflection, value=2e-3))
 """A deflection that holds the ramp."""

@@ -3,9 +3,9 @@
 import pytest
 
 from optimiser.advice import AdviceStatus
-from optimiser.formulate import LEAST_DEPTH, OptimisationTask
-from optimiser.problem import LimitName
-from optimiser.reasons import REMEDIES, slower_than_programmed
+from optimiser.planning.formulate import LEAST_DEPTH, OptimisationTask
+from optimiser.planning.reasons import REMEDIES, slower_than_programmed
+from optimiser.solver.problem import LimitName
 from tests.optimiser.plans import advice_of, after, measured, plan_of
 
 SLENDER = (

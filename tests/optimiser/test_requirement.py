@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.roughness import required_roughness
+from optimiser.bounds.roughness import required_roughness
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 FACE = "#50=SURFACE_TEXTURE_PARAMETER(1.6,'Ra','ISO 4287',$,(#51));"

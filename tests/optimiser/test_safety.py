@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from scipy.stats import lognorm
 
 from optimiser.advice import AdviceStatus, Plan
-from optimiser.formulate import OptimisationTask
-from optimiser.problem import SCALES_WITH_FORCE, LimitName
+from optimiser.planning.formulate import OptimisationTask
 from optimiser.safety import safety_factor
+from optimiser.solver.problem import SCALES_WITH_FORCE, LimitName
 from tests.every_case import every_case
 from tests.optimiser.plans import advice_of, after, measured, plan_of
 

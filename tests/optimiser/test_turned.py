@@ -5,7 +5,7 @@ from itertools import pairwise
 import pytest
 
 from optimiser.advice import Plan
-from optimiser.cut import TurnedBar
+from optimiser.cuts.cut import TurnedBar
 from tests.optimiser.plans import advice_of
 
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from optimiser.tolerance import wall_sizes
+from optimiser.bounds.tolerance import wall_sizes
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from tests.optimiser.plans import edited
 
 SLOT = "#130=SLOT('SLOT',#30,(#205),#131,#133,#126,#136,(#139,#139));"

@@ -6,13 +6,13 @@ from typing import Any
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stepnc_model.binding import Model, bind, to_parameters
 from stepnc_model.entities.catalogue import classes
 from stepnc_model.entities.conversion import AttributeSlot, slots_of
 from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Enumeration, Real, Ref, Typed, Value
 from stepnc_model.part21.writer import format_value
+from stepnc_model.programs.binding import Model, bind, to_parameters
 
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False)
 TEXTS = st.text(st.characters(codec="utf-8", exclude_categories=("Cs", "Cc")), max_size=12)

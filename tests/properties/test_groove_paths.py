@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.arc import points_along
 from stepnc_model.toolpath.path import Move, MoveType, Point, ToolPath
 from stepnc_model.toolpath.task import job_of

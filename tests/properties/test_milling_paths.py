@@ -20,7 +20,7 @@ from shapely.geometry.base import BaseGeometry
 
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.arc import points_along
 from stepnc_model.toolpath.generate import workingstep_path
 from stepnc_model.toolpath.path import MoveType, Point, ToolPath

@@ -13,16 +13,16 @@ from random import Random
 import pytest
 
 import stepnc
+from extras.calibration.model.measured_run import read_run
+from extras.calibration.model.modal_fit import read_response
+from extras.factory.model.shop_file import read_shop
 from kbe.store import open_store
-from service.knowledge.added import add_outcomes
-from simulator.calibration.measured_run import read_run
-from simulator.calibration.modal_fit import read_response
-from simulator.factory.shop_file import read_shop
-from simulator.grade_file import read_grades
-from simulator.holding_file import read_holding_file
-from simulator.machine_file import read_machine
-from simulator.machine_xml import read_machine_xml
-from simulator.material_file import read_material
+from service.knowledge.outcome_import import add_outcomes
+from simulator.files.grade_file import read_grades
+from simulator.files.holding_file import read_holding_file
+from simulator.files.machine_file import read_machine
+from simulator.files.machine_xml import read_machine_xml
+from simulator.files.material_file import read_material
 from simulator.spec import MachineKind, ToolKind
 from stepnc_model.errors import StepNcError
 from tests.checked import check

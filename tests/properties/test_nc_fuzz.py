@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 from stepnc_model.errors import PostError
-from stepnc_model.nc.exact import read
+from stepnc_model.nc.exact_reading import read
 from stepnc_model.post.blocks import Cycles, MachineType
 from stepnc_model.post.canonical import Canonical
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.dialects import write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.generate import generate
 from tests.every_case import every_case
 

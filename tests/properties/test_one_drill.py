@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from optimiser import loads
-from optimiser.limits import drill_point, force_factor, force_load
+from optimiser.bounds import loads
+from optimiser.bounds.limits import drill_point, force_factor, force_load
 from simulator.machine.cutting import CuttingEdge, cutting_loads
 from simulator.removal.stations import StationKind, Stations
-from tests.optimiser.cuts import DRILLED, conditions
+from tests.optimiser.sample_cuts import DRILLED, conditions
 
 AT = conditions(DRILLED.tool_kind)
 

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from benchmarks.problems import random_problem
 from optimiser.errors import Infeasible
 from optimiser.modes import Mode
-from optimiser.problem import BoundSide, LimitName, Problem
-from optimiser.workingstep import Solution, solve, widened
+from optimiser.solver.problem import BoundSide, LimitName, Problem
+from optimiser.solver.workingstep import Solution, solve, widened
 
 seeds = st.integers(0, 10**9)
 modes = st.sampled_from([Mode.TC, Mode.EC])

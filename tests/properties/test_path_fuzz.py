@@ -14,8 +14,8 @@ from stepnc_model.post.blocks import Cycles
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.dialects import write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Program
-from stepnc_model.program_listing import ProgramLine
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.program_listing import ProgramLine
 from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.generate import generate
 from stepnc_model.toolpath.path import Function, ToolPath

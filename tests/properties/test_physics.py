@@ -16,10 +16,10 @@ from simulator.physics import (
     engagement,
     kinematics,
     milling,
-    power,
     spindle,
     tool_life,
 )
+from simulator.physics import cutting as power
 from simulator.physics.drilling import DrillingCut
 from simulator.physics.engagement import Engagement
 from simulator.physics.flutes import CuttingEdges, ForceLaw

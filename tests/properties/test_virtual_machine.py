@@ -21,7 +21,7 @@ from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
 from simulator.spec import Kienzle
 from stepnc_model.post import blocks as nc
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 MACHINE = load_machine("vmc15")
 LIMITS = axis_limits(MACHINE)

@@ -6,15 +6,15 @@ from typing import Any
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stepnc_model import writeback
-from stepnc_model.cut_settings import rounded
+from stepnc_model.editing import writeback
+from stepnc_model.editing.cut_settings import rounded
+from stepnc_model.editing.file_profile import FileProfile
+from stepnc_model.editing.record import MODES, AdviceRecord
+from stepnc_model.editing.writeback import WorkingstepUpdate
 from stepnc_model.entities.optimisation import FaceMillingImmersion
-from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
-from stepnc_model.record import MODES, AdviceRecord
-from stepnc_model.technology import programmed
-from stepnc_model.writeback import WorkingstepUpdate
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.technology import programmed
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 SAMPLES = {path.stem: path.read_bytes() for path in sorted(PARTS.glob("*.stpnc"))}

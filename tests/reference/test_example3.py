@@ -6,7 +6,7 @@ import pytest
 
 from stepnc_model.post.blocks import Linear, Rapid, SpindleDirection, SpindleOff, SpindleOn
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.frame import compound_of
 from stepnc_model.toolpath.generate import generate, workingstep_path
 from stepnc_model.toolpath.task import job_of

@@ -5,7 +5,7 @@ A life of 5 min at 160 m/min and of 41 min at 100 m/min: n = 0.223, C = 229.
 
 import pytest
 
-from simulator.calibration.tool_life import LifePair, fitted_taylor
+from extras.calibration.model.tool_life import LifePair, fitted_taylor
 from stepnc_model.units import m_min_from_speed, speed_from_m_min
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from stepnc_model.tolerance import general_tolerance, standard_tolerance
+from stepnc_model.programs.tolerance import general_tolerance, standard_tolerance
 from tests.every_case import every_case
 
 

@@ -13,12 +13,8 @@ import pytest
 
 from simulator.library import load_machine
 from simulator.physics import axis as feed_axis
-from simulator.physics import (
-    engagement,
-    kinematics,
-    milling,
-    power,
-)
+from simulator.physics import cutting as power
+from simulator.physics import engagement, kinematics, milling
 from simulator.physics import (
     spindle as spindle_motion,
 )

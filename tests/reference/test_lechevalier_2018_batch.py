@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from service.chosen import material_for
-from service.factory.cycles import PartCycles
+from extras.factory.cycles import PartCycles
+from service.programs.machine_choice import material_for
 from simulator.library import load_machine
-from stepnc_model.cut_settings import CutSettings
-from stepnc_model.program import Program
+from stepnc_model.editing.cut_settings import CutSettings
+from stepnc_model.programs.program import Program
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 MACHINE = load_machine("paper003")

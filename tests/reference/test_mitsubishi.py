@@ -7,7 +7,8 @@ Pages "Formula for turning", "Formula for face milling", "Cutting power for turn
 
 import pytest
 
-from simulator.physics import engagement, kinematics, power, surface
+from simulator.physics import cutting as power
+from simulator.physics import engagement, kinematics, surface
 from stepnc_model.units import (
     kw_from_watts,
     m_min_from_speed,

@@ -15,12 +15,12 @@ import pytest
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from stepnc_model.nc.exact import read
+from stepnc_model.nc.exact_reading import read
 from stepnc_model.post.canonical import Canonical
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.dialects import write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.generate import generate
 
 CORPUS = Path(__file__).parents[3] / "shared" / "corpus" / "iso14649"

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.explicit.operation import explicit_path, rapid_movement_path
 from stepnc_model.toolpath.hole.operation import hole_path
 from stepnc_model.toolpath.path import Move, MoveType, Point, SpindleCommand, ToolPath

@@ -9,7 +9,8 @@ from math import pi
 
 import pytest
 
-from simulator.physics import engagement, kinematics, milling, power, surface
+from simulator.physics import cutting as power
+from simulator.physics import engagement, kinematics, milling, surface
 from simulator.physics.engagement import Engagement
 from simulator.spec import Kienzle
 from stepnc_model.units import (

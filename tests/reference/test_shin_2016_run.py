@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from pyarrow import parquet
 
 from service.simulation.run import Simulation, simulate
+from simulator.files.machine_file import machine_toml
 from simulator.library import load_machine
-from simulator.machine_file import machine_toml
 from tests.asking import asked_simulation
 
 ROOT = Path(__file__).parents[2]

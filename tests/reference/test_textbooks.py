@@ -4,12 +4,12 @@ from math import pi, sin, sqrt
 
 import pytest
 
+from simulator.physics import cutting as power
 from simulator.physics import (
     drilling,
     engagement,
     kinematics,
     milling,
-    power,
     surface,
     tool_life,
     turning,

@@ -7,15 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from simulator.physics import (
-    engagement,
-    kinematics,
-    milling,
-    power,
-    surface,
-    tool_life,
-    turning,
-)
+from simulator.physics import cutting as power
+from simulator.physics import engagement, kinematics, milling, surface, tool_life, turning
 from simulator.spec import Kienzle, LinearEdge, Taylor
 from stepnc_model import units
 from tests.oracles import cutting as oracle

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from kbe.store import open_store
-from service.buckets import BucketedRun
 from service.control.run import ControlRun, control
-from service.simulation.gathering import TraceKeeper
-from service.simulation.of_code import CodeRequest
+from service.plots.buckets import BucketedRun
+from service.simulation.code_simulation import CodeRequest
 from service.simulation.run import Simulation
+from service.simulation.run_collector import TraceKeeper
 from simulator.library import load_machine
 from simulator.machine.samples import Samples
 from simulator.machine.totals import Energy, Peak, Total

@@ -12,10 +12,10 @@ from typing import TypeVar
 import pytest
 
 import stepnc
-from optimiser import limits
-from optimiser.conditions import CuttingConditions
-from optimiser.cut import Cut
-from optimiser.problem import Limit, LimitName, Monomial
+from optimiser.bounds import limits
+from optimiser.cuts.conditions import CuttingConditions
+from optimiser.cuts.cut import Cut
+from optimiser.solver.problem import Limit, LimitName, Monomial
 from service.verbs.result import Result
 from simulator import library
 from stepnc_model.post import dialects

@@ -14,7 +14,7 @@ from kbe.store import open_store
 from service.cli.interrupts import INTERRUPTED
 from service.cli.main import main
 from service.control.run import control
-from service.exit_codes import BAD_INPUT
+from service.errors import BAD_INPUT
 from stepnc_model.errors import WriteError
 from tests.asking import AskedControl
 from tests.every_case import every_case

@@ -16,8 +16,8 @@ import pytest
 from pyarrow import csv, parquet
 
 from service.cli.main import main
-from service.simulation import gathering
-from service.simulation.of_code import CodeRequest
+from service.simulation import run_collector as gathering
+from service.simulation.code_simulation import CodeRequest
 from service.simulation.run import simulate
 from stepnc_model.errors import StepNcError, WriteError
 from tests.asking import asked_simulation

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from service.cli.main import main as stepnc
-from service.exit_codes import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, OK
+from service.errors import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, OK
 from tests.every_case import every_case
 
 ROOT = Path(__file__).parents[2]

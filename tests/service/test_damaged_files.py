@@ -13,9 +13,9 @@ import pytest
 from pyarrow import parquet
 
 import stepnc
-from service.learning.model_file import save_model
+from extras.learning.model_file import save_model
+from tests.extras.learning.tables import law_table, written
 from tests.service.damage import EXPECTED, PARTS, damaged, programs, run
-from tests.service.learning.tables import law_table, written
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "examples"

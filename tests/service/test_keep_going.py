@@ -9,14 +9,14 @@ import pytest
 import stepnc
 from service.cli.main import main, optimise_main
 from stepnc_model.ap238.export import to_ap238
+from stepnc_model.editing.user_data import GivenData, GivenFeed, completed
+from stepnc_model.editing.withdrawal import without_user_data
 from stepnc_model.errors import SchemaError
-from stepnc_model.given import GivenData, GivenFeed, completed
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
-from stepnc_model.technology import programmed
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.technology import programmed
 from stepnc_model.units import FeedUnit
-from stepnc_model.withdrawal import without_user_data
 
 HEAD = [
     "ISO-10303-21;",

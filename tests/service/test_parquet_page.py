@@ -7,7 +7,7 @@ import pyarrow as pa
 import pytest
 from pyarrow import parquet
 
-from service.parquet_pieces import ParquetPage, pages
+from service.outputs.parquet_pieces import ParquetPage, pages
 from tests.every_case import every_case
 
 

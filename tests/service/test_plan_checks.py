@@ -5,11 +5,11 @@ from dataclasses import replace
 import pytest
 
 from optimiser.advice import Plan
-from optimiser.formulate import OptimisationTask
+from optimiser.cuts.source import from_features
 from optimiser.optimise import optimise_program
-from optimiser.source import from_features
+from optimiser.planning.formulate import OptimisationTask
 from service.cli.commands import print_result
-from service.records import changes_of
+from service.programs.advice_records import changes_of
 from service.verbs.optimise.plan_record import unchecked_words
 from service.verbs.optimise.plan_result import ProgramAdvice
 from simulator.library import load_machine, load_material

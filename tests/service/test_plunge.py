@@ -9,13 +9,13 @@ import pytest
 
 from optimiser.advice import Advice
 from service.cli.main import main, optimise_main
-from service.confirmation import ConfirmedStep
-from service.paths.toolpaths import nc_lines, paths_of, with_feeds
-from service.reading import read_program
+from service.programs.reading import read_program
+from service.programs.toolpaths import nc_lines, paths_of, with_feeds
+from service.simulation.confirmation import ConfirmedStep
 from service.verbs.optimise import program as advising
 from service.verbs.optimise.plan_result import ProgramAdvice
-from stepnc_model import writeback
-from stepnc_model.file_profile import FileProfile, RecordChoice
+from stepnc_model.editing import writeback
+from stepnc_model.editing.file_profile import FileProfile, RecordChoice
 from stepnc_model.post.dialect import Dialect
 from tests.asking import asked_advice
 

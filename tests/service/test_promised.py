@@ -5,7 +5,7 @@ from functools import cache
 import pytest
 
 from benchmarks.promised import Case, cases, confirmed, is_compared, off, summary
-from service.confirmation import Confirmation
+from service.simulation.confirmation import Confirmation
 
 LOADS, TIME = 0.05, 0.01
 SAMPLE = (

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from optimiser.clamped import ClampedStocks
-from service.raw_stock import body_map, user_stock
-from service.reading import read_program, user_data
+from optimiser.cuts.fixtured_stock import ClampedStocks
+from service.programs.raw_stock import body_map, user_stock
+from service.programs.reading import read_program, user_data
 from service.requests.advice import AdviceRequest
-from service.requests.given import ProgramRequest, RawPart, StockFile
+from service.requests.program_facts import ProgramRequest, RawPart, StockFile
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, simulate
 from service.verbs.optimise.plan_result import ProgramAdvice
@@ -19,11 +19,11 @@ from simulator.library import load_machine
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from simulator.removal.stock_file import stock_bytes
+from stepnc_model.editing.user_data import completed
 from stepnc_model.errors import Severity, StepNcError
-from stepnc_model.given import completed
-from stepnc_model.program import Stock
-from tests.service.verification.files import write_stl
-from tests.simulator.verification.box import box
+from stepnc_model.programs.program import Stock
+from tests.extras.verification.files import write_stl
+from tests.extras.verification.model.box import box
 
 SLOT = Path("examples/parts/paper003_case1.stpnc")
 HALF = 50.8 * 8.0 * 6.0

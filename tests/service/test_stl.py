@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from service.part_file import read_part
+from service.inputs.part_file import read_part
 from stepnc_model.errors import StepNcError
-from tests.service.verification.files import write_stl
-from tests.simulator.verification.box import box
+from tests.extras.verification.files import write_stl
+from tests.extras.verification.model.box import box
 
 BOX = box((0.0, 0.0, -10.0), (40.0, 20.0, 0.0))
 

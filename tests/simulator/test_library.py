@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from simulator.errors import LibraryError, UnknownMachine, UnknownMaterial
-from simulator.grade_file import read_grades
+from simulator.files.grade_file import read_grades
 from simulator.library import (
     DATA,
     find_grade,
@@ -20,7 +20,7 @@ from simulator.library import (
     material_names,
 )
 from simulator.spec import CuttingMaterial, ToolConstruction, ToolKind
-from stepnc_model.plausibility import MAX_CUTTING_SPEED
+from stepnc_model.programs.plausibility import MAX_CUTTING_SPEED
 from stepnc_model.units import m_min_from_speed
 from tests.every_case import every_case
 

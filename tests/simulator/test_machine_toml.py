@@ -9,13 +9,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from simulator import handling_file as between
-from simulator import holding_file as read_as
-from simulator import machine_file as allowed
-from simulator import mode_file as modes
+from simulator.files import handling_file as between
+from simulator.files import holding_file as read_as
+from simulator.files import machine_file as allowed
+from simulator.files import mode_file as modes
+from simulator.files.machine_file import MachineFile, machine_toml
+from simulator.files.material_file import MaterialHead
+from simulator.files.toml_file import converted, read_toml_head
 from simulator.library import load_machine, machine_names
-from simulator.machine_file import MachineFile, machine_toml
-from simulator.material_file import MaterialHead
 from simulator.planner_settings import PlannerSettings
 from simulator.spec import (
     Axis,
@@ -31,7 +32,6 @@ from simulator.spec import (
     VibratingPart,
     VibrationMode,
 )
-from simulator.toml_file import converted, read_toml_head
 from simulator.work_holding import Chuck, Clamp, Holding
 from stepnc_model.units import (
     n_mm_from_n_um,

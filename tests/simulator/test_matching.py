@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from simulator.errors import UnknownMaterial
+from simulator.files.toml_file import read_toml
 from simulator.library import (
     DATA,
     GuessFile,
@@ -16,7 +17,6 @@ from simulator.library import (
     normalised,
 )
 from simulator.spec import Certainty
-from simulator.toml_file import read_toml
 from tests.every_case import every_case
 
 

@@ -7,7 +7,7 @@ import pytest
 from simulator.library import load_material
 from simulator.removal.cutter import Cutter
 from simulator.spec import CuttingMaterial, ToolKind
-from simulator.tool_table import TableTool, grade_for, grade_of_table_tool
+from simulator.tools.tool_table import TableTool, grade_for, grade_of_table_tool
 
 STEEL = load_material("c45")
 MILL = TableTool(

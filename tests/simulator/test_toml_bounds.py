@@ -11,8 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simulator.errors import LibraryError
-from simulator.library import DATA
-from simulator.toml_file import (
+from simulator.files.toml_file import (
     LONGEST_WORD,
     MOST_BYTES,
     MOST_NESTED,
@@ -24,6 +23,7 @@ from simulator.toml_file import (
     read_text,
     require_bounded,
 )
+from simulator.library import DATA
 from tests.every_case import every_case
 
 SIZE = 1 << 16
@@ -69,7 +69,7 @@ def test_a_hostile_file_costs_no_memory(tmp_path: Path) -> None:
     path = write(tmp_path, HOSTILE["dotted key"])
     words = (
         "import resource, sys; from pathlib import Path\n"
-        "from simulator.toml_file import parsed, read_text\n"
+        "from simulator.files.toml_file import parsed, read_text\n"
         "resource.setrlimit(resource.RLIMIT_AS, (1 << 29, 1 << 29))\n"
         "resource.setrlimit(resource.RLIMIT_CPU, (10, 10))\n"
         "path = Path(sys.argv[1]); parsed(read_text(path), path)\n"

@@ -4,7 +4,7 @@ import pytest
 
 from simulator.spec import ToolKind
 from simulator.tool_kind import tool_kind
-from stepnc_model.tool import Tool
+from stepnc_model.programs.tool import Tool
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from simulator.library import load_material, material_names
 from simulator.spec import CuttingMaterial, ToolKind
-from simulator.tool_table import GROUPS, grade_for, possible_groups, why_unsuited
+from simulator.tools.tool_table import GROUPS, grade_for, possible_groups, why_unsuited
 from tests.every_case import every_case
 
 HSS, CARBIDE, CERAMIC = CuttingMaterial.HSS, CuttingMaterial.CARBIDE, CuttingMaterial.CERAMIC

@@ -1,6 +1,6 @@
 """Circles of references."""
 
-from stepnc_model.binding import circles
+from stepnc_model.programs.binding import circles
 from tests.every_case import every_case
 
 

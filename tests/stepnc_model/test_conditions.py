@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.stepnc_model.test_program import (
+from tests.stepnc_model.programs.test_program import (
     COMMON,
     PROJECT,
     ids,

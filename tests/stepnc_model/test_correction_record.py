@@ -9,10 +9,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from stepnc_model.editing.outcome_record import (
+    RecordedCorrection,
+    read_outcomes,
+    write_outcomes,
+)
 from stepnc_model.outcome import Context, LearnedCorrection
-from stepnc_model.outcome_record import RecordedCorrection, read_outcomes, write_outcomes
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 BRACKET = (PARTS / "bracket.stpnc").read_bytes()

@@ -6,7 +6,7 @@ import pytest
 
 from stepnc_model.errors import Severity
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.remarks import doubts
 from tests.service.test_keep_going import program
 

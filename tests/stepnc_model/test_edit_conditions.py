@@ -4,14 +4,14 @@ from pathlib import Path
 
 import pytest
 
-from stepnc_model.cut_settings import edit_depth, edit_number, rounded
-from stepnc_model.draft import Draft
+from stepnc_model.editing.cut_settings import edit_depth, edit_number, rounded
+from stepnc_model.editing.draft import Draft
 from stepnc_model.entities.operations import Toolpath
 from stepnc_model.errors import SchemaError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
-from stepnc_model.technology import programmed
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.technology import programmed
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 

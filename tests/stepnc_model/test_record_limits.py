@@ -7,12 +7,12 @@ import pytest
 
 from service.verbs.optimise.plan_result import ProgramAdvice
 from service.verbs.optimise.program import advise_program as optimise
+from stepnc_model.editing.record import AdviceRecord
+from stepnc_model.editing.record_edit import NO_LIMITS, RecordLimits, find_record, record_limits
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
-from stepnc_model.record import AdviceRecord
-from stepnc_model.record_edit import NO_LIMITS, RecordLimits, find_record, record_limits
+from stepnc_model.programs.program import Program
 from tests.asking import asked_advice
-from tests.stepnc_model.test_record import RECORD
+from tests.stepnc_model.editing.test_record import RECORD
 
 FIGURE = Path(__file__).parents[1] / "data" / "fig11.stpnc"
 PART = Path(__file__).parents[2] / "examples" / "parts" / "paper002.stpnc"

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stepnc_model.outcome_record import (
+from stepnc_model.editing.outcome_record import (
     instant,
     known,
     measured_or_none,

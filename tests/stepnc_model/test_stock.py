@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program, Stock
+from stepnc_model.programs.program import Program, Stock
 from stepnc_model.toolpath.task import stock_of
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"

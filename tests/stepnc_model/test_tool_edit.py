@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from stepnc_model.cut_settings import with_tool_diameter
+from stepnc_model.editing.cut_settings import with_tool_diameter
 from stepnc_model.entities.tools import MillingCuttingTool
 from stepnc_model.errors import SchemaError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
-from stepnc_model.tool import tool_of
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.tool import tool_of
 from tests.every_case import every_case
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"

@@ -11,13 +11,18 @@ from random import Random
 
 import pytest
 
-from service.reading import read_program
+from service.programs.reading import read_program
 from stepnc_model.errors import SchemaError, StepNcError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.plausibility import proposal, refusal, unit_findings, units_by_numbers
-from stepnc_model.program import Program
-from stepnc_model.technology import programmed
-from stepnc_model.tool import tool_of
+from stepnc_model.programs.plausibility import (
+    proposal,
+    refusal,
+    unit_findings,
+    units_by_numbers,
+)
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.technology import programmed
+from stepnc_model.programs.tool import tool_of
 from stepnc_model.units import ISO, PROFILES, FeedUnit, UnitProfile
 from tests.checked import check
 

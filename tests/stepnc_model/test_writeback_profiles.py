@@ -2,14 +2,14 @@
 
 import pytest
 
-from stepnc_model import writeback
-from stepnc_model.file_profile import FileProfile
+from stepnc_model.editing import writeback
+from stepnc_model.editing.file_profile import FileProfile
+from stepnc_model.editing.record import PREFIX
+from stepnc_model.editing.record_edit import RECORD_KEYWORDS
+from stepnc_model.editing.writeback import SCHEMA
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.record import PREFIX
-from stepnc_model.record_edit import RECORD_KEYWORDS
-from stepnc_model.technology import programmed
-from stepnc_model.writeback import SCHEMA
+from stepnc_model.programs.technology import programmed
 from tests.stepnc_model.written import (
     PARTS_NAMES,
     PROFILES,

@@ -58,7 +58,7 @@ read = {
     said += refusals(
         "load_model(path)",
         [tmp_path / "stepnc.json"],
-        imports="from service.learning.model_file import load_model",
+        imports="from extras.learning.model_file import load_model",
         memory=2000,
     )
     assert len(said) == len(names) + 1

@@ -8,13 +8,13 @@ from tempfile import TemporaryDirectory
 import pytest
 
 from service.verbs.optimise.program import advise_program as optimise
-from stepnc_model import writeback
-from stepnc_model.file_profile import FileProfile
+from stepnc_model.editing import writeback
+from stepnc_model.editing.file_profile import FileProfile
+from stepnc_model.editing.record import AdviceRecord
+from stepnc_model.editing.writeback import WorkingstepUpdate
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program, ResolvedWorkingstep
-from stepnc_model.record import AdviceRecord
-from stepnc_model.technology import programmed
-from stepnc_model.writeback import WorkingstepUpdate
+from stepnc_model.programs.program import Program, ResolvedWorkingstep
+from stepnc_model.programs.technology import programmed
 from tests.asking import asked_advice
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"

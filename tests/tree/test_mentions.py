@@ -6,7 +6,7 @@ Not run, and why:
 - ``python -m benchmarks…``: minutes, and their figures are of one machine;
 - ``python examples/…``: run, or its parts, in ``tests/examples``;
 - ``curl`` and what stands in its blocks: run by ``tests/docs/test_service_page.py`` and
-  ``tests/simulator/agent/test_puts.py``;
+  ``tests/extras/agent/model/test_puts.py``;
 - commands in the text, ``like this``: fragments, with ``part.stpnc`` for any program.
 """
 

@@ -16,7 +16,7 @@ IMPORT = re.compile(r"^ *from ([\w.]+) import (\([^)]*\)|.*)$", flags=re.MULTILI
 
 THROUGH = {
     "simulator/physics/test_surface_spread.py": ("simulator/surface_law.py",),
-    "simulator/linuxcnc/test_bench.py": ("simulator/linuxcnc/session.py",),
+    "extras/linuxcnc/test_bench.py": ("extras/linuxcnc/session.py",),
     "simulator/motion/test_linuxcnc_planner.py": ("simulator/motion/corner_blends.py",),
     "stepnc_model/ap238/test_export.py": (
         "stepnc_model/ap238/building.py",
@@ -24,12 +24,12 @@ THROUGH = {
         "stepnc_model/ap238/requirements.py",
     ),
     "stepnc_model/ap238/test_reading.py": (
-        "stepnc_model/ap238/following.py",
-        "stepnc_model/ap238/upright.py",
+        "stepnc_model/ap238/reference_paths.py",
+        "stepnc_model/ap238/orientation.py",
     ),
     "stepnc_model/entities/test_order.py": ("stepnc_model/entities/workpiece.py",),
     "stepnc_model/nc/test_macros.py": ("stepnc_model/nc/flow_keywords.py",),
-    "stepnc_model/nc/test_exact.py": (
+    "stepnc_model/nc/test_exact_reading.py": (
         "stepnc_model/nc/klartext_cycles.py",
         "stepnc_model/nc/klartext_switches.py",
         "stepnc_model/nc/spindle.py",
@@ -53,42 +53,40 @@ THROUGH = {
         "stepnc_model/nc/iso_modes.py",
         "stepnc_model/nc/split.py",
     ),
-    "simulator/calibration/test_cut_fit.py": ("simulator/calibration/log_model.py",),
-    "service/verbs/calibrate/test_cuts.py": (
-        "service/verbs/validate/request.py",
-        "service/verbs/validate/result.py",
-        "service/verbs/validate/run.py",
-        "simulator/calibration/material_text.py",
+    "extras/calibration/model/test_cut_fit.py": ("extras/calibration/model/log_model.py",),
+    "extras/calibration/verbs/calibrate/test_cuts.py": (
+        "extras/calibration/verbs/validate/request.py",
+        "extras/calibration/verbs/validate/result.py",
+        "extras/calibration/verbs/validate/run.py",
+        "extras/calibration/model/material_text.py",
     ),
-    "simulator/factory/test_queueing.py": ("simulator/factory/upkeep.py",),
-    "simulator/factory/test_shop_file.py": ("simulator/factory/shop_tables.py",),
-    "simulator/factory/test_station.py": (
-        "simulator/factory/crews.py",
-        "simulator/factory/shifts.py",
-        "simulator/factory/state_book.py",
-        "simulator/factory/surroundings.py",
+    "extras/factory/model/test_queueing.py": ("extras/factory/model/upkeep.py",),
+    "extras/factory/model/test_shop_file.py": ("extras/factory/model/shop_tables.py",),
+    "extras/factory/model/test_station.py": (
+        "extras/factory/model/crews.py",
+        "extras/factory/model/state_book.py",
+        "extras/factory/model/surroundings.py",
     ),
-    "service/verbs/optimise/test_path_only.py": ("optimiser/path_only.py",),
-    "optimiser/test_holding.py": ("optimiser/asked_of_holding.py",),
-    "service/agent/test_run.py": ("simulator/agent/machine_feed.py",),
+    "service/verbs/optimise/test_path_only.py": ("optimiser/cuts/bare_path.py",),
+    "optimiser/bounds/test_holding.py": ("optimiser/planning/holding_demand.py",),
+    "extras/agent/test_run.py": ("extras/agent/model/machine_feed.py",),
     "service/along_path/test_caution.py": (
-        "optimiser/along_path/cautious.py",
-        "optimiser/greatest_rise.py",
+        "optimiser/along_path/change_bounds.py",
         "service/simulation/line_spans.py",
     ),
-    "service/along_path/test_code_job.py": ("optimiser/along_path/held.py",),
-    "service/cli/test_code.py": ("service/overload_bounds.py",),
+    "service/along_path/test_code_job.py": ("optimiser/along_path/holding_limits.py",),
+    "service/cli/test_code.py": ("service/simulation/line_spans.py",),
     "service/along_path/test_output.py": ("service/along_path/figures.py",),
-    "service/along_path/test_run.py": ("service/along_path/of_program.py",),
-    "service/factory/test_factory.py": (
-        "service/factory/parts_file.py",
-        "service/factory/states_file.py",
+    "service/along_path/test_run.py": ("service/along_path/program_feeds.py",),
+    "extras/factory/test_factory.py": (
+        "extras/factory/parts_file.py",
+        "extras/factory/states_file.py",
     ),
     "service/jobs/test_runner.py": ("service/jobs/frozen.py",),
     "service/verbs/kbe/test_run.py": ("service/requests/output.py",),
     "service/rest/test_agent.py": (
         "extras/agent/rest.py",
-        "service/agent/shop.py",
+        "extras/agent/shop.py",
     ),
     "service/rest/test_resource.py": (
         "extras/factory/jobs.py",
@@ -101,19 +99,17 @@ THROUGH = {
     ),
     "service/rest/test_monitors.py": ("service/rest/monitor_views.py",),
     "service/rest/test_programs.py": ("service/rest/uploads.py",),
-    "service/rest/test_raw_part.py": ("service/requests/stored_stock.py",),
-    "service/rest/test_serve.py": ("service/web_server.py",),
     "service/storage": ("service/storage/connection.py",),
     "service/test_keep_going.py": (
-        "stepnc_model/own_operation.py",
-        "stepnc_model/toolpath/left_out.py",
-        "service/refusals.py",
+        "stepnc_model/editing/own_operation.py",
+        "stepnc_model/toolpath/omissions.py",
+        "service/programs/refusals.py",
     ),
-    "service/test_log_lines.py": ("service/fork_log.py",),
-    "service/test_report.py": ("service/figures.py",),
+    "service/processes/test_log_lines.py": ("service/processes/fork_log.py",),
+    "service/test_report.py": ("service/plots/plan_figures.py",),
     "service/verbs/test_verb.py": ("service/requests/files.py",),
-    "service/verbs/control/test_linuxcnc.py": ("service/simulation/drive.py",),
-    "service/test_uses.py": ("service/paths/remarks.py",),
+    "extras/linuxcnc/test_drive.py": ("service/simulation/drive.py",),
+    "service/verbs/check/test_uses.py": ("service/programs/remarks.py",),
 }
 """tests, and the modules that they run through others"""
 

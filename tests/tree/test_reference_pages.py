@@ -14,7 +14,7 @@ from docs.hooks.error_page import error_classes, error_page
 from docs.hooks.express.reader import read_schemas
 from docs.hooks.markdown import cell, code
 from docs.hooks.rest_page import openapi_document, operations, rest_page
-from service import exit_codes
+from service import errors as exit_codes
 from service.cli.commands import parser
 from stepnc_model.errors import Severity, StepNcError
 from tests.docs.pages import DOCS, ROOT, section

@@ -1,21 +1,21 @@
 """Bounds that the page about the service gives are those of the program."""
 
+from extras.factory import shop_sources as asked
+from extras.factory.requests import MOST_REPLICATIONS
 from extras.verification.rest import PLACES_SHOWN
-from service.code_check import LONGEST as LONGEST_CHECK
-from service.factory import asked
-from service.http_protocol import HEAD_S
 from service.jobs.runner import LONGEST, LONGEST_PACED, MOST_PACED
+from service.live.runner import FORGOTTEN_AFTER, MOST_ROWS
 from service.live.series import MOST_BYTES
-from service.requests.factory import MOST_REPLICATIONS
+from service.rest.code_check import LONGEST as LONGEST_CHECK
 from service.rest.files import LARGEST_TOOLS
 from service.rest.settings import Settings
-from service.session.runner import FORGOTTEN_AFTER, MOST_ROWS
+from service.rest.upload_content import MOST_ELEMENTS
+from service.rest.upload_content import MOST_ROWS as MOST_LOGGED
 from service.simulation.live import MOST_SAMPLES
 from service.storage.jobs import MOST_WAITING, OWNERS
 from service.verbs.serve.request import USUAL_RATE
-from service.verification.inputs import MOST_ELEMENTS
-from service.verification.inputs import MOST_ROWS as MOST_LOGGED
-from simulator.toml_file import MOST_BYTES as MOST_BYTES_OF_TOML
+from service.web.http_protocol import HEAD_S
+from simulator.files.toml_file import MOST_BYTES as MOST_BYTES_OF_TOML
 from tests.docs.pages import DOCS
 
 

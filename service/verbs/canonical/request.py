@@ -5,7 +5,7 @@ from typing import Annotated
 
 from service.requests.fields import About, Request
 from service.requests.files import KeepsGoing, NamedTools, ProgramFile
-from service.requests.given import ProgramRequest
+from service.requests.program_facts import ProgramRequest
 from stepnc_model.post.dialect import Dialect
 
 

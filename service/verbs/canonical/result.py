@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from service.exit_codes import BAD_INPUT, OK
+from service.errors import BAD_INPUT, OK
 from service.rendering.columns import Column
 from service.rendering.view import Fact, ResultView, Table, TextLine
 from service.verbs.result import Result

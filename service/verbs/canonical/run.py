@@ -3,16 +3,16 @@
 from pathlib import Path
 
 from service.files import read_bytes
-from service.paths.toolpaths import paths_for_code
-from service.program_kind import NO_TABLE, ProgramKind, kind_for
+from service.inputs.program_kind import NO_TABLE, ProgramKind, kind_for
+from service.programs.reading import read_completed, tool_library
+from service.programs.toolpaths import paths_for_code
 from service.progress import Tell, silent
-from service.reading import read_completed, tool_library
-from service.requests.serves import require_served
+from service.requests.kind_options import require_served
 from service.verbs.canonical.request import CanonicalFiles, CanonicalRequest
 from service.verbs.canonical.result import CanonicalResult
 from stepnc_model.errors import PostError, StepNcError
-from stepnc_model.nc.exact import read
-from stepnc_model.nc.recognise import RecognisedControl, recognise
+from stepnc_model.nc.control_guess import RecognisedControl, recognise
+from stepnc_model.nc.exact_reading import read
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.canonical import commands
 from stepnc_model.post.dialect import Dialect

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from service.requests.fields import About, Request
 from service.requests.files import CodeControl, KeepsState, MostRepeats, NamedTools, ProgramFile
-from service.requests.given import Name, ProgramRequest
+from service.requests.program_facts import Name, ProgramRequest
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,16 +4,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import isnan
 
-from service.exit_codes import BAD_INPUT, OK
-from service.program_needs import ProgramNeeds
+from service.errors import BAD_INPUT, OK
+from service.programs.needs import ProgramNeeds
 from service.rendering.columns import Column, records
 from service.rendering.text import YELLOW
 from service.rendering.view import Fact, Findings, ResultView, Table, TextLine
-from service.uses import Use, UseName
+from service.verbs.check.uses import Use, UseName
 from service.verbs.result import Result
-from stepnc_model.counted import counted
 from stepnc_model.errors import Finding
-from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.plurals import counted
+from stepnc_model.programs.program import Program, ResolvedWorkingstep
 from stepnc_model.units import mm_min_from_speed
 
 MOST_INDENTED = 20

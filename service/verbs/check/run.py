@@ -6,17 +6,16 @@ from pathlib import Path
 import numpy as np
 
 from service.files import read_bytes
-from service.numbers import program_numbers_in
-from service.paths.remarks import all_findings, program_remarks, tell_remarks
-from service.paths.toolpaths import Paths, paths_of
-from service.program_kind import ProgramKind, kind_for
-from service.program_needs import needs_of
+from service.inputs.numbers import program_numbers_in
+from service.inputs.program_kind import ProgramKind, kind_for
+from service.programs.needs import needs_of
+from service.programs.reading import program_in, read_stock, tool_library, user_data, user_tools
+from service.programs.remarks import all_findings, program_remarks, tell_remarks
+from service.programs.toolpaths import Paths, paths_of
 from service.progress import Tell, silent
-from service.reading import program_in, read_stock, tool_library, user_data, user_tools
-from service.requests.serves import require_served
+from service.requests.kind_options import require_served
 from service.simulation.code_setup import CodeSetup, GivenSetup, code_setup
 from service.simulation.spindle_hand import turned_against
-from service.uses import uses_of
 from service.verbs.check.request import CheckFiles, CheckRequest
 from service.verbs.check.result import (
     CodeContents,
@@ -25,14 +24,15 @@ from service.verbs.check.result import (
     MoveCount,
     ProgramContents,
 )
+from service.verbs.check.uses import uses_of
 from simulator.removal.cutter import Cutter
+from stepnc_model.editing.user_data import completed
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError
-from stepnc_model.given import completed
 from stepnc_model.nc.moves import MoveKind, NcMoves
 from stepnc_model.nc.program import read_program
 from stepnc_model.nc.rewrite import rewrite
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.generate import KeptPaths
 
 

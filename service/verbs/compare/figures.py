@@ -5,7 +5,7 @@ from itertools import cycle
 
 import plotly.graph_objects as go
 
-from service.panels import CLEAR, FAINT, LEGEND
+from service.plots.panels import CLEAR, FAINT, LEGEND
 from service.verbs.compare.plan import PlanTotal
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#757575")

@@ -4,7 +4,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from simulator.toml_file import TableHead, converted
+from simulator.files.toml_file import TableHead, converted
 from stepnc_model.errors import StepNcError
 
 

@@ -10,7 +10,7 @@ from service.rendering.columns import Column
 from service.rendering.view import Fact, ResultView, Table, TextLine
 from service.verbs.compare.plan import NamedPlan, PlannedStep, PlanTotal, StepSetting
 from service.verbs.result import Result
-from stepnc_model.counted import counted
+from stepnc_model.plurals import counted
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

@@ -8,8 +8,8 @@ from service.progress import Tell, silent
 from service.verbs.compare.plan import ComparedPlan, NamedPlan, read_plan
 from service.verbs.compare.request import MOST_PLANS, ComparisonFiles, ComparisonRequest
 from service.verbs.compare.result import ComparisonResult
-from stepnc_model.counted import counted
 from stepnc_model.errors import StepNcError
+from stepnc_model.plurals import counted
 
 MOST_BYTES = 1 << 26
 """of a plan; one of 1000 workingsteps has 4 MB"""

@@ -23,7 +23,7 @@ from service.control.facts import (
     whole,
 )
 from service.control.run import ControlRun
-from service.exit_codes import BAD_INPUT, LIMIT_EXCEEDED, OK
+from service.errors import BAD_INPUT, LIMIT_EXCEEDED, OK
 from service.rendering.columns import Cell, Change, Column, record
 from service.rendering.text import RED
 from service.rendering.view import Fact, Findings, Item, ResultView, Table, TextLine

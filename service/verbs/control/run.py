@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from service.control.record import control_recorded
-from service.numbers import numbers_in
+from service.inputs.numbers import numbers_in
 from service.progress import Tell, silent
 from service.requests.runs import ControlRequest
 from service.simulation.run_files import placed_run
@@ -35,7 +35,7 @@ def run(request: ControlRequest, files: ControlFiles, *, tell: Tell = silent) ->
     )
     with ExitStack() as stack:
         if files.linuxcnc:
-            from service.verbs.control.linuxcnc_drive import drive_of  # noqa: PLC0415 (an extra)
+            from extras.linuxcnc.drive_setup import drive_of  # noqa: PLC0415 (an extra)
 
             found_drive = drive_of(files, placed.request, stack, tell)
             places = replace(places, drive=found_drive.drive)
@@ -52,8 +52,8 @@ def _recorded(files: ControlFiles, tell: Tell) -> Path | None:
         return None
     if "://" not in files.recorded:
         return Path(files.recorded)
+    from service.recording.request import RecordingRequest  # noqa: PLC0415
     from service.recording.run import record  # noqa: PLC0415 (the client of agents)
-    from service.requests.recording import RecordingRequest  # noqa: PLC0415
 
     if files.file is None:
         raise StepNcError("--recorded needs a STEP-NC program: it is compared with its plan")

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated
 
 from service.requests.fields import About, FileUse, Request
-from stepnc_model.file_profile import FileProfile
+from stepnc_model.editing.file_profile import FileProfile
 
 WAY = "way"
 """Set of options of which exactly one is given."""

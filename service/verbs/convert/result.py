@@ -6,8 +6,8 @@ from pathlib import Path
 from service.rendering.view import Fact, Findings, ResultView, TextLine
 from service.verbs.convert.request import Standard
 from service.verbs.result import Result
+from stepnc_model.editing.file_profile import FileProfile
 from stepnc_model.errors import Finding
-from stepnc_model.file_profile import FileProfile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

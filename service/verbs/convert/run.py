@@ -1,16 +1,16 @@
 """Conversion of a program between ISO 14649 and AP238, or of its records between profiles."""
 
 from service.files import read_bytes, require_place, write_atomically
-from service.program_kind import require_step_nc
+from service.inputs.program_kind import require_step_nc
+from service.programs.reading import read_program
 from service.progress import Tell, silent
-from service.reading import read_program
 from service.verbs.convert.request import ConvertFiles, ConvertRequest, Standard
 from service.verbs.convert.result import ConvertResult
-from stepnc_model import writeback
 from stepnc_model.ap238.export import to_ap238
 from stepnc_model.ap238.view import AimView, is_aim
+from stepnc_model.editing import writeback
+from stepnc_model.editing.file_profile import FileProfile
 from stepnc_model.errors import Finding, StepNcError
-from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import plotly.graph_objects as go
 
-from service.panels import BLUE, CLEAR, FAINT, GREY, ORANGE
+from service.plots.panels import BLUE, CLEAR, FAINT, GREY, ORANGE
 from simulator.machine.block_times import BlockTimes
 from stepnc_model.units import SECONDS_PER_MINUTE
 

@@ -9,7 +9,7 @@ from annotated_types import Interval
 from service.requests.advice import MachineName
 from service.requests.fields import About, FileUse, Request
 from service.requests.files import KeepsState, MostRepeats, NamedTools, Report, SetupOfCode
-from service.requests.given import Name, ProgramRequest
+from service.requests.program_facts import Name, ProgramRequest
 from service.requests.runs import JUNCTION_DEVIATION
 from simulator.motion.model_name import ControlModelName
 from stepnc_model.errors import Finding

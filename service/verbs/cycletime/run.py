@@ -7,17 +7,17 @@ from pathlib import Path
 
 import numpy as np
 
-from service.chosen import machine_for, require_axes
 from service.files import require_place, write_atomically, write_lines
-from service.numbers import program_numbers_in
-from service.paths.toolpaths import paths_of, with_feeds
-from service.program_kind import NO_TABLE, ProgramKind, kind_of_file
+from service.inputs.numbers import program_numbers_in
+from service.inputs.program_kind import NO_TABLE, ProgramKind, kind_of_file
+from service.programs.machine_choice import machine_for, require_axes
+from service.programs.reading import read_completed, tool_library
+from service.programs.toolpaths import paths_of, with_feeds
 from service.progress import Tell, silent
-from service.reading import read_completed, tool_library
 from service.recording.logged_run import LoggedRun, read_logged_run
+from service.requests.kind_options import require_served
 from service.requests.runs import RunRequest
-from service.requests.serves import require_served
-from service.simulation.of_code import IDLE, CodeRequest, dialect_of, from_code
+from service.simulation.code_simulation import IDLE, CodeRequest, dialect_of, from_code
 from service.simulation.setup import PreparedRun
 from service.simulation.setup_file import SetupFile, setup_of
 from service.verbs.cycletime.request import CycleTimeFiles, CycleTimeRequest
@@ -29,12 +29,12 @@ from simulator.machine.virtual import MachineSetup, VirtualMachine
 from simulator.motion.control import control_model
 from simulator.motion.segments import Bools, axis_limits
 from simulator.spec import Machine
-from stepnc_model.counted import counted
 from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.nc.advice import BlockAdvice
 from stepnc_model.nc.moves import MoveKind
 from stepnc_model.nc.program import NcProgram
 from stepnc_model.nc.rewrite import rewrite
+from stepnc_model.plurals import counted
 from stepnc_model.post.blocks import Block, Circular, Linear
 from stepnc_model.post.dialects import write
 from stepnc_model.post.neutral import blocks_of

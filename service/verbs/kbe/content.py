@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 from kbe.backup import Content
 from service.rendering.view import Fact, ResultView, TextLine
 from service.verbs.result import Result
-from stepnc_model.counted import counted
+from stepnc_model.plurals import counted
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,6 +1,6 @@
 """Materials of the library, or one of them."""
 
-from service.chosen import load_material_named
+from service.programs.machine_choice import load_material_named
 from service.progress import Tell, silent
 from service.verbs.library import EntryResult, ListingResult
 from service.verbs.materials.request import MaterialsFiles, MaterialsRequest

@@ -21,22 +21,22 @@ from optimiser.modes import Mode
 from service.along_path.caution import CLEARANCE, Caution, rise_left
 from service.along_path.code_job import CodeJob, job_of
 from service.along_path.course import PathSource
+from service.along_path.feed_ceilings import unraised_tools
 from service.along_path.misuse import MisuseWatch
 from service.along_path.output import profile_lines
+from service.along_path.rewritten_code import CodeSource, written_code
 from service.along_path.run import FeedsAlongPath
 from service.along_path.task import least_feed, task_of
-from service.along_path.unraised import unraised_tools
-from service.along_path.written_code import CodeSource, written_code
-from service.chosen import load_material_named, require_axes, with_holding
 from service.files import read_bytes, write_atomically, write_lines
+from service.inputs.numbers import program_numbers_in, tool_numbers_in
 from service.knowledge.place import named_place, require_apart
-from service.numbers import program_numbers_in, tool_numbers_in
+from service.programs.machine_choice import load_material_named, require_axes, with_holding
 from service.progress import Tell, silent
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
 from service.simulation.code_paths import CodeBlocks, CodePaths
 from service.simulation.code_setup import CodeSetup, GivenSetup, code_setup
-from service.simulation.of_code import called_tool_findings, with_called_tools
+from service.simulation.code_simulation import called_tool_findings, with_called_tools
 from service.simulation.setup_file import setup_of
 from service.simulation.spindle_speeds import lacks_speed, speeds_in, with_spindles
 from service.verbs.optimise.code_result import CodeAdvice
@@ -44,12 +44,12 @@ from service.verbs.optimise.request import AdviceFiles, output_of
 from simulator.library import load_machine
 from simulator.machine.cutting import STOPPED
 from simulator.removal.cutter import THREADS
-from simulator.removal.kept_marches import MOST_BYTES, KeptMarches
-from stepnc_model.counted import counted
+from simulator.removal.march_cache import MOST_BYTES, KeptMarches
 from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.nc.advice import RewrittenCode
 from stepnc_model.nc.program import NcProgram, read_program
 from stepnc_model.nc.unroll import unrolled
+from stepnc_model.plurals import counted
 from stepnc_model.units import mm_from_um
 
 NO_JOB = CodeJob()

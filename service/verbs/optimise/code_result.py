@@ -5,15 +5,15 @@ from typing import TYPE_CHECKING
 
 from service.along_path.output import STEP, along_path_items, along_path_record
 from service.along_path.run import FeedsAlongPath
-from service.exit_codes import LIMIT_EXCEEDED, NOTHING_ADVISED, OK
+from service.errors import LIMIT_EXCEEDED, NOTHING_ADVISED, OK
 from service.rendering.columns import Column, records
 from service.rendering.text import RED
 from service.rendering.view import Fact, Findings, ResultView, TextLine
 from service.verbs.optimise.result import OptimiseResult
 from simulator.spec import Machine, MaterialMatch
-from stepnc_model.counted import counted
 from stepnc_model.errors import Finding
 from stepnc_model.nc.advice import RewrittenCode
+from stepnc_model.plurals import counted
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

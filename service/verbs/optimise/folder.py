@@ -17,11 +17,11 @@ from optimiser.errors import OptimisationError
 from service.execution.executors import Pools, processes, results
 from service.execution.pools import pools_of
 from service.files import PROGRAMS, is_same, naming, write_atomically
-from service.program_kind import ProgramKind
+from service.inputs.program_kind import ProgramKind
 from service.progress import Tell, Ticker, silent
 from service.requests.advice import AdviceRequest
 from service.requests.fields import require_bounds
-from service.requests.serves import require_served
+from service.requests.kind_options import require_served
 from service.verbs.optimise.folder_result import FolderAdvice
 from service.verbs.optimise.ledger import Ledger, ProgramRow, ProgramStatus, known_rows
 from service.verbs.optimise.program import advise_program

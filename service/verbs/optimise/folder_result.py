@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from service.exit_codes import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, OK
+from service.errors import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, OK
 from service.rendering.columns import Change, Column
 from service.rendering.view import Fact, ResultView, Table, TextLine
 from service.verbs.optimise.ledger import ProgramRow, ProgramStatus

@@ -10,16 +10,16 @@ from math import ceil
 from typing import TYPE_CHECKING, Any
 
 from optimiser.advice import Advice, EvaluatedSetting, LimitLoad, Plan, tightest
-from optimiser.cut import CutKind
-from optimiser.required import UncheckedLimit
-from optimiser.roughness import IDEAL
+from optimiser.bounds.required_limits import UncheckedLimit
+from optimiser.bounds.roughness import IDEAL
+from optimiser.cuts.cut import CutKind
 from service.rendering.columns import Column, record, records
 from simulator.physics.surface_spread import LIKELY
-from stepnc_model.counted import counted
+from stepnc_model.editing.user_data import SetAttribute
 from stepnc_model.errors import Finding, Severity
-from stepnc_model.given import SetAttribute
 from stepnc_model.part21.values import Value
-from stepnc_model.program import Program
+from stepnc_model.plurals import counted
+from stepnc_model.programs.program import Program
 from stepnc_model.units import (
     kw_from_watts,
     mm_min_from_speed,

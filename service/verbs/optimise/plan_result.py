@@ -10,12 +10,12 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, Plan
+from optimiser.bounds.roughness import IDEAL, basis_of
+from optimiser.bounds.stability import Basis
 from optimiser.modes import Mode
-from optimiser.problem import LimitName
-from optimiser.reasons import slower_than_programmed
-from optimiser.roughness import IDEAL, basis_of
-from optimiser.stability import Basis
-from service.exit_codes import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED, OK
+from optimiser.planning.reasons import slower_than_programmed
+from optimiser.solver.problem import LimitName
+from service.errors import BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, NOTHING_ADVISED, OK
 from service.rendering.columns import Cell, Change, Column, finding_record
 from service.rendering.text import RED
 from service.rendering.view import Fact, Findings, Item, ResultView, Table, TextLine
@@ -29,8 +29,8 @@ from service.verbs.optimise.plan_record import (
 from service.verbs.optimise.result import OptimiseResult
 from simulator.library import find_window
 from simulator.physics.tool_life import ASSUMED_LIFE
-from stepnc_model.counted import counted
 from stepnc_model.errors import Finding
+from stepnc_model.plurals import counted
 from stepnc_model.units import (
     kj_from_joules,
     kw_from_watts,
@@ -42,7 +42,7 @@ from stepnc_model.units import (
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
-    from service.confirmation import Confirmation, ConfirmedStep
+    from service.simulation.confirmation import Confirmation, ConfirmedStep
 
 
 def _change(value: Callable[[EvaluatedSetting], Cell]) -> Callable[[Advice], Cell]:
@@ -190,7 +190,7 @@ class ProgramAdvice(OptimiseResult):
 
     def figures(self) -> "list[go.Figure]":
         """Return figures of time, feed, power and limits by workingstep."""
-        from service.figures import plan_figures  # noqa: PLC0415 (plotly)
+        from service.plots.plan_figures import plan_figures  # noqa: PLC0415 (plotly)
 
         return list(plan_figures(self.plan))
 

@@ -7,51 +7,56 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from optimiser.advice import AdviceStatus, Plan
-from optimiser.formulate import OptimisationTask
+from optimiser.cuts.source import along_paths
 from optimiser.modes import Mode
 from optimiser.optimise import optimise_program
-from optimiser.source import along_paths
-from service.chosen import machine_for, material_for, require_axes, with_holding
+from optimiser.planning.formulate import OptimisationTask
 from service.files import (
     require_places,
     sibling,
     write_atomically,
     write_lines,
 )
-from service.knowledge.corrected import factors_for, finding_of, with_corrections
 from service.knowledge.place import named_place, require_apart
-from service.program_needs import needs_of
+from service.knowledge.plan_corrections import factors_for, finding_of, with_corrections
+from service.programs.advice_records import changes_of, lost_plunge_feeds
+from service.programs.machine_choice import (
+    machine_for,
+    material_for,
+    require_axes,
+    with_holding,
+)
+from service.programs.needs import needs_of
+from service.programs.reading import read_completed, selected, tool_library
+from service.programs.refusals import Writable, advisable, apart_from
 from service.progress import Progress, Tell, silent
-from service.reading import read_completed, selected, tool_library
-from service.records import changes_of, lost_plunge_feeds
-from service.refusals import Writable, advisable, apart_from
 from service.requests.advice import AdviceRequest
 from service.requests.fields import fields_of, require_bounds
-from service.requests.serves import OF_PATHS, changed_values
+from service.requests.kind_options import OF_PATHS, changed_values
 from service.verbs.optimise.plan_record import depth_notes
 from service.verbs.optimise.plan_result import ProgramAdvice
 from service.verbs.optimise.request import AdviceFiles, output_of
 from simulator.spec import Certainty, Machine, MaterialMatch
-from stepnc_model import writeback
-from stepnc_model.counted import counted
+from stepnc_model.editing import writeback
+from stepnc_model.editing.file_profile import FileProfile, RecordChoice
+from stepnc_model.editing.user_data import Completed
+from stepnc_model.editing.withdrawal import without_user_data
 from stepnc_model.errors import Finding, Severity, StepNcError
-from stepnc_model.file_profile import FileProfile, RecordChoice
-from stepnc_model.given import Completed
 from stepnc_model.part21.reader import Part21File
+from stepnc_model.plurals import counted
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.programs.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.generate import KeptPaths
 from stepnc_model.toolpath.task import stock_of
 from stepnc_model.units import mm_from_um
-from stepnc_model.withdrawal import without_user_data
 
 if TYPE_CHECKING:
-    from optimiser.clamped import StockMap
+    from optimiser.cuts.fixtured_stock import StockMap
     from service.along_path.run import FeedsAlongPath
-    from service.confirmation import Confirmation
     from service.knowledge.verbs import AcceptedFactor
+    from service.simulation.confirmation import Confirmation
     from simulator.tool_files.read import ToolLibrary
-    from simulator.tool_table import TableTool
+    from simulator.tools.tool_table import TableTool
     from stepnc_model.entities.executables import Setup
     from stepnc_model.part21.values import Ref
 
@@ -163,7 +168,7 @@ def _confirmed(
     """Comparison of a plan with its simulated run, if it was requested."""
     if not request.is_confirmed:
         return None
-    from service.confirm import confirm  # noqa: PLC0415 (numba takes a second)
+    from service.simulation.confirm import confirm  # noqa: PLC0415 (numba takes a second)
 
     return confirm(plan, program, _read_again(program, data), tell=tell)
 
@@ -179,7 +184,7 @@ def _along(
     """Feeds along the paths of an advised program, if they were requested."""
     if not request.is_along_path:
         return None
-    from service.along_path.of_program import along_program  # noqa: PLC0415 (numba)
+    from service.along_path.program_feeds import along_program  # noqa: PLC0415 (numba)
 
     return along_program(
         _read_again(program, data),
@@ -231,7 +236,7 @@ def _factor_notes(
 
 def _remarks(program: Program, paths: KeptPaths, tell: Tell) -> tuple[Finding, ...]:
     """Tell the warnings about a program that every command gives."""
-    from service.paths.remarks import program_remarks, tell_remarks  # noqa: PLC0415 (shapely)
+    from service.programs.remarks import program_remarks, tell_remarks  # noqa: PLC0415 (shapely)
 
     found = program_remarks(program, paths)
     tell_remarks(found, tell)
@@ -361,7 +366,7 @@ def _body_map(
     program: Program, setup: "Ref[Setup] | None", *, is_turning: bool, cell: float | None
 ) -> "StockMap | None":
     """Map of a raw part that is a body; None if it is a box or a bar."""
-    from service.raw_stock import body_map  # noqa: PLC0415 (numpy)
+    from service.programs.raw_stock import body_map  # noqa: PLC0415 (numpy)
 
     return body_map(program, setup, is_turning=is_turning, cell=cell)
 
@@ -386,10 +391,10 @@ def _nc_code(
 ) -> Iterator[str]:
     """Generate NC code of the optimised program."""
     control, is_exact = request.nc_control or Dialect.LINUXCNC, request.is_exact_path
-    from service.paths.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (numpy, shapely)
+    from service.programs.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (numpy, shapely)
 
     if along is not None:
-        from service.along_path.of_program import nc_lines_along  # noqa: PLC0415 (numpy, shapely)
+        from service.along_path.program_feeds import nc_lines_along  # noqa: PLC0415 (numpy, shapely)
 
         return nc_lines_along(program, along, control, is_exact=is_exact)
     paths = with_feeds(paths_of(program, tell=tell), keep_going=False)

@@ -1,9 +1,9 @@
 """Optimise a program of any kind, or the programs of a folder."""
 
-from service.program_kind import ProgramKind, kind_of_file
+from service.inputs.program_kind import ProgramKind, kind_of_file
 from service.progress import Tell, silent
 from service.requests.advice import AdviceRequest
-from service.requests.serves import require_served
+from service.requests.kind_options import require_served
 from service.verbs.optimise.program import advise_program
 from service.verbs.optimise.request import AdviceFiles
 from service.verbs.optimise.result import OptimiseResult

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from service.requests.fields import About, FileUse, Request
 from service.requests.files import KeepsGoing, NamedTools
-from service.requests.given import ProgramRequest
+from service.requests.program_facts import ProgramRequest
 from stepnc_model.post.dialect import Dialect
 
 

@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from service.exit_codes import BAD_INPUT, OK
-from service.paths.toolpaths import Paths
+from service.errors import BAD_INPUT, OK
+from service.programs.toolpaths import Paths
 from service.rendering.columns import finding_record
 from service.rendering.view import Fact, ResultView, TextLine
 from service.verbs.result import Result
-from stepnc_model.counted import counted
+from stepnc_model.plurals import counted
 from stepnc_model.post.dialect import Dialect
 
 

@@ -1,13 +1,13 @@
 """NC code of a STEP-NC program."""
 
 from service.files import require_place, sibling, write_lines
-from service.paths.toolpaths import nc_lines, paths_for_code
-from service.program_kind import require_step_nc
+from service.inputs.program_kind import require_step_nc
+from service.programs.reading import read_completed, tool_library
+from service.programs.toolpaths import nc_lines, paths_for_code
 from service.progress import Tell, silent
-from service.reading import read_completed, tool_library
 from service.verbs.post.request import PostFiles, PostRequest
 from service.verbs.post.result import PostResult
-from stepnc_model.counted import counted
+from stepnc_model.plurals import counted
 from stepnc_model.post.blocks import Cycles
 
 NO_CODE = (

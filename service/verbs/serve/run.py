@@ -1,13 +1,13 @@
 """The service, until it is stopped."""
 
-from service.known_hosts import LOOPBACK
 from service.monitor.source import sources_of
-from service.process_limits import GIB
+from service.processes.process_limits import GIB
 from service.progress import Tell, silent
 from service.rest.serve import ServerOptions, serve
 from service.rest.settings import MIB, Settings
 from service.verbs.result import ServedResult
 from service.verbs.serve.request import USUAL_RATE, ServeFiles, ServeRequest
+from service.web.known_hosts import LOOPBACK
 from stepnc_model.errors import StepNcError
 
 

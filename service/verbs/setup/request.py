@@ -7,7 +7,7 @@ from typing import Annotated
 from service.requests.advice import MachineName, MaterialName
 from service.requests.fields import About, FileUse, Request
 from service.requests.files import CodeControl, KeepsState, MostRepeats, ToolsUnit
-from service.requests.given import RawPart, raw_part_in
+from service.requests.program_facts import RawPart, raw_part_in
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,9 +1,9 @@
 """Draft of the setup of NC code."""
 
-from service.chosen import load_material_named
 from service.files import read_bytes, require_place, write_atomically
-from service.numbers import program_numbers_in
-from service.program_kind import ProgramKind, kind_for
+from service.inputs.numbers import program_numbers_in
+from service.inputs.program_kind import ProgramKind, kind_for
+from service.programs.machine_choice import load_material_named
 from service.progress import Tell, silent
 from service.simulation.code_setup import GivenSetup, code_setup
 from service.simulation.setup_draft import setup_draft

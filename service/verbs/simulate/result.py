@@ -9,7 +9,7 @@ from functools import partial
 from math import nan
 from typing import TYPE_CHECKING, Any
 
-from service.exit_codes import BAD_INPUT, LIMIT_EXCEEDED, OK
+from service.errors import BAD_INPUT, LIMIT_EXCEEDED, OK
 from service.rendering.columns import Column, record
 from service.rendering.text import RED
 from service.rendering.view import Fact, Findings, ResultView, Table, TextLine

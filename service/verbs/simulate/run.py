@@ -12,7 +12,7 @@ from service.verbs.simulate.request import SimulateFiles
 from service.verbs.simulate.result import SimulateResult
 from simulator.client.document_choices import DocumentChoice
 
-DOCUMENT = "service.agent.run:simulated_with_document"
+DOCUMENT = "extras.agent.run:simulated_with_document"
 """Function of an extra that runs a program and writes its document of MTConnect."""
 
 

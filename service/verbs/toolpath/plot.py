@@ -15,7 +15,7 @@ from service.verbs.toolpath.stretches import called_tool, tool_label
 from stepnc_model.nc.moves import MoveKind, NcMove
 from stepnc_model.nc.program import NcProgram
 from stepnc_model.post.blocks import MachineType
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 from stepnc_model.toolpath.arc import points_along
 from stepnc_model.toolpath.path import Move, MoveType, Point, ToolPath
 

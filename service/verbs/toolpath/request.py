@@ -13,7 +13,7 @@ from service.requests.files import (
     NamedTools,
     ProgramFile,
 )
-from service.requests.given import ProgramRequest
+from service.requests.program_facts import ProgramRequest
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,17 +4,17 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, overload
 
-from service.exit_codes import BAD_INPUT, OK
-from service.paths.toolpaths import Paths
+from service.errors import BAD_INPUT, OK
+from service.programs.toolpaths import Paths
 from service.rendering.columns import Column
 from service.rendering.view import Fact, Findings, ResultView, Table, TextLine
 from service.verbs.result import Result
 from service.verbs.toolpath.stretches import ToolStretch, called_tool, stretches, tool_label
-from stepnc_model.counted import counted
 from stepnc_model.nc.moves import NcMove, NcMoves
 from stepnc_model.nc.program import NcProgram
 from stepnc_model.nc.text import NcText
-from stepnc_model.program import Stock
+from stepnc_model.plurals import counted
+from stepnc_model.programs.program import Stock
 from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.path import (
     Dwell,

@@ -3,13 +3,13 @@
 from pathlib import Path
 
 from service.files import read_bytes, require_place, write_atomically
-from service.numbers import program_numbers_in
-from service.paths.toolpaths import paths_of, with_remarks
-from service.program_kind import NO_TABLE, ProgramKind, kind_for
+from service.inputs.numbers import program_numbers_in
+from service.inputs.program_kind import NO_TABLE, ProgramKind, kind_for
+from service.programs.raw_stock import raw_stock_of
+from service.programs.reading import read_completed, tool_library
+from service.programs.toolpaths import paths_of, with_remarks
 from service.progress import Tell, silent
-from service.raw_stock import raw_stock_of
-from service.reading import read_completed, tool_library
-from service.requests.serves import require_served
+from service.requests.kind_options import require_served
 from service.verbs.toolpath.request import ToolPathFiles, ToolPathRequest
 from service.verbs.toolpath.result import CodePathResult, ToolPathResult
 from stepnc_model.errors import StepNcError, WriteError

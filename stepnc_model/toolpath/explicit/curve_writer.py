@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import ceil, dist, pi
 
-from stepnc_model.draft import Draft
+from stepnc_model.editing.draft import Draft
 from stepnc_model.entities.enums import Logical, TransitionCode, TrimmingPreference
 from stepnc_model.entities.geometry import (
     Axis2Placement3d,

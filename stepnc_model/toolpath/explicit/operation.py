@@ -17,8 +17,8 @@ from stepnc_model.entities.executables import RapidMovement
 from stepnc_model.entities.operations import Toolpath, ToolpathList
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, ResolvedWorkingstep
-from stepnc_model.program_listing import ProgramLine
+from stepnc_model.programs.program import Program, ResolvedWorkingstep
+from stepnc_model.programs.program_listing import ProgramLine
 from stepnc_model.toolpath.explicit.path_builder import ExplicitPathBuilder, PathSurroundings
 from stepnc_model.toolpath.frame import (
     Frame,

@@ -30,8 +30,8 @@ from stepnc_model.entities.operations import (
 )
 from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, Stock
-from stepnc_model.tool import Tool
+from stepnc_model.programs.program import Program, Stock
+from stepnc_model.programs.tool import Tool
 from stepnc_model.toolpath.arc import points_along
 from stepnc_model.toolpath.curve import Bend, Segment, move_of
 from stepnc_model.toolpath.explicit.trajectory import (

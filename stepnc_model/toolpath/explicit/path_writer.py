@@ -10,7 +10,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from stepnc_model.draft import Draft
+from stepnc_model.editing.draft import Draft
+from stepnc_model.editing.file_profile import FileProfile
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import (
     BSplineCurveForm,
@@ -27,9 +28,8 @@ from stepnc_model.entities.operations import (
     ToolpathList,
     ToolpathSpeed,
 )
-from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.values import Real, Ref, Typed
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.explicit.curve_writer import CurveWriter, HelixForm
 from stepnc_model.toolpath.explicit.factor_curve import SHORTEST, FactorPart, factor_curve

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from stepnc_model.program import ResolvedWorkingstep
+from stepnc_model.programs.program import ResolvedWorkingstep
 from stepnc_model.toolpath.frame import Frame
 from stepnc_model.toolpath.path import Dwell, Move, Point
 

@@ -16,7 +16,6 @@ from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 from math import ceil, dist, hypot, inf
 
-from stepnc_model.counted import counted
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import SpeedName, ToolpathType
 from stepnc_model.entities.geometry import BSplineCurve, Polyline
@@ -30,8 +29,9 @@ from stepnc_model.entities.operations import (
     Trajectory,
 )
 from stepnc_model.part21.values import Ref, Typed
-from stepnc_model.program import Program
-from stepnc_model.tool import Tool
+from stepnc_model.plurals import counted
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.tool import Tool
 from stepnc_model.toolpath.arc import length, point_at
 from stepnc_model.toolpath.curve import Segment, path_segments
 from stepnc_model.toolpath.frame import Frame, point_of

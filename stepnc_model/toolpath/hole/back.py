@@ -42,9 +42,9 @@ from stepnc_model.entities.milling import (
 from stepnc_model.entities.technology import MillingMachineFunctions
 from stepnc_model.entities.tools import MillingCuttingTool
 from stepnc_model.errors import Finding
-from stepnc_model.outline import feature_depth
 from stepnc_model.part21.values import Ref
-from stepnc_model.tool import tool_of
+from stepnc_model.programs.outline import feature_depth
+from stepnc_model.programs.tool import tool_of
 from stepnc_model.toolpath.frame import (
     PARALLEL,
     Frame,

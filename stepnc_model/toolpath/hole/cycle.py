@@ -22,7 +22,7 @@ from stepnc_model.entities.milling import (
     Tapping,
 )
 from stepnc_model.entities.technology import MillingMachineFunctions
-from stepnc_model.technology import programmed
+from stepnc_model.programs.technology import programmed
 from stepnc_model.toolpath.hole.feature import Depth, Hole
 from stepnc_model.toolpath.path import CannedCycle, CycleKind, Feed, MoveType, SpindleCommand
 from stepnc_model.toolpath.task import PathBuilder, ToolPathTask

@@ -37,9 +37,9 @@ from stepnc_model.entities.profiles import (
 )
 from stepnc_model.entities.tools import BallEndmill, MillingCuttingTool, MillingToolBody
 from stepnc_model.errors import Finding
-from stepnc_model.outline import feature_depth
 from stepnc_model.part21.values import Ref
-from stepnc_model.tool import LEAST_TOP_ANGLE_DEG, body_of
+from stepnc_model.programs.outline import feature_depth
+from stepnc_model.programs.tool import LEAST_TOP_ANGLE_DEG, body_of
 from stepnc_model.toolpath.frame import (
     Frame,
     PlacedFeature,

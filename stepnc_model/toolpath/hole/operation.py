@@ -26,8 +26,8 @@ from math import ceil, hypot, inf, pi
 
 from stepnc_model.entities.features import DefinedThread, RoundHole, Thread
 from stepnc_model.entities.milling import BackBoring, DrillingTypeOperation, ThreadDrilling
-from stepnc_model.outline import feature_depth
 from stepnc_model.part21.values import Ref
+from stepnc_model.programs.outline import feature_depth
 from stepnc_model.toolpath.frame import point_of
 from stepnc_model.toolpath.hole.back import back_findings, back_holes, bore_back, bore_of
 from stepnc_model.toolpath.hole.cycle import (

@@ -10,7 +10,7 @@ from math import ceil
 
 import numpy as np
 
-from stepnc_model.tool import body_of
+from stepnc_model.programs.tool import body_of
 from stepnc_model.toolpath.milling.contour import (
     Chain,
     Loop,

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from stepnc_model.errors import SchemaError
-from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.programs.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.frame import placements
 from stepnc_model.toolpath.milling.contour import Chain
 from stepnc_model.toolpath.milling.cover import Area, Flank, Inset

@@ -39,8 +39,8 @@ from stepnc_model.entities.profiles import (
     VeeProfile,
     WoodruffSlotEndType,
 )
-from stepnc_model.outline import MOST, size, vee_angle
 from stepnc_model.part21.values import Ref
+from stepnc_model.programs.outline import MOST, size, vee_angle
 from stepnc_model.toolpath.curve import JOINED, Segment, move_of, segments_of
 from stepnc_model.toolpath.frame import Frame, direction_of, frame_of
 from stepnc_model.toolpath.milling.contour import (

@@ -36,7 +36,8 @@ from stepnc_model.entities.profiles import (
     RadiusedPocketBottomCondition,
     SphericalHoleBottom,
 )
-from stepnc_model.outline import (
+from stepnc_model.part21.values import Ref
+from stepnc_model.programs.outline import (
     boundary_of,
     known_depth,
     parameter,
@@ -44,7 +45,6 @@ from stepnc_model.outline import (
     size_or_zero,
     vee_angle,
 )
-from stepnc_model.part21.values import Ref
 from stepnc_model.toolpath.frame import Frame, frame_of, point_of
 from stepnc_model.toolpath.milling.contour import (
     Chain,

@@ -30,7 +30,7 @@ from stepnc_model.entities.milling import (
 )
 from stepnc_model.errors import Finding
 from stepnc_model.part21.values import Ref
-from stepnc_model.tool import body_of, hand_of
+from stepnc_model.programs.tool import body_of, hand_of
 from stepnc_model.toolpath.frame import direction_of
 from stepnc_model.toolpath.task import ToolPathTask
 from stepnc_model.units import rad_from_deg

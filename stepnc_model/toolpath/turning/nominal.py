@@ -2,7 +2,7 @@
 
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import SchemaError
-from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.programs.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.task import job_of
 from stepnc_model.toolpath.turning.operation import outlines_of
 from stepnc_model.toolpath.turning.outline import FeatureOutline

@@ -24,7 +24,7 @@ from stepnc_model.entities.turning import (
     Threading,
 )
 from stepnc_model.entities.turning_tools import TurningMachineCuttingTool
-from stepnc_model.outline import size_or_zero
+from stepnc_model.programs.outline import size_or_zero
 from stepnc_model.toolpath.path import MoveType, Point, ToolPath
 from stepnc_model.toolpath.task import DEFAULT_CLEARANCE, PathBuilder, ToolPathTask
 from stepnc_model.toolpath.turning.groove import groove

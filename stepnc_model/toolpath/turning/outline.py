@@ -37,8 +37,8 @@ from stepnc_model.entities.turning import (
     RevolvedFlat,
     RevolvedRound,
 )
-from stepnc_model.outline import size_or_zero, vee_angle
 from stepnc_model.part21.values import Ref
+from stepnc_model.programs.outline import size_or_zero, vee_angle
 from stepnc_model.toolpath.curve import Bend, Segment, segments_of
 from stepnc_model.toolpath.frame import Frame, frame_of
 from stepnc_model.toolpath.task import ToolPathTask

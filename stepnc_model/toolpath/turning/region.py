@@ -23,7 +23,7 @@ from stepnc_model.entities.turning import (
 )
 from stepnc_model.entities.turning_tools import TurningMachineCuttingTool
 from stepnc_model.errors import Finding, SchemaError, Severity
-from stepnc_model.program import ResolvedWorkingstep
+from stepnc_model.programs.program import ResolvedWorkingstep
 from stepnc_model.toolpath.task import ToolPathTask, job_of
 from stepnc_model.toolpath.turning.offset import (
     InsertFlanks,

@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks import umich
 from benchmarks.logged_path.smart_mill import read_smart_run
-from simulator.calibration.measured_run import Component
+from extras.calibration.model.measured_run import Component
 from simulator.errors import CalibrationError
 
 NAMES = (

@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import lsim
 
-from controller.law import Plant, Situation
 from controller.laws.axes import (
     moved,
     quickening,
@@ -20,6 +19,7 @@ from controller.laws.axes import (
     standing,
     within,
 )
+from controller.laws.law import Plant, Situation
 
 overrides = st.floats(0.05, 3.0)
 lags = st.floats(0.5, 10.0)

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controller.law import ControlLaw, Plant, Situation
 from controller.laws.choice import LawName, law_named
 from controller.laws.fuzzy import Fuzzy
+from controller.laws.law import ControlLaw, Plant, Situation
 from controller.laws.log_pi import LogPI
 from controller.laws.model_reference import ModelReference
 from controller.laws.open_loop import OpenLoop

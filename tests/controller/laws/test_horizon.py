@@ -16,7 +16,7 @@ from controller.laws.horizon import (
     remaining,
     vectors,
 )
-from controller.ports import Floats
+from controller.signals.ports import Floats
 
 LAGS = (0.5, 3.0, 9.0)
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controller.law import Plant, Situation
+from controller.laws.law import Plant, Situation
 from controller.laws.log_pi import LogPI
 from tests.controller.trial import Trial, run, score
 

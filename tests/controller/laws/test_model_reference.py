@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controller.law import Plant, Situation
+from controller.laws.law import Plant, Situation
 from controller.laws.model_reference import GAIN_BAND, ModelReference
 from tests.controller.trial import Trial, run
 

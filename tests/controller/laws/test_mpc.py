@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controller.law import Plant, Situation
 from controller.laws.horizon import EXCESS, LENGTH, MOVES
+from controller.laws.law import Plant, Situation
 from controller.laws.mpc import CHECKED, FALL, RISE, ModelPredictive, MpcState
-from controller.ports import Floats
+from controller.signals.ports import Floats
 from tests.controller.trial import DEPTHS, STRETCH, Run, Trial, run, unstable
 
 PREVIEW = Trial(look_ahead=15)

@@ -6,7 +6,7 @@ from math import log
 import numpy as np
 import pytest
 
-from controller.law import Situation
+from controller.laws.law import Situation
 from controller.laws.pi import PI, SLOWEST
 from tests.controller.trial import Trial, run
 

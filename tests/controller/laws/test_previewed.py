@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from controller.law import ControlLaw, Plant, Situation
 from controller.laws.fuzzy import Fuzzy
+from controller.laws.law import ControlLaw, Plant, Situation
 from controller.laws.log_pi import LogPI
 from controller.laws.model_reference import ModelReference
 from controller.laws.pi import PI

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from controller.law import Plant
+from controller.laws.law import Plant
 from controller.laws.log_pi import LogPI
 from controller.laws.self_tuning import EXPONENT_BAND, SelfTuning, SelfTuningState
 from tests.controller.trial import SET_POINT, TAIL, Run, Trial, run

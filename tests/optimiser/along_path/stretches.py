@@ -12,7 +12,7 @@ from simulator.motion.control import control_model
 from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import AxisLimits, Segments, lines
 from simulator.removal.stations import StationKind, Stations, air
-from tests.optimiser.cuts import CARBIDE, CUT
+from tests.optimiser.sample_cuts import CARBIDE, CUT
 
 LIMITS = AxisLimits(
     acceleration=np.full(3, 4000.0),

@@ -9,14 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from optimiser.along_path.caps import NAMES, CapName, CutBounds, feed_factors, station_caps
-from optimiser.chip_load import feed_factor
+from optimiser.bounds.chip_load import feed_factor
 from simulator.machine.cutting import CuttingEdge, CuttingLoads, cutting_loads
 from simulator.machine.tooth_loads import bent, wall_forces
 from simulator.physics.spindle import available_power
 from simulator.physics.strength import end_mill
 from simulator.removal.stations import StationKind, Stations
 from simulator.tool_windows import FeedWindow
-from tests.optimiser.cuts import CARBIDE, CUT
+from tests.optimiser.sample_cuts import CARBIDE, CUT
 
 SPINDLE = 60.0
 """rev/s"""

@@ -7,7 +7,7 @@ import pytest
 
 from optimiser.along_path.deep_places import deep_places, with_deep_places
 from optimiser.along_path.stretch import PathStretch
-from optimiser.limits import depth_by_diameter
+from optimiser.bounds.limits import depth_by_diameter
 from tests.optimiser.along_path.stretches import BOUNDS, half_cut, straight, stretch_of
 
 

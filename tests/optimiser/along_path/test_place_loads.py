@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from optimiser.along_path.caps import CapName, station_caps
-from optimiser.along_path.carried import BrokenBound
+from optimiser.along_path.filter_transfer import BrokenBound
 from optimiser.along_path.pieces import PieceRules, pieces_of
 from optimiser.along_path.place_loads import (
     broken_bounds,
@@ -17,7 +17,7 @@ from optimiser.along_path.place_loads import (
 )
 from optimiser.along_path.runs import commands_of
 from optimiser.along_path.stretch import PathStretch, place_caps
-from optimiser.problem import LimitName
+from optimiser.solver.problem import LimitName
 from tests.optimiser.along_path.stretches import BOUNDS, FIR, half_cut, straight, stretch_of
 
 SPINDLE = 50.0

@@ -13,7 +13,7 @@ from optimiser.along_path.stretch import (
     place_caps,
     segment_caps,
 )
-from optimiser.cut import CutKind
+from optimiser.cuts.cut import CutKind
 from simulator.motion.segments import arc
 from simulator.removal.stations import Stations
 from tests.optimiser.along_path.stretches import (

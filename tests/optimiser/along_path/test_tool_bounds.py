@@ -12,7 +12,7 @@ from simulator.library import load_machine, load_material
 from simulator.removal.cutter import Cutter, Holder, Insert
 from simulator.removal.stations import StationKind
 from simulator.spec import CuttingMaterial, ToolKind, WorkMaterial
-from simulator.tool_table import TableTool
+from simulator.tools.tool_table import TableTool
 from stepnc_model.errors import Severity
 from tests.every_case import every_case
 from tests.optimiser.along_path.stretches import BOUNDS, half_cut, straight, stretch_of

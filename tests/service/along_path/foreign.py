@@ -5,9 +5,9 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from service.chosen import load_material_named
+from service.programs.machine_choice import load_material_named
 from service.requests.advice import AdviceRequest
-from service.requests.given import RawPart
+from service.requests.program_facts import RawPart
 from service.simulation.code_paths import CodePaths
 from service.verbs.optimise.code import optimise_code
 from service.verbs.optimise.code_result import CodeAdvice

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from service.along_path.curves import MOST_BUCKETS, _curve, _limits
 from service.along_path.plan_run import LimitStretch
 from service.along_path.trace import PathSignal
-from service.buckets import Buckets
+from service.plots.buckets import Buckets
 
 
 @given(st.integers(1, 30_000), st.integers(0, 2**31))

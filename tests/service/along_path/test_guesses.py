@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pytest
 
-from service.exit_codes import OK
+from service.errors import OK
 from service.requests.advice import AdviceRequest
 from service.verbs.optimise.code import optimise_code
 from service.verbs.optimise.code_result import CodeAdvice

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks.nc_samples import Sample, sample_of
-from service.along_path.written_code import composed
+from service.along_path.rewritten_code import composed
 from service.verbs.optimise.code_result import CodeAdvice
 from stepnc_model.nc.written_lines import WrittenLines
 from stepnc_model.post.block_feeds import BlockPart

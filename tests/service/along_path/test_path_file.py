@@ -12,10 +12,10 @@ from service.along_path.course import PathSource
 from service.along_path.run import FeedsAlongPath, along_path
 from service.along_path.task import task_of
 from service.cli.main import optimise_main
-from service.exit_codes import BAD_INPUT
+from service.errors import BAD_INPUT
 from service.files import sibling
+from service.programs.reading import read_program
 from service.progress import silent
-from service.reading import read_program
 from service.requests.advice import AdviceRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, simulate
@@ -24,8 +24,8 @@ from service.verbs.optimise.plan_result import ProgramAdvice
 from service.verbs.optimise.program import advise_program as optimise
 from service.verbs.optimise.request import AdviceFiles
 from simulator.motion.model_name import ControlModelName
+from stepnc_model.editing.file_profile import FileProfile
 from stepnc_model.errors import StepNcError
-from stepnc_model.file_profile import FileProfile
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.toolpath.explicit.factor_curve import RAMP
 from tests.service.along_path.samples import PARTS, SHAFT

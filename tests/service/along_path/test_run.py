@@ -8,7 +8,7 @@ import pytest
 from service.along_path.run import FeedsAlongPath
 from service.requests.advice import AdviceRequest
 from service.requests.runs import SimulationRequest
-from service.simulation.of_code import CodeRequest
+from service.simulation.code_simulation import CodeRequest
 from service.simulation.run import RunFiles, simulate
 from service.verbs.optimise.plan_result import ProgramAdvice
 from service.verbs.optimise.program import advise_program as optimise

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from service.cli.main import main
-from service.exit_codes import LIMIT_EXCEEDED, OK
+from service.errors import LIMIT_EXCEEDED, OK
 from tests.asking import AskedControl
 
 Controlled = Callable[..., AskedControl]

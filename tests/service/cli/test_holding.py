@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.chip_load import ROUGH_NOSE_FEED
+from optimiser.bounds.chip_load import ROUGH_NOSE_FEED
 from service.cli.main import main, optimise_main
 
 ROOT = Path(__file__).parents[3]

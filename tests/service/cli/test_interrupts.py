@@ -10,8 +10,8 @@ import pytest
 from service.cli import commands
 from service.cli.interrupts import INTERRUPTED, SIGNALS
 from service.cli.main import main
+from tests.extras.factory.shops import program_file
 from tests.service.cli.command import command
-from tests.service.factory.shops import program_file
 from tests.service.waiting import LONG, ROOT
 
 WORK = """
@@ -106,7 +106,7 @@ def test_while_its_modules_are_loaded(tmp_path: Path, number: int) -> None:
     assert machines.said == "interrupted\n"
 
 
-@pytest.mark.parametrize("moment", ["service.requests.factory", "numpy"])
+@pytest.mark.parametrize("moment", ["extras.factory.requests", "numpy"])
 def test_while_a_live_shop_starts(tmp_path: Path, moment: str) -> None:
     words = ["factory", str(program_file(tmp_path)), "--live", "--port", "0"]
     with command(tmp_path, words) as shop:

@@ -9,9 +9,9 @@ from random import Random
 import pytest
 
 from service.cli.interrupts import INTERRUPTED
+from tests.extras.factory.shops import program_file
+from tests.extras.learning.test_dataset_run import DESIGN
 from tests.service.cli.command import PARTS, command
-from tests.service.dataset.test_run import DESIGN
-from tests.service.factory.shops import program_file
 
 
 def design(folder: Path) -> str:

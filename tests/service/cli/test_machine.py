@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from service.cli.main import main
-from service.exit_codes import BAD_INPUT, LIMIT_EXCEEDED, OK
+from service.errors import BAD_INPUT, LIMIT_EXCEEDED, OK
 from simulator.library import load_machine
 
 USAGE = 2

@@ -1,6 +1,6 @@
 """What the commands share."""
 
-from service import exit_codes
+from service import errors as exit_codes
 from service.cli.interrupts import INTERRUPTED
 from service.requests.fields import fields_of
 from service.simulation.run_files import CodeOfRun

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from controller.orders import Criterion, CriterionTo, MotorPowerTo, SwitchTo
 from service.control.disturbances import Disturbances, disturbances, time_of
-from simulator.plant.hidden import HiddenChange, HiddenQuantity
+from simulator.plant.hidden_behaviour import HiddenChange, HiddenQuantity
 from stepnc_model.errors import StepNcError
 from tests.every_case import every_case
 

@@ -7,11 +7,11 @@ import plotly.graph_objects as go
 import pytest
 
 from controller.orders import EventKind, LoopEvent
-from service.buckets import BucketedRun
 from service.control.facts import rows
 from service.control.figures import chosen_events, control_figure
 from service.control.run import ControlRun
 from service.control.trace import ControlSignal
+from service.plots.buckets import BucketedRun
 
 
 def trace_of(run: ControlRun) -> BucketedRun:

@@ -7,12 +7,12 @@ import pytest
 
 from controller.cycle import LoopCycle
 from controller.guard import AllowedOverride, OverrideBand, OverrideReason
-from controller.loop_settings import LoopSettings
+from controller.monitoring.threshold import AlarmLevel
 from controller.orders import Criterion, EventKind, LoopEvent
 from controller.reference import ForceBound, Reference
-from controller.signal import Revolution
-from controller.threshold import AlarmLevel
-from optimiser.problem import LimitName
+from controller.signals.signal import Revolution
+from controller.states.loop_settings import LoopSettings
+from optimiser.solver.problem import LimitName
 from service.control.holding import (
     AROUND,
     BOTTOM,

@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 from pyarrow import parquet
 
-from controller import monitor
+from controller.monitoring import monitor
 from controller.orders import Criterion, EventKind, LoopEvent
 from service.control.facts import exceeded, rows
 from service.control.holding import OFF
 from service.control.live import LiveControl
 from service.control.run import control, prepare
+from service.live.runner import RunUpdate
 from service.requests.runs import ControlChanges
-from service.session.runner import RunUpdate
 from stepnc_model.errors import StepNcError
 from tests.asking import AskedControl
 

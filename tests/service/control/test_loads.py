@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from controller.tool_life import new_tool
+from controller.monitoring.tool_life import new_tool
 from service.control.cuts import COLUMNS, cuts, cuts_csv, taught_by
 from service.control.loads import CutKey, ReferenceLoad, read_loads, taught_load, write_loads
 from service.control.record import control_recorded

@@ -8,21 +8,21 @@ from typing import Any
 
 import pytest
 
+from extras.agent.model.machine_model import machine_model
+from extras.agent.replay import read_log
+from extras.agent.requests import AgentRequest
 from kbe.store import open_store
-from service.agent.replay import read_log
 from service.control.outcomes import RecordingContext, outcomes_of
 from service.control.record import control_recorded
 from service.control.run import ControlRun, control
+from service.recording.request import RecordingRequest
 from service.recording.run import record
-from service.requests.agent import AgentRequest
-from service.requests.recording import RecordingRequest
 from service.requests.runs import ControlRequest, SensorChoice, SimulationRequest
 from service.simulation.run import RunFiles, simulate
-from simulator.agent.machine_model import machine_model
 from simulator.library import load_machine
 from stepnc_model.errors import StepNcError
 from stepnc_model.outcome import ProcessOutcome
-from tests.service.agent.test_run import PARTS, served
+from tests.extras.agent.test_run import PARTS, served
 
 PART = PARTS / "paper003_case1.stpnc"
 WORDS: dict[str, Any] = {"machine": "vmc15", "material": "c45"}

@@ -12,7 +12,7 @@ from controller.cycle import LoopCycle
 from controller.orders import Criterion, EventKind
 from service.control.holding import OFF
 from service.control.run import ControlRun, control, prepare
-from simulator.plant.controlled import TrueState
+from simulator.plant.controlled_machine import TrueState
 from stepnc_model.errors import StepNcError
 from tests.asking import AskedControl, asked_control
 from tests.every_case import every_case

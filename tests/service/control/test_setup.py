@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from optimiser.modes import Mode
-from service.control.planned import PlannedWorkingstep, planned_steps
+from service.control.expected_results import PlannedWorkingstep, planned_steps
 from service.control.run import Session, prepare
 from service.control.setup import (
     advices_in_order,

@@ -12,9 +12,9 @@ from pyarrow import csv, parquet
 from controller.cycle import LoopCycle
 from service.control.run import ControlRun, control, prepare
 from service.control.trace import COLUMNS, ControlSignal
-from service.run_file import arrow_schema
-from service.session.runner import Moment
-from simulator.plant.controlled import TrueState
+from service.live.runner import Moment
+from service.outputs.run_file import arrow_schema
+from simulator.plant.controlled_machine import TrueState
 from tests.asking import AskedControl
 
 Controlled = Callable[..., AskedControl]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from playwright.sync_api import Page, expect
 
-from service.factory.figures import COLOURS
+from extras.factory.figures import COLOURS
 from tests.service.dashboard.conftest import SCREENSHOTS, keep
 from tests.service.waiting import ROOT
 

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.service.agent.test_run import PARTS
+from tests.extras.agent.model.conftest import BEGIN, ServedAgent, serve
+from tests.extras.agent.test_run import PARTS
 from tests.service.dashboard.conftest import inside, keep, opened_page
 from tests.service.monitor.played import PlayedAgent, looped
 from tests.service.rest.server import Server, made, over
 from tests.service.waiting import until
-from tests.simulator.agent.conftest import BEGIN, ServedAgent, serve
 
 __all__ = ["serve"]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from tests.service.dashboard.conftest import keep
 from tests.service.waiting import ROOT
 

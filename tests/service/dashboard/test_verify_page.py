@@ -11,22 +11,22 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.service.agent.test_run import run_of
-from tests.service.brep.shapes import block, write_step
-from tests.service.dashboard.conftest import inside, keep, opened_page
-from tests.service.monitor.played import PlayedAgent
-from tests.service.rest.samples import SLOT
-from tests.service.rest.server import Server, made, over
-from tests.service.verification.files import write_log
-from tests.service.verification.logs import SLOT_MACHINE, slot_log
-from tests.service.verification.runs import fast_log, program
-from tests.service.verification.test_step_parts import pocketed
-from tests.service.verification.test_without_program import (
+from tests.extras.agent.test_run import run_of
+from tests.extras.brep.shapes import block, write_step
+from tests.extras.verification.files import write_log
+from tests.extras.verification.logs import SLOT_MACHINE, slot_log
+from tests.extras.verification.runs import fast_log, program
+from tests.extras.verification.test_step_parts import pocketed
+from tests.extras.verification.test_without_program import (
     BLOCK,
     OFFSET,
     POCKET,
     pocket_inputs,
 )
+from tests.service.dashboard.conftest import inside, keep, opened_page
+from tests.service.monitor.played import PlayedAgent
+from tests.service.rest.samples import SLOT
+from tests.service.rest.server import Server, made, over
 from tests.service.waiting import until
 
 PAGE = "/dashboard/verify.html"

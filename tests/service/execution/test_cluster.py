@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 from benchmarks.local_cluster import LocalCluster, free_port, running_cluster
+from extras.factory.model.shop_file import read_shop
 from service.execution import cluster as cluster_module
 from service.execution.cluster import cluster, versions
 from service.execution.executors import processes, results
 from service.execution.pools import pools_of
-from simulator.factory.shop_file import read_shop
 from stepnc_model.errors import StepNcError
 from tests.service.execution import work
 

@@ -5,11 +5,11 @@ import threading
 import time
 from pathlib import Path
 
-from service.factory.replications import run_shop
-from simulator.factory.machining import MachiningPlan
-from simulator.factory.records import Listeners
-from simulator.factory.shop import Shop
-from simulator.factory.streams import Streams
+from extras.factory.model.machining import MachiningPlan
+from extras.factory.model.records import Listeners
+from extras.factory.model.shop import Shop
+from extras.factory.model.streams import Streams
+from extras.factory.replications import run_shop
 
 SHOP = """
 hours = 4

@@ -2,7 +2,7 @@
 
 import json
 
-from service.program_kind import ProgramKind
+from service.inputs.program_kind import ProgramKind
 from service.storage import programs
 from service.storage.files import FileKind, FileUpload
 from service.storage.jobs import JobKind, JobState

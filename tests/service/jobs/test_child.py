@@ -11,10 +11,10 @@ import pytest
 
 from service.jobs import child, verb_job
 from service.jobs.task import RunningJob
-from service.problem import problem_of
 from service.storage import database, jobs, programs
 from service.storage.folder import DATABASE, open_data_folder
 from service.storage.jobs import Job, JobKind, JobState
+from service.web.problem import problem_of
 from stepnc_model.errors import StepNcError
 from tests.full_disk import files_of_at_most
 from tests.service.jobs.conftest import Shop, made_shop

@@ -10,10 +10,10 @@ from service.requests.stored_cycle_time import QueuedCycleTime
 from service.storage import jobs, programs
 from service.storage.jobs import JobKind, JobRequest, JobState
 from service.storage.results import REPORT, RESULT
+from tests.extras.verification.logs import SLOT_MACHINE, slot_log
 from tests.service.jobs.conftest import Shop
 from tests.service.jobs.test_verify import stored
 from tests.service.rest.samples import SLOT
-from tests.service.verification.logs import SLOT_MACHINE, slot_log
 
 NAME = "slot & <b>.stpnc"
 

@@ -2,13 +2,13 @@
 
 import json
 
-from service.jobs.produce import FIGURES, TABLES
+from extras.factory.requests import FactoryOrder
+from extras.factory.shop_job import FIGURES, TABLES
 from service.live.journal import append
-from service.requests.factory import FactoryOrder
 from service.requests.fields import dumped
 from service.storage import jobs
 from service.storage.jobs import Job, JobKind, JobRequest, JobState
-from tests.service.factory.shops import TIMED
+from tests.extras.factory.shops import TIMED
 from tests.service.jobs.conftest import Shop
 from tests.service.waiting import ended, until
 

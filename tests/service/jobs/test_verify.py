@@ -8,15 +8,15 @@ import pytest
 from pyarrow import csv, parquet
 
 import stepnc
+from extras.verification.stored_request import QueuedVerification
 from service.requests.fields import dumped
-from service.requests.stored_verification import QueuedVerification
 from service.storage import jobs, programs
 from service.storage.files import FileKind, FileUpload
 from service.storage.jobs import Job, JobKind, JobRequest, JobState
 from service.storage.results import PLACES, REPORT, RESULT, SURFACE
+from tests.extras.verification.logs import SLOT_MACHINE, slot_log
 from tests.service.jobs.conftest import Shop
 from tests.service.rest.samples import SLOT
-from tests.service.verification.logs import SLOT_MACHINE, slot_log
 
 CELL = 0.5
 

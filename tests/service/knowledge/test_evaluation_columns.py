@@ -7,7 +7,6 @@ import pytest
 
 from kbe.evaluation import evaluation
 from kbe.statistics import DeviationStatistics, Evaluated
-from service.knowledge.evaluated import EvaluationTable
 from service.knowledge.evaluation_columns import (
     EvaluationLine,
     arrow,
@@ -16,6 +15,7 @@ from service.knowledge.evaluation_columns import (
     lines,
     screen_columns,
 )
+from service.knowledge.evaluation_table import EvaluationTable
 from service.rendering.columns import shown, visible
 from service.requests.knowledge import EvaluationRequest
 from service.verbs.kbe.table.result import EvaluationResult, key_figures

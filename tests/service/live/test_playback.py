@@ -6,7 +6,7 @@ from threading import TIMEOUT_MAX
 import pytest
 
 from service.live.playback import LEAST, MOST, PlaybackClock
-from service.simulation.gathering import MOST_SECONDS
+from service.simulation.run_collector import MOST_SECONDS
 from tests.every_case import every_case
 
 

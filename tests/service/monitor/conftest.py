@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import pytest
 
+from tests.extras.agent.model.conftest import serve
 from tests.service.monitor.played import PlayedAgent, looped
-from tests.simulator.agent.conftest import serve
 
 __all__ = ["serve"]
 

@@ -7,11 +7,11 @@ from functools import cache
 import httpx
 import uvicorn
 
-from service.agent.play import begun, play
-from service.agent.run import PublishedRun, listening
-from service.requests.agent import AgentRequest
-from simulator.agent.http import application
-from tests.service.agent.test_run import run_of
+from extras.agent.model.http import application
+from extras.agent.play import begun, play
+from extras.agent.requests import AgentRequest
+from extras.agent.run import PublishedRun, listening
+from tests.extras.agent.test_run import run_of
 
 
 class PlayedAgent:

@@ -5,7 +5,7 @@ from math import isnan
 
 import pytest
 
-from service.monitor.observed import (
+from service.monitor.observed_run import (
     AlignedPart,
     ObservedRun,
     ObservedStep,

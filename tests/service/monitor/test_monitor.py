@@ -13,10 +13,10 @@ from service.monitor.source import MonitorSource
 from service.requests.runs import SimulationRequest
 from service.simulation.facts import rows
 from service.simulation.run import RunFiles, simulate
-from tests.service.agent.test_run import PARTS, run_of
+from tests.extras.agent.model.conftest import BEGIN, ServedAgent
+from tests.extras.agent.test_run import PARTS, run_of
 from tests.service.monitor.played import PlayedAgent
 from tests.service.waiting import until
-from tests.simulator.agent.conftest import BEGIN, ServedAgent
 
 Serve = Callable[..., ServedAgent]
 SECOND = 1_000_000

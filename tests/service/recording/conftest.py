@@ -1,5 +1,5 @@
 """Agents to be read."""
 
-from tests.simulator.agent.conftest import serve
+from tests.extras.agent.model.conftest import serve
 
 __all__ = ["serve"]

@@ -9,7 +9,7 @@ from service.recording.logged_run import RunFinder, keep_run
 from simulator.client.columns import RecordedColumn, RowMaker
 from simulator.client.connection import ClientObservation
 from simulator.errors import AgentError
-from tests.service.agent.test_run import run_of, served
+from tests.extras.agent.test_run import run_of, served
 
 
 def test_a_whole_run_is_kept_from_its_beginning(tmp_path: Path) -> None:

@@ -5,14 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from service.agent.run import simulated_with_document
+from extras.agent.run import simulated_with_document
 from service.recording.logged_run import read_logged_run
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles
 from simulator.client.document_choices import DocumentChoice, NameSet, SchemaVersion
 from stepnc_model.errors import StepNcError
 from tests.every_case import every_case
-from tests.service.agent.test_run import PARTS, run_of, served
+from tests.extras.agent.test_run import PARTS, run_of, served
 
 REQUEST = SimulationRequest(machine="paper003", rate_hz=10.0)
 

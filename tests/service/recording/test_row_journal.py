@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 from pyarrow import csv, parquet
 
+from service.outputs.run_file import ColumnKind, RunColumn
+from service.recording.request import RecordingRequest
 from service.recording.run import RowJournal, record
-from service.requests.recording import RecordingRequest
-from service.run_file import ColumnKind, RunColumn
 from stepnc_model.errors import WriteError
-from tests.service.agent.test_run import run_of, served
+from tests.extras.agent.test_run import run_of, served
 from tests.service.cli.command import START
 from tests.service.waiting import ROOT, ended, environment, until
 

@@ -8,15 +8,15 @@ import pytest
 from pyarrow import csv, parquet
 
 import stepnc
+from extras.calibration.model.features import Parameter
+from extras.calibration.verbs.calibrate.result import CalibrationResult
+from service.recording.request import RecordingRequest
 from service.recording.run import record
-from service.requests.recording import RecordingRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, simulate
-from service.verbs.calibrate.result import CalibrationResult
-from simulator.calibration.features import Parameter
 from stepnc_model.errors import StepNcError
-from tests.service.agent.test_run import PARTS, run_of, served
-from tests.simulator.agent.conftest import BEGIN, ServedAgent
+from tests.extras.agent.model.conftest import BEGIN, ServedAgent
+from tests.extras.agent.test_run import PARTS, run_of, served
 
 WHOLE = RecordingRequest(is_buffered=True, is_until_completed=True)
 

@@ -3,7 +3,7 @@
 from datetime import UTC, datetime
 from math import inf
 
-from service.flat_file import FileColumn
+from service.outputs.flat_file import FileColumn
 from service.rendering.columns import (
     Change,
     Column,

@@ -4,17 +4,17 @@ from pathlib import Path
 
 import pytest
 
-from service.raw_stock import raw_stock_of
+from extras.verification.stored_request import QueuedVerification
+from service.programs.raw_stock import raw_stock_of
 from service.requests.fields import dumped, loaded
-from service.requests.given import ProgramRequest, StockFile, raw_part_in
+from service.requests.program_facts import ProgramRequest, StockFile, raw_part_in
 from service.requests.runs import ControlRequest, SimulationRequest
 from service.requests.stored_advice import StoredAdviceRequest
 from service.requests.stored_cycle_time import QueuedCycleTime
-from service.requests.stored_verification import QueuedVerification
 from stepnc_model.errors import StepNcError
 from tests.every_case import every_case
-from tests.service.verification.files import write_stl
-from tests.simulator.verification.box import box
+from tests.extras.verification.files import write_stl
+from tests.extras.verification.model.box import box
 
 OF_SERVICE = (
     SimulationRequest, ControlRequest, QueuedCycleTime, QueuedVerification, StoredAdviceRequest,

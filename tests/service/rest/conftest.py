@@ -7,11 +7,11 @@ import httpx
 import pytest
 
 from kbe.store import open_store
-from tests.service.factory.shops import TIMED
+from tests.extras.factory.shops import TIMED
+from tests.extras.verification.logs import SLOT_MACHINE, slot_log
 from tests.service.rest.samples import SAMPLE, SLOT
 from tests.service.rest.server import Server, made, over
 from tests.service.shop import outcomes
-from tests.service.verification.logs import SLOT_MACHINE, slot_log
 
 
 @pytest.fixture(scope="session")

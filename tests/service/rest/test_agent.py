@@ -7,12 +7,12 @@ from typing import Any
 import httpx
 import pytest
 
+from service.recording.request import RecordingRequest
 from service.recording.run import record
-from service.requests.recording import RecordingRequest
+from tests.extras.agent.model.conftest import observations, require_valid
 from tests.service.rest.conftest import Done
 from tests.service.rest.server import Server, create_key, is_problem, made, over
 from tests.service.waiting import until
-from tests.simulator.agent.conftest import observations, require_valid
 
 BROWSER = "text/html,application/xhtml+xml,application/xml;q=0.9,*/*;q=0.8"
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import httpx
 import pytest
 
-from service import log_lines
 from service.errors import Unavailable
+from service.processes import log_lines
 from service.rest.app import application, from_environment
 from service.rest.settings import VARIABLE, Settings
 from service.storage.folder import open_data_folder

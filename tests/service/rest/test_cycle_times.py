@@ -6,10 +6,10 @@ import httpx
 import pytest
 
 from service.rest.cycle_time_views import CycleTimeView
+from tests.extras.verification.logs import SLOT_MACHINE
 from tests.service.rest.conftest import Done
 from tests.service.rest.samples import SLOT
 from tests.service.rest.server import is_problem, made, over
-from tests.service.verification.logs import SLOT_MACHINE
 
 PATH = "/v1/cycle-times"
 

@@ -10,7 +10,7 @@ import httpx
 import pytest
 
 from tests.every_case import every_case
-from tests.service.factory.shops import TIMED
+from tests.extras.factory.shops import TIMED
 from tests.service.rest.conftest import Done
 from tests.service.rest.server import is_problem, made, over
 from tests.service.waiting import until

@@ -18,7 +18,7 @@ from service.rest.views import (
     SeriesView,
 )
 from stepnc_model.errors import StepNcError
-from tests.service.agent.test_run import PARTS
+from tests.extras.agent.test_run import PARTS
 from tests.service.monitor.played import PlayedAgent, looped
 from tests.service.rest.server import Server, create_key, is_problem, made, over
 from tests.service.waiting import until

@@ -19,12 +19,12 @@ import httpx
 import pytest
 
 from simulator.library import DATA
+from tests.extras.verification.files import write_stl
+from tests.extras.verification.model.box import box
 from tests.service.rest.conftest import Done, id_of
 from tests.service.rest.opened_files import OpenedFiles
 from tests.service.rest.samples import SAMPLE
 from tests.service.rest.server import Server, over
-from tests.service.verification.files import write_stl
-from tests.simulator.verification.box import box
 
 UNKNOWN = "0" * 26
 

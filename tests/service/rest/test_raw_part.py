@@ -6,13 +6,13 @@ import httpx
 import numpy as np
 import pytest
 
-from tests.service.brep.shapes import block, without, write_step
+from tests.extras.brep.shapes import block, without, write_step
+from tests.extras.verification.files import write_log, write_stl
+from tests.extras.verification.model import test_required_part as test_required
+from tests.extras.verification.model.box import box
+from tests.extras.verification.test_without_program import MILL, POCKET, pocket_inputs
 from tests.service.rest.samples import CODE, CODE_STOCK, CODE_TOOLS, SLOT
 from tests.service.rest.server import is_problem, made, over
-from tests.service.verification.files import write_log, write_stl
-from tests.service.verification.test_without_program import MILL, POCKET, pocket_inputs
-from tests.simulator.verification import test_required
-from tests.simulator.verification.box import box
 
 NOBODY = "0" * 26
 

@@ -21,12 +21,12 @@ from service.storage.keys import Role
 from service.storage.server_database import ServerDatabase
 from simulator.library import DATA as LIBRARY
 from stepnc_model.errors import StepNcError
+from tests.extras.factory.shops import TIMED
+from tests.extras.verification.logs import SLOT_MACHINE, slot_log
 from tests.postgres import Server as Postgres
 from tests.postgres import ServerMaker, new_server
-from tests.service.factory.shops import TIMED
 from tests.service.rest.samples import SAMPLE, SLOT
 from tests.service.rest.server import Server, is_problem, made, over
-from tests.service.verification.logs import SLOT_MACHINE, slot_log
 from tests.service.waiting import until
 
 __all__ = ["new_server"]

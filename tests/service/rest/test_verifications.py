@@ -11,21 +11,21 @@ import pytest
 from pyarrow import csv, parquet
 
 from extras.verification.views import SurfaceMapView, VerificationView
-from tests.service.agent.test_run import run_of
-from tests.service.brep.shapes import block, first_face, write_step
-from tests.service.monitor.played import PlayedAgent
-from tests.service.rest.conftest import Done
-from tests.service.rest.samples import SLOT
-from tests.service.rest.server import Server, create_key, is_problem, made, over
-from tests.service.verification.files import write_log
-from tests.service.verification.logs import SLOT_MACHINE, slot_log
-from tests.service.verification.test_step_parts import pocketed
-from tests.service.verification.test_without_program import (
+from tests.extras.agent.test_run import run_of
+from tests.extras.brep.shapes import block, first_face, write_step
+from tests.extras.verification.files import write_log
+from tests.extras.verification.logs import SLOT_MACHINE, slot_log
+from tests.extras.verification.test_step_parts import pocketed
+from tests.extras.verification.test_without_program import (
     MILL,
     OFFSET,
     POCKET,
     pocket_inputs,
 )
+from tests.service.monitor.played import PlayedAgent
+from tests.service.rest.conftest import Done
+from tests.service.rest.samples import SLOT
+from tests.service.rest.server import Server, create_key, is_problem, made, over
 from tests.service.waiting import until
 
 PATH = "/v1/verifications"

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from service.simulation.code_run import code_of_run
-from service.simulation.of_code import CodeRequest
+from service.simulation.code_simulation import CodeRequest
 
 CODE = (
     "(T1 D=10. - FLAT END MILL)\nG21 G90 G54\nT1 M6\nS5000 M3\nG0 X0 Y0 Z5\nG1 Z-2 F100\nX50\n"

@@ -9,7 +9,7 @@ from service.simulation.code_setup import CodeSetup, GivenSetup, code_setup, num
 from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.nc.program import read_program
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 POSTS = Path(__file__).parents[2] / "data" / "posts"
 TABLE = "number,kind,diameter_mm,teeth\n1,endmill,12,3\n"

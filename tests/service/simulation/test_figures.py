@@ -6,12 +6,12 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 
-from service.buckets import BucketedRun
-from service.panels import MOST_BANDS
+from service.plots.buckets import BucketedRun
+from service.plots.panels import MOST_BANDS
 from service.simulation.facts import rows
 from service.simulation.figures import run_figure
-from service.simulation.gathering import SimulationSignal, TraceKeeper
 from service.simulation.run import Simulation
+from service.simulation.run_collector import SimulationSignal, TraceKeeper
 
 
 @pytest.fixture(scope="module")

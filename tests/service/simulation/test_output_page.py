@@ -7,10 +7,10 @@ from html.parser import HTMLParser
 
 import pytest
 
-from service.buckets import BucketedRun
+from service.plots.buckets import BucketedRun
 from service.simulation.facts import CarbonFactor
-from service.simulation.gathering import TraceKeeper
 from service.simulation.run import Simulation
+from service.simulation.run_collector import TraceKeeper
 from service.verbs.simulate.result import SimulateResult
 from simulator.library import load_material
 from simulator.machine.totals import Total

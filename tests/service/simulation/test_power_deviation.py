@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 from pyarrow import parquet
 
-from service.agent.run import simulated_with_document
+from extras.agent.run import simulated_with_document
 from service.cli.commands import print_result
 from service.simulation.run import Simulation, simulate
 from service.verbs.simulate.result import SimulateResult

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from service.raw_stock import raw_stock_of
-from service.requests.given import StockFile, raw_part_in
-from service.simulation.of_code import CodeRequest
+from service.programs.raw_stock import raw_stock_of
+from service.requests.program_facts import StockFile, raw_part_in
+from service.simulation.code_simulation import CodeRequest
 from service.simulation.run import RunFiles, Simulation, simulate
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock

@@ -9,9 +9,9 @@ import pytest
 from pyarrow import parquet
 
 import stepnc
-from optimiser.problem import LimitName
+from optimiser.solver.problem import LimitName
 from service import progress
-from service.simulation.of_code import CodeRequest
+from service.simulation.code_simulation import CodeRequest
 from service.simulation.run import Simulation, simulate
 from service.verbs.optimise import program as advising
 from simulator.errors import SimulationError

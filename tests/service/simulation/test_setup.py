@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from service.numbers import numbers_in
+from service.inputs.numbers import numbers_in
 from service.progress import silent
 from service.requests.runs import RunRequest
 from service.simulation.setup import CountedIterator, PreparedRun, from_program

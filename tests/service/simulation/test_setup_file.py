@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from service.requests.given import StockFile
+from service.requests.program_facts import StockFile
 from service.simulation.code_setup import GivenSetup, code_setup
 from service.simulation.setup_file import SetupFile, read_setup, setup_of, setup_place
 from simulator.errors import LibraryError

@@ -9,11 +9,11 @@ import pyarrow as pa
 import pytest
 from pyarrow import csv, parquet
 
-from service.run_file import arrow_schema
-from service.simulation import gathering
-from service.simulation.gathering import ROWS, TimelineFile, timeline_columns
+from service.outputs.run_file import arrow_schema
+from service.simulation import run_collector as gathering
+from service.simulation.run_collector import ROWS, TimelineFile, timeline_columns
 from simulator.machine.samples import Samples
-from simulator.timeline import COLUMNS
+from simulator.machine.timeline import COLUMNS
 from stepnc_model.errors import WriteError
 from tests.every_case import every_case
 

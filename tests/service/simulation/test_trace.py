@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.buckets import MOST, BucketedRun
-from service.simulation.gathering import SimulationSignal, TraceKeeper
+from service.plots.buckets import MOST, BucketedRun
+from service.simulation.run_collector import SimulationSignal, TraceKeeper
 from simulator.machine.samples import Samples
 from simulator.motion.segments import Floats
 

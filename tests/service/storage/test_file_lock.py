@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from service.storage.file_lock import LOCK, locked
+from service.storage.library import LOCK, locked
 
 
 def is_free(folder: Path) -> bool:

@@ -4,7 +4,7 @@ import hashlib
 
 import pytest
 
-from service.agent.replay import DOCUMENTS, LINES
+from extras.agent.replay import DOCUMENTS, LINES
 from service.errors import Conflict, NotFound, Unavailable, Unreadable
 from service.files import LOGS
 from service.ids import new_id

@@ -23,10 +23,10 @@ from service.errors import (
     Unavailable,
     Unreadable,
 )
-from service.problem import problem_of
 from service.storage import library
 from service.storage.folder import DataFolder
 from service.storage.library import LibrarySection
+from service.web.problem import problem_of
 from simulator.errors import LibraryError, UnknownMachine, UnknownMaterial
 from simulator.library import DATA, load_machine
 from simulator.spec import Machine, WorkMaterial

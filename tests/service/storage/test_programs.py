@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from service.errors import Conflict, NotFound, Unavailable
 from service.ids import new_id
-from service.program_kind import ProgramKind
+from service.inputs.program_kind import ProgramKind
 from service.storage import jobs, programs
 from service.storage.folder import DataFolder
 from service.storage.jobs import JobKind, JobRequest, JobState

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from controller.laws.choice import LawName
 from controller.orders import Criterion, EventKind, LoopEvent
 from service.control.holding import OFF
-from service.session.runner import Moment
+from service.live.runner import Moment
 from service.trial.inputs import FIELDS, InputField, Inputs, MillingType, changed
 from service.trial.run import SET_UP, TrialRun
 from stepnc_model.errors import StepNcError

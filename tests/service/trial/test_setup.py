@@ -5,7 +5,7 @@ import pytest
 from controller.laws.choice import LawName
 from controller.orders import EventKind
 from service.control.holding import OFF, PROGRAMMED
-from service.session.runner import Moment
+from service.live.runner import Moment
 from service.trial.inputs import Inputs, changed
 from service.trial.run import TrialSetup
 

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from simulator.agent.machine_model import machine_model
+from extras.agent.model.machine_model import machine_model
 from simulator.client.columns import Cell, RecordedColumn, RowMaker, columns_of
 from simulator.client.connection import ClientItem, ClientObservation, items_of
 from simulator.client.document_choices import NameSet
 from simulator.client.xml_text import without_namespaces
 from simulator.library import load_machine
-from simulator.timeline import COLUMNS
+from simulator.machine.timeline import COLUMNS
 
 SHARED = Path(__file__).parents[4] / "shared" / "mtconnect"
 OURS = {column.name for column in COLUMNS}

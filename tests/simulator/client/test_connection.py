@@ -9,11 +9,11 @@ from itertools import islice
 
 import pytest
 
-from simulator.agent.agent import Agent
+from extras.agent.model.agent import Agent
 from simulator.client.connection import AgentClient, StreamPart
 from simulator.errors import AgentError
 from tests.every_case import every_case
-from tests.simulator.agent.conftest import BEGIN, ServedAgent
+from tests.extras.agent.model.conftest import BEGIN, ServedAgent
 
 Serve = Callable[..., ServedAgent]
 

@@ -5,7 +5,8 @@ from typing import Any
 
 import pytest
 
-from simulator.kernels import identity, link
+from simulator.kernels import link
+from simulator.kernels import store as identity
 from tests.simulator.kernels import conftest
 from tests.simulator.kernels.conftest import Line, height, heights
 

@@ -27,7 +27,7 @@ from simulator.machine.interpreter import interpret
 from simulator.spec import Machine
 from stepnc_model.post import blocks as nc
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.generate import generate
 from stepnc_model.toolpath.path import Arc, ArcPlane, CycleKind, ToolPath

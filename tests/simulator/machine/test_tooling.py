@@ -11,11 +11,11 @@ from simulator.machine.tooling import loaded_tool, table_tool
 from simulator.machine.virtual import LoadedTool
 from simulator.removal.cutter import Cutter, Holder, Insert, profile_of
 from simulator.spec import CuttingMaterial, ToolKind
-from simulator.tool_table import TableTool
-from stepnc_model.given_tool import GivenTool
+from simulator.tools.tool_table import TableTool
 from stepnc_model.post.neutral import tool_numbers
-from stepnc_model.program import Program
-from stepnc_model.tool import tool_of
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.tool import tool_of
+from stepnc_model.programs.user_tools import GivenTool
 from stepnc_model.toolpath.generate import generate
 from stepnc_model.toolpath.path import ToolPath
 from stepnc_model.units import rad_from_deg

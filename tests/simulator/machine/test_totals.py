@@ -33,7 +33,7 @@ from simulator.removal.lathe import TurningStock
 from simulator.removal.stations import StationKind, air
 from simulator.spec import Kienzle, Machine, MachineKind
 from stepnc_model.post.neutral import blocks_of, tool_numbers
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.generate import generate
 from stepnc_model.toolpath.path import ToolPath
 from stepnc_model.toolpath.task import stock_of

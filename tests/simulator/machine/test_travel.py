@@ -12,7 +12,7 @@ from simulator.errors import OutOfTravel, ProgramFault
 from simulator.machine.travel import require_axes, require_travel, zero_of
 from simulator.motion.segments import Segments, arc, chained, lines
 from simulator.spec import Machine
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 NOWHERE = (0.0, 0.0, 0.0)
 

@@ -21,7 +21,7 @@ from simulator.removal.cutter import Cutter, Holder, Insert
 from simulator.removal.engage import MillingStock
 from simulator.spec import Kienzle, Machine, Taylor
 from stepnc_model.post import blocks as nc
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 from tests.oracles.motion import move_time
 
 FEED = nc.Rate(value=20.0)

@@ -1,6 +1,6 @@
 import pytest
 
-from simulator.physics import power
+from simulator.physics import cutting as power
 from tests.every_case import every_case
 
 

@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from optimiser.hardest import LIKELY
+from optimiser.cuts.hardest_places import LIKELY
 from simulator.physics import engagement
 from simulator.physics.engagement import Engagement
 from simulator.physics.flutes import WALL, CuttingEdges, ForceLaw

@@ -9,7 +9,7 @@ import pytest
 from simulator.motion.segments import Floats, lines
 from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 BOX = Stock(low=(0.0, 0.0, -12.0), high=(60.0, 40.0, 0.0))
 RADIUS = 5.0

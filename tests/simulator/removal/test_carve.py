@@ -12,7 +12,7 @@ from simulator.removal import carve
 from simulator.removal.cutter import Cutter, CutterProfile, profile_of, rise
 from simulator.removal.engage import MillingStock
 from simulator.removal.trial import rows_of
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 BOX = Stock(low=(0.0, 0.0, -12.0), high=(40.0, 30.0, 0.0))
 

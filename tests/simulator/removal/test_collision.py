@@ -2,7 +2,7 @@ from simulator.motion.segments import lines
 from simulator.removal.collision import MOST
 from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 
 def test_a_stock_remembers_no_more_than_so_many_collisions() -> None:

@@ -10,7 +10,7 @@ from simulator.physics.edge import effective_edge_angle
 from simulator.removal.cutter import Cutter, Holder
 from simulator.removal.engage import MillingStock
 from simulator.removal.stations import StationKind, Stations
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 from tests.oracles.cutting import effective_diameter
 
 BOX = Stock(low=(0.0, 0.0, -20.0), high=(60.0, 40.0, 0.0))

@@ -17,7 +17,7 @@ from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.lathe import TurningStock
 from simulator.removal.stations import StationKind, Stations
 from stepnc_model.entities.enums import HandOfToolType
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 RADIUS, LENGTH = 25.0, 100.0
 BAR = Stock(low=(-RADIUS, -RADIUS, 0.0), high=(RADIUS, RADIUS, LENGTH), radius=RADIUS)

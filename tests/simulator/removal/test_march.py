@@ -9,7 +9,7 @@ from simulator.removal.engage import MillingStock
 from simulator.removal.rim import FORGETTING
 from simulator.removal.stations import StationKind
 from simulator.removal.trial import rows_of
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 BOX = Stock(low=(0.0, 0.0, -12.0), high=(60.0, 40.0, 0.0))
 

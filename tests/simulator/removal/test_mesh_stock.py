@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from simulator.removal.mesh_stock import bounds_of, milling_stock_of, turning_stock_of
-from tests.simulator.verification.meshes import pocketed_block, revolved
+from tests.extras.verification.model.meshes import pocketed_block, revolved
 
 BLOCK = pocketed_block((0, 0, -20), (60, 40, 0), half=(20, 10), radius=5, depth=8)
 

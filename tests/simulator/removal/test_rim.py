@@ -9,7 +9,7 @@ from simulator.motion.segments import lines
 from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
 from simulator.removal.rim import FORGETTING, SLIVERS
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 BOX = Stock(low=(0.0, 0.0, -12.0), high=(60.0, 40.0, 0.0))
 BALL = Cutter(diameter=10.0, corner_radius=5.0)

@@ -12,7 +12,7 @@ from simulator.removal.engage import MillingStock
 from simulator.removal.rim import FORGETTING, past
 from simulator.removal.sink import LIP_ERROR, hole, lip
 from simulator.removal.zmap import zmap_of
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 from tests.every_case import every_case
 
 PLATE = Stock(low=(0.0, 0.0, -12.0), high=(30.0, 30.0, 0.0))

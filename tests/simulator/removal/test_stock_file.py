@@ -16,7 +16,7 @@ from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from simulator.removal.stock_file import MOST_BYTES, kept_stock, stock_bytes
 from simulator.removal.zmap import OUTSIDE
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 from tests.every_case import every_case
 
 BLOCK = Stock(low=(-1.0, -2.0, -10.0), high=(39.0, 28.0, 0.0))

@@ -7,7 +7,7 @@ import pytest
 
 from simulator.removal.cutter import Cutter, Insert, shape_of
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
 

@@ -18,7 +18,7 @@ from simulator.removal.trial import (
     is_remembered_alike,
     renumbered,
 )
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 BOX = Stock(low=(0.0, 0.0, -20.0), high=(60.0, 40.0, 0.0))
 MILL = Cutter(diameter=8.0)

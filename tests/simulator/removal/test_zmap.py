@@ -5,7 +5,7 @@ from math import pi
 import pytest
 
 from simulator.removal.zmap import MOST_CELLS, OUTSIDE, cell_size, zmap_of
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 
 def test_box_keeps_its_volume_whatever_the_cell() -> None:

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from simulator.plausible_tools import ToolGuess
 from simulator.removal.cutter import Cutter
 from simulator.spec import CuttingMaterial, ToolKind
 from simulator.tool_files.code_tools import CodeTools, against_table, tools_of_code
-from simulator.tool_table import ToolRow, tool_of_row
+from simulator.tools.plausible_tools import ToolGuess
+from simulator.tools.tool_table import ToolRow, tool_of_row
 from stepnc_model.nc.program import read_program
 from stepnc_model.post.dialect import Dialect
 

@@ -11,7 +11,7 @@ from stepnc_model.errors import SchemaError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Real
 from stepnc_model.part21.writer import Edits
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from tests.stepnc_model.ap238.long_form import deviations, schema
 from tests.stepnc_model.ap238.samples import (
     OWN,

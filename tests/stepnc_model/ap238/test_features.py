@@ -7,7 +7,7 @@ from stepnc_model.ap238.view import AimView
 from stepnc_model.entities.features import CompoundFeature, ReplicateFeature
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from tests.every_case import every_case
 from tests.stepnc_model.ap238.long_form import deviations, schema
 from tests.stepnc_model.ap238.samples import Comparison, long_form, own, read

@@ -9,18 +9,18 @@ import pytest
 from stepnc_model.ap238.export import to_ap238
 from stepnc_model.ap238.view import AimView, is_aim
 from stepnc_model.ap238.writing import spliced_into
-from stepnc_model.draft import Draft
+from stepnc_model.editing.draft import Draft
+from stepnc_model.editing.user_data import Completed, GivenData, GivenFeed, completed
+from stepnc_model.editing.withdrawal import without_user_data
 from stepnc_model.entities.executables import Setup
 from stepnc_model.entities.features import RoundHole, Step
 from stepnc_model.entities.geometry import Block, CartesianPoint
 from stepnc_model.errors import SchemaError, Severity
-from stepnc_model.given import Completed, GivenData, GivenFeed, completed
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
-from stepnc_model.technology import programmed
-from stepnc_model.tool import tool_of
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.technology import programmed
+from stepnc_model.programs.tool import tool_of
 from stepnc_model.units import FeedUnit
-from stepnc_model.withdrawal import without_user_data
 from tests.stepnc_model.ap238.samples import MILLING, exported, own, public, read
 
 FEED = GivenFeed(value=4.0, unit=FeedUnit.MM_PER_MINUTE)

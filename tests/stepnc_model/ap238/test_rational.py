@@ -3,7 +3,7 @@
 import re
 
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from tests.stepnc_model.ap238.test_writer_samples import moves, program
 from tests.stepnc_model.ap238.writer_samples import editor_ball_splines
 

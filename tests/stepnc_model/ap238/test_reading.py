@@ -10,9 +10,9 @@ from stepnc_model.entities.geometry import CartesianPoint
 from stepnc_model.entities.technology import MillingTechnology
 from stepnc_model.errors import SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
-from stepnc_model.technology import programmed
-from stepnc_model.tool import tool_of
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.technology import programmed
+from stepnc_model.programs.tool import tool_of
 from stepnc_model.toolpath.generate import generate
 from stepnc_model.toolpath.path import Move, MoveType, ToolPath
 from stepnc_model.toolpath.remarks import remarks

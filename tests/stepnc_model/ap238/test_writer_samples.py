@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.generate import workingstep_path
 from stepnc_model.toolpath.path import Move
 from tests.stepnc_model.ap238.writer_samples import (

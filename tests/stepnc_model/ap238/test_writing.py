@@ -5,17 +5,17 @@ import re
 
 import pytest
 
-from stepnc_model import writeback
 from stepnc_model.ap238.view import AimView
-from stepnc_model.cut_settings import edit_depth
-from stepnc_model.draft import Draft
+from stepnc_model.editing import writeback
+from stepnc_model.editing.cut_settings import edit_depth
+from stepnc_model.editing.draft import Draft
+from stepnc_model.editing.file_profile import FileProfile
+from stepnc_model.editing.outcome_record import write_outcomes
+from stepnc_model.editing.writeback import WorkingstepUpdate
 from stepnc_model.errors import SchemaError
-from stepnc_model.file_profile import FileProfile
-from stepnc_model.outcome_record import write_outcomes
 from stepnc_model.part21.values import Real, Ref
-from stepnc_model.program import Program
-from stepnc_model.technology import programmed
-from stepnc_model.writeback import WorkingstepUpdate
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.technology import programmed
 from tests.stepnc_model.ap238.long_form import deviations, schema
 from tests.stepnc_model.ap238.samples import MILLING, exported, long_form, public, read
 from tests.stepnc_model.written import RECORD

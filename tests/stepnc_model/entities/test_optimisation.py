@@ -14,11 +14,11 @@ from docs.hooks.express.schema import (
     NamedType,
     attributes_in_order,
 )
-from stepnc_model.binding import Model, to_parameters
 from stepnc_model.entities import optimisation
 from stepnc_model.entities.entity import Entity, attributes
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
+from stepnc_model.programs.binding import Model, to_parameters
 from tests.every_case import every_case
 
 (SCHEMA,) = read_schemas(

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from stepnc_model.errors import PostError
-from stepnc_model.nc.exact import read_blocks
+from stepnc_model.nc.exact_reading import read_blocks
 from stepnc_model.nc.moves import MoveFlag, MoveKind
 from stepnc_model.nc.neutral_blocks import neutral_blocks
 from stepnc_model.nc.program import NcProgram, read_program
@@ -18,7 +18,7 @@ from stepnc_model.post.canonical import commands
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.dialects import PLACES, write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.generate import generate
 from tests.every_case import every_case
 from tests.stepnc_model.post.trace import TracedEvent, trace

@@ -6,7 +6,7 @@ from stepnc_model.nc.program import read_program
 from stepnc_model.nc.stated_stock import StatedStock, stated_stock
 from stepnc_model.post.blocks import MachineType
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
 
 
 def stock_of(code: str, dialect: Dialect, machine: MachineType | None = None) -> StatedStock:

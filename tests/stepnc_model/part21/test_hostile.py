@@ -77,7 +77,7 @@ import resource, sys
 from pathlib import Path
 from stepnc_model.errors import StepNcError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 resource.setrlimit(resource.RLIMIT_AS, (400 << 20, 400 << 20))
 resource.setrlimit(resource.RLIMIT_CPU, (60, 60))
 for path in map(Path, sys.argv[1:]):

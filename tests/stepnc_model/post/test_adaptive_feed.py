@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from service.paths.toolpaths import nc_lines, paths_of
+from service.programs.toolpaths import nc_lines, paths_of
 from stepnc_model.errors import PostError
-from stepnc_model.nc.exact import read_blocks
+from stepnc_model.nc.exact_reading import read_blocks
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 
 PART = Path(__file__).parents[3] / "examples" / "parts" / "paper002.stpnc"
 

@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from stepnc_model.errors import PostError
-from stepnc_model.nc.exact import read, read_blocks
+from stepnc_model.nc.exact_reading import read, read_blocks
 from stepnc_model.post.blocks import (
     Block,
     Coolant,

@@ -19,7 +19,7 @@ from stepnc_model.post.blocks import (
     SurfaceSpeed,
 )
 from stepnc_model.post.modal_state import ModalState, conditions, constant_speed, coolant_of
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.path import Feed
 from tests.every_case import every_case
 

@@ -7,7 +7,7 @@ import pytest
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import PostError
-from stepnc_model.nc.exact import read
+from stepnc_model.nc.exact_reading import read
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.post.blocks import (
@@ -41,7 +41,7 @@ from stepnc_model.post.canonical import commands
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.dialects import write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.path import (
     Arc,
     CannedCycle,

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from stepnc_model.nc.exact import read
+from stepnc_model.nc.exact_reading import read
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.post.blocks import Block
 from stepnc_model.post.canonical import Canonical, commands
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.dialects import write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.generate import generate
 from tests.stepnc_model.post.trace import difference
 

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from service.paths.toolpaths import nc_lines, paths_of
+from service.programs.toolpaths import nc_lines, paths_of
 from stepnc_model.errors import PostError
-from stepnc_model.nc.exact import read_blocks
+from stepnc_model.nc.exact_reading import read_blocks
 from stepnc_model.post.blocks import Linear, MachineType
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.post.path_tolerance import FINISHING, LEAST, ROUGHING, path_tolerance
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
 MODE = re.compile(r"^(?:N\d+ )?(G6[014].*)$")

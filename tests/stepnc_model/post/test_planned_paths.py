@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stepnc_model.file_profile import FileProfile
+from stepnc_model.editing.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.post.block_feeds import BlockPart, Numbered
 from stepnc_model.post.blocks import Block, Circular, Linear
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.post.planned_paths import PlannedPaths, planned_paths
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.explicit.path_writer import write_paths
 from stepnc_model.toolpath.explicit.planned_path import PlannedMove

@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from stepnc_model.nc.exact import read_blocks
+from stepnc_model.nc.exact_reading import read_blocks
 from stepnc_model.post.blocks import (
     Block,
     Circular,

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.path import ToolPath
 from stepnc_model.toolpath.task import ToolPathTask, job_of
 from stepnc_model.toolpath.turning.operation import turning_path

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.frame import (
     Frame,
     compound_of,

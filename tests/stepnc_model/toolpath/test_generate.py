@@ -7,7 +7,7 @@ import pytest
 
 from stepnc_model.errors import PathError, SchemaError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.generate import KeptPaths, generate, workingstep_path
 from stepnc_model.toolpath.path import Function, ToolPath
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.path import (
     ArcPlane,
     CannedCycle,

@@ -5,7 +5,7 @@ import pytest
 from stepnc_model.errors import PathError, SchemaError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.frame import MAX_COPIES, PlacedFeature, placements
 from stepnc_model.toolpath.path import Point
 from tests.every_case import every_case

@@ -1,6 +1,6 @@
 """Outcomes of a file for the knowledge base."""
 
-from service.knowledge.added import add_outcomes
+from service.knowledge.outcome_import import add_outcomes
 from service.progress import Tell, silent
 from service.requests.fields import Request
 from service.verbs.kbe.add.request import AddFiles

@@ -1,11 +1,11 @@
 """Export of outcomes, corrections or the evaluation table to a file."""
 
 from kbe.schema import DECIDED
-from service.flat_file import Format, write_rows
 from service.knowledge.columns import CORRECTION_COLUMNS, OUTCOME_COLUMNS
 from service.knowledge.place import require_apart
 from service.knowledge.verbs import corrections, selected_outcomes
-from service.output_format import format_of
+from service.outputs.flat_file import Format, write_rows
+from service.outputs.output_format import format_of
 from service.progress import Tell, silent
 from service.rendering.columns import file_columns, file_rows
 from service.verbs.kbe.export.request import ExportedContent, ExportFiles, ExportRequest

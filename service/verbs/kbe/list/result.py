@@ -8,8 +8,8 @@ from service.rendering.columns import Column
 from service.rendering.view import Fact, Item, ResultView, Table, TextLine
 from service.verbs.kbe.quantities import EVALUATED, quantity_text
 from service.verbs.result import Result
-from stepnc_model.counted import counted
 from stepnc_model.outcome import ProcessOutcome
+from stepnc_model.plurals import counted
 
 LISTING: tuple[Column[ProcessOutcome], ...] = (
     Column(heading="recorded", value=lambda each: each.recorded_at, is_key=True),

@@ -2,10 +2,10 @@
 
 from service.knowledge.verbs import newest
 from service.progress import Tell, silent
+from service.verbs.kbe.empty_answer import why_empty
 from service.verbs.kbe.list.request import ListingRequest
 from service.verbs.kbe.list.result import OutcomesResult
 from service.verbs.kbe.places import KnowledgeFiles
-from service.verbs.kbe.why_empty import why_empty
 
 
 def run(

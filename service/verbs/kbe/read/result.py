@@ -7,8 +7,8 @@ from service.rendering.columns import Column
 from service.rendering.view import ResultView, Table, TextLine
 from service.verbs.kbe.quantities import NOTHING
 from service.verbs.result import Result
-from stepnc_model.counted import counted
-from stepnc_model.outcome_record import RecordedCorrection, RecordedOutcome
+from stepnc_model.editing.outcome_record import RecordedCorrection, RecordedOutcome
+from stepnc_model.plurals import counted
 from stepnc_model.units import mm_min_from_speed, um_from_mm
 
 OUTCOMES: tuple[Column[RecordedOutcome], ...] = (

@@ -1,11 +1,11 @@
 """Outcomes and corrections that ``kbe write`` stored in a program."""
 
+from service.programs.reading import read_program
 from service.progress import Tell, silent
-from service.reading import read_program
 from service.requests.fields import Request
 from service.verbs.kbe.read.request import RecordedFiles
 from service.verbs.kbe.read.result import RecordedResult
-from stepnc_model.outcome_record import read_outcomes
+from stepnc_model.editing.outcome_record import read_outcomes
 
 
 def run(_request: Request, files: RecordedFiles, *, tell: Tell = silent) -> RecordedResult:

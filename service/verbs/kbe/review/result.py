@@ -14,8 +14,8 @@ from service.rendering.text import GREEN, one_line
 from service.rendering.view import Fact, ResultView, TextLine
 from service.verbs.kbe.quantities import NOTHING
 from service.verbs.result import Result
-from stepnc_model.counted import counted
 from stepnc_model.outcome import LearnedCorrection
+from stepnc_model.plurals import counted
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

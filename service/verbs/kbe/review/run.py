@@ -5,9 +5,9 @@ from service.knowledge.review import Acceptance, review
 from service.progress import Tell, silent
 from service.requests.knowledge import ReviewRequest
 from service.verbs.kbe.decider import decider
+from service.verbs.kbe.empty_answer import why_empty
 from service.verbs.kbe.review.request import ReviewFiles
 from service.verbs.kbe.review.result import ReviewReport
-from service.verbs.kbe.why_empty import why_empty
 
 
 def run(request: ReviewRequest, files: ReviewFiles, *, tell: Tell = silent) -> ReviewReport:

@@ -11,8 +11,8 @@ from service.rendering.text import GREEN, one_line
 from service.rendering.view import Fact, Item, ResultView, Table, TextLine
 from service.verbs.kbe.quantities import EVALUATED, NOTHING, Quantity
 from service.verbs.result import Result
-from stepnc_model.counted import counted
 from stepnc_model.outcome import EvaluatedQuantity, ProcessOutcome
+from stepnc_model.plurals import counted
 from stepnc_model.units import m_min_from_speed
 
 QUANTITIES: Mapping[str, Quantity] = {

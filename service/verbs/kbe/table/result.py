@@ -9,7 +9,6 @@ from typing import Any
 from kbe.queries import NAMES
 from kbe.remarks import EvaluationGrade, Remark
 from kbe.statistics import Evaluated
-from service.knowledge.evaluated import EvaluationTable, Summary
 from service.knowledge.evaluation_columns import (
     COLUMNS,
     FILE_COLUMNS,
@@ -20,7 +19,8 @@ from service.knowledge.evaluation_columns import (
     lines,
     screen_columns,
 )
-from service.output_format import OutputFormat
+from service.knowledge.evaluation_table import EvaluationTable, Summary
+from service.outputs.output_format import OutputFormat
 from service.rendering.columns import clock, record
 from service.rendering.text import RED, YELLOW
 from service.rendering.view import Fact, Item, ResultView, Table, TextLine
@@ -28,8 +28,8 @@ from service.requests.knowledge import EvaluationRequest
 from service.storage.results import TABLE
 from service.verbs.kbe.quantities import NOTHING
 from service.verbs.result import Result
-from stepnc_model.counted import counted
 from stepnc_model.errors import StepNcError
+from stepnc_model.plurals import counted
 
 COLOURS = {EvaluationGrade.VIOLATED: RED, EvaluationGrade.WASTED: YELLOW}
 """Colours of text lines by grade."""

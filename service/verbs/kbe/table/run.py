@@ -2,13 +2,13 @@
 
 from dataclasses import replace
 
-from service.knowledge.evaluated import summary, table
+from service.knowledge.evaluation_table import summary, table
 from service.knowledge.place import require_apart, usual_place
 from service.progress import Tell, silent
 from service.requests.knowledge import EvaluationRequest
+from service.verbs.kbe.empty_answer import why_empty
 from service.verbs.kbe.table.request import TableFiles
 from service.verbs.kbe.table.result import EvaluationResult, SummaryResult
-from service.verbs.kbe.why_empty import why_empty
 
 
 def run(

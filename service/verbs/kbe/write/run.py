@@ -4,13 +4,13 @@ from kbe.queries import Selection
 from kbe.store import Store, open_store
 from service.files import require_place, sibling, write_atomically
 from service.knowledge.place import require_apart
+from service.programs.reading import read_program
 from service.progress import Tell, silent
-from service.reading import read_program
 from service.verbs.kbe.write.request import WriteFiles, WriteRequest
 from service.verbs.kbe.write.result import WriteResult
+from stepnc_model.editing.outcome_record import write_outcomes
 from stepnc_model.errors import StepNcError
 from stepnc_model.outcome import LearnedCorrection, ProcessOutcome
-from stepnc_model.outcome_record import write_outcomes
 
 
 def run(request: WriteRequest, files: WriteFiles, *, tell: Tell = silent) -> WriteResult:

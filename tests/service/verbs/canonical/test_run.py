@@ -7,7 +7,7 @@ import pytest
 
 import stepnc
 from service.cli.main import main
-from service.exit_codes import BAD_INPUT
+from service.errors import BAD_INPUT
 from stepnc_model.errors import StepNcError
 from stepnc_model.post.dialect import Dialect
 

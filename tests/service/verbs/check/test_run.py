@@ -6,7 +6,7 @@ import pytest
 
 import stepnc
 from service.cli.main import main
-from service.exit_codes import BAD_INPUT
+from service.errors import BAD_INPUT
 from service.verbs.check.result import CodeContents
 from stepnc_model.errors import StepNcError
 from tests.checked import check

@@ -9,7 +9,7 @@ import stepnc
 from service.cli.main import main
 from service.verbs.convert.request import Standard
 from stepnc_model.errors import StepNcError
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"
 

@@ -11,12 +11,12 @@ import pytest
 
 import stepnc
 from service.requests.runs import SimulationRequest
-from service.simulation.of_code import CodeRequest
+from service.simulation.code_simulation import CodeRequest
 from service.simulation.run import RunFiles, simulate
 from service.verbs.call import call, verbs
+from simulator.files.machine_file import machine_toml
 from simulator.library import load_machine
 from simulator.machine.block_times import LossCause
-from simulator.machine_file import machine_toml
 from stepnc_model.errors import StepNcError
 from tests.every_case import every_case
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from service.knowledge.evaluated import EvaluationTable, table
 from service.knowledge.evaluation_columns import FILE_COLUMNS, lines
+from service.knowledge.evaluation_table import EvaluationTable, table
 from service.rendering.columns import file_columns, file_rows
 from service.requests.knowledge import EvaluationRequest
 from service.verbs.kbe.table.result import EvaluationResult

@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import stepnc
-from service.output_format import OutputFormat
+from service.outputs.output_format import OutputFormat
 from service.verbs.kbe.table.result import EvaluationResult, SummaryResult
 from stepnc_model.errors import StepNcError
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from service.knowledge.evaluated import EvaluationTable, table
 from service.knowledge.evaluation_columns import lines, screen_columns
+from service.knowledge.evaluation_table import EvaluationTable, table
 from service.rendering.columns import visible
 from service.requests.knowledge import EvaluationRequest
 from service.verbs.kbe.table.result import EvaluationResult

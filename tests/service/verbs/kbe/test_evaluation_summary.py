@@ -7,8 +7,8 @@ from statistics import mean, stdev
 import pytest
 
 from kbe.queries import EVERYTHING
-from service.knowledge.evaluated import Summary, summary
 from service.knowledge.evaluation_columns import SUMMARY
+from service.knowledge.evaluation_table import Summary, summary
 from service.rendering.columns import file_columns, file_rows
 from service.verbs.kbe.table.result import SummaryResult
 from stepnc_model.outcome import ProcessOutcome

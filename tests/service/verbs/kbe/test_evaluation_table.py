@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kbe.remarks import EvaluationGrade
-from service.knowledge.evaluated import EvaluationTable, table
 from service.knowledge.evaluation_columns import COLUMNS
 from service.knowledge.evaluation_columns import lines as lines_of
+from service.knowledge.evaluation_table import EvaluationTable, table
 from service.rendering.text import RED, TextColumn, blocks, one_line, screen_width
 from service.requests.knowledge import EvaluationRequest
 from service.verbs.kbe.table.result import EvaluationResult

@@ -14,10 +14,10 @@ import pyarrow.parquet as pq
 import pytest
 
 from kbe.rows import OUTCOME
-from service.flat_file import Format, write_rows
 from service.knowledge import verbs as knowledge
 from service.knowledge.columns import OUTCOME_COLUMNS
 from service.knowledge.review import review
+from service.outputs.flat_file import Format, write_rows
 from service.rendering.columns import file_columns, file_rows
 from service.requests.knowledge import ReviewRequest
 from service.verbs.kbe.export.request import ExportedContent, ExportFiles, ExportRequest

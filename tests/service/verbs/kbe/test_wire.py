@@ -10,7 +10,7 @@ from kbe.queries import EVERYTHING
 from kbe.rows import OUTCOME
 from service.knowledge import verbs as knowledge
 from service.knowledge.review import review
-from service.output_format import OutputFormat
+from service.outputs.output_format import OutputFormat
 from service.requests.knowledge import ReviewRequest
 from service.verbs.kbe.corrections.result import CorrectionsResult
 from service.verbs.kbe.list.result import OutcomesResult

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from kbe.store import open_store
-from service.reading import read_program
+from service.programs.reading import read_program
 from service.verbs.kbe.write.request import WriteFiles, WriteRequest
 from service.verbs.kbe.write.result import WriteResult
 from service.verbs.kbe.write.run import run as write
+from stepnc_model.editing.outcome_record import read_outcomes
 from stepnc_model.errors import StepNcError, WriteError
-from stepnc_model.outcome_record import read_outcomes
 from tests.kbe.conftest import NOON, POCKET, PROPOSAL
 
 PART = Path(__file__).parents[4] / "examples" / "parts" / "paper002.stpnc"

@@ -9,8 +9,8 @@ import pytest
 import stepnc
 from service.verbs.library import EntryResult
 from service.verbs.machines.result import machine_facts
+from simulator.files.machine_file import machine_toml
 from simulator.library import load_machine, machine_names
-from simulator.machine_file import machine_toml
 from simulator.spec import ModeDirection, VibratingPart, VibrationMode
 from stepnc_model.errors import StepNcError
 

@@ -17,7 +17,7 @@ from service.along_path.task import task_of
 from service.cli.commands import print_result
 from service.rendering.columns import dump
 from service.requests.advice import AdviceRequest
-from service.requests.given import RawPart, StockFile
+from service.requests.program_facts import RawPart, StockFile
 from service.verbs.optimise.code import optimise_code, source_of
 from service.verbs.optimise.code_result import CodeAdvice
 from service.verbs.optimise.program import advise_program as optimise
@@ -26,7 +26,9 @@ from simulator.removal.engage import MillingStock
 from simulator.removal.stock_file import stock_bytes
 from stepnc_model.errors import StepNcError
 from stepnc_model.post.dialect import Dialect
-from stepnc_model.program import Stock
+from stepnc_model.programs.program import Stock
+from tests.extras.verification.files import write_stl
+from tests.extras.verification.model.box import box
 from tests.service.along_path.foreign import (
     END,
     HEAD,
@@ -39,8 +41,6 @@ from tests.service.along_path.foreign import (
     slot,
 )
 from tests.service.along_path.samples import BRACKET
-from tests.service.verification.files import write_stl
-from tests.simulator.verification.box import box
 
 FEED = re.compile(r" ?F[0-9.]+")
 

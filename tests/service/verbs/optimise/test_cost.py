@@ -10,8 +10,8 @@ from service.cli.main import main
 from service.requests.advice import AdviceRequest
 from service.verbs.optimise.program import advise_program
 from service.verbs.optimise.request import AdviceFiles
+from simulator.files.machine_file import machine_toml, read_machine
 from simulator.library import load_machine
-from simulator.machine_file import machine_toml, read_machine
 
 SHAFT = "examples/parts/shaft.stpnc"
 WORDS = ("--machine", "lathe22", "--free", "feed,depth,speed", "--dry-run")

@@ -13,8 +13,8 @@ from service.verbs.optimise.program import advise_program
 from service.verbs.optimise.request import AdviceFiles
 from stepnc_model.entities.operations import CutterLocationTrajectory
 from stepnc_model.errors import StepNcError
-from stepnc_model.program import Program
-from stepnc_model.technology import programmed
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.technology import programmed
 from tests.stepnc_model.path_only import path_only_text
 
 TABLE = (

@@ -8,8 +8,8 @@ import pytest
 
 from service.cli.commands import print_result
 from service.verbs.optimise import program as advising
+from simulator.files.machine_file import machine_toml
 from simulator.library import load_machine
-from simulator.machine_file import machine_toml
 from simulator.spec import ModeDirection, VibratingPart, VibrationMode
 from tests.asking import asked_advice
 

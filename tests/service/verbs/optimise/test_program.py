@@ -7,14 +7,14 @@ import pytest
 
 import stepnc
 from optimiser.advice import AdviceStatus
-from service.reading import read_program
+from service.programs.reading import read_program
 from service.verbs.optimise import program as advising
 from service.verbs.optimise.plan_result import ProgramAdvice
 from simulator.errors import UnknownMachine, UnknownMaterial
+from stepnc_model.editing.file_profile import FileProfile
 from stepnc_model.errors import SchemaError, Severity, StepNcError, WriteError
-from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from tests.asking import AskedAdvice, asked_advice
 from tests.checked import check
 

@@ -7,9 +7,9 @@ import pytest
 
 import stepnc
 from service.cli.main import main
-from service.exit_codes import BAD_INPUT
+from service.errors import BAD_INPUT
 from stepnc_model.errors import PostError, SchemaError, StepNcError
-from stepnc_model.nc.exact import read
+from stepnc_model.nc.exact_reading import read
 from stepnc_model.post.dialect import Dialect
 from stepnc_model.toolpath.path import Function
 

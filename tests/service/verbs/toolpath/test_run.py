@@ -7,8 +7,8 @@ import pytest
 
 import stepnc
 from service.cli.main import main
-from service.exit_codes import BAD_INPUT, OK
-from service.paths.toolpaths import Paths
+from service.errors import BAD_INPUT, OK
+from service.programs.toolpaths import Paths
 from service.verbs.toolpath.result import CodePathResult, ToolPathResult
 from stepnc_model.errors import SchemaError, StepNcError, WriteError
 from stepnc_model.toolpath.path import MoveType, ToolPath

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stepnc_model.draft import Draft
+from stepnc_model.editing.draft import Draft
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.curve import CHORD_TOLERANCE, Segment, move_of, segments_of
 from stepnc_model.toolpath.explicit.curve_writer import CurveWriter, HelixForm, WrittenCurve

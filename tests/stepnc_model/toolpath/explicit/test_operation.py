@@ -4,7 +4,7 @@ import pytest
 
 from stepnc_model.errors import PathError, SchemaError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.explicit.operation import explicit_path, rapid_movement_path
 from stepnc_model.toolpath.path import MoveType, ToolPath
 from stepnc_model.toolpath.task import job_of

@@ -9,8 +9,8 @@ import pytest
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, Stock
-from stepnc_model.tool import Tool
+from stepnc_model.programs.program import Program, Stock
+from stepnc_model.programs.tool import Tool
 from stepnc_model.toolpath.explicit.path_builder import ExplicitPathBuilder, PathSurroundings
 from stepnc_model.toolpath.frame import Frame
 from stepnc_model.toolpath.path import Dwell, Move

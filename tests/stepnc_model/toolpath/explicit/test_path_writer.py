@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from steputils import p21
 
+from stepnc_model.editing.file_profile import FileProfile
 from stepnc_model.entities.entity import Entity
-from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.explicit.operation import path_frames
 from stepnc_model.toolpath.explicit.path_writer import MOST_MOVES, write_paths

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.arc import length
 from stepnc_model.toolpath.explicit.trajectory import PIECES, MoveSpeeds, pace_of, paced
 from stepnc_model.toolpath.path import Arc, Feed, Move, MoveType

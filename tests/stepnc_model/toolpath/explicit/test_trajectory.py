@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
-from stepnc_model.tool import Tool
+from stepnc_model.programs.program import Program
+from stepnc_model.programs.tool import Tool
 from stepnc_model.toolpath.curve import Segment
 from stepnc_model.toolpath.explicit.trajectory import trajectory_segments
 from stepnc_model.toolpath.frame import Frame

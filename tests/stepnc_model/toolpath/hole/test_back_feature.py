@@ -10,7 +10,7 @@ import pytest
 
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.hole.back import back_holes
 from stepnc_model.toolpath.hole.feature import Hole
 from stepnc_model.toolpath.task import job_of

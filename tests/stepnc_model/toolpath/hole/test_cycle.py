@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from stepnc_model.errors import PathError, Severity
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.hole.cycle import PECK_CLEARANCE
 from stepnc_model.toolpath.hole.operation import hole_path
 from stepnc_model.toolpath.path import (

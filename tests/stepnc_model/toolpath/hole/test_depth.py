@@ -13,7 +13,7 @@ import pytest
 from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.errors import Finding, PathError, Severity
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.hole.feature import (
     Depth,
     depth_findings,

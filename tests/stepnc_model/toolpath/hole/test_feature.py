@@ -10,7 +10,7 @@ import pytest
 from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.hole.feature import DEFAULT_TOLERANCE, Hole, holes_of
 from stepnc_model.toolpath.hole.operation import hole_path
 from stepnc_model.toolpath.task import ToolPathTask, job_of

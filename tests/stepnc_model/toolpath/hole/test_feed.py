@@ -12,7 +12,7 @@ from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.hole.cycle import FeedStage, retract_feed, stages_of
 from stepnc_model.toolpath.hole.feature import depth_of, holes_of
 from stepnc_model.toolpath.path import Feed

@@ -11,7 +11,7 @@ import pytest
 
 from stepnc_model.errors import PathError, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.hole.operation import hole_path
 from stepnc_model.toolpath.path import MoveType, ToolPath
 from stepnc_model.toolpath.task import job_of

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.arc import points_along, radius
 from stepnc_model.toolpath.hole.operation import hole_path
 from stepnc_model.toolpath.path import Dwell, Move, MoveType, ToolPath

@@ -7,7 +7,7 @@ import pytest
 
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.arc import length, points_along
 from stepnc_model.toolpath.milling.contour import Chain, circle, line, polygon
 from stepnc_model.toolpath.milling.cover import MillingPass

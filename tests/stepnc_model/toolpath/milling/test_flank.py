@@ -10,7 +10,7 @@ from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.milling.contour import chain_length, circle, clockwise, line, polygon
 from stepnc_model.toolpath.milling.cover import Flank, leaning, upright
 from stepnc_model.toolpath.milling.flank import flank_layer

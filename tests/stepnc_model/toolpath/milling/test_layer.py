@@ -11,7 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.milling.contour import area, chain_length, circle, clockwise, polygon
 from stepnc_model.toolpath.milling.cover import Area, Wall, swept, upright
 from stepnc_model.toolpath.milling.layer import CutLevel, Layer, clear, wall_passes

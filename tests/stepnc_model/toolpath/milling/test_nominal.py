@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from service.reading import read_program
-from stepnc_model.program import Program, ResolvedWorkingstep
+from service.programs.reading import read_program
+from stepnc_model.programs.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.milling.nominal import nominal_walls
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"

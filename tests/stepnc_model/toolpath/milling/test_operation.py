@@ -7,7 +7,7 @@ import pytest
 
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.arc import length, points_along
 from stepnc_model.toolpath.milling.operation import allowance_of, levels, milling_path
 from stepnc_model.toolpath.path import Move, MoveType, Point, ToolPath

@@ -9,7 +9,7 @@ from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Part21Error, PathError, SchemaError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.frame import Frame
 from stepnc_model.toolpath.milling.contour import Chain, Loop, area, chain_length
 from stepnc_model.toolpath.milling.outline import (

@@ -7,7 +7,7 @@ import pytest
 
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.milling.contour import area, chain_length
 from stepnc_model.toolpath.milling.cover import Flank
 from stepnc_model.toolpath.milling.shapes import shapes

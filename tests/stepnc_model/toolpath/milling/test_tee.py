@@ -6,7 +6,7 @@ import pytest
 
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
+from stepnc_model.programs.program import Program
 from stepnc_model.toolpath.generate import workingstep_path
 from stepnc_model.toolpath.path import MoveType, ToolPath
 from tests.every_case import every_case

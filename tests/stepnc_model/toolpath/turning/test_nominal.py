@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from service.reading import read_program
+from service.programs.reading import read_program
 from stepnc_model.toolpath.turning.nominal import nominal_outlines
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"

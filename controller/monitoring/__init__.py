@@ -1,0 +1,1 @@
+"""Supervision of a run by its forces: warnings, broken teeth, wear."""

@@ -1,0 +1,1 @@
+"""Agent, its documents and device models, by the standard."""

@@ -1,0 +1,1 @@
+"""Verbs of agents: publish a run, and record what a machine tells."""

@@ -1,0 +1,1 @@
+"""Calibration: machines, materials and tool life fitted to measured runs."""

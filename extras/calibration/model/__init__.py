@@ -1,0 +1,1 @@
+"""Fits, and the features of measured runs that they use."""

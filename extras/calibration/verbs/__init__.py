@@ -1,0 +1,1 @@
+"""Verbs of calibration and of the tests that it reads."""

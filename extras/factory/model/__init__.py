@@ -1,0 +1,1 @@
+"""Model of a shop: stations, crews, shifts, products and their parts."""

@@ -1,0 +1,1 @@
+"""Models that learn from runs, and the data sets to learn from."""

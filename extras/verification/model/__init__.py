@@ -1,0 +1,1 @@
+"""Comparison of surfaces: what a log has left, what is required."""

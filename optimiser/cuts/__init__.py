@@ -1,0 +1,1 @@
+"""Cuts of workingsteps: geometry, conditions, and engagement along the path."""

@@ -1,0 +1,1 @@
+"""Fastest feed along a path, of numbers that know no machining."""

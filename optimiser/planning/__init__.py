@@ -1,0 +1,1 @@
+"""Problem of each workingstep, and the search for its number of passes."""

@@ -1,0 +1,1 @@
+"""Optimum of one workingstep, of numbers that know no machining."""

@@ -1,1 +1,0 @@
-"""The verb ``agent``: a program on the virtual machine as an MTConnect agent."""

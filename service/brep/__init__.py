@@ -1,1 +1,0 @@
-"""Solids of STEP files: B-rep that Open CASCADE turns into triangles."""

@@ -1,1 +1,0 @@
-"""Data sets: many parts run on the virtual machine, by a design of experiments."""

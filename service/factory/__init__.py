@@ -1,1 +1,0 @@
-"""Virtual factory: machining cycles of programs, for the simulation of a shop."""

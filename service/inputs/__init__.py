@@ -1,0 +1,1 @@
+"""What users name and type: kinds of files, parts, numbers."""

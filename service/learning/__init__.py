@@ -1,1 +1,0 @@
-"""Models learned from data sets by scikit-learn, measured beside simple baselines."""

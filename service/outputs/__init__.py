@@ -1,0 +1,1 @@
+"""Output files: rows of a run, tables and folders that appear whole."""

@@ -1,1 +1,0 @@
-"""Tool paths of programs, and NC code generated from them."""

@@ -1,0 +1,1 @@
+"""Programs as the user names them: reading, and what they lack."""

@@ -1,1 +1,0 @@
-"""Live sessions, watched and changed as they go on: controlled runs and trial cuts."""

@@ -1,0 +1,1 @@
+"""Servers of HTTP: hosts, bounds, and problem details."""

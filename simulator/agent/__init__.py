@@ -1,1 +1,0 @@
-"""MTConnect agent of the virtual machine: device models, observations, documents, HTTP."""

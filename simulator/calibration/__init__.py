@@ -1,1 +1,0 @@
-"""Machine and cutting parameters fitted to measured runs."""

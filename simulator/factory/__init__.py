@@ -1,1 +1,0 @@
-"""Virtual factory: machines that live in states, batches, buffers, crews and energy."""

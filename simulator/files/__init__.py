@@ -1,0 +1,1 @@
+"""Files of the library: machines, materials, tool grades and work-holding."""

@@ -1,0 +1,1 @@
+"""Tools by number, and what is known of them."""

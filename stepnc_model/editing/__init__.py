@@ -1,0 +1,1 @@
+"""Changes of a program, written into the bytes that were read."""

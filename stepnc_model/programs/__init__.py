@@ -1,0 +1,1 @@
+"""STEP-NC programs: workingsteps, technologies, tools and what is doubtful."""
