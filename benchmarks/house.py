@@ -104,6 +104,9 @@ MIGRATIONS = (
 )
 """found by their folder"""
 
+EXTRAS = "extras"
+"""what only some users need; the rest is the core"""
+
 FOUND = ("jobs", "rest")
 """modules of extras that the core finds by their names"""
 
@@ -235,6 +238,11 @@ def entries(root: Path) -> list[Name]:
     ]
 
 
+def is_package(name: str) -> bool:
+    """True if a dotted name is that of a folder."""
+    return (ROOT / name.replace(".", "/")).is_dir()
+
+
 def unreached(house: House, found: set[Name]) -> list[Name]:
     """Public names that are not among those, in their order."""
     return sorted(
@@ -346,9 +354,15 @@ def main(arguments: list[str] | None = None) -> int:
     # A module brings its packages along.
     modules |= {module[:at] for module in modules for at in _dots(module)}
     print(f"lines            {sum(text.count(chr(10)) for text in house.texts.values())}")
-    print(f"logical lines    {house.logical_lines()}")
+    rooms = {room: House(ROOT, (room,)) for room in PRODUCT}
+    lines_of = {room: part.logical_lines() for room, part in rooms.items()}
+    print(f"logical lines    {sum(lines_of.values())}")
+    print(f"    of the core  {sum(lines_of.values()) - lines_of[EXTRAS]}")
+    for room, part in rooms.items():
+        loose = sum(name.count(".") == 1 for name in part.texts if not is_package(name))
+        print(f"    {room:13}{lines_of[room]}, {loose} loose modules")
     print(f"modules          {len(house.texts)}")
-    packages = sum((ROOT / name.replace(".", "/")).is_dir() for name in house.texts)
+    packages = sum(map(is_package, house.texts))
     print(f"packages         {packages}")
     print(f"classes          {house.classes().total()}")
     print(f"shared names     {len(shared)}")
