@@ -7,7 +7,6 @@ leaves open what runs is a fault; what it contains is listed, but does not run.
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from stepnc_model.conditions import ErrorMaker, ProgramVariables
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import (
     Assignment,
@@ -32,6 +31,7 @@ from stepnc_model.entities.executables import (
 from stepnc_model.errors import SchemaError
 from stepnc_model.part21.values import Ref
 from stepnc_model.programs.binding import Model
+from stepnc_model.programs.conditions import ErrorMaker, ProgramVariables
 
 MAX_EXECUTABLES = 100_000
 """Greatest number of executables; mutually nested workplans could grow without bound."""

@@ -3,6 +3,7 @@
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
+from pkgutil import resolve_name
 
 from service.control.record import control_recorded
 from service.inputs.numbers import numbers_in
@@ -12,6 +13,9 @@ from service.simulation.run_files import placed_run
 from service.verbs.control.request import ControlFiles
 from service.verbs.control.result import ControlResult
 from stepnc_model.errors import StepNcError
+
+LINUXCNC = "extras.linuxcnc.drive_setup:drive_of"
+"""Function of the extra that drives a LinuxCNC."""
 
 
 def run(request: ControlRequest, files: ControlFiles, *, tell: Tell = silent) -> ControlResult:
@@ -35,9 +39,7 @@ def run(request: ControlRequest, files: ControlFiles, *, tell: Tell = silent) ->
     )
     with ExitStack() as stack:
         if files.linuxcnc:
-            from extras.linuxcnc.drive_setup import drive_of  # noqa: PLC0415 (an extra)
-
-            found_drive = drive_of(files, placed.request, stack, tell)
+            found_drive = resolve_name(LINUXCNC)(files, placed.request, stack, tell)
             places = replace(places, drive=found_drive.drive)
             placed = replace(placed, request=found_drive.request)
         found = control_recorded(
