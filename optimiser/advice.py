@@ -6,12 +6,11 @@ from enum import StrEnum
 
 from optimiser.bounds.holding import HoldingLoad
 from optimiser.bounds.required_limits import UncheckedLimit
-from optimiser.bounds.roughness import LEAST_SHARE
 from optimiser.bounds.stability import ChatterRisk, Stability, risk_of
 from optimiser.cuts.conditions import CuttingConditions
 from optimiser.cuts.cut import Cut
 from optimiser.modes import Mode
-from optimiser.safety import USUAL_QUANTILE
+from optimiser.safety import LEAST_SHARE, USUAL_QUANTILE
 from optimiser.solver.problem import BoundSide, Limit, LimitName, Setting
 from simulator.physics.surface_spread import LIKELY, RoughnessForecast
 from simulator.spec import Machine, MaterialMatch

@@ -13,6 +13,9 @@ USUAL_QUANTILE = 0.9
 LEAST_QUANTILE, GREATEST_QUANTILE = 0.5, 0.999
 """Range of the quantile: nominal, to where the tail of the distribution is unknown."""
 
+LEAST_SHARE, GREATEST_SHARE = 0.5, 0.99
+"""Range of the share of surfaces that a plan may promise to keep a roughness."""
+
 
 def require_quantile(quantile: float) -> None:
     """Check that a quantile is within the supported range.

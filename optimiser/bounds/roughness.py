@@ -66,9 +66,6 @@ def surface_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
 IDEAL = "ideal, not measured"
 """Basis of a roughness that is the trace of feed and corner alone."""
 
-LEAST_SHARE, GREATEST_SHARE = 0.5, 0.99
-"""Range of the share of surfaces that a plan may promise to keep a roughness."""
-
 OWN_MEASUREMENTS = "Ra measured on own cuts: stepnc calibrate --table CUTS --material NAME"
 """Datum that brings a promise."""
 

@@ -25,7 +25,6 @@ from optimiser.bounds.limits import (
 from optimiser.bounds.loads import scaled, thrust
 from optimiser.bounds.plunge_feed import plunge_limits
 from optimiser.bounds.roughness import (
-    LEAST_SHARE,
     roughness_forecast,
     roughness_limit,
     roughness_load,
@@ -38,7 +37,7 @@ from optimiser.cuts.cut import Cut, CutKind
 from optimiser.cuts.source import Source, along_paths
 from optimiser.errors import Infeasible
 from optimiser.modes import Free, Mode
-from optimiser.safety import USUAL_QUANTILE, require_quantile, safety_factor
+from optimiser.safety import LEAST_SHARE, USUAL_QUANTILE, require_quantile, safety_factor
 from optimiser.solver import workingstep as exact
 from optimiser.solver.convex import TIE
 from optimiser.solver.problem import (

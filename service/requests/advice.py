@@ -6,9 +6,15 @@ from typing import Annotated
 
 from annotated_types import Interval, Len, MaxLen
 
-from optimiser.bounds.roughness import GREATEST_SHARE, LEAST_SHARE
 from optimiser.modes import Free, Mode
-from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE, USUAL_RISE
+from optimiser.safety import (
+    GREATEST_QUANTILE,
+    GREATEST_SHARE,
+    LEAST_QUANTILE,
+    LEAST_SHARE,
+    USUAL_QUANTILE,
+    USUAL_RISE,
+)
 from service.requests.fields import About
 from service.requests.files import KeepsState
 from service.requests.program_facts import Name, ProgramRequest
