@@ -12,7 +12,7 @@ ALIKE = 0.05
 
 
 def test_notebook_runs_and_shows_tables_and_figures() -> None:
-    notebook = nbformat.read(EXAMPLES / "10_notebook.ipynb", as_version=4)  # type: ignore[no-untyped-call]
+    notebook = nbformat.read(EXAMPLES / "11_notebook.ipynb", as_version=4)  # type: ignore[no-untyped-call]
     assert not any(cell.get("outputs") for cell in notebook.cells)  # kept without
     NotebookClient(
         notebook, timeout=600, kernel_name="python3", resources={"metadata": {"path": EXAMPLES}}

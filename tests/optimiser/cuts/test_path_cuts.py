@@ -13,6 +13,7 @@ from simulator.library import load_machine, load_material
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from simulator.spec import Kienzle
+from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.programs.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.arc import length
@@ -217,25 +218,20 @@ def test_a_path_of_the_file_has_no_other_depth() -> None:
     assert other.length == pytest.approx(cut.length)
 
 
-def test_what_stands_on_a_workingstep_without_a_path_is_estimated() -> None:
-    """The pocket cannot be roughed: its finishing cutter would meet all of it."""
-    below = ("'ROUGH POCKET',10.,$,#420", "'ROUGH POCKET',-10.,$,#420")
-    read = program("bracket", *below)
+def test_a_workingstep_without_a_path_has_no_cut() -> None:
+    """No run could follow advice on it."""
+    read = program("bracket", "'ROUGH POCKET',10.,$,#420", "'ROUGH POCKET',-10.,$,#420")
     source = MeasuredCuts(read, load_machine("vmc15"), STEEL)
-    said = {}
-    for step in read.workingsteps:
-        cut, findings = source.cut(step)
-        said[step.id] = [finding.message for finding in findings]
-        assert (cut.volume is None) == (step.id in {"ROUGH POCKET", "FINISH POCKET"})
-    assert any("the feature is not ready" in text for text in said["FINISH POCKET"])
+    with pytest.raises(PathError, match="the retract plane must lie above the feature"):
+        source.cut(step_of(read, "ROUGH POCKET"))
 
 
 def test_a_workingstep_that_is_left_out_without_a_path_is_remembered() -> None:
     read = program("bracket", "'ROUGH POCKET',10.,$,#420", "'ROUGH POCKET',-10.,$,#420")
     source = MeasuredCuts(read, load_machine("vmc15"), STEEL)
     source.leave_out(step_of(read, "ROUGH POCKET"))
-    _, findings = source.cut(step_of(read, "FINISH POCKET"))
-    assert any("the feature is not ready" in finding.message for finding in findings)
+    with pytest.raises(PathError, match="the feature is not ready"):
+        source.cut(step_of(read, "FINISH POCKET"))
 
 
 NOT_DRILLED = ("(#20,#21,#22,#23,#24,#25),$,$,$);", "(#24),$,$,$);")

@@ -13,7 +13,7 @@ from tests.service.waiting import environment
 
 BEGIN = """
 import asyncio, gc, logging, multiprocessing, sys, threading, warnings
-from service import log_lines
+from service.processes import log_lines
 log_lines.configure("info")
 log_lines.report_faults()
 

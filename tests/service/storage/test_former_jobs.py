@@ -22,6 +22,7 @@ from service.storage.pages import PageCursor
 from service.trial.inputs import Inputs, MillingType
 from service.trial.request import TrialRequest
 from simulator.motion.model_name import ControlModelName
+from stepnc_model.editing.file_profile import FileProfile
 from stepnc_model.post.dialect import Dialect
 
 FORMER = Path(__file__).with_name("former_jobs.sql").read_text("utf-8")
@@ -72,8 +73,11 @@ def test_each_request_is_read(data_folder: DataFolder) -> None:
         workingsteps=("ROUGH THE FACE",), nc_control=Dialect.LINUXCNC, has_pareto=True,
         tool_change_s=30.0, is_confirmed=True, stock="0,0,0,18,300,3", safety=0.8,
         centre_cutting={"MILL 18MM": True}, allow_plunge=True,
+        profile=FileProfile.OPTIMISATION,
     )  # fmt: skip
-    assert older == AdviceRequest(machine="vmc15", material="c45")
+    assert older == AdviceRequest(
+        machine="vmc15", material="c45", profile=FileProfile.OPTIMISATION
+    )
     assert isinstance(simulation, SimulationRequest)
     assert (simulation.rate_hz, simulation.control) == (50.0, ControlModelName.EXACT_STOP)
     assert isinstance(control, ControlRequest)

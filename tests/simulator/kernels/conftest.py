@@ -36,6 +36,6 @@ def heights(line: Line, x: NDArray[np.float64], first: int, into: NDArray[np.flo
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Where machine code is kept; nowhere else."""
-    monkeypatch.setattr(store, "BESIDE", tmp_path / "beside")
+    monkeypatch.setattr(store, "PACKAGE_CACHE", tmp_path / "beside")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     return tmp_path / "beside"

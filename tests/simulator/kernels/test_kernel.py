@@ -87,7 +87,7 @@ def test_numba_stays_out_of_a_process_that_finds_its_machine_code(folder: Path) 
     assert len(list(folder.glob("heights-*.o"))) == 1
     script = (
         "import sys; from pathlib import Path; from simulator.kernels import store\n"
-        f"store.BESIDE = Path({str(folder)!r})\n"
+        f"store.PACKAGE_CACHE = Path({str(folder)!r})\n"
         "import numpy as np; from tests.simulator.kernels.conftest import Line, heights\n"
         "into = np.zeros(2); heights(Line(1.0, 1.0), np.zeros(2), 0, into)\n"
         "assert into.tolist() == [2.0, 2.0] and 'numba' not in sys.modules"

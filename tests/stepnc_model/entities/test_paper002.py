@@ -61,8 +61,8 @@ def test_optimisation_with_five_parameters_is_read(figure: Part21File) -> None:
 @every_case(
     "words",
     [
-        "FILE_DESCRIPTION has 1 parameters",
-        "FILE_NAME has 1 parameters",
+        "FILE_DESCRIPTION has 1 parameter",
+        "FILE_NAME has 1 parameter",
         "';' is missing after #202",
         "';' is missing after #203",
         "';' is missing after #204",

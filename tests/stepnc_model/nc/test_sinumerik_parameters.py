@@ -70,14 +70,15 @@ def test_what_is_not_known_stays_unknown(name: str) -> None:
     assert isnan(moves(UNKNOWN[name]).end[-1, 0])
 
 
-def test_blocks_with_parameters_are_not_split_and_their_feeds_stay() -> None:
+def test_blocks_with_parameters_are_not_split_and_known_feeds_are_advised() -> None:
     found = moves("R1=10 R2=100\nG1 X=R1 F200\nG1 Y5 F=R2\nX20\nX30 F50\n")
     with_end, with_feed, behind, plain = range(1, 5)
-    assert found.is_advisable.tolist()[1:] == [True, False, False, True]
+    assert found.is_advisable.tolist()[1:] == [True, True, True, True]
     assert found.flags[with_end] & MoveFlag.MACRO
     assert not found.is_splittable[with_end]
-    assert found.flags[with_feed] & MoveFlag.MACRO_FEED
-    assert found.flags[behind] & MoveFlag.MACRO_FEED
+    # MACRO_FEED is for feeds that are not known.
+    assert not found.flags[with_feed] & MoveFlag.MACRO_FEED
+    assert not found.flags[behind] & MoveFlag.MACRO_FEED
     assert found.is_splittable[plain]
 
 

@@ -2,7 +2,7 @@
 
 The face of ``paper002`` at its optimised feed, on a workpiece that becomes 40 % harder on the
 way. LinuxCNC runs without a machine, in real time: five minutes.
-``python examples/11_real_control.py [FOLDER]``
+``python examples/10_real_control.py [FOLDER]``
 """
 
 import sys
