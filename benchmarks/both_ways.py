@@ -11,12 +11,13 @@ import re
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from math import pi
 from pathlib import Path
 
 from optimiser.advice import Advice, AdviceStatus
 from optimiser.along_path.bounds import bounds_of
 from optimiser.along_path.caps import CutBounds
-from optimiser.along_path.tool_bounds import bounds_of_tool
+from optimiser.along_path.tool_bounds import KnownOfJob, bounds_of_tool
 from service.along_path.course import Part, PathSource
 from service.along_path.program_feeds import along_program
 from service.along_path.run import FeedsAlongPath, along_path
@@ -132,8 +133,8 @@ def _along_code(
 
 def told(tool: TableTool, advice: Advice, result: ProgramAdvice) -> CutBounds | None:
     """Bounds of a tool whose roughness and tolerance are told, as for NC code."""
-    at = advice.conditions
-    if at is None:
+    at, cut, state = advice.conditions, advice.cut, advice.after
+    if at is None or cut is None or state is None:
         return None
     found = bounds_of_tool(
         tool,
@@ -142,6 +143,9 @@ def told(tool: TableTool, advice: Advice, result: ProgramAdvice) -> CutBounds | 
         quantile=REQUEST.safety,
         is_finishing=at.roughness is not None,
         roughness=at.roughness,
+        job=KnownOfJob(
+            finishing_speed=pi * cut.diameter * state.setting.speed, is_dry=at.is_dry
+        ),
     )
     if found is None:
         return None

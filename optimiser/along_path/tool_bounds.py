@@ -47,6 +47,10 @@ class KnownOfJob:
     """Accepted correction of k_c for the tool."""
     roughness_quantile: float = 0.5
     """Share of surfaces that must keep the roughness."""
+    finishing_speed: float = 0.0
+    """Least cutting speed of the tool, mm/s; 0 if it is not known: the roughest surface."""
+    is_dry: bool = True
+    """Whether the tool has no coolant, or it is not known."""
     safety_factor: float | None = None
     """k_c at the planned quantile over its accepted correction; None: by the material."""
     holding: Holding | None = None
@@ -104,10 +108,9 @@ def bounds_of_tool(  # noqa: PLR0913 (a tool, its machine and material, and what
         holding=None if machine.only_stated_limits else job.holding,
         grip=job.grip,
         roughness_quantile=job.roughness_quantile,
+        finishing_speed=job.finishing_speed,
+        is_dry=job.is_dry,
     )
-    # The blocks tell speed and coolant: until then the surface that is hardest to keep, dry and
-    # at the least speed.
-    at = replace(at, finishing_speed=cutting_speed_window(at)[0] or 0.0)
     surface = _surface_feed(cut, at)
     return CutBounds(
         cut=cut,

@@ -2,10 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import copysign
+from math import copysign, pi
 
 import numpy as np
 
+from simulator.removal.cutter import Cutter
+from simulator.tools.tool_table import TableTool
 from stepnc_model.errors import StepNcError
 from stepnc_model.nc.moves import ModalSetting, MoveKind, NcMoves
 from stepnc_model.nc.program import NcProgram
@@ -63,6 +65,15 @@ def lacks_speed(moves: NcMoves, tool: int) -> bool:
     """True if no speed of the spindle is known while a tool moves at a feed."""
     is_fed = np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC)) & (moves.tool == tool)
     return bool(np.isnan(moves.spindle[is_fed]).all())
+
+
+def least_cutting_speed(moves: NcMoves, number: int, tool: TableTool) -> float:
+    """Least cutting speed of a rotating tool, mm/s; 0 if it is not known."""
+    is_fed = np.isin(moves.kind, (MoveKind.LINE, MoveKind.ARC)) & (moves.tool == number)
+    speeds = np.abs(moves.spindle[is_fed])
+    if not isinstance(tool.shape, Cutter) or not speeds.size or np.isnan(speeds).any():
+        return 0.0
+    return pi * tool.shape.diameter * float(speeds.min())
 
 
 def _turning(setting: ModalSetting, speeds: Mapping[int, float]) -> ModalSetting:

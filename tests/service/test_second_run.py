@@ -32,7 +32,6 @@ CASES: list[tuple[Path, dict[str, Any]]] = [
     (CORPUS / "ex1.stp", {}),
     (CORPUS / "ex1E.stp", {}),
     (CORPUS / "furo.p21", {"units": "revs-mmtooth"}),
-    (CORPUS / "testePrecedencias.p21", {"units": "rpm-mmtooth"}),
 ]
 """Programs, and what is given beyond them."""
 

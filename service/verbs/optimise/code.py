@@ -38,7 +38,12 @@ from service.simulation.code_paths import CodeBlocks, CodePaths
 from service.simulation.code_setup import CodeSetup, GivenSetup, code_setup
 from service.simulation.code_simulation import called_tool_findings, with_called_tools
 from service.simulation.setup_file import setup_of
-from service.simulation.spindle_speeds import lacks_speed, speeds_in, with_spindles
+from service.simulation.spindle_speeds import (
+    lacks_speed,
+    least_cutting_speed,
+    speeds_in,
+    with_spindles,
+)
 from service.verbs.optimise.code_result import CodeAdvice
 from service.verbs.optimise.request import AdviceFiles, output_of
 from simulator.library import load_machine
@@ -276,7 +281,10 @@ def _bounds(
                 quantile=request.safety,
                 is_finishing=is_finishing,
                 roughness=roughness,
-                job=job.of_tool(tool.id),
+                job=replace(
+                    job.of_tool(tool.id),
+                    finishing_speed=least_cutting_speed(code.program.moves, part.tool, each),
+                ),
             )
             for each in ([tool] if setup is None else setup.plausible(tool, material))
         ]

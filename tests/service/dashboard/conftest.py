@@ -8,6 +8,7 @@ folder included, therefore runs in a thread of its own.
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
+from functools import partial
 from inspect import signature
 from typing import TypeVar
 
@@ -111,6 +112,10 @@ def opened_page(browser: Browser, served: Server) -> Iterator[Page]:
     )
     page = context.new_page()
     page.set_default_timeout(PATIENCE)
+    # Requests beside the page do not take its patience.
+    for method in ("get", "post"):
+        send = partial(getattr(context.request, method), timeout=PATIENCE)
+        setattr(context.request, method, send)
     said: list[str] = []
     page.on("pageerror", lambda error: said.append(f"error: {error}"))
     page.on(
