@@ -316,6 +316,8 @@ function frame() {
       el("a", { class: "small", id: "manual", href: MANUAL }, "Manual"),
       el("a", { class: "small", href: "/v1/openapi.json" }, "API"), units, keys, toggle));
   document.body.prepend(el("a", { class: "skip", href: "#main" }, "skip to content"), bar);
+  // What sticks to the top begins below the header, which is higher on narrow screens.
+  new ResizeObserver(() => document.documentElement.style.setProperty("--bar", `${bar.offsetHeight}px`)).observe(bar);
   document.body.append(el("div", { id: "said", class: "unseen", role: "status", "aria-live": "polite" }));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     theme();
