@@ -33,7 +33,7 @@ Word = str | Path
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answer:
-    """What a command answered."""
+    """Exit code and output of a command."""
 
     code: int
     out: str
@@ -90,7 +90,7 @@ def material(part: str, name: Word) -> str:
 
 
 def in_hard(name: str, _: Path) -> str:
-    """What becomes of a mill of high-speed steel in a hard material."""
+    """Advice for a mill of high-speed steel in a hard material."""
     return material("paper002", name)
 
 
@@ -123,7 +123,7 @@ def feeds(folder: Path, program: Word, *words: Word, at: str) -> str:
 
 
 def second(folder: Path) -> str:
-    """Whether a second run changes bytes."""
+    """Comparison of the bytes of two runs in a row."""
     one, two = folder / "one.nc", folder / "two.nc"
     answer("optimise", NC / "arc_over_180.nc", *INCHES, "-o", one)
     answer("optimise", one, *INCHES, "-o", two)

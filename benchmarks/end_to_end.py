@@ -28,7 +28,7 @@ BAR = "60,-100,1"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Said:
-    """What a command printed."""
+    """Printed output of a command."""
 
     code: int
     out: str

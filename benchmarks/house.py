@@ -308,7 +308,7 @@ def _page_lines(text: str) -> int:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Walk:
-    """What ``optimise`` of a part runs through."""
+    """Modules that ``optimise`` of a part runs through."""
 
     entered: int
     """Modules that run any code but that of their own level, that of classes among it."""

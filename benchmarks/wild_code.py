@@ -56,7 +56,7 @@ COLUMNS = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WildProgram:
-    """What became of one program."""
+    """Result of one program."""
 
     name: str
     taken_for: str = ""
